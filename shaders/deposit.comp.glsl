@@ -1,25 +1,28 @@
-// One pixel of a frustum: its echo into the bins of the beams that own its column, in 64-bit fixed point.
+// One pixel of a frustum: its echo into the bins of the beams that own its column, in 64-bit fixed point. All in single precision,
+// for many devices do 1/32 or 1/64 as many operations in double. Where an echo lies among the bins is exact nevertheless: the way
+// from picture and plane to inverse range is in pairs of floats, and a cell's places are from the inverse range of its own middle.
 #include "interface.glsl"
+#include "pair.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform usampler2D picture;
 layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
 layout(std430, binding = COMMANDS_BINDING) readonly buffer Commands { CommandRecord commands[]; };
 layout(std430, binding = PLANES_BINDING) readonly buffer Planes { vec4 planes[]; };  // PlaneRecords, then FacetRecords
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
-layout(std430, binding = SHARES_BINDING) readonly buffer Shares { ShareRecord shares[]; };
+layout(std430, binding = SHARES_BINDING) readonly buffer Shares { DeviceShare shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
-layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { double numbers[]; };  // edges of the bins, then tables
+layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { float numbers[]; };  // edges of the bins, two each, then tables
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
 uniform uint bin_count, beam_stride;
-uniform double bin_width, attenuation, strength_scale;
-uniform dvec2 extent, pixel_size, frustum_axis;
+uniform float bin_width, attenuation, strength_scale;
+uniform vec2 extent_u, extent_v, pixel_u, pixel_v, axis_cosine, axis_sine;  // each the sum of two floats
 
 #ifdef HAVE_ELEVATION_PATTERN
-uniform double elevation_reach;
+uniform float elevation_reach;
 uniform uint first_elevation;  // among the numbers
-double elevationPower(uint i) { return numbers[first_elevation + i]; }
+float elevationPower(uint i) { return numbers[first_elevation + i]; }
 #include "elevation.glsl"
 #endif
 #ifdef HAVE_BACKSCATTER_LAWS
@@ -29,11 +32,32 @@ FacetRecord facetOf(uint triangle) {
     uint at = first_facet + 3u * triangle;
     return FacetRecord(planes[at], planes[at + 1u], planes[at + 2u]);
 }
-double backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
+float backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 #include "backscatter.glsl"
 #endif
 
-double binEdge(uint k) { return numbers[k]; }
+Pair pairOf(vec2 both) { return Pair(both.x, both.y); }
+
+// Of the cell at hand: the inverse range from which its places count, and the place of its pixel's echo.
+float origin = 0.0, pixel_place = 0.0;
+float inverseRange(float place) { return origin + place; }
+
+Pair edgeOf(uint k) { return Pair(numbers[2u * k], numbers[2u * k + 1u]); }
+float binEdge(uint k) { return beyond(edgeOf(k), origin); }
+
+// The bin in which a place in range lies. Edge 0 is the near blanking, which may lie in any bin.
+uint binOf(float place) {
+    uint bin = min(uint(1.0 / (inverseRange(place) * bin_width)), bin_count - 1u);
+    while (bin > 0u && binEdge(bin) < place) --bin;
+    while (bin < bin_count - 1u && binEdge(bin + 1u) >= place) ++bin;
+    return bin;
+}
+
+// Length of a part of a bin: exact where it is the whole bin, however far from the origin.
+float lengthOf(uint bin, float below, float above) {
+    bool whole = below == binEdge(bin + 1u) && above == binEdge(bin);
+    return whole ? sumOf(edgeOf(bin), negative(edgeOf(bin + 1u))).high : above - below;
+}
 
 #ifdef HAVE_CERQUEIRA2017
 const uint channels = 2u;
@@ -47,11 +71,10 @@ uint cellOf(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride 
 uint cellOf(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
 #endif
 
-// Low and high word of an amount in quanta.
-uvec2 quantaOf(double amount) {
-    double quanta = floor(min(amount, 1048576.0) * 1099511627776.0 + 0.5);
-    uint high = uint(quanta / 4294967296.0);
-    return uvec2(uint(quanta - double(high) * 4294967296.0), high);
+// Low and high word of an amount in quanta of 2^-40.
+uvec2 quantaOf(float amount) {
+    float high = min(amount, 1048576.0) * 256.0, whole = floor(high);
+    return uvec2(uint((high - whole) * 4294967296.0 + 0.5), uint(whole));
 }
 
 // The order of additions does not matter: words are integers, and every wrap of the low word carries once.
@@ -67,7 +90,7 @@ const uint group_beams = 8u, group_bins = 32u, group_cells = group_beams * group
 shared uint first_beam, first_bin;
 shared uint group_low[group_cells], group_high[group_cells];
 
-void add(uint beam, uint bin, uint channel, double amount) {
+void add(uint beam, uint bin, uint channel, float amount) {
     uvec2 quanta = quantaOf(amount);
     uint row = beam - first_beam, column = bin - first_bin;  // of what comes before these, far beyond the span
     if (row >= group_beams || column >= group_bins) {
@@ -101,7 +124,7 @@ void endGroup() {
     }
 }
 
-void addToBin(uint beam, uint bin, double amount, double weight) {
+void addToBin(uint beam, uint bin, float amount, float weight) {
     add(beam, bin, 0u, amount);
 #ifdef HAVE_CERQUEIRA2017
     add(beam, bin, 1u, weight);
@@ -109,74 +132,113 @@ void addToBin(uint beam, uint bin, double amount, double weight) {
 }
 
 #include "jitter.glsl"
+Pair jitterOf(ivec2 pixel, uint which) {  // jitter(), of all 32 bits
+    uint word = jitterWord(uint(pixel.x), uint(pixel.y), which);
+    return exactSum(float(word >> 8u) * (1.0 / 16777216.0) - 0.5, float(word & 255u) * (1.0 / 4294967296.0));
+}
 #include "footprint.glsl"
 #include "plane.glsl"
 #include "picture.glsl"
-#define real double
+#define real float
 #include "trapezoid.glsl"
 #include "deposit.glsl"
 
 #ifdef HAVE_VOLUME
-void addVolume(uint beam, uint bin, double amount) {
+void addVolume(uint beam, uint bin, float amount) {
     uvec2 quanta = quantaOf(abs(amount));
     if (amount < 0.0) quanta = uvec2(~quanta.x + 1u, ~quanta.y + uint(quanta.x == 0u));
     addToMemory((2u * beam + 1u) * beam_stride + bin, quanta);
 }
 #ifdef HAVE_VOLUME_LAYERS
 uniform uint layer_count, first_layer;
-uniform double sonar_height;
-uniform dvec3 upward;
-double layerNumber(uint i) { return numbers[first_layer + i]; }
+uniform float sonar_height;
+uniform vec3 upward;
+float layerNumber(uint i) { return numbers[first_layer + i]; }
 #endif
 #include "volume.glsl"
 
-void depositVolume(Footprint cell, uint beam, dvec2 uv) {
+void depositVolume(Footprint cell, uint beam, vec2 uv) {
 #ifdef HAVE_VOLUME_LAYERS
-    double rise = dot(upward, dvec3(1.0, uv)) / sqrt(1.0 + dot(uv, uv));
+    float rise = dot(upward, vec3(1.0, uv)) / sqrt(1.0 + dot(uv, uv));
     if (cell.pixel > 0.0)
         hideVolume(cell, beam, rise, cell.size);
     else
-        hearLayers(beam, rise, double(bin_count) * bin_width, cell.size);
+        hearLayers(beam, rise, float(bin_count) * bin_width, cell.size);
 #else
     if (cell.pixel > 0.0) hideVolume(cell, beam, 0.0, cell.size);
 #endif
 }
 #endif
 
-dvec3 frustumFromSonar(dvec3 p) {
-    return dvec3(frustum_axis.x * p.x + frustum_axis.y * p.y, frustum_axis.x * p.y - frustum_axis.y * p.x, p.z);
+// Where a ray meets the picture.
+struct Ray {
+    Pair u, v;
+};
+vec2 directionOf(Ray ray) { return vec2(ray.u.high, ray.v.high); }
+
+// A vector in the frustum's axes.
+struct Placed {
+    Pair x, y, z;
+};
+vec3 rounded(Placed a) { return vec3(a.x.high, a.y.high, a.z.high); }
+
+Pair dotOf(vec3 a, vec3 b) {
+    return sumOf(sumOf(exactProduct(a.x, b.x), exactProduct(a.y, b.y)), exactProduct(a.z, b.z));
+}
+Pair difference(Pair a, Pair b) { return sumOf(a, negative(b)); }
+
+// A normal, or what is turned as normals are.
+Placed placed(ObjectRecord object, vec3 normal) {
+    Pair x = dotOf(object.normal_x.xyz, normal), y = dotOf(object.normal_y.xyz, normal);
+    Pair c = pairOf(axis_cosine), s = pairOf(axis_sine);
+    return Placed(sumOf(productOf(c, x), productOf(s, y)), difference(productOf(c, y), productOf(s, x)),
+                  dotOf(object.normal_z.xyz, normal));
 }
 
-double strengthOf(uint material) {
+float strengthOf(uint material) {
 #ifdef HAVE_CERQUEIRA2017
-    return double(materials[material].values.y) * strength_scale;
+    return materials[material].values.y * strength_scale;
 #else
-    return double(materials[material].values.x) * strength_scale;
+    return materials[material].values.x * strength_scale;
 #endif
 }
 
 // What a pixel shows: its triangle's plane in the frustum's axes, and what belongs to its material and object.
 struct Seen {
-    dvec3 normal;
-    double distance;
-    dvec2 ray;        // where the pixel is looked at
-    double strength;  // at normal incidence
-    double mapped;    // cosine of a bent normal; 0: it is the plane's
-    dvec2 reach;      // inverse ranges of the object [1/m]
-    double weight;    // of the pattern in elevation [1]
+    Placed normal;
+    Pair distance;
+    Pair normal_length;
+    Ray ray;          // where the pixel is looked at
+    float strength;  // at normal incidence
+    float mapped;    // cosine of a bent normal; 0: it is the plane's
+    vec2 reach;      // inverse ranges of the object [1/m]
+    float weight;    // of the pattern in elevation [1]
     uint material, triangle;
-    dvec3 axis;  // of the facet's lobe
+    vec3 axis;  // of the facet's lobe
 };
 
-// A normal, or what is turned as normals are, in the frustum's axes.
-dvec3 placed(ObjectRecord object, dvec3 normal) {
-    return frustumFromSonar(dvec3(dot(dvec3(object.normal_x.xyz), normal), dot(dvec3(object.normal_y.xyz), normal), dot(dvec3(object.normal_z.xyz), normal)));
+// Distance of a plane from the sonar along its normal.
+Pair distanceOf(PlaneRecord plane, ObjectRecord object) {
+    vec3 n = plane.normal.xyz, point = plane.point.xyz, eye = object.eye.xyz, rest = object.eye_rest.xyz;
+    Pair sum = Pair(plane.normal.w, 0.0);
+    for (int i = 0; i < 3; ++i)
+        sum = sumOf(sum, productOf(Pair(n[i], 0.0), sumOf(exactSum(point[i], -eye[i]), Pair(-rest[i], 0.0))));
+    return sum;
 }
 
-Seen seenAt(ivec2 pixel, dvec2 uv) {
-    Seen seen = Seen(dvec3(1.0, 0.0, 0.0), 0.0, uv, 0.0, 0.0, dvec2(0.0), 1.0, 0u, 0u, dvec3(0.0));
+// Length times the cosine of incidence, and the ray's own length.
+Pair alongRay(Placed normal, Ray ray) {
+    return sumOf(sumOf(normal.x, productOf(normal.y, ray.u)), productOf(normal.z, ray.v));
+}
+Pair lengthOfRay(Ray ray) {
+    return rootOf(sumOf(sumOf(Pair(1.0, 0.0), productOf(ray.u, ray.u)), productOf(ray.v, ray.v)));
+}
+
+Seen seenAt(ivec2 pixel, Ray ray) {
+    Pair none = Pair(0.0, 0.0), one = Pair(1.0, 0.0);
+    Seen seen = Seen(Placed(one, none, none), none, one, ray, 0.0, 0.0, vec2(0.0), 1.0, 0u, 0u, vec3(0.0));
 #ifdef HAVE_ELEVATION_PATTERN
-    seen.weight = elevationWeight(uv.x, uv.y);
+    seen.weight = elevationWeight(ray.u.high, ray.v.high);
 #endif
     uvec4 texel = texelFetch(picture, pixel, 0);
     if (texel.x == 0u) return seen;
@@ -184,20 +246,22 @@ Seen seenAt(ivec2 pixel, dvec2 uv) {
     ObjectRecord object = objects[command.object];
     seen.triangle = command.first_triangle + texel.y;
     PlaneRecord plane = PlaneRecord(planes[2u * seen.triangle], planes[2u * seen.triangle + 1u]);
-    dvec3 across = dvec3(plane.normal.xyz);
-    seen.normal = placed(object, across);
-    seen.distance = dot(across, dvec3(plane.point.xyz) - (dvec3(object.eye.xyz) + dvec3(object.eye_rest.xyz))) + double(plane.normal.w);
+    seen.normal = placed(object, plane.normal.xyz);
+    seen.normal_length = rootOf(sumOf(sumOf(productOf(seen.normal.x, seen.normal.x), productOf(seen.normal.y, seen.normal.y)),
+                               productOf(seen.normal.z, seen.normal.z)));
+    seen.distance = distanceOf(plane, object);
 #ifdef HAVE_JITTER
-    seen.ray += pixel_size * dvec2(jitter(pixel.x, pixel.y, 0u), jitter(pixel.x, pixel.y, 1u));
+    seen.ray.u = sumOf(ray.u, productOf(pairOf(pixel_u), jitterOf(pixel, 0u)));
+    seen.ray.v = sumOf(ray.v, productOf(pairOf(pixel_v), jitterOf(pixel, 1u)));
 #endif
     seen.strength = strengthOf(command.material);
 #ifdef HAVE_NORMAL_MAP
-    if (texel.z != 0u) seen.mapped = double(uintBitsToFloat(texel.z));
+    if (texel.z != 0u) seen.mapped = uintBitsToFloat(texel.z);
 #endif
-    seen.reach = dvec2(object.extent.xy);
+    seen.reach = object.extent.xy;
     seen.material = command.material;
 #ifdef HAVE_BACKSCATTER_LAWS
-    if (materials[seen.material].law.y > 0.0) seen.axis = placed(object, dvec3(facetOf(seen.triangle).axis.xyz));
+    if (materials[seen.material].law.y > 0.0) seen.axis = normalize(rounded(placed(object, facetOf(seen.triangle).axis.xyz)));
 #endif
     return seen;
 }
@@ -211,70 +275,127 @@ uint sharesOf(ivec2 pixel) {
 #endif
 }
 
+// A direction as angles.
+struct Angles {
+    float cos_az, sin_az, cos_el, sin_el;
+};
+Angles anglesOf(vec2 uv) {
+    float level = sqrt(1.0 + uv.x * uv.x), per_length = 1.0 / sqrt(1.0 + dot(uv, uv));
+    return Angles(1.0 / level, uv.x / level, level * per_length, uv.y * per_length);
+}
+
+// A cell's footprint, and how it faces the sonar.
+struct Covered {
+    Footprint footprint;
+    float perpendicular;  // distance of the plane [m]; 0: no echo
+};
+
+// What a cell covers of the plane that is seen along a ray, as planeFootprint() in C++. Sets the origin of its places.
+Covered covered(Seen seen, Ray towards, PictureCell cell) {
+    Angles at = anglesOf(directionOf(towards));
+    vec3 normal = rounded(seen.normal);
+    Pair facing = quotientOf(alongRay(seen.normal, towards), lengthOfRay(towards));
+    float ahead = normal.x * at.cos_az + normal.y * at.sin_az, aside = normal.y * at.cos_az - normal.x * at.sin_az;
+    bool echo = seen.distance.high * facing.high > 0.0 && abs(facing.high) > EDGE_ON_COSINE * seen.normal_length.high;
+    Pair inverse = Pair(0.0, 0.0), nearest = inverse;
+    if (echo) {
+        inverse = quotientOf(facing, seen.distance);
+        nearest = quotientOf(seen.normal_length, seen.distance.high > 0.0 ? seen.distance : negative(seen.distance));
+    }
+    origin = inverse.high;
+    pixel_place = inverse.low;
+    PlaneExtent extent = planeExtent(ahead, aside, normal.z, at.cos_el, at.sin_el, echo ? 1.0 / seen.distance.high : 0.0,
+                                     inverse.high, cell.width, cell.height, 0.0);
+    Covered result;
+    result.perpendicular = echo ? abs(seen.distance.high) / seen.normal_length.high : 0.0;
+    result.footprint = trapezoidFootprint(inverse.high, pixel_place - extent.sag, extent.along, extent.across,
+                                          beyond(nearest, origin), seen.reach.x - origin, seen.reach.y - origin, binEdge(0u),
+                                          binEdge(bin_count), echo ? cell.size * seen.weight : 0.0);
+    return result;
+}
+
 // Strength times slant range of a cell that is looked at along `towards` [m].
-double strengthRange(Seen seen, PlaneFootprint cell, dvec2 towards, double width, double height) {
-    double inverse_range = cell.footprint.pixel;
+float strengthRange(Seen seen, Covered cell, vec2 towards, float width, float height) {
+    float inverse_range = cell.footprint.pixel;
     bool mapped = seen.mapped > 0.0 && cell.perpendicular > 0.0;
 #ifdef HAVE_BACKSCATTER_LAWS
     MaterialRecord material = materials[seen.material];
     if (!FOLLOWS_LAMBERT(material.law) && inverse_range > 0.0) {
-        double cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
+        float cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
         LobeSlopes slopes = LobeSlopes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         if (material.law.y > 0.0) {
-            double level = sqrt(1.0 + towards.x * towards.x), per_length = 1.0 / sqrt(1.0 + dot(towards, towards));
-            slopes = lobeSlopes(facetOf(seen.triangle), double(material.law.z), 1.0 / inverse_range, seen.normal.x, seen.normal.y,
-                                seen.normal.z, seen.axis.x, seen.axis.y, seen.axis.z, 1.0 / level, towards.x / level,
-                                level * per_length, towards.y * per_length, width, height, seen.mapped);
+            Angles at = anglesOf(towards);
+            vec3 normal = rounded(seen.normal) / seen.normal_length.high;
+            slopes = lobeSlopes(facetOf(seen.triangle), material.law.z, 1.0 / inverse_range, normal.x, normal.y, normal.z,
+                                seen.axis.x, seen.axis.y, seen.axis.z, at.cos_az, at.sin_az, at.cos_el, at.sin_el, width, height,
+                                seen.mapped);
         }
-        return strength_scale / inverse_range * backscatterOverCosine(material.law, double(material.values.x), cosine, slopes);
+        return strength_scale / inverse_range * backscatterOverCosine(material.law, material.values.x, cosine, slopes);
     }
 #endif
     return seen.strength * (mapped ? seen.mapped / inverse_range : cell.perpendicular);
 }
 
-double facingOf(dvec3 normal, dvec2 uv) { return dot(normal, dvec3(1.0, uv)) / sqrt(1.0 + dot(uv, uv)); }
+// The middle of a share's cell of a pixel, and its height in v.
+struct LookDirection {
+    Ray towards;
+    float rise;
+};
+LookDirection lookDirectionOf(DeviceShare share, Ray ray) {
+    Pair middle = pairOf(share.middle), limit = pairOf(share.limit);
+    float lean = ray.v.high * share.shear * difference(middle, ray.u).high;
+    PictureRow row = pictureRow(ray.v.low + lean, pixel_v.x, beyond(negative(limit), ray.v.high), beyond(limit, ray.v.high));
+    return LookDirection(Ray(middle, exactSum(ray.v.high, row.middle)), row.rise);
+}
 
-void depositShare(ShareRecord share, dvec2 uv, Seen seen) {
-    PictureCell at = pictureCell(uv.x, uv.y, share.middle, share.width, share.limit, share.shear, pixel_size.y,
-                                 1.0 / (pixel_size.x * pixel_size.y));
+void depositShare(DeviceShare share, Ray ray, Seen seen) {
+    LookDirection look = lookDirectionOf(share, ray);
+    vec2 middle = directionOf(look.towards);
+    PictureCell cell = pictureCell(middle.x, middle.y, share.width, look.rise, 1.0 / (pixel_u.x * pixel_v.x));
 #if defined(HAVE_NEAREST) || defined(HAVE_PUBLISHED)
-    dvec2 towards = seen.ray;
+    Ray towards = seen.ray;
 #else
-    dvec2 towards = dvec2(at.u, at.v);
-    double of_ray = facingOf(seen.normal, uv), of_cell = facingOf(seen.normal, towards);
-    if (of_ray * of_cell > 0.0) seen.mapped *= of_cell / of_ray;
+    Ray towards = look.towards;
+    if (seen.mapped > 0.0) {
+        float of_ray = alongRay(seen.normal, ray).high / lengthOfRay(ray).high;
+        float of_cell = alongRay(seen.normal, towards).high / lengthOfRay(towards).high;
+        if (of_ray * of_cell > 0.0) seen.mapped *= of_cell / of_ray;
+    }
 #endif
-    double level = sqrt(1.0 + towards.x * towards.x), per_length = 1.0 / sqrt(1.0 + dot(towards, towards));
-    PlaneFootprint cell = planeFootprint(seen.normal.x, seen.normal.y, seen.normal.z, seen.distance, 1.0 / level,
-                                         towards.x / level, level * per_length, towards.y * per_length, at.width,
-                                         at.height, 0.0, at.size * seen.weight, seen.reach.x, seen.reach.y,
-                                         binEdge(0u), binEdge(bin_count));
-    depositCell(cell.footprint, share.beam, strengthRange(seen, cell, towards, at.width, at.height));
+    vec2 uv = directionOf(towards);
+    Covered seen_cell = covered(seen, towards, cell);
+    depositCell(seen_cell.footprint, share.beam, strengthRange(seen, seen_cell, uv, cell.width, cell.height));
 #ifdef HAVE_VOLUME
-    cell.footprint.size = at.size * seen.weight;
-    depositVolume(cell.footprint, share.beam, towards);
+    seen_cell.footprint.size = cell.size * seen.weight;
+    depositVolume(seen_cell.footprint, share.beam, uv);
 #endif
 }
 
-void depositPixel(ivec2 pixel, dvec2 uv, Seen seen) {
+void depositPixel(ivec2 pixel, Ray ray, Seen seen) {
     uint at = sharesOf(pixel);
-    for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], uv, seen);
+    for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], ray, seen);
 }
 
 // The bin in which a pixel's echo lies, nearly; bin_count: there is none.
 uint firstBin(Seen seen) {
-    double inverse_range = seen.distance != 0.0 ? facingOf(seen.normal, seen.ray) / seen.distance : 0.0;
-    return inverse_range > 0.0 ? uint(min(1.0 / (inverse_range * bin_width), double(bin_count))) : bin_count;
+    float facing = alongRay(seen.normal, seen.ray).high / lengthOfRay(seen.ray).high;
+    float inverse_range = seen.distance.high != 0.0 ? facing / seen.distance.high : 0.0;
+    return inverse_range > 0.0 ? uint(min(1.0 / (inverse_range * bin_width), float(bin_count))) : bin_count;
+}
+
+// (place + 0.5) * size - extent.
+Pair middleOf(int place, vec2 size, vec2 extent) {
+    return difference(productOf(Pair(float(place) + 0.5, 0.0), pairOf(size)), pairOf(extent));
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     bool inside = all(lessThan(pixel, image_size));
-    dvec2 uv = (dvec2(pixel) + 0.5) * pixel_size - extent;
-    Seen seen = seenAt(min(pixel, image_size - 1), uv);
+    Ray ray = Ray(middleOf(pixel.x, pixel_u, extent_u), middleOf(pixel.y, pixel_v, extent_v));
+    Seen seen = seenAt(min(pixel, image_size - 1), ray);
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
     bool heard = inside && share < share_starts[at + 1u];
     beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen) : bin_count);
-    if (inside) depositPixel(pixel, uv, seen);
+    if (inside) depositPixel(pixel, ray, seen);
     endGroup();
 }

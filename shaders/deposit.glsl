@@ -1,6 +1,7 @@
 // Shared by C++ and GLSL: one cell's echo, spread over the bins that its footprint covers.
 // The includer has footprint.glsl and trapezoid.glsl before this file, and defines:
-//     double binEdge(uint k);                      1 / range of edge k [1/m]; edge 0 is the near blanking, edge n the far end
+//     double binEdge(uint k);                      place of edge k [1/m]; edge 0 is the near blanking, edge n the far end
+//     uint binOf(double place);                    the bin in which a place in range lies, give or take a rounding
 //     void addToBin(uint beam, uint bin, double amount, double weight);
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
 
@@ -14,20 +15,33 @@ double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.
 double attenuated(double cosine, double range) { return cosine * double(exp(float(-2.0 * attenuation * range))); }
 #endif
 
-// What the includer's addToBin is told of the part of a cell between two inverse ranges: `amount` is, for `physical`,
+// Adds the part of a cell between two inverse ranges to a bin: `amount` is, for `physical`,
 // partEnergy; for cerqueira2017 it is S weighted by the part's size `weight`.
 void depositPart(Footprint cell, uint beam, uint bin, double share, double above, double below, double strength_range) {
 #ifdef HAVE_CERQUEIRA2017
     double inverse_range = 0.5 * (above + below);
-    double cosine = min(strength_range * inverse_range, 1.0);
+    double cosine = min(strength_range * (inverse_range - cell.fade * cell.fade / inverse_range), 1.0);
 #ifdef HAVE_ABSORPTION
     cosine = attenuated(cosine, 1.0 / inverse_range);
 #endif
     addToBin(beam, bin, cell.size * share * cerqueiraEcho(cosine), cell.size * share);
 #endif
 #ifdef HAVE_PHYSICAL
-    addToBin(beam, bin, partEnergy(cell, strength_range, share, (double(bin) + 0.5) * bin_width, above, below), 0.0);
+    double middle = (double(bin) + 0.5) * bin_width;
+    addToBin(beam, bin, cell.limb > 0.0 ? limbEnergy(cell, strength_range, share, middle, above, below)
+                                        : partEnergy(cell, strength_range, share, middle, above, below), 0.0);
 #endif
+}
+
+// Share of a cell up to an inverse range, but for a number that is the same all over the cell.
+double shareAt(Footprint cell, double inverse_range) {
+    return cell.limb > 0.0 ? limbShare(cell, inverse_range) : trapezoidShare(cell, inverse_range - cell.centre);
+}
+// What the nearest point cuts off lies about that point; what object, blanking and range cut off is gone.
+double firstShare(Footprint cell, double inverse_range) {
+    if (inverse_range < cell.nearest) return shareAt(cell, inverse_range);
+    if (!(cell.limb > 0.0)) return 0.5;
+    return limbShare(cell, inverse_range) + 0.5 - trapezoidShare(cell, placeOf(cell, inverse_range) - cell.centre);
 }
 
 #ifdef HAVE_PUBLISHED
@@ -35,8 +49,13 @@ void depositPart(Footprint cell, uint beam, uint bin, double share, double above
 // nothing in range counts in bin 0 with a cosine of 0.
 void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
+#ifdef GLSL
+    bool heard = range > 0.0 && pixel_place >= binEdge(bin_count - 1u);
+    uint bin = heard ? binOf(pixel_place) : 0u;
+#else
     bool heard = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
     uint bin = heard ? uint(range / bin_width) : 0u;
+#endif
     double cosine = heard ? min(strength_range * cell.pixel, 1.0) : 0.0;
 #ifdef HAVE_ABSORPTION
     cosine = attenuated(cosine, range);
@@ -46,8 +65,13 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
 #elif defined(HAVE_NEAREST)
 // All of a cell in one bin, that of a point in its pixel.
 void depositCell(Footprint cell, uint beam, double strength_range) {
-    if (!(cell.pixel > binEdge(bin_count)) || cell.pixel > binEdge(0u)) return;
-    uint bin = min(uint(1.0 / (cell.pixel * bin_width)), bin_count - 1u);
+#ifdef GLSL
+    double place = pixel_place;
+#else
+    double place = cell.pixel;
+#endif
+    if (!(cell.pixel > 0.0 && place > binEdge(bin_count)) || place > binEdge(0u)) return;
+    uint bin = binOf(place);
     double relative = (double(bin) + 0.5) * bin_width * cell.pixel;
     addToBin(beam, bin, strength_range * cell.size * cell.pixel * relative * relative, 0.0);
 }
@@ -55,18 +79,27 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
 // `strength_range` = strength times slant range [m].
 void depositCell(Footprint cell, uint beam, double strength_range) {
     if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // neither of which NaN is
-    uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
+    uint bin = binOf(cell.near_end);
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;
     double above = cell.near_end;
-    // What the plane's nearest point cuts off lies about that point; what object, blanking and range cut off is gone.
-    double share_above = above < cell.nearest ? trapezoidShare(cell, above - cell.centre) : 0.5;
+#ifdef GLSL
     for (; above > cell.far_end; ++bin) {
         double below = max(binEdge(bin + 1u), cell.far_end);
-        double share_below = trapezoidShare(cell, below - cell.centre);
+        double to = above < cell.nearest ? above : cell.centre + cell.wide;
+        double share = partShare(cell, below - cell.centre, to - cell.centre, lengthOf(bin, below, to));
+        depositPart(cell, beam, bin, share, inverseRange(above), inverseRange(below), strength_range);
+        above = below;
+    }
+#else
+    double share_above = firstShare(cell, above);
+    for (; above > cell.far_end; ++bin) {
+        double below = max(binEdge(bin + 1u), cell.far_end);
+        double share_below = shareAt(cell, below);
         depositPart(cell, beam, bin, share_above - share_below, above, below, strength_range);
         above = below;
         share_above = share_below;
     }
+#endif
 }
 #endif

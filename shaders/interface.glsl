@@ -1,22 +1,17 @@
 // Shared by C++ and GLSL: what the surface pass and the deposit are told. Groups of 16 bytes, so that std430 and C++ agree.
 
-// Numbers in double precision. GLSL rounds a literal to single precision unless it ends in `lf`, a suffix that C++ lacks.
-#ifdef GLSL
-#define EDGE_ON_COSINE 1e-4lf
-#define MIN_LOBE_COSINE 1e-6lf
-#define MIN_ACROSS 1e-30lf
-#define MIN_SINE_SQUARE 1e-12lf
-#define LOBE_PI 3.14159265358979323846lf
-#define MIN_RISE 1e-9lf
-#define MIN_WIDTH_RATIO 1e-12lf
-#define MIN_WIDTH 1e-300lf
-#else
 #define EDGE_ON_COSINE 1e-4
 #define MIN_LOBE_COSINE 1e-6
 #define MIN_ACROSS 1e-30
 #define MIN_SINE_SQUARE 1e-12
 #define LOBE_PI 3.14159265358979323846
 #define MIN_RISE 1e-9
+// In GLSL numbers are in single precision.
+#ifdef GLSL
+#define double float
+#define MIN_WIDTH_RATIO 1e-9
+#define MIN_WIDTH 1e-30
+#else
 #define MIN_WIDTH_RATIO 1e-12
 #define MIN_WIDTH 1e-300
 #endif
@@ -63,6 +58,11 @@ struct PlaneRecord {
     vec4 point;   // xyz: close to the triangle, on the plane but for the rounding that normal.w makes up for [m]
 };
 
+// How a smooth closed body bends at a facet: along a unit vector t of the facet by bend.w + dot(t, bend.xyz)^2 [1/m].
+struct CurveRecord {
+    vec4 bend;  // xyz: turned as normals are [m^-1/2]; w [1/m]
+};
+
 // How a facet spreads the lobe of its material, in two principal directions of its plane.
 struct FacetRecord {
     vec4 axis;           // xyz: the first direction, which is turned as normals are, of any length
@@ -89,12 +89,11 @@ struct MaterialRecord {
 };
 #define FOLLOWS_LAMBERT(law) ((law).x < 0.0 && (law).y == 0.0)
 
-// The part of an image column that belongs to one beam; u = tan(azimuth in the frustum).
-struct ShareRecord {
-    double middle, width;  // of the part, in u [1]
-    double limit;          // the aperture ends at v = +-limit there [1]
-    double shear;          // u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1]
-    uint beam, column;
+// The part of an image column that belongs to one beam, as ShareRecord.
+struct DeviceShare {
+    vec2 middle, limit;  // each the sum of two floats [1]
+    float width, shear;  // [1]
+    uint beam, unused;
 };
 
 // A run of triangles of one object that is drawn or culled as one; object axes.

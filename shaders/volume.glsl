@@ -41,8 +41,9 @@ void hideVolume(Footprint cell, uint beam, double rise, double size) {
     uint parts = depth < of_a_bin ? 1u : depth < 2.0 * of_a_bin ? 2u : 4u;
     double per_parts = 1.0 / double(parts);
     for (uint part = 0u; part < parts; ++part) {
-        double inverse_range = min(cell.centre + ((double(part) + 0.5) * per_parts - 0.5) * depth, cell.nearest);
-        if (cell.near_end > cell.far_end) inverse_range = min(max(inverse_range, cell.far_end), cell.near_end);
+        double place = min(inverseAt(cell.limb, cell.centre + ((double(part) + 0.5) * per_parts - 0.5) * depth), cell.nearest);
+        if (cell.near_end > cell.far_end) place = min(max(place, cell.far_end), cell.near_end);
+        double inverse_range = inverseRange(place);
         if (!(inverse_range > 0.0)) continue;
 #ifdef HAVE_VOLUME_LAYERS
         hearLayers(beam, rise, 1.0 / inverse_range, size * per_parts);

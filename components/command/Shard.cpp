@@ -22,7 +22,7 @@ std::optional<uint64_t> number(std::string_view digits) {
 Shard shardIn(std::string_view text, std::string& why) {
     const size_t slash = text.find('/');
     const auto index = number(text.substr(0, slash));
-    const auto count = slash == text.npos ? std::nullopt : number(text.substr(slash + 1));
+    const auto count = number(slash == text.npos ? "" : text.substr(slash + 1));
     if (!index || !count)
         why = fmt::format("is '{}'; it must be i/N, whole numbers, as in 0/16", text);
     else if (*count == 0 || *count > Shard::most)

@@ -108,7 +108,7 @@ const sonar::PingTask& sonarOf(const framework::Deployment& deployment, const Be
 }
 
 int showBeam(const BeamOptions& options) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     const std::string file = deploymentIn(options.deployment);
     const framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
     const sonar::RenderPlan plan =

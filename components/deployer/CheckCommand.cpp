@@ -77,7 +77,7 @@ void printGraph(framework::Deployment& deployment) {
 }
 
 int check(const std::string& file, bool json) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     try {
         framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
         json ? print(validJson(deployment)) : printGraph(deployment);

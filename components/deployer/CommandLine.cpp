@@ -7,7 +7,7 @@
 #include <exception>
 #include <iostream>
 
-#include "components/deployer/Pipeline.hpp"
+#include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
 #include "types/Reason.hpp"
@@ -55,8 +55,46 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     return action();
 }
 
+/** Commands that are in component libraries of their name. */
+constexpr const char* commands_of_libraries[] = {"dataset", "device", "study"};
+
+/** Answers with what to install, whatever stands after the command. */
+void addAbsent(CLI::App& app, Action& action, const std::string& name) {
+    CLI::App* command = app.add_subcommand(name, std::string(loader::findComponent(name)->gives) + " (not installed)");
+    command->prefix_command()->set_help_flag();
+    command->callback([name, &action] {
+        action = [name]() -> int { throw types::ConfigError("", name, "is in " + loader::absence(name)); };
+    });
+}
+
+/** Adds the commands of libraries, for a first word that is none of the core's: of all, since help, completion and the
+ *  answer to a wrong word name them. One that cannot be loaded is a notice, and an error for its own command alone. */
+void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) {
+    for (const char* name : commands_of_libraries) {
+        if (!loader::isPresent(name)) {
+            addAbsent(app, action, name);
+            continue;
+        }
+        try {
+            loader::load(name).entry<void(CLI::App&, Action&)>("insonify_add_command")(app, action);
+        } catch (const types::ConfigError& error) {
+            if (word == name) throw;
+            fmt::print(stderr, "notice: {}\n", error.diagnostics().front().text());
+        }
+    }
+}
+
+/** Whether a command line needs none but the core's commands. */
+bool isOfCore(const CLI::App& app, const std::string& word) {
+    static constexpr std::string_view of_all[] = {"completion", "man"};
+    return word == "--version" ||
+           (std::ranges::count(namesAfter(app, false), word) > 0 && std::ranges::count(of_all, word) == 0);
+}
+
 int guarded(CLI::App& app, Action& action, int argc, char** argv) {
     try {
+        const std::string word = argc > 1 ? argv[1] : "";
+        if (!isOfCore(app, word)) addLibraryCommands(app, action, word);
         return parseAndAct(app, action, argc, argv);
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& diagnostic : error.diagnostics()) fmt::print(stderr, "{}\n", diagnostic.text());
@@ -86,12 +124,10 @@ int runCommandLine(int argc, char** argv) {
     addBeamCommand(app, action);
     addWaterCommand(app, action);
     addBackscatterCommand(app, action);
-    addDeviceCommand(app, action);
+    addLibrariesCommand(app, action);
     addSchemaCommand(app, action);
     addLogCommand(app, action);
     addReplayCommand(app, action);
-    addDatasetCommand(app, action);
-    study::addCommand(app, action, sonarAt, codedPingAt);
     addCompletionCommand(app, action);
     addManCommand(app, action);
 

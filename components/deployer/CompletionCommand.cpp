@@ -30,7 +30,7 @@ std::vector<std::string> wordsAfter(const std::string& command) {
     std::vector<std::string> words;
     if (command == " describe") {
         words.emplace_back("materials");
-        const framework::Registry registry = builtInTasks();
+        const framework::Registry registry = allTasks();
         for (const auto& entry : registry.list()) words.push_back(entry.type);
     }
     if (command == " init")
@@ -42,18 +42,23 @@ std::vector<std::string> wordsAfter(const std::string& command) {
 /** One case of the script for a command, and those of its subcommands. `path`: "", " log", " log info". */
 std::string cases(const CLI::App& app, const std::string& path) {
     std::vector<std::string> words = subcommands(app);
+    const bool takes_files = words.empty() && path != " describe" && path != " completion";
     for (const auto& more : {flags(app), wordsAfter(path)}) words.insert(words.end(), more.begin(), more.end());
-    std::string text = fmt::format("        \"{}\") words=\"{}\" ;;\n", path, fmt::join(words, " "));
+    std::string text = fmt::format("        \"{}\") words=\"{}\"{} ;;\n", path, fmt::join(words, " "),
+                                   takes_files ? " files=yes" : "");
     for (const std::string& name : subcommands(app)) text += cases(*app.get_subcommand(name), path + " " + name);
     return text;
 }
 
-/** The command so far is the words that are subcommands; files complete where a command takes no subcommand. */
+/** The command so far is the words that are subcommands. Zsh runs the script as well, where `path` is a variable of the
+ *  shell and offsets need a dollar. */
 std::string bashCompletion(const CLI::App& app) {
     return R"(_insonify() {
-    local word path="" words="" current="${COMP_WORDS[COMP_CWORD]}"
-    for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
-        case "$path $word" in
+    local i word command="" words="" files="" current="${COMP_WORDS[COMP_CWORD]}" typed
+    typed="$current"
+    for ((i = 1; i < COMP_CWORD; ++i)); do
+        word="${COMP_WORDS[i]}"
+        case "$command $word" in
 )" +
            [&] {
                std::string paths;
@@ -61,18 +66,32 @@ std::string bashCompletion(const CLI::App& app) {
                    paths += fmt::format("            \" {}\"", name);
                    for (const std::string& inner : subcommands(*app.get_subcommand(name)))
                        paths += fmt::format("|\" {} {}\"", name, inner);
-                   paths += ") path+=\" $word\" ;;\n";
+                   paths += ") command+=\" $word\" ;;\n";
                }
                return paths;
            }() +
            R"(        esac
     done
-    case "$path" in
+    case "$command" in
 )" + cases(app, "") +
            R"(    esac
-    # Task types hold colons, at which readline splits words.
-    COMPREPLY=($(compgen -W "$words" -- "$current"))
-    [[ $current == -* || -z $path ]] || COMPREPLY+=($(compgen -f -- "$current"))
+    # Bash splits words at colons, which task types hold, and replaces what follows the last one.
+    local before=""
+    if [[ ${COMP_WORDBREAKS-} == *:* ]]; then
+        typed="${COMP_LINE:0:$COMP_POINT}"
+        typed="${typed##*[[:space:]]}"
+        [[ $typed != *:* ]] || before="${typed%:*}:"
+    fi
+    COMPREPLY=()
+    for word in $(compgen -W "$words" -- "$typed"); do
+        COMPREPLY+=("${word#"$before"}")
+        [[ $word != *:* ]] || compopt +o filenames 2> /dev/null  # or colons are quoted
+    done
+    [[ $files && $current != -* ]] || return 0
+    current="${current#=}"
+    while IFS= read -r word; do
+        COMPREPLY+=("$word")
+    done < <(compgen -f -- "$current")
 }
 complete -o filenames -F _insonify insonify
 )";

@@ -9,6 +9,7 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/SceneCommand.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "components/framework/ConfigReader.hpp"
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
@@ -130,7 +131,7 @@ int listMaterials(bool json) {
 
 int describe(const std::string& type, bool json) {
     if (isSceneName(type)) return showScene(type, json);
-    const framework::Registry registry = builtInTasks();
+    const framework::Registry registry = allTasks();
     if (type.empty()) return listTasks(registry, json);
     if (type == "materials") return listMaterials(json);
     for (const auto& entry : registry.list()) {

@@ -108,8 +108,8 @@ std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry&
     return names;
 }
 
-study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
-    framework::Registry registry = builtInTasks();
+SonarAt sonarAt(const std::string& file, uint64_t ping) {
+    framework::Registry registry = coreTasks();
     Deployment deployment(pipelineOf(DeploymentSpec::load(deploymentIn(file)), registry), registry);
     deployment.configure();
     const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
@@ -118,7 +118,7 @@ study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
         auto* sonar = dynamic_cast<sonar::PingTask*>(task.get());
         types::SnapshotPtr snapshot;
         if (!sonar || !sonar->plan() || sonar->snapshot.read(snapshot) == framework::FlowStatus::NoData) continue;
-        study::SonarAt found{sonar->sonarConfig(), *snapshot};
+        SonarAt found{sonar->sonarConfig(), *snapshot};
         found.config.quality = {};
         found.config.quality.rows = sonar->plan()->rows;
         found.config.quality.columns_per_beam = sonar->plan()->columns_per_beam;
@@ -127,8 +127,8 @@ study::SonarAt sonarAt(const std::string& file, uint64_t ping) {
     throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
 }
 
-study::PingAt codedPingAt(const std::string& file, uint64_t ping) {
-    framework::Registry registry = builtInTasks();
+PingAt codedPingAt(const std::string& file, uint64_t ping) {
+    framework::Registry registry = coreTasks();
     const DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
     const Deployment whole(spec, registry);
     const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);

@@ -7,7 +7,9 @@
 #include "components/framework/DeploymentSpec.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/receiver/ReceiverTask.hpp"
-#include "components/study/StudyCommand.hpp"
+#include "components/sonar/plan/SonarConfig.hpp"
+#include "types/Snapshot.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::deployer {
 
@@ -31,10 +33,20 @@ std::vector<std::string> pinnedRays(const framework::DeploymentSpec& spec);
 /** The first receiver that gives out codes. Throws types::ConfigError where there is none. */
 receiver::ReceiverTask& codingReceiverOf(const framework::Deployment& deployment, const std::string& file);
 
+/** A sonar as it is configured, of the quality that it has chosen, and what it renders in one ping. */
+struct SonarAt {
+    sonar::SonarConfig config;
+    types::Snapshot snapshot;
+};
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
-study::SonarAt sonarAt(const std::string& file, uint64_t ping);
+SonarAt sonarAt(const std::string& file, uint64_t ping);
 
+/** A ping that a receiver gave out as codes, and by what law. */
+struct PingAt {
+    types::Sonar ping;
+    receiver::CodeConfig code;
+};
 /** The same ping as the first receiver that gives out codes has it. Throws types::ConfigError where there is none. */
-study::PingAt codedPingAt(const std::string& file, uint64_t ping);
+PingAt codedPingAt(const std::string& file, uint64_t ping);
 
 }  // namespace insonify::deployer

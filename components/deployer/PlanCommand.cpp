@@ -60,7 +60,7 @@ void printJson(const Plans& plans) {
 }
 
 int showPlan(const std::string& file, bool json) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     const DeploymentSpec spec = DeploymentSpec::load(file);
     Deployment deployment(pipelineOf(spec, registry), registry);
     const Deployment whole(spec, registry);

@@ -260,7 +260,7 @@ std::optional<uint64_t> recordedSeed(const log::Reader& log) {
 
 RecordedSettings recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,
                                   const std::vector<std::string>& set, std::optional<uint64_t> seed, double from) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     Deployment deployment(spec, registry, ".", seed ? *seed : recordedSeed(log).value_or(0));
     const std::map<std::string, Pings> pings = pingsByTask(log, spec, deployment);
     std::set<std::string> tasks;

@@ -34,7 +34,7 @@ std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& 
 std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec& spec, bool rerender) {
     std::set<std::string> names = loggedTasks(log, spec);
     if (rerender) {
-        framework::Registry registry = builtInTasks();
+        framework::Registry registry = coreTasks();
         for (const std::string& task : pingTasks(spec, registry)) names.erase(task);
     }
     if (names.empty())
@@ -149,7 +149,7 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
 }
 
 std::set<std::string> outsideTasks(const DeploymentSpec& spec) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     for (const std::string& library : spec.libraries)
         registry.loadLibrary(std::filesystem::path(spec.file).parent_path() / library);
     std::set<std::string> names;

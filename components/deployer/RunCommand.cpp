@@ -185,7 +185,7 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
 }  // namespace
 
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     framework::Deployment deployment(std::move(spec), registry, options.out, options.seed.value_or(0));
     if (options.shard) refuseIndivisible(deployment);
     OutputFolder folder(options.out, options.deployment);

@@ -194,7 +194,7 @@ void addSchemaCommand(CLI::App& app, Action& action) {
         "schema", "Prints the JSON schema of deployments, with which editors complete and check them");
     command->callback([&action] {
         action = [] {
-            print(deploymentSchema(builtInTasks()));
+            print(deploymentSchema(allTasks()));
             return 0;
         };
     });

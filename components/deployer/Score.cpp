@@ -52,12 +52,12 @@ std::map<types::Time, log::SampleRef> byTime(const log::Reader& log, const std::
 
 PingScore scoreOf(const types::Sonar& recorded, const types::Sonar& rendered, const output::DisplayConfig& display) {
     const std::vector<float> truth = energies(recorded, display.scale);
-    const study::Layout layout{static_cast<int>(recorded.beam_count), static_cast<int>(recorded.bin_count),
+    const sonar::Layout layout{static_cast<int>(recorded.beam_count), static_cast<int>(recorded.bin_count),
                                recorded.binStart(1), 0};
     PingScore score;
     score.time = recorded.time;
     score.metrics =
-        study::compare(energies(rendered, display.scale), std::vector<double>(truth.begin(), truth.end()), layout);
+        sonar::compare(energies(rendered, display.scale), std::vector<double>(truth.begin(), truth.end()), layout);
     score.similarity = output::structuralSimilarity(recorded, rendered, display);
     return score;
 }

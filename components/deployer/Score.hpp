@@ -6,14 +6,14 @@
 #include "components/deployer/Json.hpp"
 #include "components/log/Reader.hpp"
 #include "components/output/PictureConfig.hpp"
-#include "components/study/Metrics.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 
 namespace insonify::deployer {
 
 /** How near a ping that was rendered again is to the recorded one. */
 struct PingScore {
     types::Time time;
-    study::Metrics metrics;
+    sonar::Metrics metrics;
     double similarity = 0;  ///< SSIM of both as they are shown [1].
     log::SampleRef recorded, rendered;
 };

@@ -51,7 +51,7 @@ bool stopped(const framework::RunResult& result) { return result.failed() || sto
 
 /** How many pings the whole run has: all but the rendering. */
 uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, const std::filesystem::path& folder) {
-    framework::Registry registry = builtInTasks();
+    framework::Registry registry = coreTasks();
     Deployment deployment(spec, registry, folder, options.seed.value_or(0));
     refuseIndivisible(deployment);
     deployment.configure();

@@ -84,7 +84,7 @@ DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& left_ou
 
 }  // namespace
 
-Simulation::Simulation(const std::string& file, SimulationOptions options) : registry_(builtInTasks()) {
+Simulation::Simulation(const std::string& file, SimulationOptions options) : registry_(coreTasks()) {
     registry_.add<PoseFeed>(feed_type, "poses that the caller gives");
     DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
     for (const std::string& assignment : options.overrides) {

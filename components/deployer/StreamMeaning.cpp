@@ -162,4 +162,16 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     return meaning;
 }
 
+const log::Stream& pingsOf(const log::Reader& log, const std::string& stream, const char* wanted) {
+    const log::Stream& pings = log.streams()[log.indexOf(stream)];
+    if (!holdsPings(pings)) throw types::ConfigError(log.path(), pings.name, "holds " + pings.type + "; " + wanted);
+    if (pings.count == 0) throw types::ConfigError(log.path(), pings.name, "holds no ping");
+    return pings;
+}
+
+double frequencyOf(const Json& meaning) {
+    const Json& frequency = meaning["frequency_khz"];
+    return frequency.is_number() ? frequency.get<double>() : 0;
+}
+
 }  // namespace insonify::deployer

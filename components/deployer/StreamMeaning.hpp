@@ -14,4 +14,10 @@ namespace insonify::deployer {
  *  Points: {stream, points, intensity}. Others: {stream, type}. */
 Json meaningOf(const log::Reader& log, const log::Stream& stream);
 
+/** A stream that holds a ping at least. Throws types::ConfigError for any other, with what is `wanted` of it. */
+const log::Stream& pingsOf(const log::Reader& log, const std::string& stream, const char* wanted);
+
+/** The frequency in the meaning of a stream of pings [kHz]; 0 where it is not known. */
+double frequencyOf(const Json& meaning);
+
 }  // namespace insonify::deployer

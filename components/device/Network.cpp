@@ -442,7 +442,7 @@ Terminal openTerminal() {
 class SerialEnd final : public Network::Core::EndBase {
 public:
     SerialEnd(Network::Core& core, End end, std::filesystem::path link)
-        : core_(core), client_{end, 1}, link_(std::move(link)), terminal_(openTerminal()) {
+        : client_{end, 1}, link_(std::move(link)), terminal_(openTerminal()) {
         std::error_code error;
         if (std::filesystem::is_symlink(link_)) std::filesystem::remove(link_, error);
         std::filesystem::create_symlink(terminal_.name, link_, error);
@@ -478,7 +478,6 @@ private:
         }
     }
 
-    Network::Core& core_;
     Client client_;
     std::filesystem::path link_;
     Terminal terminal_;

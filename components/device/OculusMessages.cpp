@@ -8,8 +8,6 @@
 namespace insonify::device {
 namespace {
 
-constexpr size_t max_bins = 1 << 16;
-
 template <class Header, class Visit>
 void visitHeader(Header& header, Visit& visit) {
     uint16_t mark = oculus_mark;
@@ -54,7 +52,7 @@ void visitUserConfig(Config& config, Visit& visit) {
 /** Why a ping whose fixed part is there cannot be one; empty: it can. */
 std::string numbersDiagnostic(const OculusResult& ping, size_t size) {
     if (ping.codeBytes() > 4) return fmt::format("has codes of {} bytes; there are 1 to 4", ping.codeBytes());
-    if (ping.beam_count == 0 || ping.bin_count == 0 || ping.bin_count > max_bins)
+    if (ping.beam_count == 0 || ping.bin_count == 0)
         return fmt::format("has {} beams of {} bins", ping.beam_count, ping.bin_count);
     const size_t made = ping.bin_count * ping.rowBytes(), image = ping.image_offset;
     if (ping.image_size != made)

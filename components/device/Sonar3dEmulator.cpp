@@ -18,8 +18,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr double low_opening_deg = 90, high_opening_deg = 40, columns = 256;  // between the outermost columns
-constexpr double millimetre = 1e-3;   // of a pixel's unit, as far as 16 bits reach
-constexpr double strength_unit = 30;  // that of the device's strengths
+constexpr double millimetre = 1e-3;  // of a pixel's unit, as far as 16 bits reach
 constexpr double strongest_pixel = 255;
 constexpr double slowest = 1000, fastest = 2000;  // [m/s]
 constexpr const char* prefix = "/api/v1/integration/";

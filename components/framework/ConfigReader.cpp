@@ -1,11 +1,16 @@
 #include "components/framework/ConfigReader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <set>
 
 #include "components/framework/Quantity.hpp"
+#include "components/framework/YamlText.hpp"
 #include "types/DidYouMean.hpp"
 
 namespace insonify::framework {
@@ -185,6 +190,15 @@ void ConfigReader::refuseUnknown(const YAML::Node& map, const std::string& path,
         const std::string& key = entry.first.Scalar();
         if (std::find(known.begin(), known.end(), key) == known.end())
             report(entry.first, below(path, key), "is not a key here; " + suggestion(key, known));
+    }
+}
+
+bool ConfigReader::readText(const std::string& yaml, const std::string& path, const ValueType& type, void* value) {
+    try {
+        return type.read(*this, parseValue(yaml), path, types::Field{path.c_str()}, value);
+    } catch (const types::ConfigError& error) {
+        report(YAML::Node(YAML::NodeType::Undefined), path, error.diagnostics().front().message);
+        return false;
     }
 }
 

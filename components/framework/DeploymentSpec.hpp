@@ -1,4 +1,6 @@
 #pragma once
+#include <yaml-cpp/yaml.h>
+
 #include <filesystem>
 #include <set>
 #include <string>
@@ -7,7 +9,6 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/ConnPolicy.hpp"
-#include "components/framework/PropertyList.hpp"
 
 namespace insonify::framework {
 

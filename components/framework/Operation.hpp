@@ -1,14 +1,14 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "components/framework/Activity.hpp"
-#include "components/framework/ConfigReader.hpp"
-#include "components/framework/PropertyList.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/ValueType.hpp"
 
 namespace insonify::framework {
 
@@ -34,16 +34,16 @@ public:
 protected:
     /** Throws types::ConfigError when there are not `taken`. */
     void requireCount(const std::vector<std::string>& arguments, size_t taken) const;
+    /** "double(double, text)"; null for no result. */
+    static std::string signatureOf(const ValueType* result, const std::vector<const ValueType*>& arguments);
+    /** Reads arguments that are as many as they must be. Throws types::ConfigError when they do not fit. */
+    void read(const std::vector<std::string>& texts, const std::vector<const ValueType*>& types,
+              const std::vector<void*>& values) const;
 
 private:
     TaskContext* owner_;
     std::string name_, doc_;
 };
-
-inline void OperationBase::requireCount(const std::vector<std::string>& arguments, size_t taken) const {
-    if (arguments.size() != taken)
-        throw types::ConfigError("", name_, fmt::format("has {} arguments, takes {}", arguments.size(), signature()));
-}
 
 template <class Signature>
 class Operation;
@@ -71,36 +71,26 @@ public:
     }
 
     std::string signature() const override {
-        const std::vector<std::string> names{configTypeName<std::remove_cvref_t<Args>>()...};
-        return fmt::format("{}({})", resultName(), fmt::join(names, ", "));
+        if constexpr (std::is_void_v<R>)
+            return signatureOf(nullptr, types());
+        else
+            return signatureOf(&typeOf<R>(), types());
     }
 
     std::string callText(const std::vector<std::string>& texts) override {
         requireCount(texts, sizeof...(Args));
-        Arguments arguments;
-        ConfigReader reader("");
-        parse(reader, texts, arguments, std::index_sequence_for<Args...>{});
-        if (!reader.diagnostics().empty()) throw types::ConfigError(reader.diagnostics());
-        if constexpr (std::is_void_v<R>)
+        std::tuple<std::remove_cvref_t<Args>...> arguments;
+        read(texts, types(), std::apply([](auto&... each) { return std::vector<void*>{&each...}; }, arguments));
+        if constexpr (std::is_void_v<R>) {
             return std::apply(*this, arguments), "";
-        else
-            return configText(std::apply(*this, arguments));
+        } else {
+            const R result = std::apply(*this, arguments);
+            return typeOf<R>().text(&result);
+        }
     }
 
 private:
-    using Arguments = std::tuple<std::remove_cvref_t<Args>...>;
-
-    static std::string resultName() {
-        if constexpr (std::is_void_v<R>)
-            return "void";
-        else
-            return configTypeName<R>();
-    }
-    template <size_t... I>
-    void parse(ConfigReader& reader, const std::vector<std::string>& texts, Arguments& arguments,
-               std::index_sequence<I...>) {
-        (reader.readText(texts[I], fmt::format("{}[{}]", name(), I), std::get<I>(arguments)), ...);
-    }
+    static std::vector<const ValueType*> types() { return {&typeOf<std::remove_cvref_t<Args>>()...}; }
 
     std::function<R(Args...)> function_;
 };

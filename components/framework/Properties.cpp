@@ -1,6 +1,11 @@
 #include "components/framework/Properties.hpp"
 
+#include <yaml-cpp/yaml.h>
+
 #include <cctype>
+
+#include "components/framework/Activity.hpp"
+#include "components/framework/ConfigReader.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/ConfigReader.hpp"
 #include "components/framework/Operation.hpp"
-#include "components/framework/PropertyList.hpp"
-#include "components/framework/PropertyValues.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/framework/ValueType.hpp"
 
 namespace insonify::framework {
 
@@ -59,10 +57,12 @@ public:
     void set(Config value) { value_ = std::move(value); }
 
     void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) override {
-        reader.read(block, path, value_);
+        readBlock(reader, block, path, blockOf<Config>(), &value_);
     }
-    std::vector<PropertyInfo> list() const override { return listProperties(Config{}); }
-    std::map<std::string, types::PropertyValue> values() const override { return propertyValues(value_); }
+    std::vector<PropertyInfo> list() const override { return listFields(blockOf<Config>(), blockOf<Config>().fresh()); }
+    std::map<std::string, types::PropertyValue> values() const override {
+        return fieldValues(blockOf<Config>(), &value_);
+    }
 
 private:
     std::function<void()> keep() override {

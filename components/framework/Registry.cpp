@@ -1,10 +1,8 @@
 #include "components/framework/Registry.hpp"
 
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <map>
-#include <mutex>
+
+#include "components/loader/ComponentLibrary.hpp"
 
 namespace insonify::framework {
 
@@ -17,48 +15,41 @@ void Registry::add(Entry entry) {
         *found = std::move(entry);
 }
 
-std::unique_ptr<TaskContext> Registry::make(const std::string& type, const std::string& name) const {
-    for (const Entry& entry : entries_)
-        if (entry.type == type) return entry.make(name);
-    return nullptr;
+const Registry::Entry* Registry::find(const std::string& type) const {
+    const auto found = std::ranges::find(entries_, type, &Entry::type);
+    return found == entries_.end() ? nullptr : &*found;
+}
+
+std::unique_ptr<TaskContext> Registry::make(const std::string& type, const std::string& name) {
+    if (const Entry* entry = find(type)) return entry->make(name);
+    const std::string owner = type.substr(0, type.find(':'));
+    if (!loader::findComponent(owner) && !loader::isPresent(owner)) return nullptr;
+    enter(loader::load(owner));
+    const Entry* entry = find(type);
+    return entry ? entry->make(name) : nullptr;
 }
 
 void Registry::loadLibrary(const std::filesystem::path& file) {
-    // A path without a slash would be looked for in the system's folders.
-    void* library = dlopen(std::filesystem::absolute(file).c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library) throw types::ConfigError(file.string(), "", std::string("cannot be loaded: ") + dlerror());
-    using Register = void (*)(Registry&);
-    const auto enter = reinterpret_cast<Register>(dlsym(library, "insonify_register"));
-    if (!enter) throw types::ConfigError(file.string(), "", "has no function insonify_register(Registry&)");
-    enter(*this);
+    const loader::ComponentLibrary& library = loader::loadFile(file);
+    if (!library.entry<void(Registry&)>("insonify_register"))
+        throw types::ConfigError(file.string(), "", "has no function insonify_register(Registry&)");
+    enter(library);
 }
 
-namespace {
-
-/** What was lacking, by the beginnings of names. */
-struct Lacking {
-    std::mutex mutex;
-    std::map<std::string, std::string> all;
-};
-
-Lacking& lacking() {
-    static Lacking lacking;
-    return lacking;
+types::Diagnostics Registry::loadAll() {
+    types::Diagnostics wrong;
+    for (const std::string& name : loader::present()) try {
+            enter(loader::load(name));
+        } catch (const types::ConfigError& error) {
+            wrong.insert(wrong.end(), error.diagnostics().begin(), error.diagnostics().end());
+        }
+    return wrong;
 }
 
-}  // namespace
-
-void leaveOut(const std::string& begin, const std::string& package) {
-    const std::lock_guard lock(lacking().mutex);
-    lacking().all[begin] = package;
-}
-
-std::string whyLeftOut(const std::string& type) {
-    const std::lock_guard lock(lacking().mutex);
-    for (const auto& [begin, package] : lacking().all)
-        if (type.starts_with(begin))
-            return ", which is left out of this build: it was made without " + package + ", or told to be without it";
-    return {};
+/** Some have other things than tasks. */
+void Registry::enter(const loader::ComponentLibrary& library) {
+    if (!entered_.insert(library.file().string()).second) return;
+    if (const auto enter = library.entry<void(Registry&)>("insonify_register")) enter(*this);
 }
 
 }  // namespace insonify::framework

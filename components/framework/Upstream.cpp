@@ -5,6 +5,7 @@
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/DeploymentSpec.hpp"
+#include "components/framework/YamlText.hpp"
 
 namespace insonify::framework {
 namespace {

@@ -105,17 +105,27 @@ void Wiring::loadLibraries() {
         }
 }
 
+/** Null with a diagnostic where there is no such type. */
+std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
+    const auto refuse = [&](const std::string& why) {
+        report(child(spec.place, "type"), spec.path() + ".type", "is " + spec.type + why);
+    };
+    try {
+        if (auto task = registry_.make(spec.type, spec.name)) return task;
+        registry_.loadAll();  // for names that may be meant
+        refuse("; " + suggestion(spec.type, typesOf(registry_)));
+    } catch (const types::ConfigError& error) {
+        for (const types::Diagnostic& each : error.diagnostics())
+            refuse(each.file.empty() && each.path.empty() ? ", which " + each.message : ": " + each.text());
+    }
+    return nullptr;
+}
+
 void Wiring::makeTasks() {
     for (const TaskSpec& spec : spec_.tasks) {
         if (spec.type.empty()) continue;  // told by the reading
-        auto task = registry_.make(spec.type, spec.name);
-        if (!task) {
-            const YAML::Node type = child(spec.place, "type");
-            const std::string lacks = whyLeftOut(spec.type);
-            report(type, spec.path() + ".type",
-                   "is " + spec.type + (lacks.empty() ? "; " + suggestion(spec.type, typesOf(registry_)) : lacks));
-            continue;
-        }
+        auto task = makeTask(spec);
+        if (!task) continue;
         task->setEnvironment(environment_);
         graph_.add(std::move(task));
     }

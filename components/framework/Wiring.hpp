@@ -24,6 +24,7 @@ public:
 private:
     void loadLibraries();
     void makeTasks();
+    std::unique_ptr<TaskContext> makeTask(const TaskSpec& spec);
     void loadProperties(uint64_t seed);
     /** Aliases and switches of a task's properties; those that lead to ports. */
     std::vector<std::string> aliasesOfProperties(const TaskSpec& spec) const;

@@ -1,5 +1,6 @@
 #include "components/gpu/EglContext.hpp"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -21,7 +22,13 @@ constexpr const char* hint =
     "install Mesa's software renderer (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri) or a graphics driver with EGL, "
     "and set the property `device` or INSONIFY_EGL_DEVICE to auto, software or a device number";
 
-bool clientHas(const char* extension) { return epoxy_has_egl_extension(EGL_NO_DISPLAY, extension); }
+/** Whether the system has EGL: where it has none, libepoxy would end the process. */
+bool hasEgl() {
+    static const bool has = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL) != nullptr;
+    return has;
+}
+
+bool clientHas(const char* extension) { return hasEgl() && epoxy_has_egl_extension(EGL_NO_DISPLAY, extension); }
 
 std::vector<EGLDeviceEXT> devices() {
     if (!clientHas("EGL_EXT_device_base") && !clientHas("EGL_EXT_device_enumeration")) return {};

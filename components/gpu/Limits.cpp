@@ -12,8 +12,7 @@ struct Field {
     int64_t Limits::*value;
 };
 
-constexpr Field extensions[] = {{"GL_ARB_shader_draw_parameters", &Limits::draw_parameters},
-                                {"GL_ARB_gpu_shader_fp64", &Limits::doubles}};
+constexpr Field extensions[] = {{"GL_ARB_shader_draw_parameters", &Limits::draw_parameters}};
 
 constexpr Field sizes[] = {{"GL_MAX_TEXTURE_SIZE", &Limits::texture_size},
                            {"GL_MAX_VIEWPORT_DIMS", &Limits::viewport_size},

@@ -7,7 +7,6 @@ namespace insonify::gpu {
 /** Limits of an OpenGL context. The same fields state what a task needs: 0 is nothing. */
 struct Limits {
     int64_t draw_parameters = 0;    ///< 1 with the extension GL_ARB_shader_draw_parameters.
-    int64_t doubles = 0;            ///< 1 with the extension GL_ARB_gpu_shader_fp64.
     int64_t texture_size = 0;       ///< Columns, and rows, of a texture [1].
     int64_t viewport_size = 0;      ///< Columns, and rows, that are drawn at once [1].
     int64_t integer_samples = 0;    ///< For each pixel of a multisampled texture: of integers [1],

@@ -33,6 +33,10 @@ std::string FilePattern::name(uint64_t number) const {
 
 namespace {
 
+struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
     throw std::runtime_error("cannot write " + file.string() + ": " + reason);
 }
@@ -76,7 +80,7 @@ void writePng(const std::filesystem::path& file, const types::Image& picture) {
     png.format = pngFormat(file, picture);
     png.flags = PNG_IMAGE_FLAG_FAST;
     errno = 0;
-    const std::unique_ptr<std::FILE, decltype(&std::fclose)> stream(std::fopen(file.c_str(), "wb"), &std::fclose);
+    const std::unique_ptr<std::FILE, Close> stream(std::fopen(file.c_str(), "wb"));
     if (!stream) fail(file, std::strerror(errno));
     const auto row_size = static_cast<png_int_32>(picture.row_size);
     if (!png_image_write_to_stdio(&png, stream.get(), 0, picture.image.data(), row_size, nullptr))

@@ -1,19 +1,21 @@
 #include "components/output/VideoFile.hpp"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "components/loader/ComponentLibrary.hpp"
+#include "types/ConfigError.hpp"
+
 namespace insonify::output {
 namespace {
 
-decltype(&insonify_open_video) loadCodecs() {
-    void* library = dlopen("libinsonify_video.so", RTLD_NOW | RTLD_LOCAL);
-    void* open = library ? dlsym(library, "insonify_open_video") : nullptr;
-    if (!open) throw std::runtime_error(std::string("cannot write videos: ") + dlerror());
-    return reinterpret_cast<decltype(&insonify_open_video)>(open);
+using OpenVideo = VideoEncoder*(const char* file, double rate, int width, int height);
+
+OpenVideo* loadCodecs() try {
+    return loader::load("video").entry<OpenVideo>("insonify_open_video");
+} catch (const types::ConfigError& error) {
+    throw std::runtime_error("cannot write videos: " + error.diagnostics().front().text());
 }
 
 }  // namespace

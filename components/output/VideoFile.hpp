@@ -17,12 +17,9 @@ public:
 };
 
 /** What OpenCV writes: *.avi (motion JPEG) or *.mp4 (MPEG-4). The codecs bring more than 200 libraries with them, so
- *  they are in a library of their own, libinsonify_video.so, that is loaded with the first video. Throws
+ *  they are in the component library video, which is loaded with the first one. Throws
  *  std::runtime_error when it is not there; null when the file cannot be written. `rate` in pictures a second. */
 std::unique_ptr<VideoEncoder> openVideo(const std::filesystem::path& file, double rate, cv::Size size);
-
-/** What libinsonify_video.so is asked for: see openVideo. The caller owns it. */
-extern "C" VideoEncoder* insonify_open_video(const char* file, double rate, int width, int height);
 
 /** A video file that is opened with the second picture, when the rate is known.
  *  Pictures of another size than the first are scaled to it. */

@@ -48,8 +48,8 @@ void convert(const types::Image& picture, const std::string& frame_id, Image& me
 }
 
 void convert(const Image& message, types::Image& picture) {
-    const Encoding& encoding = encodingWhere("encoding '" + message.encoding + "'",
-                                             [&](const Encoding& e) { return e.name == message.encoding; });
+    const Encoding encoding = encodingWhere("encoding '" + message.encoding + "'",
+                                            [&](const Encoding& e) { return e.name == message.encoding; });
     constexpr uint32_t most = std::numeric_limits<uint16_t>::max();
     if (message.height > most || message.width > most)
         throw std::invalid_argument("a picture of more than 65535 rows or columns");

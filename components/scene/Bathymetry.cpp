@@ -44,10 +44,10 @@ void BathymetryConfig::check(types::Diagnostics& diagnostics) const {
 
 Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file)
     : config_(config),
-      survey_(file, config.band),
-      zero_(survey_.place((survey_.columns() - 1) / 2.0, (survey_.rows() - 1) / 2.0)) {
+      survey_(openSurvey(file, config.band)),
+      zero_(survey_->place((survey_->columns() - 1) / 2.0, (survey_->rows() - 1) / 2.0)) {
     if (config.easting) zero_ = {*config.easting, *config.northing};
-    const glm::dvec2 spacing = glm::abs(survey_.spacing());
+    const glm::dvec2 spacing = glm::abs(survey_->spacing());
     const double posts = 2 * config.reach / std::min(spacing.x, spacing.y) + 2 * config.tile;
     if (posts > max_posts)
         throw types::ConfigError(
@@ -67,8 +67,8 @@ void Bathymetry::addMaterial(Scene& scene) {
 
 /** Posts between which the floor reaches as far as it is to. The world's x is north of its zero, y west. */
 PostWindow Bathymetry::postsAbout(const glm::dvec3& place) const {
-    const glm::dvec2 middle = survey_.postAt(zero_ + glm::dvec2(-place.y, place.x));
-    const glm::dvec2 half = config_.reach / glm::abs(survey_.spacing());
+    const glm::dvec2 middle = survey_->postAt(zero_ + glm::dvec2(-place.y, place.x));
+    const glm::dvec2 half = config_.reach / glm::abs(survey_->spacing());
     const int column = wholeDown(middle.x - half.x), row = wholeDown(middle.y - half.y);
     return {column, row, wholeDown(middle.x + half.x) + 2 - column, wholeDown(middle.y + half.y) + 2 - row};
 }
@@ -81,8 +81,8 @@ PostWindow Bathymetry::wholeTiles(const PostWindow& posts) const {
 }
 
 PostWindow Bathymetry::clipped(PostWindow posts) const {
-    const int end_column = std::min(posts.column + posts.columns, survey_.columns());
-    const int end_row = std::min(posts.row + posts.rows, survey_.rows());
+    const int end_column = std::min(posts.column + posts.columns, survey_->columns());
+    const int end_row = std::min(posts.row + posts.rows, survey_->rows());
     posts.column = std::max(posts.column, 0);
     posts.row = std::max(posts.row, 0);
     posts.columns = std::max(end_column - posts.column, 0);
@@ -104,16 +104,16 @@ types::MeshPtr Bathymetry::meshOf(const Tile& tile, int material) const {
     const PostWindow posts =
         clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1});
     if (posts.isEmpty()) return nullptr;
-    const std::vector<float> values = survey_.read(posts);
+    const std::vector<float> values = survey_->read(posts);
     Surface surface;
     surface.positions.reserve(values.size());
     for (int row = 0, i = 0; row < posts.rows; ++row)
         for (int column = 0; column < posts.columns; ++column, ++i) {
-            const glm::dvec2 at = survey_.place(posts.column + column, posts.row + row);
+            const glm::dvec2 at = survey_->place(posts.column + column, posts.row + row);
             const double up = double(values[static_cast<size_t>(i)]) * (config_.positive_down ? -1 : 1);
             surface.positions.emplace_back(at.y - zero_.y, zero_.x - at.x, up);
         }
-    addTriangles(values, posts, survey_.spacing().x * survey_.spacing().y > 0, surface);
+    addTriangles(values, posts, survey_->spacing().x * survey_->spacing().y > 0, surface);
     types::Mesh mesh;
     mesh.name = name;
     DroppedTriangles dropped;

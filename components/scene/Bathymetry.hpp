@@ -67,8 +67,8 @@ private:
     void work();
 
     BathymetryConfig config_;
-    Survey survey_;    ///< Read by the worker alone.
-    glm::dvec2 zero_;  ///< Easting and northing of the world's zero [m].
+    std::unique_ptr<const Survey> survey_;  ///< Read by the worker alone.
+    glm::dvec2 zero_;                       ///< Easting and northing of the world's zero [m].
     std::optional<PostWindow> window_;
     types::GeometryPtr geometry_, rest_;  ///< Of the window, and what it was made with.
     std::vector<Tile> around_;            ///< Tiles that the next window may have beside those of this one.

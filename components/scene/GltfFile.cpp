@@ -68,6 +68,27 @@ bool readWhole(std::vector<unsigned char>* bytes, std::string* error, const std:
     return false;
 }
 
+bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+
+/** Since 2.9 tinygltf asks for sizes as well, and takes all callbacks or none. */
+template <class Callbacks>
+Callbacks callbacksIn(std::string& folder) {
+    Callbacks callbacks{};
+    callbacks.FileExists = fileExists;
+    callbacks.ExpandFilePath = unexpanded;
+    callbacks.ReadWholeFile = readWhole;
+    callbacks.WriteWholeFile = writeNothing;
+    callbacks.user_data = &folder;
+    if constexpr (requires { callbacks.GetFileSizeInBytes; })
+        callbacks.GetFileSizeInBytes = [](size_t* size, std::string* failure, const std::string& file, void*) {
+            std::error_code error;
+            *size = std::filesystem::file_size(file, error);
+            if (error) *failure = error.message();
+            return !error;
+        };
+    return callbacks;
+}
+
 /** Keeps an image as it is. Those in a bufferView are left there: its bounds are not checked at this point. */
 bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
@@ -145,7 +166,7 @@ void checkExtensions(GltfFile& gltf) {
 bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::string& errors) try {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
-    loader.SetFsCallbacks({fileExists, unexpanded, readWhole, nullptr, &folder});
+    loader.SetFsCallbacks(callbacksIn<tinygltf::FsCallbacks>(folder));
     std::string warnings;
     const auto size = static_cast<unsigned>(bytes.size());
     return isBinary(bytes)

@@ -13,8 +13,8 @@
 #include <mutex>
 #include <tuple>
 
+#include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Gltf.hpp"
-#include "components/scene/Sdf.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
 
@@ -59,6 +59,23 @@ void refuseMissing(const std::filesystem::path& file) {
                     near, place.string()));
 }
 
+struct Formats {
+    std::mutex mutex;
+    std::map<std::string, SceneReader> readers{{".gltf", readGltf}, {".glb", readGltf}};
+};
+
+Formats& formats() {
+    static Formats formats;
+    return formats;
+}
+
+/** Null for a format that was not added. */
+SceneReader readerOf(const std::string& extension) {
+    const std::lock_guard alone(formats().mutex);
+    const auto found = formats().readers.find(extension);
+    return found == formats().readers.end() ? nullptr : found->second;
+}
+
 /** A node in the axes of one at or above it; -1 is the world. */
 glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     glm::dmat4 above_from_node(1);
@@ -74,7 +91,19 @@ glm::dmat4 bodyFromNode(const Scene& scene, int node) {
            glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
 }
 
+/** That of the component library. */
+auto* sdfReader(const std::filesystem::path& file) try {
+    return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
+} catch (const types::ConfigError& error) {
+    throw types::ConfigError(file.string(), "", error.diagnostics().front().text());
+}
+
 }  // namespace
+
+void addFormat(const std::string& extension, SceneReader reader) {
+    const std::lock_guard alone(formats().mutex);
+    formats().readers[extension] = reader;
+}
 
 std::string extensionOf(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
@@ -85,8 +114,12 @@ std::string extensionOf(const std::filesystem::path& file) {
 Scene readScene(const std::filesystem::path& file) {
     refuseMissing(file);
     const std::string extension = extensionOf(file);
-    if (extension == ".gltf" || extension == ".glb") return readGltf(file);
-    if (extension == ".world" || extension == ".sdf") return readSdf(file);
+    if (const SceneReader read = readerOf(extension)) return read(file);
+    if (extension == ".world" || extension == ".sdf") {
+        Scene scene;
+        sdfReader(file)(file, scene);
+        return scene;
+    }
     throw types::ConfigError(file.string(), "",
                              fmt::format("has extension \"{}\"; may be .gltf, .glb, .world or .sdf", extension));
 }

@@ -32,9 +32,13 @@ struct Part {
 };
 
 /** Reads a scene: .gltf or .glb, whose y-up is turned to z-up, (x, y, z) of the file being (x, -z, y) of the world;
- *  .world or .sdf, which is z-up.
+ *  .world or .sdf, which is z-up, by the component library sdf.
  *  Throws types::ConfigError for whatever is wrong with the file; what was left out is in Geometry::notices. */
 Scene readScene(const std::filesystem::path& file);
+
+using SceneReader = Scene (*)(const std::filesystem::path& file);
+/** Makes readScene know files of an extension, ".sdf": for programs that are linked with a reader. */
+void addFormat(const std::string& extension, SceneReader reader);
 
 /** The same, of which all who hold the scene of a file have one, unless the file has changed meanwhile. */
 std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file);

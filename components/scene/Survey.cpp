@@ -1,131 +1,32 @@
 #include "components/scene/Survey.hpp"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <fmt/format.h>
-#include <gdal_frmts.h>
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
+#include <atomic>
 
-#include <cmath>
-#include <limits>
-#include <mutex>
-#include <set>
-
-#include "components/scene/Scene.hpp"
+#include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
 namespace {
 
-/** Of the parts of files that GDAL keeps, whatever the machine has [bytes]. */
-constexpr int64_t cache_size = int64_t{64} << 20;
-
-/** Formats that are read by blocks. Not GDAL's others: of a text grid that ends too early it seeks the missing lines
- *  for hours. */
-void prepareGdal() {
-    static std::once_flag once;
-    std::call_once(once, [] {
-        if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) GDALSetCacheMax64(cache_size);
-        for (const auto add : {GDALRegister_VRT, GDALRegister_GTiff, GDALRegister_BAG, GDALRegister_netCDF,
-                               GDALRegister_HFA, GDALRegister_EHdr, GDALRegister_ENVI})
-            add();
-    });
+std::atomic<SurveyOpener>& opener() {
+    static std::atomic<SurveyOpener> opener = nullptr;
+    return opener;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
-    throw types::ConfigError(file.string(), "", why);
-}
-
-std::string reason() {
-    const std::string text = CPLGetLastErrorMsg();
-    return text.empty() ? "GDAL gives no reason" : "GDAL: " + text;
-}
-
-/** Metres to a unit of the map; a file that names no map is taken to be in metres. */
-double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
-    const OGRSpatialReference* map = dataset.GetSpatialRef();
-    if (!map) return 1;
-    if (map->IsGeographic())
-        refuse(file,
-               "lies in degrees; project it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
-    return map->GetLinearUnits();
-}
-
-void checkUnit(GDALRasterBand& band, const std::filesystem::path& file) {
-    const std::string unit = band.GetUnitType();
-    if (!unit.empty() && !std::set<std::string>{"m", "metre", "metres", "meter", "meters"}.contains(unit))
-        refuse(file, "has elevations in " + unit + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
-}
-
-/** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
- *  a shorter one for bytes. */
-void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
-    const std::string format = dataset.GetDriverName();
-    if (format != "EHdr" && format != "ENVI") return;
-    if (dataset.GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE")) return;
-    uint64_t expected = 0;
-    for (int band = 1; band <= dataset.GetRasterCount(); ++band) {
-        const GDALDataType type = dataset.GetRasterBand(band)->GetRasterDataType();
-        expected += uint64_t(dataset.GetRasterXSize()) * uint64_t(dataset.GetRasterYSize()) *
-                    uint64_t(GDALGetDataTypeSizeBytes(extensionOf(file) == ".flt" ? GDT_Float32 : type));
-    }
-    const uint64_t size = std::filesystem::file_size(file);
-    if (size < expected) refuse(file, fmt::format("ends too early: has {} of {} bytes", size, expected));
+/** That of the component library. */
+auto* libraryOpener(const std::filesystem::path& file) try {
+    return loader::load("survey").entry<Survey*(const std::filesystem::path&, int)>("insonify_open_survey");
+} catch (const types::ConfigError& error) {
+    throw types::ConfigError(file.string(), "", error.diagnostics().front().text());
 }
 
 }  // namespace
 
-void Survey::Close::operator()(GDALDataset* dataset) const { GDALClose(GDALDataset::ToHandle(dataset)); }
-
-Survey::Survey(const std::filesystem::path& file, int band) : file_(file), band_(band) {
-    prepareGdal();
-    const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) refuse(file, "is not there");
-    CPLErrorReset();
-    dataset_.reset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-    if (!dataset_)
-        refuse(file, "is no survey (" + reason() +
-                         "); may be GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img or a mosaic of them, .vrt; "
-                         "gdal_translate IN OUT.tif makes one of others");
-    checkSize(*dataset_, file);
-    if (band > dataset_->GetRasterCount())
-        refuse(file, fmt::format("has {} bands, and not one of number {}", dataset_->GetRasterCount(), band));
-    columns_ = dataset_->GetRasterXSize();
-    rows_ = dataset_->GetRasterYSize();
-    double map[6];
-    if (dataset_->GetGeoTransform(map) != CE_None)
-        refuse(file,
-               "does not say where it lies on the map; give it a place: gdal_translate -a_ullr WEST NORTH EAST SOUTH "
-               "IN OUT");
-    if (map[2] != 0 || map[4] != 0) refuse(file, "is turned against north; turn it: gdalwarp IN OUT");
-    checkUnit(*dataset_->GetRasterBand(band), file);
-    const double metres = metresOf(*dataset_, file);
-    spacing_ = metres * glm::dvec2(map[1], map[5]);
-    first_ = metres * glm::dvec2(map[0], map[3]) + 0.5 * spacing_;
-    if (!(std::abs(spacing_.x) > 0 && std::abs(spacing_.y) > 0 && std::isfinite(first_.x + first_.y)))
-        refuse(file, fmt::format("has posts {} m and {} m apart", spacing_.x, spacing_.y));
+std::unique_ptr<Survey> openSurvey(const std::filesystem::path& file, int band) {
+    if (const SurveyOpener given = opener()) return given(file, band);
+    return std::unique_ptr<Survey>(libraryOpener(file)(file, band));
 }
 
-Survey::~Survey() = default;
-
-std::vector<float> Survey::read(const PostWindow& window) const {
-    std::vector<float> values(static_cast<size_t>(window.columns) * static_cast<size_t>(window.rows));
-    GDALRasterBand& band = *dataset_->GetRasterBand(band_);
-    const CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
-    CPLErrorReset();
-    if (band.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(), window.columns,
-                      window.rows, GDT_Float32, 0, 0) != CE_None)
-        throw SurveyError(file_ + " cannot be read on; " + reason());
-    int has_scale = 0, has_offset = 0, has_none = 0;
-    const double scale = band.GetScale(&has_scale), offset = band.GetOffset(&has_offset);
-    const auto none = static_cast<float>(band.GetNoDataValue(&has_none));
-    for (float& value : values)
-        value = has_none != 0 && value == none
-                    ? std::numeric_limits<float>::quiet_NaN()
-                    : static_cast<float>(value * (has_scale != 0 ? scale : 1) + (has_offset != 0 ? offset : 0));
-    return values;
-}
+void setSurveyOpener(SurveyOpener given) { opener() = given; }
 
 }  // namespace insonify::scene

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-class GDALDataset;
-
 namespace insonify::scene {
 
 /** A rectangle of the posts of a survey. */
@@ -28,17 +26,11 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/** A sea floor as it was surveyed: elevations at posts of a grid on a map, in a file that
- *  GDAL reads by blocks. Only what is
- *  asked for is read, so a file, or the files that a GDAL mosaic names, may be larger than memory. */
+/** A sea floor as it was surveyed: elevations at posts of a grid on a map, in a file that is read by blocks. Only what
+ * is asked for is read, so a file, or the files that a mosaic names, may be larger than memory. */
 class Survey {
 public:
-    /** Opens a band of a file. Throws types::ConfigError when it is none of them, lies in degrees, or is turned
-     *  against north. */
-    Survey(const std::filesystem::path& file, int band);
-    ~Survey();
-    Survey(const Survey&) = delete;
-    Survey& operator=(const Survey&) = delete;
+    virtual ~Survey() = default;
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
@@ -49,18 +41,22 @@ public:
     /** Column and row of an easting and northing. */
     glm::dvec2 postAt(const glm::dvec2& place) const { return (place - first_) / spacing_; }
 
-    /** Values of a window, row by row, as the file has them [m]; NaN where it has none. Throws SurveyError with GDAL's
+    /** Values of a window, row by row, as the file has them [m]; NaN where it has none. Throws SurveyError with the
      *  reason. */
-    std::vector<float> read(const PostWindow& window) const;
+    virtual std::vector<float> read(const PostWindow& window) const = 0;
 
-private:
-    struct Close {
-        void operator()(GDALDataset* dataset) const;
-    };
-    std::unique_ptr<GDALDataset, Close> dataset_;
-    std::string file_;
-    int band_, columns_ = 0, rows_ = 0;
+protected:
+    int columns_ = 0, rows_ = 0;
     glm::dvec2 first_{0}, spacing_{1};
 };
+
+using SurveyOpener = std::unique_ptr<Survey> (*)(const std::filesystem::path& file, int band);
+
+/** Opens a band of a file, by the component library survey. Throws types::ConfigError when that is absent, or the file
+ * is none, lies in degrees, or is turned against north. */
+std::unique_ptr<Survey> openSurvey(const std::filesystem::path& file, int band);
+
+/** Makes openSurvey do so by another function: for programs that are linked with it. */
+void setSurveyOpener(SurveyOpener opener);
 
 }  // namespace insonify::scene

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "components/study/Metrics.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
 
 namespace insonify::study {
+
+using sonar::compare, sonar::Layout, sonar::Metrics;
 
 /** How energies are estimated; see sonar::Estimator. `Published`: nearest bin on one wide frustum with rounded columns.
  */

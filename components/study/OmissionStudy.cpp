@@ -13,9 +13,11 @@
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
-#include "components/study/Metrics.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 
 namespace insonify::study {
+
+using sonar::compare, sonar::Layout;
 namespace {
 
 using sonar::SonarConfig;

@@ -3,10 +3,10 @@
 #include <functional>
 #include <set>
 
-#include "components/deployer/SweepScenes.hpp"
+#include "components/dataset/commands/SweepScenes.hpp"
 #include "types/ConfigError.hpp"
 
-namespace insonify::deployer {
+namespace insonify::dataset {
 namespace {
 
 using testing::HasSubstr;
@@ -95,4 +95,4 @@ TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
 }
 
 }  // namespace
-}  // namespace insonify::deployer
+}  // namespace insonify::dataset

@@ -33,21 +33,29 @@ Outcome runWith(const WallFolder& folder, std::vector<std::string> variables, st
     return Process(words, folder.path()).wait();
 }
 
+/** Variables with which EGL knows no device, and with which the system has no EGL. */
+const std::string ways_without_gl[] = {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent",
+                                       "LD_PRELOAD=" + insonify::test::program("libinsonify_no_egl.so")};
+
 }  // namespace
 
 TEST(DeviceTest, WithoutAnyOpenGlTheMessageSaysWhatToInstallAndSet) {
-    const WallFolder folder;
-    const Outcome outcome =
-        runWith(folder, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"}, {"--set", "sonar.visibility=gl"});
-    EXPECT_EQ(outcome.code, 1);
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("sonar: "), HasSubstr("no OpenGL 4.5 core context"), HasSubstr("install"),
-                                   HasSubstr("libegl-mesa0"), HasSubstr("INSONIFY_EGL_DEVICE")));
+    for (const std::string& way : ways_without_gl) {
+        const WallFolder folder;
+        const Outcome outcome = runWith(folder, {way}, {"--set", "sonar.visibility=gl"});
+        EXPECT_EQ(outcome.code, 1) << way;
+        EXPECT_THAT(outcome.err,
+                    AllOf(HasSubstr("sonar: "), HasSubstr("no OpenGL 4.5 core context"), HasSubstr("install"),
+                          HasSubstr("libegl-mesa0"), HasSubstr("INSONIFY_EGL_DEVICE")));
+    }
 }
 
 TEST(DeviceTest, WithoutAnyOpenGlRaysNeedNone) {
-    const WallFolder folder;
-    const Outcome outcome = runWith(folder, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    for (const std::string& way : ways_without_gl) {
+        const WallFolder folder;
+        const Outcome outcome = runWith(folder, {way});
+        EXPECT_EQ(outcome.code, 0) << way << outcome.err;
+    }
 }
 
 TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {

@@ -6,6 +6,7 @@
 
 #include "tests/deployer/HilRun.hpp"
 #include "tests/support/MicronDriver.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Wire.hpp"
 #include "types/Angle.hpp"
 
@@ -84,6 +85,7 @@ protected:
 };
 
 TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndOverALine) {
+    INSONIFY_NEEDS("sdf");
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
     const Wire tcp(Wire::connected(port)), line(Wire::line(run_.folder() / "out" / "line"));
@@ -93,6 +95,7 @@ TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndOverALine) {
 
 /** Clients that come and go, in mid-ping too, and one that asks and never reads, hold up nobody. */
 TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
+    INSONIFY_NEEDS("sdf");
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
     const Wire deaf(Wire::connected(port));

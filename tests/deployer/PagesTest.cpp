@@ -203,7 +203,8 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
     const WallFolder folder(deployment);
     writeFile(folder / "mean_echo.cpp", codeOf(readPage("components/framework/README.md"), "cpp"));
     const Outcome built =
-        Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + root.string(), "mean_echo.cpp", "-o", "mean_echo.so"},
+        Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + root.string(),
+                 "-I" + std::string(insonify::test::build_dir) + "/include", "mean_echo.cpp", "-o", "mean_echo.so"},
                 folder.path())
             .wait();
     ASSERT_EQ(built.code, 0) << built.err;

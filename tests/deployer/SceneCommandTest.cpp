@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"
 
 using namespace insonify::deployer;
@@ -57,6 +58,7 @@ TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) 
 }
 
 TEST(SceneCommandTest, TheDeliveredScenesDoNotLieOnTheirSides) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     for (const char* name : {"harbour.glb", "tank.glb", "two_vehicles.world", "wall.glb"})
         for (const json& warning :
@@ -74,6 +76,7 @@ TEST(SceneCommandTest, AMaterialWithoutAcousticsIsToldWithTheValueThatItGets) {
 }
 
 TEST(SceneCommandTest, WhatIsLeftOutIsListed) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "walls.sdf", R"(<sdf version="1.7"><model name="m"><link name="l"><visual name="v"><geometry>
         <mesh><uri>model://nowhere/wall.dae</uri></mesh></geometry></visual></link></model></sdf>)");

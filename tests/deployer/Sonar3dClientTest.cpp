@@ -3,6 +3,7 @@
 
 #include "components/device/Http.hpp"
 #include "tests/deployer/HilRun.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 #include "tests/support/Wire.hpp"
@@ -47,6 +48,7 @@ connections:
 class Sonar3dClientTest : public ::testing::TestWithParam<bool> {};
 
 TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
+    INSONIFY_NEEDS("sdf");
     if (!pythonHas("wlsonar, numpy"))
         GTEST_SKIP() << "PyPI's wlsonar is not in " << python() << ": scripts/setup puts it there";
     const bool unicast = GetParam();
@@ -102,6 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Sonar3dClientTest, ::testing::Bool(),
 
 /** Clients that leave in the middle of a request, and one that asks and never reads, hold up nobody. */
 TEST(Sonar3dReconnectTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     HilRun run(deployment(folder), {});
     const int port = run.port();

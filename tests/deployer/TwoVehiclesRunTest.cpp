@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/deployer/SceneRun.hpp"
+#include "tests/support/Needs.hpp"
 
 using namespace insonify::deployer;
 using insonify::types::Sonar;
@@ -42,6 +43,7 @@ size_t firstEcho(const Sonar& ping) {
 }  // namespace
 
 TEST(TwoVehiclesRunTest, EachHearsTheOtherWhereItIs) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     writeFile(folder / "two.yml", deployment);
@@ -53,6 +55,7 @@ TEST(TwoVehiclesRunTest, EachHearsTheOtherWhereItIs) {
 }
 
 TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLost) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     std::string often = replaced(deployment, "blue: {type: pose::TrajectoryTask, activity: {period: 0.1}",
@@ -72,6 +75,7 @@ TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLos
 }
 
 TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     std::string alone = deployment;
@@ -83,6 +87,7 @@ TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {
 }
 
 TEST(TwoVehiclesRunTest, APortOfAModelThatTheWorldHasNotIsRefused) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     writeFile(folder / "two.yml", replaced(deployment, "red_scene.blue.pose", "red_scene.green.pose"));

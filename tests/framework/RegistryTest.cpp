@@ -9,7 +9,7 @@ namespace insonify::framework {
 namespace {
 
 TEST(RegistryTest, MakesWhatItLists) {
-    const Registry registry = test::testRegistry();
+    Registry registry = test::testRegistry();
     EXPECT_EQ(registry.list().front().type, "test::Source");
     EXPECT_EQ(registry.list().front().doc, "counts");
     EXPECT_EQ(registry.make("test::Source", "a")->name(), "a");
@@ -38,7 +38,7 @@ TEST(RegistryTest, ALibraryThatIsNotThereOrHasNoEntryIsNamed) {
     EXPECT_THAT(test::refused([&] { Deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry); }),
                 testing::ElementsAre(testing::HasSubstr("nowhere.so: cannot be loaded"),
                                      testing::HasSubstr("has no function insonify_register"),
-                                     testing::HasSubstr("is b::C; there are none")));
+                                     testing::HasSubstr("is b::C; ")));
 }
 
 }  // namespace

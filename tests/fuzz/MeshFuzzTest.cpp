@@ -1,5 +1,5 @@
-#include "components/scene/FileMeshes.hpp"
-#include "components/scene/MeshFile.hpp"
+#include "components/meshes/FileMeshes.hpp"
+#include "components/meshes/MeshFile.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Fuzz.hpp"
 
@@ -7,7 +7,7 @@ namespace insonify::fuzz {
 namespace {
 
 void read(const Input& input) try {
-    const types::GeometryPtr geometry = scene::readMeshFile(input.file());
+    const types::GeometryPtr geometry = meshes::readMeshFile(input.file());
     for (const types::Mesh& mesh : geometry->meshes) scene::expectSoundMesh(mesh, geometry->materials.size());
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
@@ -40,7 +40,7 @@ TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
 
 /** What the process that reads mesh files answers, as if that were an enemy. */
 void parse(const Input& input) try {
-    const scene::MeshReply reply = scene::parseReply(std::as_bytes(input.span()));
+    const meshes::MeshReply reply = meshes::parseReply(std::as_bytes(input.span()));
     for (const auto& part : reply.meshes.parts)
         for (const uint32_t index : part.surface.indices) ASSERT_LT(index, part.surface.positions.size());
 } catch (const std::runtime_error&) {

@@ -21,7 +21,7 @@ TEST(LimitsTest, AShortfallIsTheFirstLimitWithBothNumbers) {
     EXPECT_EQ(limits.shortfall({.texture_size = 4097, .shared_bytes = 40000}),
               "GL_MAX_TEXTURE_SIZE is 4096, and 4097 is needed");
     EXPECT_EQ(limits.shortfall({.storage_blocks = 9}), "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 8, and 9 is needed");
-    EXPECT_EQ(limits.shortfall({.draw_parameters = 1, .doubles = 1}), "GL_ARB_gpu_shader_fp64 is missing");
+    EXPECT_EQ(Limits{}.shortfall(limits), "GL_ARB_shader_draw_parameters is missing");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
         call(folder, {INSONIFY_CPACK, "-G", "DEB", "--config",
                       std::string(insonify::test::build_dir) + "/CPackConfig.cmake", "-B", "packages"});
     ASSERT_EQ(packed.code, 0) << packed.out << packed.err;
-    for (const char* name : {"insonify", "insonify-dev"})
+    for (const char* name : {"insonify", "insonify-dev", "insonify-nav"})
         ASSERT_EQ(call(folder, {"dpkg-deb", "-x", package(folder, name), "root"}).code, 0);
 
     EXPECT_TRUE(fs::exists(folder / "root/usr/lib/systemd/system/insonify.service"));
@@ -37,6 +37,12 @@ TEST(DebTest, ThePackagesUnpackToACommandThatRunsAndAProjectThatBuilds) {
         EXPECT_THAT(depends, HasSubstr(needed));
     EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "insonify-dev"), "Depends"}).out,
                 HasSubstr("insonify (="));
+
+    EXPECT_THAT(call(folder, {"dpkg-deb", "-f", package(folder, "insonify-dds"), "Depends"}).out,
+                testing::AllOf(HasSubstr("insonify (="), HasSubstr("libddsc")));
+    EXPECT_THAT(depends, testing::Not(HasSubstr("libddsc"))) << "of a component library alone";
+    const Outcome listed = call(folder, {folder / "root/usr/bin/insonify", "libraries"});
+    EXPECT_THAT(listed.out, testing::AllOf(HasSubstr("nav        here"), HasSubstr("dds        absent")));
 
     const Outcome ran =
         call(folder, {folder / "root/usr/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});

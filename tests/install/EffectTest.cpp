@@ -23,10 +23,10 @@ void buildEffect(const TestFolder& folder) {
     writeFile(folder / "afterglow.cpp", codeOf(page, "cpp", "A new effect"));
     writeFile(folder / "CMakeLists.txt", R"(cmake_minimum_required(VERSION 3.22)
 project(Afterglow CXX)
-find_package(Insonify REQUIRED COMPONENTS sonar)
+find_package(Insonify REQUIRED)
 add_library(afterglow MODULE afterglow.cpp)
 set_target_properties(afterglow PROPERTIES PREFIX "")
-target_link_libraries(afterglow PRIVATE Insonify::framework Insonify::sonar)
+target_link_libraries(afterglow PRIVATE Insonify::core)
 )");
     const Outcome built = buildOutside(folder, folder / "prefix");
     ASSERT_EQ(built.code, 0) << built.out << built.err;

@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
-#include "tests/scene/Dae.hpp"
+#include "tests/meshes/Dae.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Pages.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -74,9 +75,10 @@ TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
 }
 
 TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
+    INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     install(folder);
-    writeFile(folder / "plate.dae", insonify::scene::Dae().text());
+    writeFile(folder / "plate.dae", insonify::meshes::Dae().text());
     writeFile(folder / "plate.world", R"(<sdf version="1.9"><world name="w"><model name="plate"><static>true</static>
 <link name="l"><visual name="v"><geometry><mesh><uri>plate.dae</uri></mesh></geometry></visual></link></model></world></sdf>
 )");
@@ -87,7 +89,10 @@ TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
     EXPECT_EQ(scene["triangles"], 2);
     EXPECT_EQ(scene["bounds"]["max"], json::parse("[1, 2, 3]"));
 
-    const fs::path reader = folder / "prefix/bin/insonify-read-mesh";
+    fs::path reader;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "prefix/lib"))
+        if (entry.path().filename() == "insonify-read-mesh") reader = entry.path();
+    ASSERT_FALSE(reader.empty());
     fs::remove(reader);
     writeFile(reader, "#!/bin/sh\nexit 7\n");
     fs::permissions(reader, fs::perms::owner_all);

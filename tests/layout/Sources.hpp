@@ -22,7 +22,9 @@ struct Source {
     std::string stem() const { return std::filesystem::path(path).stem(); }
     bool isTaskHalf() const { return stem().ends_with("Task"); }
     /** Of a component that brings its own part of the command: that part. */
-    bool isCommandHalf() const { return folder() == "study" && stem().ends_with("Command"); }
+    bool isCommandHalf() const { return path.find("/commands/") != std::string::npos; }
+    /** What joins a component library with what loads it. */
+    bool isLibraryEntry() const { return stem() == "Library"; }
 };
 
 inline Source readSource(const std::filesystem::path& file) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -21,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double flush_period = 0.003;  // [s]
+constexpr std::chrono::duration<double> period(0.003);
 constexpr size_t queue = 16;
 
 /** What the process that logs tells, in memory that outlives it. */
@@ -40,7 +41,9 @@ public:
         return log_->add(sample, name, metadata);
     }
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override {
-        if (Clock::now() > due_) told_.max_late = std::max<uint64_t>(told_.max_late, ++late_);
+        // A flush is due a period after this at the latest: the thread has looked at its clock after the one before.
+        if (!due_) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(period);
+        if (Clock::now() > *due_) told_.max_late = std::max<uint64_t>(told_.max_late, ++late_);
         log_->put(stream, received, time, sample);
     }
     size_t addLike(const log::Reader& log, size_t stream, const log::Metadata& more) override {
@@ -50,7 +53,7 @@ public:
     void flush() override {
         log_->flush();
         told_.flushed = log_->kept();
-        due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(flush_period));
+        due_.reset();
         late_ = 0;
     }
     void close() override { log_->close(); }
@@ -62,7 +65,7 @@ public:
 private:
     std::unique_ptr<log::Writer> log_;
     Told& told_;
-    Clock::time_point due_ = Clock::time_point::max();
+    std::optional<Clock::time_point> due_;
     uint64_t late_ = 0;
 };
 
@@ -77,7 +80,7 @@ std::string textOf(uint64_t number) {
     LoggerConfig config;
     config.file = path.filename();
     Rotation rotation(config, log);
-    LogThread thread(log, rotation, queue, flush_period);
+    LogThread thread(log, rotation, queue, period.count());
     const types::AnySample text = std::string();
     thread.declare([&](log::Writer& file) { return file.add(text.index(), "task.texts", {}); });
     for (uint64_t number = 0;; ++number) {
@@ -125,8 +128,8 @@ TEST(KilledLogTest, FiftyKillsAtAnyTimeLoseWhatWasNotFlushedAndNothingElse) {
         const uint64_t kept = samplesIn(path);
         EXPECT_GE(kept, told.flushed);
         EXPECT_LE(kept, told.pushed);
-        // With a flush each `flush_period`, which may be a second at most, and one sample more while one is due, what
-        // was written since the last one is what is lost, and what still waits in the queue.
+        // With a flush each `period`, which may be a second at most, and one sample more while one is due, what was
+        // written since the last one is what is lost, and what still waits in the queue.
         EXPECT_LE(told.max_late, 1u);
     }
     munmap(shared, sizeof(Told));

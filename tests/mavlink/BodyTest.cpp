@@ -147,7 +147,6 @@ TEST_F(BodyTest, AJumpIsTakenAsItIs) {
 }
 
 TEST_F(BodyTest, MillisecondsGoOnWhenTheyBeginAgain) {
-    Time last;
     for (int i = -5; i < 5; ++i) {  // 100 ms apart, over 2^32
         const auto ms = static_cast<uint32_t>(i * 100);
         take(LocalPositionNed{.time_boot_ms = ms - 50, .x = 1, .vx = 1}, 50 + 0.1 * i);

@@ -6,6 +6,7 @@
 
 #include "tests/deployer/Command.hpp"
 #include "tests/mavlink/Vehicle.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"
 
 using namespace insonify;
@@ -44,6 +45,7 @@ protected:
 }  // namespace
 
 TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
+    INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--pings", "20", "--summary", "summary.json"}), folder.path());
     const auto listening = static_cast<uint16_t>(port());
@@ -60,6 +62,7 @@ TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
 }
 
 TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
+    INSONIFY_NEEDS("sdf");
     const Process run(words({"--set", "scene.pose_timeout=0.2"}), folder.path());
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
     run.signal(SIGINT);
@@ -67,6 +70,7 @@ TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
 }
 
 TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollowed) {
+    INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--set", "scene.pose_timeout=2"}), folder.path());
     const auto listening = static_cast<uint16_t>(port());
@@ -89,6 +93,7 @@ TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollow
 }
 
 TEST_F(MavlinkRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+    INSONIFY_NEEDS("sdf");
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {
         return callInsonify(folder, {"run", deployment, "--out", "out", "--set", set}).err;

@@ -240,6 +240,48 @@ def test_numbers_of_numpy_and_paths_are_overrides(deploy):
     assert simulation.step(HERE).bins.shape[0] == 16
 
 
+def test_numbers_of_numpy_are_arguments(deploy):
+    simulation = insonify.Simulation(deploy / "minimal.yml", np.uint64(3), period=np.float32(0.5))
+    assert simulation.period == 0.5
+    ping = simulation.step(HERE, time=np.float32(2))
+    assert ping.time == 2
+    assert ping.fan(width=np.int64(100), dynamic_range_db=np.float32(30), reference_db=np.int32(3)).shape[1] == 100
+    simulation.reset(np.int64(3))
+    np.testing.assert_array_equal(simulation.step(HERE).bins, ping.bins)
+    for wrong in (-1, 2**64):
+        with pytest.raises(ValueError, match=f"seed: is {wrong}"):
+            simulation.reset(wrong)
+    with pytest.raises(ValueError, match="reference_db: is nan"):
+        ping.fan(reference_db=float("nan"))
+    with pytest.raises(ValueError, match="period: is nan"):
+        insonify.Simulation(deploy / "minimal.yml", period=float("nan"))
+
+
+def test_threads_read_one_log(deploy, tmp_path):
+    """The lock of the interpreter is free while a sample is read."""
+    command = [INSONIFY, "run", deploy / "harbour_fls.yml", "--pings", "4", "--quiet", "--out", tmp_path]
+    subprocess.run(command, check=True, timeout=600)
+    log = insonify.read_log(next(tmp_path.glob("harbour*.log")))
+    pings, poses = log["receiver.ping"], log["vehicle.pose"]
+    wanted = [ping.bins for ping in pings]
+    differ = []
+
+    def read(first):
+        for index in range(first, first + 40):
+            at = np.int64(index % 4)
+            differ.append(not np.array_equal(pings[at].bins, wanted[at]) or poses[at].time != poses.times[at])
+
+    threads = [threading.Thread(target=read, args=(first,)) for first in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(differ) == 160 and not any(differ)
+    for none in (4, -5):
+        with pytest.raises(IndexError):
+            pings[none]
+
+
 def test_a_log_that_is_none_is_an_error(tmp_path):
     (tmp_path / "x.log").write_bytes(b"not a log")
     with pytest.raises(insonify.ConfigError):

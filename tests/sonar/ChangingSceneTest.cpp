@@ -15,6 +15,7 @@
 #include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/SceneTrees.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "tests/support/TaskBench.hpp"
 
@@ -244,6 +245,7 @@ TEST_F(ChosenQualityTest, IsKeptAndIsNotChosenAgainForTheNextTile) {
 }
 
 TEST(ChangingSceneTest, TwoSonarsOfAScenesFileHaveItsMeshesAndFactsOnce) {
+    INSONIFY_NEEDS("sdf");
     const Folder folder;
     std::ofstream(folder / "box.sdf") << "<sdf version='1.7'><world name='w'><model name='m'><link name='l'><visual "
                                          "name='v'><geometry><box><size>1 1 "

@@ -1,8 +1,12 @@
 // Pings of scenes whose echo is known in closed form (ACOUSTICS.md 9), drawn through OpenGL. Every form stands beside
 // a deliberately wrong one, which must fail by the same measure.
+#include <glm/gtc/quaternion.hpp>
+#include <random>
+
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/echo/FacetCurves.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/study/FractalFloor.hpp"
-#include "components/study/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
@@ -101,6 +105,118 @@ TEST(ClosedFormTest, AtTheLimbOfASphereBinsAreRightToTheirPixels) {
     EXPECT_GT(std::abs(at_limb - form(limb - 1.15 * pixel, limb)), 0.03 * right_at_limb) << "a wrong limb would show";
 }
 
+/** A sphere in a fan of 64 beams, somewhere ahead and turned somehow. */
+struct RandomSphere {
+    RandomSphere(std::mt19937& random, int rings, int rows, int columns) {
+        std::uniform_real_distribution<double> u(0, 1);
+        radius = 0.2 * std::pow(10, u(random));
+        distance = radius * (4 + 20 * u(random));
+        bin = radius / (4 + 16 * u(random));
+        mesh = test::sphere(radius, rings);
+        const double azimuth = 0.02 * (u(random) - 0.5), elevation = 0.02 * (u(random) - 0.5);
+        const glm::dvec4 axis(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5, u(random) - 0.5);
+        place = glm::mat4_cast(glm::normalize(glm::dquat(axis.w, axis.x, axis.y, axis.z)));
+        place[3] = glm::dvec4(distance * std::cos(elevation) * std::cos(azimuth),
+                              distance * std::cos(elevation) * std::sin(azimuth), distance * std::sin(elevation), 1);
+        config = test::sonarOf({.beams = 64,
+                                .width_deg = 32,
+                                .height_deg = 32,
+                                .bins = static_cast<int>((distance + 2 * radius) / bin),
+                                .bin = bin,
+                                .rows = rows,
+                                .columns = columns});
+        config.visibility = Visibility::Cpu;
+    }
+    /** Energies of all beams together by bin. */
+    std::vector<double> hear(types::Sonar& ping) const {
+        auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mesh}));
+        geometry->objects[0].world_from_object = place;
+        ping = pingOf(config, test::snapshotOf(geometry));
+        std::vector<double> sums(ping.bin_count);
+        for (size_t i = 0; i < ping.bins.size(); ++i) sums[i % ping.bin_count] += static_cast<double>(ping.bins[i]);
+        return sums;
+    }
+    /** The farthest corner of a facet that faces the sonar, which is the limb of the mesh [m]. */
+    double meshLimb() const {
+        double limb = 0;
+        for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+            glm::dvec3 corners[3];
+            for (size_t k = 0; k < 3; ++k)
+                corners[k] = glm::dvec3(place * glm::dvec4(mesh.positions[mesh.indices[i + k]], 1));
+            const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+            if (glm::dot(normal, corners[0]) < 0)
+                for (const glm::dvec3& corner : corners) limb = std::max(limb, glm::length(corner));
+        }
+        return limb;
+    }
+
+    double radius, distance, bin;
+    types::Mesh mesh;
+    glm::dmat4 place;
+    SonarConfig config;
+};
+
+TEST(ClosedFormTest, NothingIsBeforeASphereOrBehindItsLimb) {
+    std::mt19937 random(11);
+    double behind_planes = 0;
+    for (const int rings : {64, 256, 512})
+        for (const auto& [rows, columns] : {std::pair{64, 2}, {128, 2}, {256, 4}, {512, 8}}) {
+            RandomSphere sphere(random, rings, rows, columns);
+            types::Sonar ping;
+            const std::vector<double> sums = sphere.hear(ping);
+            const test::Form form = test::sphereEcho(sphere.radius, sphere.distance);
+            const double limb = std::sqrt(std::pow(sphere.distance, 2) - std::pow(sphere.radius, 2));
+            const double end = std::max(sphere.meshLimb(), limb), peak = *std::ranges::max_element(sums);
+            double last = 0, right = 0;
+            for (uint32_t k = 0; k < ping.bin_count; ++k) {
+                const double near = ping.binStart(k), far = ping.binStart(k + 1);
+                if (far <= sphere.distance - sphere.radius || near >= end) {
+                    EXPECT_LT(sums[k], 1e-5 * peak) << near << " of a sphere of " << rings << " rings at " << rows;
+                }
+                if (far > limb - 3 * (far - near)) last += sums[k], right += form(near, far);
+            }
+            if (rings > 64 && rows == 512) {
+                EXPECT_NEAR(last, right, 0.02 * right);
+            }
+            sphere.mesh.indices.resize(sphere.mesh.indices.size() - 3);  // open, and so of planes
+            sphere.mesh = study::meshOf(sphere.mesh.positions, sphere.mesh.indices);
+            const std::vector<double> planes = sphere.hear(ping);
+            for (uint32_t k = 0; k < ping.bin_count; ++k)
+                if (ping.binStart(k) >= end) behind_planes = std::max(behind_planes, planes[k] / peak);
+        }
+    EXPECT_GT(behind_planes, 1e-3) << "planes reach behind the limb";
+}
+
+TEST(ClosedFormTest, FacetsBendAsTheSmoothClosedBodyDoes) {
+    const double radius = 0.7;
+    for (const int rings : {16, 64, 256}) {
+        types::Mesh ball = test::sphere(radius, rings);
+        const auto curves = facetCurves(ball, glm::dmat3(1)), twice = facetCurves(ball, glm::dmat3(2));
+        ASSERT_EQ(curves.size(), ball.indices.size() / 3);
+        const vec4 bend = curves[curves.size() / 2].bend, wide = twice[twice.size() / 2].bend;
+        const double least = static_cast<double>(bend.w), more = glm::dot(glm::dvec3(bend), glm::dvec3(bend));
+        EXPECT_NEAR(least, 1 / radius, 0.05 / radius) << rings;
+        EXPECT_NEAR(least + more, 1 / radius, 0.05 / radius) << rings;
+        EXPECT_NEAR(static_cast<double>(wide.w), least / 2, 0.01 * least) << rings;
+        for (size_t i = 0; i < ball.indices.size(); i += 3) std::swap(ball.indices[i], ball.indices[i + 1]);
+        EXPECT_NEAR(static_cast<double>(facetCurves(ball, glm::dmat3(1))[curves.size() / 2].bend.w), least,
+                    0.01 * least)
+            << "wound the other way round";
+        types::Mesh doubled = ball;
+        doubled.indices.insert(doubled.indices.end(), ball.indices.rbegin(), ball.indices.rend());
+        const auto once = facetCurves(ball, glm::dmat3(1)), both = facetCurves(doubled, glm::dmat3(1));
+        ASSERT_EQ(both.size(), 2 * once.size());
+        for (size_t i = 0; i < once.size(); ++i) {
+            EXPECT_EQ(both[i].bend, once[i].bend) << "doubled facets";
+            EXPECT_EQ(both[both.size() - 1 - i].bend, once[i].bend) << "doubled facets";
+        }
+        ball.indices.resize(ball.indices.size() - 3);
+        EXPECT_TRUE(facetCurves(ball, glm::dmat3(1)).empty()) << "open";
+    }
+    EXPECT_TRUE(facetCurves(test::ground(-5), glm::dmat3(1)).empty());
+    EXPECT_TRUE(facetCurves(study::tilesOf(study::FractalFloor{}, 8).front(), glm::dmat3(1)).empty());
+}
+
 TEST(ClosedFormTest, WallAheadFollowsTheThinVerticalBeamForm) {
     const double distance = 10, half = radians(20), delta = radians(1);
     expectForm(pingOf(sonarOf(1, 40, 1, 0.1, 150), test::snapshotOf(test::sceneOf({test::wall(10)}))),
@@ -149,7 +265,7 @@ TEST(ClosedFormTest, AMeshSoundsAsItsTilesDo) {
         const types::Sonar whole = pingOf(scene.config, scene.snapshot);
         const auto off = [&](const types::Snapshot& snapshot) {
             const std::vector<double> reference(whole.bins.begin(), whole.bins.end());
-            return study::compare(pingOf(scene.config, snapshot).bins, reference,
+            return sonar::compare(pingOf(scene.config, snapshot).bins, reference,
                                   {static_cast<int>(whole.beam_count), static_cast<int>(whole.bin_count),
                                    whole.binStart(1) - whole.binStart(0), 0})
                 .rel_l2_tvg;

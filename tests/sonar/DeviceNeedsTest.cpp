@@ -72,7 +72,6 @@ TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAs
     const auto geometry = test::surfaces();
     const gpu::Limits needs = depositNeeds(setupOf(planOf(*geometry)), *geometry);
     const std::pair<int64_t gpu::Limits::*, std::string> limits[] = {
-        {&gpu::Limits::doubles, "GL_ARB_gpu_shader_fp64 is missing"},
         {&gpu::Limits::storage_blocks, "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS is 0, and 8 is needed"},
         {&gpu::Limits::storage_bytes, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE is 0, and"},
         {&gpu::Limits::shared_bytes, "GL_MAX_COMPUTE_SHARED_MEMORY_SIZE is 0, and"},

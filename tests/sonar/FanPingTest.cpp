@@ -245,6 +245,20 @@ TEST_P(FanPingTest, EachBeamIsWhatItIsAlone) {
     });
 }
 
+/** The same with a facet less on each ball, which is then of planes for rays too: pictures know no limb. */
+types::Snapshot withoutLimbs(types::Snapshot snapshot) {
+    const auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
+    for (const types::Object& object : geometry->objects) {
+        if (object.name.find("ball") == std::string::npos) continue;
+        types::Mesh mesh = geometry->meshes[static_cast<size_t>(object.mesh)];
+        mesh.indices.resize(mesh.indices.size() - 3);
+        mesh.clusters.back().index_count -= 3;
+        geometry->meshes[static_cast<size_t>(object.mesh)] = mesh;
+    }
+    snapshot.geometry = geometry;
+    return snapshot;
+}
+
 TEST_P(FanPingTest, RaysAndPicturesAgree) {
     if (!GetParam().drawn) return;
     forTables(1, [&](const test::Table& table, std::mt19937&) {
@@ -253,10 +267,10 @@ TEST_P(FanPingTest, RaysAndPicturesAgree) {
             config.quality.columns_per_beam = 8;
             return config;
         };
-        const Shown cast = shownOf(fine(sonar(table, GetParam())), scene());
+        const Shown cast = shownOf(fine(sonar(table, GetParam())), withoutLimbs(scene()));
         SonarConfig pictures = fine(sonar(table, GetParam(), Visibility::Gl));
         if (pictures.beam_pattern) pictures.quality.rows = 2048;  // of 150 deg, even in their tangent
-        const Shown drawn = shownOf(pictures, scene());
+        const Shown drawn = shownOf(pictures, withoutLimbs(scene()));
         EXPECT_LT(difference(drawn.ping.bins, cast.ping.bins), GetParam().agree);
     });
 }

@@ -8,27 +8,24 @@
 #include <numbers>
 #include <vector>
 
-#include "components/sonar/echo/Interface.hpp"
+#include "components/sonar/echo/Limb.hpp"
 
 namespace insonify::sonar {
 namespace {
 
-using std::abs, std::exp, std::max, std::min, std::sqrt;
-#include "shaders/footprint.glsl"
 #include "shaders/picture.glsl"
 #include "shaders/plane.glsl"
-using real = double;
-#include "shaders/trapezoid.glsl"
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /** 600 bins of 0.1 m, which take what the deposit's shared code gives them. */
-struct Bins {
+struct PointBins {
     static constexpr uint bin_count = 600;
-    static constexpr double bin_width = 0.1, attenuation = 0;
+    static constexpr double bin_width = 0.1;
     std::vector<double> sums = std::vector<double>(bin_count);
 
     double binEdge(uint k) const { return k == 0 ? 1e3 : 1 / (k * bin_width); }
+    uint binOf(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
     void addToBin(uint, uint bin, double amount, double) { sums[bin] += amount; }
     /** A point of solid angle `share` at range r on a plane of unit Lambert parameter, `distance` away. */
     void addPoint(double r, double distance, double share) {
@@ -49,9 +46,9 @@ struct Bins {
 #undef HAVE_PHYSICAL
 };
 
-double relativeL2(const Bins& got, const Bins& expected) {
+double relativeL2(const PointBins& got, const PointBins& expected) {
     double error = 0, norm = 0;
-    for (uint k = 0; k < Bins::bin_count; ++k) {
+    for (uint k = 0; k < PointBins::bin_count; ++k) {
         error += (got.sums[k] - expected.sums[k]) * (got.sums[k] - expected.sums[k]);
         norm += expected.sums[k] * expected.sums[k];
     }
@@ -89,15 +86,16 @@ struct ShareOfPixel {
     double u, v, from, to, size, limit = infinity;
     bool upright = false;  ///< Not sheared: wrong.
 
-    void deposit(const Plane& plane, Bins& bins) const {
-        const PictureCell cell = pictureCell(u, v, (from + to) / 2, to - from, limit, upright ? 0 : u / (1 + u * u),
-                                             size, 1 / (size * size));
-        const PlaneFootprint seen = plane.seen(std::atan(cell.u), std::atan(cell.v / std::hypot(1, cell.u)), cell.width,
-                                               cell.height, cell.size, bins.binEdge(Bins::bin_count));
+    void deposit(const Plane& plane, PointBins& bins) const {
+        const double middle = (from + to) / 2, shear = upright ? 0 : u / (1 + u * u);
+        const PictureRow row = pictureRow(v + v * shear * (middle - u), size, -limit, limit);
+        const PictureCell cell = pictureCell(middle, row.middle, to - from, row.rise, 1 / (size * size));
+        const PlaneFootprint seen = plane.seen(std::atan(middle), std::atan(row.middle / std::hypot(1, middle)),
+                                               cell.width, cell.height, cell.size, bins.binEdge(PointBins::bin_count));
         bins.depositCell(seen.footprint, 0, seen.perpendicular);
     }
     /** Point by point between curves of constant elevation. */
-    void cut(const Plane& plane, Bins& bins) const {
+    void cut(const Plane& plane, PointBins& bins) const {
         for (int i = 0; i < parts; ++i)
             for (int j = 0; j < parts; ++j) {
                 const double at = part(from, to, i), lean = sqrt((1 + at * at) / (1 + u * u));
@@ -113,12 +111,12 @@ struct ShareOfPixel {
 struct AngularCell {
     double a, e, da, de;
 
-    void deposit(const Plane& plane, Bins& bins) const {
+    void deposit(const Plane& plane, PointBins& bins) const {
         const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
-        const PlaneFootprint seen = plane.seen(a, e, da, de, size, bins.binEdge(Bins::bin_count));
+        const PlaneFootprint seen = plane.seen(a, e, da, de, size, bins.binEdge(PointBins::bin_count));
         bins.depositCell(seen.footprint, 0, seen.perpendicular);
     }
-    void cut(const Plane& plane, Bins& bins) const {
+    void cut(const Plane& plane, PointBins& bins) const {
         for (int i = 0; i < parts; ++i)
             for (int j = 0; j < parts; ++j) {
                 const double at = part(a - da / 2, a + da / 2, i), up = part(e - de / 2, e + de / 2, j);
@@ -132,7 +130,7 @@ struct AngularCell {
 /** Expects the deposit to follow the cut: bins to `in_bins` (relative L2), their sum to `in_all`. */
 template <class Cell>
 void expectFollows(const Cell& cell, const Plane& plane, double in_bins, double in_all) {
-    Bins got, expected;
+    PointBins got, expected;
     cell.deposit(plane, got);
     cell.cut(plane, expected);
     EXPECT_GT(expected.occupied(), 0);
@@ -172,7 +170,7 @@ TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
     expectFollows(wide, bottom, 0.01, 2e-3);
     ShareOfPixel aside{0.3, -0.12, 0.325, 0.35, 0.004};
     const auto off = [&] {
-        Bins got, expected;
+        PointBins got, expected;
         aside.deposit(bottom, got);
         aside.cut(bottom, expected);
         return relativeL2(got, expected);
@@ -185,7 +183,7 @@ TEST(FootprintTest, ACellOfThePictureCoversTheBinsThatItsPointsDo) {
 
 TEST(FootprintTest, ACellIsClippedAtTheAperture) {
     ShareOfPixel cell{0.3, -0.12, 0.298, 0.302, 0.004};
-    Bins whole, clipped;
+    PointBins whole, clipped;
     cell.deposit(bottom, whole);
     cell.limit = 0.119;
     cell.deposit(bottom, clipped);
@@ -199,6 +197,61 @@ TEST(FootprintTest, ACellOfAzimuthAndElevationCoversTheBinsThatItsPointsDo) {
     expectFollows(AngularCell{-0.2, -0.4, 0.02, 0.005}, slope, 0.01, 5e-4);
     expectFollows(AngularCell{0.5, 0.5, 0.04, 0.04}, wall, 0.05, 5e-4);
     expectFollows(AngularCell{0.3, -1.5, 0.04, 0.01}, bottom, 0.01, 5e-4);  // nearly straight down
+}
+
+/** A cell da x de about (a, e) of a sphere of `radius` about (distance, 0, 0). */
+struct CellOfSphere {
+    double radius, distance, a, e, da, de;
+
+    /** Range of the sphere in a direction, and cosine of incidence there. */
+    std::pair<double, double> at(double azimuth, double elevation) const {
+        const double ahead = distance * std::cos(elevation) * std::cos(azimuth);
+        const double limb_square = distance * distance - radius * radius;
+        const double range = ahead - sqrt(ahead * ahead - limb_square);
+        return {range, (limb_square - range * range) / (2 * radius * range)};
+    }
+    void deposit(double curvature, PointBins& bins) const {
+        const double range = at(a, e).first, level = std::cos(e);
+        const std::array<double, 3> n = {(distance - range * level * std::cos(a)) / radius,
+                                         -range * level * std::sin(a) / radius, -range * std::sin(e) / radius};
+        const double perpendicular = range * (level * (n[0] * std::cos(a) + n[1] * std::sin(a)) + n[2] * std::sin(e));
+        const double size = (std::sin(e + de / 2) - std::sin(e - de / 2)) / de;
+        const double far_edge = bins.binEdge(PointBins::bin_count);
+        const PlaneFootprint seen = planeFootprint(n[0], n[1], n[2], perpendicular, std::cos(a), std::sin(a), level,
+                                                   std::sin(e), da, de, 0, size, infinity, 0, 1e3, far_edge);
+        Footprint cell = seen.footprint;
+        double length = seen.perpendicular;
+        EXPECT_NEAR(1 / cell.pixel, range, 1e-9);
+        if (curvature > 0) {
+            length = bend(
+                cell, {curvature, perpendicular, da, de, level, cell.pixel - cell.centre, infinity, 0, 1e3, far_edge});
+            EXPECT_NEAR(1 / cell.limb, sqrt(distance * distance - radius * radius), 1e-9);
+            EXPECT_NEAR(1 / cell.nearest, distance - radius, 1e-9);
+        }
+        bins.depositCell(cell, 0, length);
+    }
+    void cut(PointBins& bins) const {
+        for (int i = 0; i < parts; ++i)
+            for (int j = 0; j < parts; ++j) {
+                const double up = part(e - de / 2, e + de / 2, j);
+                const auto [range, cosine] = at(part(a - da / 2, a + da / 2, i), up);
+                bins.addPoint(range, cosine * range, std::cos(up) / (parts * parts));
+            }
+    }
+};
+
+TEST(FootprintTest, ACellOfASphereCoversTheBinsThatItsPointsDo) {
+    for (const CellOfSphere& cell :
+         {CellOfSphere{4, 10, 0.1, 0.05, 0.02, 0.03}, CellOfSphere{4, 10, -0.05, 0.3, 0.01, 0.05},
+          CellOfSphere{8, 20, 0.25, -0.2, 0.04, 0.02}, CellOfSphere{4, 10, 0, 0.39, 0.001, 0.03}}) {
+        PointBins got, flat, expected;
+        cell.deposit(1 / cell.radius, got);
+        cell.deposit(0, flat);
+        cell.cut(expected);
+        EXPECT_LT(relativeL2(got, expected), 0.04) << cell.e;
+        EXPECT_NEAR(got.energy() / expected.energy(), 1, 0.01) << cell.e;
+        EXPECT_GT(relativeL2(flat, expected), 2 * relativeL2(got, expected)) << "a plane has other bins";
+    }
 }
 
 }  // namespace

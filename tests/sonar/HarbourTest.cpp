@@ -6,6 +6,7 @@
 #include <map>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/framework/YamlText.hpp"
 #include "components/pose/Trajectory.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/framework/ConfigReader.hpp"
+#include "components/framework/YamlText.hpp"
 #include "components/sonar/AltimeterTask.hpp"
 #include "components/sonar/ProfilerTask.hpp"
 #include "components/sonar/SideScanTask.hpp"

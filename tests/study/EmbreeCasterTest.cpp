@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "components/sonar/fan/BinGrid.hpp"
-#include "components/study/Metrics.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
@@ -13,6 +13,8 @@
 
 namespace insonify::study {
 namespace {
+
+using sonar::compare, sonar::Layout, sonar::Metrics;
 
 StudyScene sceneNamed(const std::string& name) {
     for (const SceneMaker& scene : closedFormScenes())

@@ -8,14 +8,16 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/study/FractalFloor.hpp"
-#include "components/study/Metrics.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
 namespace {
+
+using sonar::compare, sonar::Layout, sonar::Metrics;
 
 using types::radians;
 

@@ -7,7 +7,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
-#include "components/study/Metrics.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
@@ -16,6 +16,8 @@
 
 namespace insonify::study {
 namespace {
+
+using sonar::compare, sonar::Layout, sonar::Metrics;
 
 using types::radians;
 

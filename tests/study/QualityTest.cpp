@@ -7,15 +7,17 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/quality/Metrics.hpp"
 #include "components/sonar/quality/Quality.hpp"
 #include "components/study/FractalFloor.hpp"
-#include "components/study/Metrics.hpp"
 #include "components/study/StudyScene.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Surfaces.hpp"
 
 namespace insonify::study {
 namespace {
+
+using sonar::compare, sonar::Layout, sonar::Metrics;
 
 class QualityTest : public testing::TestWithParam<SceneMaker> {};
 

@@ -222,6 +222,25 @@ TEST(SpecklePingTest, NeighboursAreAsAlikeAsPulseAndPatternSay) {
     EXPECT_NEAR(across.across[2], 0.41, 0.05);
 }
 
+TEST(SpecklePingTest, ThreadsMakeNoDifference) {
+    SonarConfig pattern = lineArray(0.003 / radians(1));
+    pattern.pulse.emplace().bandwidth_khz = 10;
+    for (const SonarConfig& config : {coherent(boxes()), coherent(boxes(), 10, 400), pattern}) {
+        const types::Snapshot snapshot = overBottom();
+        const auto bins = [&](int threads) {
+            RenderOptions options;
+            options.threads = threads;
+            SonarRenderer renderer(config, snapshot.geometry, options);
+            types::Sonar ping;
+            renderer.render(snapshot, ping);
+            return ping.bins;
+        };
+        EXPECT_GT(meanOf(fieldOf(config, snapshot)), 0.5);
+        EXPECT_EQ(bins(1), bins(2));
+        EXPECT_EQ(bins(1), bins(5));
+    }
+}
+
 TEST(SpecklePingTest, EqualScatterersScintillateByTwoLessTheirShare) {
     // N equal scatterers at random in one cell: <I^2> / <I>^2 = 2 - 1/N (Stanton, Lee and Baik 2018).
     SonarConfig config = coherent(boxes());

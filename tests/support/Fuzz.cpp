@@ -26,8 +26,14 @@ thread_local uintptr_t block_before = 0;
 
 }  // namespace
 
+#ifdef __clang__
+#define INSONIFY_NO_COVERAGE no_sanitize("coverage")
+#else
+#define INSONIFY_NO_COVERAGE no_sanitize_coverage
+#endif
+
 /** Called by the compiler at each block of code (-fsanitize-coverage=trace-pc). */
-extern "C" __attribute__((no_sanitize_coverage, no_sanitize("address", "undefined"))) void __sanitizer_cov_trace_pc() {
+extern "C" __attribute__((INSONIFY_NO_COVERAGE, no_sanitize("address", "undefined"))) void __sanitizer_cov_trace_pc() {
     const auto block = reinterpret_cast<uintptr_t>(__builtin_return_address(0));
     steps[(block ^ block_before) % steps.size()] = 1;
     block_before = block >> 1;

@@ -1,5 +1,6 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
+#include "components/loader/Interface.hpp"
 
 using namespace insonify;
 
@@ -11,6 +12,8 @@ public:
 private:
     void updateHook() override { value.write(42); }
 };
+
+INSONIFY_COMPONENT_LIBRARY;
 
 extern "C" void insonify_register(framework::Registry& registry) {
     registry.add<PluginTask>("plugin::PluginTask", "writes 42");

@@ -3,10 +3,9 @@
 
 namespace insonify::test {
 
-/** The limits that OpenGL 4.5 promises, with both extensions that sonars use. */
+/** The limits that OpenGL 4.5 promises, with the extension that sonars use. */
 inline gpu::Limits promisedLimits() {
     return {.draw_parameters = 1,
-            .doubles = 1,
             .texture_size = 16384,
             .viewport_size = 16384,
             .integer_samples = 1,

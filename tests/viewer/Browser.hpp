@@ -92,7 +92,8 @@ public:
     }
     /** Turns the wheel by so many pixels, positive towards oneself. */
     void wheel(double x, double y, double by) { mouse("mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", by}}); }
-    void size(int width, int height) { ask({{"size", {width, height}}}); }
+    /** @param scale pixels of the screen per pixel of CSS. */
+    void size(int width, int height, double scale = 1) { ask({{"size", {width, height, scale}}}); }
     void screenshot(const std::string& file) { ask({{"screenshot", file}}); }
 
 private:

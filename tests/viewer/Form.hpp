@@ -1,5 +1,8 @@
 #pragma once
 // A task with a property of each type, for the fields of the page.
+#include <chrono>
+#include <thread>
+
 #include "tests/viewer/Running.hpp"
 
 namespace insonify::viewer {
@@ -37,7 +40,7 @@ struct FormConfig {
         visit(types::Field{"maybe", "", "any"}, self.maybe);
         visit(types::Field{"count", "1", "any", 1, 1000}, self.count);
         visit(types::Field{"seed", "1", "any"}, self.seed);
-        visit(types::Field{"title", "", "any"}, self.title);
+        visit(types::Field{"title", "", "slow takes a second to be set"}, self.title);
         visit(types::Field{"place", "m", "any"}, self.place);
         visit(types::Field{"weights", "1", "any"}, self.weights);
         visit(types::Field{"quality", "", "rows or a budget"}, self.quality);
@@ -53,6 +56,7 @@ public:
 
 private:
     bool propertiesHook() override {
+        if (config->title == "slow") std::this_thread::sleep_for(std::chrono::seconds(1));
         if (!config->enabled) throw std::runtime_error("not without it today");
         if (config->shape == Shape::Flat) throw std::runtime_error("flat is for later");
         return true;

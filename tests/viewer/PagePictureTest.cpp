@@ -159,11 +159,38 @@ TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
     const std::string told = text("measured");
     ASSERT_EQ(std::sscanf(told.c_str() + told.find("stbd, ") + 6, "%lf° true", &heading), 1) << told;
     EXPECT_NEAR(heading, 30, 1) << "the sonar looks north";
+    const auto at = windowAt(3, 0);
+    for (const char* kind : {"mousePressed", "mouseReleased"})
+        browser->mouse(kind, at[0], at[1], {{"button", "right"}, {"clickCount", 1}});
+    EXPECT_EQ(value("insonify.fan.marks.length"), 2) << "the right button opens a menu";
     clickAt(3, 0);
     EXPECT_EQ(value("insonify.fan.marks.length"), 1) << "a third begins anew";
     click("measure");
     nextFrame();
     EXPECT_EQ(text("measured"), "");
+}
+
+TEST_F(PageTest, AScreenOfAnyScaleIsReadAndMeasuredAlike) {
+    for (const double scale : {1.25, 2.0}) {
+        browser->size(1280, 800, scale);
+        ASSERT_TRUE(
+            becomes("Math.abs(insonify.fan.canvas.width / insonify.fan.canvas.clientWidth - devicePixelRatio) < 0.01 "
+                    "&& devicePixelRatio === " +
+                    std::to_string(scale)));
+        EXPECT_EQ(pixelAt(6.75, 0), brightest) << scale;
+        EXPECT_EQ(pixelAt(5.7, 0), darkest) << scale;
+        EXPECT_THAT(readAt(6.75, -8), testing::AllOf(HasSubstr("6.7"), HasSubstr("-8."), HasSubstr("stbd"))) << scale;
+        click("measure");
+        clickAt(6, 30);
+        clickAt(6, -30);
+        EXPECT_NEAR(value("insonify.fan.measured().distance"), 6, 0.1) << scale;
+        click("measure");
+        const auto at = windowAt(6.75, 0);
+        browser->wheel(at[0], at[1], -800);
+        ASSERT_TRUE(becomes("insonify.fan.zoom > 3 / " + std::to_string(scale))) << scale;
+        EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 3) << scale;
+        click("whole");
+    }
 }
 
 TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {

@@ -228,6 +228,45 @@ TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelGoesNearer) {
     EXPECT_TRUE(becomes("insonify.world().distance < " + before["distance"].dump() + " * 0.8"));
 }
 
+TEST_F(PageTest, FingersTurnTheSceneAndGoNearer) {
+    if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
+    ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
+    const json box = value(byId("view") + ".getBoundingClientRect().toJSON()");
+    const double x = box["left"].get<double>() + 200, y = box["top"].get<double>() + 200;
+    const std::string camera =
+        "(({azimuth, elevation, distance}) => ({azimuth, elevation, distance}))(insonify.world())";
+    const json before = value(camera);
+    browser->touch("touchStart", {{x, y}});
+    for (const double dx : {25, 50, 75, 100}) browser->touch("touchMove", {{x + dx, y}});
+    browser->touch("touchEnd", {});
+    EXPECT_NEAR(value(camera)["azimuth"], before["azimuth"].get<double>() - 0.6, 0.1);
+
+    const json turned = value(camera);
+    browser->touch("touchStart", {{x, y - 30}, {x, y + 30}});
+    for (const double half : {40, 60, 80, 90}) browser->touch("touchMove", {{x, y - half}, {x, y + half}});
+    browser->touch("touchEnd", {});
+    EXPECT_NEAR(value(camera)["distance"], turned["distance"].get<double>() / 3, turned["distance"].get<double>() / 10);
+    EXPECT_EQ(value(camera)["azimuth"], turned["azimuth"]) << "two fingers turn nothing";
+}
+
+TEST_F(PageTest, ASceneThatStandsStillIsNotDrawnAgainOnAnyScreen) {
+    if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
+    ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
+    for (const double scale : {1.0, 1.1, 1.25, 1.5, 2.0}) {
+        browser->size(1283, 801, scale);
+        nextFrame();
+        EXPECT_EQ(value(R"((() => {
+            const world = insonify.world(), {render} = world.renderer.info;
+            world.draw();
+            const frames = render.frame;
+            world.draw();
+            return [Math.abs(world.canvas.width - world.canvas.clientWidth * devicePixelRatio) < 1, render.frame - frames];
+        })())"),
+                  json({true, 0}))
+            << scale;
+    }
+}
+
 TEST_F(PageTest, TheFanIsWhereItsPingWasMade) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world() && insonify.snapshot()"));

@@ -256,6 +256,19 @@ TEST_F(TypingTest, WhatIsTypedIsSetWhenTheFieldIsLeft) {
     EXPECT_TRUE(becomes(fieldOf("range") + ".value === '100'")) << "the table shows the same";
 }
 
+TEST_F(TypingTest, AnAnswerThatComesLateLeavesTheCaret) {
+    browser->click(fieldOf("title"));
+    browser->press("Control+a");
+    browser->type("slow");
+    browser->press("Enter");
+    browser->press("ArrowRight");
+    ASSERT_TRUE(holds("title", "slow"));
+    nextStatuses();
+    browser->type("er");
+    browser->press("Enter");
+    EXPECT_TRUE(holds("title", "slower")) << held("title");
+}
+
 TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
     struct Case {
         const char *property, *typed, *message;

@@ -11,13 +11,14 @@ Reads lines of JSON and answers each with one. SCRIPT runs before those of the p
     {"mouse": {"type": KIND, ...}}         what the mouse does, as Input.dispatchMouseEvent has it
     {"touch": {"type": KIND, ...}}         what fingers do, as Input.dispatchTouchEvent has it
     {"downloads": FOLDER}                  where the browser saves files
-    {"size": [W, H]}                       makes the window that large
+    {"size": [W, H, SCALE]}                makes the window that large, on a screen of SCALE pixels per CSS pixel
     {"screenshot": FILE}                   writes a PNG
 """
 
 import asyncio
 import base64
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -69,7 +70,10 @@ LOOK = """(() => {
 def start(chromium, profile):
     """The browser, and the address of its only page for tools."""
     browser = subprocess.Popen(
-        [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"], stderr=subprocess.PIPE, text=True
+        [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"],
+        env={**os.environ, "TMPDIR": profile},  # what it leaves there is removed as well
+        stderr=subprocess.PIPE,
+        text=True,
     )
     for line in browser.stderr:
         found = re.search(r"ws://([^/]+)/", line)
@@ -109,6 +113,8 @@ class Page:
         answer = await self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             return {"error": answer["exceptionDetails"].get("exception", {}).get("description", "unknown")}
+        if "result" not in answer:  # an object that JSON cannot hold
+            return {"error": str(answer)}
         return {"value": answer["result"].get("value")}
 
     async def until(self, expression, seconds):
@@ -157,9 +163,9 @@ class Page:
                     return answer
         return {"value": True}
 
-    async def size(self, width, height):
+    async def size(self, width, height, scale):
         return await self.act(
-            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False
         )
 
     async def answer(self, asked):

@@ -18,8 +18,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ._insonify import ConfigError, Ping, Stream
-from . import _insonify
+from numpy.typing import NDArray
+
+from . import native
+from .native import ConfigError
 
 __all__ = ["ConfigError", "Log", "Ping", "Pose", "Simulation", "Truth", "read_log"]
 
@@ -135,27 +137,78 @@ class Truth(Mapping):
             raise AttributeError(name) from None
 
 
-def _ping_truth(self) -> Truth | None:
-    arrays = self._truth
-    return None if arrays is None else Truth(arrays)
+class Ping:
+    """One ping: echoes of each beam by slant range."""
+
+    def __init__(self, handle: native.Handle) -> None:
+        self._handle = handle
+        self._facts = handle.facts()
+        self._arrays = dict(handle.arrays())
+
+    def _number(self, name: str) -> float:
+        return float("nan") if self._facts[name] is None else self._facts[name]
+
+    @property
+    def time(self) -> float:
+        """When it was true in the world [s]."""
+        return self._number("time")
+
+    @property
+    def bins(self) -> NDArray[np.float32]:
+        """[beams, bins]: the simulator's own memory, which stays as long as the array does. Not to be written to."""
+        return self._arrays["bins"]
+
+    @property
+    def bearings(self) -> NDArray[np.float64]:
+        """Of each beam [rad], positive to port."""
+        return self._arrays["bearings"]
+
+    @property
+    def ranges(self) -> NDArray[np.float64]:
+        """Slant range at the middle of each bin [m]."""
+        return self._arrays["ranges"]
+
+    @property
+    def speed_of_sound(self) -> float:
+        """[m/s]"""
+        return self._number("speed_of_sound")
+
+    @property
+    def beam_width(self) -> float:
+        """[rad]"""
+        return self._number("beam_width")
+
+    @property
+    def beam_height(self) -> float:
+        """[rad]"""
+        return self._number("beam_height")
+
+    @property
+    def bin_length(self) -> float:
+        """[m]"""
+        return self._number("bin_length")
+
+    @property
+    def truth(self) -> Truth | None:
+        """What the bins show; None where the simulation was not asked for it."""
+        return _truth(self._facts, self._arrays) if "objects" in self._facts else None
+
+    def fan(
+        self,
+        width: int = 512,
+        dynamic_range_db: float = 40,
+        reference_db: float | None = None,
+        colour_map: str = "amber",
+        scale: str = "linear",
+        code_bits: int = 8,
+    ) -> NDArray[np.uint8]:
+        """The ping as a picture [height, width, 3], red first; the arguments are the properties of
+        output::FanImageTask. Ahead is up, port is left. ConfigError for what no picture can be."""
+        return native.fan(self._handle, width, dynamic_range_db, reference_db, colour_map, scale, code_bits)
 
 
-def _ping_fan(
-    self,
-    width: int = 512,
-    dynamic_range_db: float = 40,
-    reference_db: float | None = None,
-    colour_map: str = "amber",
-    scale: str = "linear",
-    code_bits: int = 8,
-) -> np.ndarray:
-    """The ping as a picture [height, width, 3] of uint8, red first; the arguments are the properties of
-    output::FanImageTask. Ahead is up, port is left."""
-    return self._fan(width, dynamic_range_db, reference_db, colour_map, scale, code_bits)
-
-
-Ping.truth = property(_ping_truth, doc="What the bins show; None where the simulation was not asked for it")
-Ping.fan = _ping_fan
+def _truth(facts: dict, arrays: dict) -> Truth:
+    return Truth({**{name: array for name, array in arrays.items() if name not in ("bins", "bearings", "ranges")}, "objects": facts["objects"]})
 
 
 class Simulation:
@@ -184,27 +237,29 @@ class Simulation:
         period: float | None = None,
     ) -> None:
         assignments = [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
-        self._simulation = _insonify.Simulation(str(deployment), seed, assignments, truth, period)
+        self._simulation = native.simulation(str(deployment), seed, assignments, truth, period)
+        facts = self._simulation.facts()
+        self._poses, self._pings, self._period = facts["poses"], facts["pings"], facts["period"]
 
     @property
     def poses(self) -> list[str]:
         """Ports whose poses step() takes."""
-        return self._simulation.poses
+        return self._poses
 
     @property
     def pings(self) -> list[str]:
         """Ports whose pings step() gives."""
-        return self._simulation.pings
+        return self._pings
 
     @property
     def period(self) -> float:
         """Between two steps [s]."""
-        return self._simulation.period
+        return self._period
 
     @property
     def time(self) -> float:
         """Of the next step, where it is told no other [s]."""
-        return self._simulation.time
+        return self._simulation.facts()["time"]
 
     def step(self, pose, time: float | None = None):
         """The ping at a pose: a Pose, or a 4 x 4 transform from the body to the world.
@@ -213,12 +268,13 @@ class Simulation:
         was not made is None. RuntimeError tells what a task says that is in error.
         """
         given = pose if isinstance(pose, Mapping) else {self._only(self.poses, "poses"): pose}
-        made = self._simulation.step({port: _parts(each) for port, each in given.items()}, time)
+        handles = native.step(self._simulation, {port: _numbers(each) for port, each in given.items()}, time, len(self.pings))
+        made = [handle and Ping(handle) for handle in handles]
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
     def reset(self, seed: int | None = None) -> None:
         """Back to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays loaded."""
-        self._simulation.reset(seed)
+        native.reset(self._simulation, seed)
 
     @staticmethod
     def _only(ports: list[str], what: str) -> str:
@@ -232,9 +288,9 @@ def _plain(value: object) -> object:
     return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else str(value)
 
 
-def _parts(pose) -> tuple[np.ndarray, np.ndarray]:
+def _numbers(pose) -> np.ndarray:
     made = pose if isinstance(pose, Pose) else Pose.from_matrix(pose)
-    return made.position, made.orientation_wxyz
+    return np.concatenate([made.position, made.orientation_wxyz])
 
 
 class Log(Mapping):
@@ -242,7 +298,9 @@ class Log(Mapping):
 
     def __init__(self, path: str) -> None:
         self.path = str(path)
-        self._streams = {stream.name: _Samples(stream) for stream in _insonify.streams(self.path)}
+        log = native.log(self.path)
+        streams = zip(log.facts(), log.arrays())
+        self._streams = {stream["name"]: _Samples(log, i, stream, times) for i, (stream, (_, times)) in enumerate(streams)}
 
     def __getitem__(self, name: str) -> _Samples:
         return self._streams[name]
@@ -257,21 +315,29 @@ class Log(Mapping):
 class _Samples:
     """One stream: samples are read when they are asked for. Pings are Ping, poses Pose, pictures arrays."""
 
-    def __init__(self, stream: Stream) -> None:
-        self._stream = stream
-        self.name, self.type, self.metadata, self.times = stream.name, stream.type, stream.metadata, stream.times
+    def __init__(self, log: native.Handle, index: int, stream: dict, times: NDArray[np.float64]) -> None:
+        self._log, self._index = log, index
+        self.name, self.type, self.metadata, self.times = stream["name"], stream["type"], stream["metadata"], times
 
     def __len__(self) -> int:
-        return len(self._stream)
+        return len(self.times)
 
     def __getitem__(self, index: int):
-        sample = self._stream._sample(index + len(self) if index < 0 else index)
-        if isinstance(sample, dict):
-            return Truth(sample)
-        if isinstance(sample, tuple):
-            time, position, orientation = sample
-            return Pose(position, orientation, time)
-        return sample
+        sample = native.sample(self._log, self._index, index + len(self) if index < 0 else index)
+        facts = sample.facts()
+        if facts["kind"] == "ping":
+            return Ping(sample)
+        if facts["kind"] == "picture":
+            return native.pixels(sample)
+        if facts["kind"] in ("text", "integer"):
+            return facts["value"]
+        arrays = dict(sample.arrays())
+        if facts["kind"] == "truth":
+            return _truth(facts, arrays)
+        if facts["kind"] == "number":
+            return float(arrays["number"][0])
+        time, *numbers = arrays["numbers"]
+        return Pose(numbers[:3], numbers[3:], float(time))
 
     def __iter__(self):
         return (self[index] for index in range(len(self)))

@@ -40,6 +40,11 @@ public:
     Covered covered;
 
 private:
+    /** Covers the cells near the limb of a smooth body, which are covered as planes, as what bends away there. */
+    void bendCells(double near_edge, double far_edge);
+    /** The curvature of the body along the ray of a cell that meets it at a cosine [1/m]. */
+    double curvature(const Cells::OfBody& of_body, double cosine) const;
+    void bendCell(int i, double curvature, double near_edge, double far_edge);
     void applyLaws();
     /** How the lobe of cell i is seen; zeros where its material has none. */
     LobeSlopes lobeSlopes(int i) const;

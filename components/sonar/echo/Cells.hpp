@@ -15,11 +15,13 @@ struct PlacedRun {
     double strength;                               ///< Of the material at normal incidence [1].
     const PlaneRecord* planes;                     ///< Of the mesh's triangles.
     const FacetRecord* facets;                     ///< Of the same; null where no material of the mesh has a lobe.
+    const CurveRecord* curves;                     ///< Of the same; null where no part of the mesh is a smooth body.
     uint32_t material;                             ///< Its law in EchoRules::laws [1].
 };
-/** `planes`, `facets`: of the triangles of the object's mesh; no facets where it has no lobes. */
+/** `planes`, `facets`, `curves`: of the triangles of the object's mesh; null where it has no lobes, or is no smooth
+ * body. */
 PlacedRun placedRun(const ObjectRecord& object, const CommandRecord& command, const EchoRules& rules,
-                    const PlaneRecord* planes, const FacetRecord* facets);
+                    const PlaneRecord* planes, const FacetRecord* facets, const CurveRecord* curves);
 
 /** A normal, or what is turned as normals are, in sonar axes. */
 inline glm::dvec3 turned(const PlacedRun& run, const vec4& normal) {
@@ -51,10 +53,21 @@ struct Cells {
     int64_t object[capacity];  ///< Index into Geometry::objects, -1: nothing is met. Set where the truth is wanted.
     uint32_t hits[capacity];   ///< Samples that the cell is made of [1]. Set where the truth is wanted.
     int count = 0;
+    /** A cell of a smooth body, and how that bends. */
+    struct OfBody {
+        int cell;
+        const CurveRecord* curve;
+    };
+    OfBody of_bodies[capacity];
+    int of_bodies_count = 0;
 
     bool isFull() const { return count == capacity; }
     /** Sets the plane of cell i to that of a triangle, and what belongs to its material and object. */
     void setPlane(int i, const PlacedRun& placed, uint32_t triangle);
+    /** Notes that cell i is of a facet that may bend. */
+    void setCurve(int i, const CurveRecord& curve) { of_bodies[of_bodies_count++] = {i, &curve}; }
+    /** Empties the batch. */
+    void clear() { count = of_bodies_count = 0; }
     /** Sets cell i to one that meets nothing. */
     void setMiss(int i);
 };
@@ -63,7 +76,7 @@ struct Cells {
 struct Covered {
     double pixel[Cells::capacity], centre[Cells::capacity], wide[Cells::capacity], narrow[Cells::capacity],
         per_wide[Cells::capacity], steepness[Cells::capacity], near_end[Cells::capacity], far_end[Cells::capacity],
-        nearest[Cells::capacity], size[Cells::capacity];
+        nearest[Cells::capacity], limb[Cells::capacity], fade[Cells::capacity], size[Cells::capacity];
     double strength_range[Cells::capacity];  ///< [m]
 };
 

@@ -50,7 +50,7 @@ private:
             Estimator::features.has(Feature::Nearest) || Estimator::features.has(Feature::Published);
         if (one_bin) return touchedByCentre(cell);
         if (!(cell.near_end > cell.far_end)) return {0, 0};
-        uint bin = binOf(cell.near_end);
+        uint bin = nearBin(cell.near_end);
         while (bin > 0u && this->edges[bin] < cell.near_end) --bin;
         const uint first = bin;
         while (bin<this->bin_count&& this->edges[bin]> cell.far_end) ++bin;
@@ -58,10 +58,10 @@ private:
     }
     /** One that counts as a whole where its centre lies, give or take a rounding. */
     Stretch touchedByCentre(const Footprint& cell) const {
-        const uint bin = cell.pixel > 0 ? binOf(cell.pixel) : 0;
+        const uint bin = cell.pixel > 0 ? nearBin(cell.pixel) : 0;
         return {bin > 0 ? bin - 1 : 0, std::min(bin + 2, this->bin_count)};
     }
-    uint binOf(double inverse_range) const {
+    uint nearBin(double inverse_range) const {
         return uint(min(1.0 / (inverse_range * this->bin_width), this->bin_count - 1.0));
     }
     void move(uint bin, uint64_t* to, int32_t row) {

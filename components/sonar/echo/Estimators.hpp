@@ -20,6 +20,7 @@ inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"  // each includer has its own way to footprints
+inline double inverseRange(double place) { return place; }
 #include "shaders/footprint.glsl"
 using real = double;
 #include "shaders/trapezoid.glsl"
@@ -43,6 +44,7 @@ struct Bins {
     size_t beam_sums;  ///< Numbers of a beam.
     double bin_width, attenuation;
     double binEdge(uint k) const { return edges[k]; }
+    uint binOf(double place) const { return min(uint(1.0 / (place * bin_width)), bin_count - 1u); }
     static uint64_t quanta(double amount) {  // by way of a signed number, for which there is an instruction
         return static_cast<uint64_t>(static_cast<int64_t>(min(amount, 1048576.0) * quanta_per_unit + 0.5));
     }
@@ -50,8 +52,8 @@ struct Bins {
 
 /** What cell i covers. */
 inline Footprint footprintOf(const Covered& c, int i) {
-    return {c.pixel[i],     c.centre[i],   c.wide[i],    c.narrow[i],  c.per_wide[i],
-            c.steepness[i], c.near_end[i], c.far_end[i], c.nearest[i], c.size[i]};
+    return {c.pixel[i],    c.centre[i],  c.wide[i],    c.narrow[i], c.per_wide[i], c.steepness[i],
+            c.near_end[i], c.far_end[i], c.nearest[i], c.limb[i],   c.fade[i],     c.size[i]};
 }
 
 }  // namespace

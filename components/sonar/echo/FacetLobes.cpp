@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
-#include <numeric>
-#include <tuple>
+
+#include "components/sonar/echo/MeshEdges.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -16,38 +16,6 @@ constexpr double flat = 1e-3;                    ///< Normals that differ by les
 constexpr double crease = std::numbers::pi / 3;  ///< [rad]
 constexpr double similar = 4;                    ///< Facets share the turn at their edge up to this ratio of areas [1].
 constexpr uint32_t nobody = 0xffffffff;
-
-/** An edge of a triangle by the places of its ends, the lesser first: meshes have a vertex several times. */
-struct Edge {
-    uint32_t low, high, triangle;
-    auto operator<=>(const Edge&) const = default;
-};
-
-/** For each vertex the first one at the same place. */
-std::vector<uint32_t> weld(const std::vector<glm::vec3>& positions) {
-    std::vector<uint32_t> order(positions.size()), first(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](uint32_t i) { return std::tuple(positions[i].x, positions[i].y, positions[i].z, i); };
-    std::ranges::sort(order, {}, key);
-    for (size_t k = 0; k < order.size(); ++k) {
-        const bool same = k > 0 && positions[order[k]] == positions[order[k - 1]];
-        first[order[k]] = same ? first[order[k - 1]] : order[k];
-    }
-    return first;
-}
-
-std::vector<Edge> edgesOf(const types::Mesh& mesh) {
-    const std::vector<uint32_t> first = weld(mesh.positions);
-    std::vector<Edge> edges;
-    edges.reserve(mesh.indices.size());
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-        for (size_t k = 0; k < 3; ++k) {
-            const uint32_t a = first[mesh.indices[i + k]], b = first[mesh.indices[i + (k + 1) % 3]];
-            edges.push_back({std::min(a, b), std::max(a, b), static_cast<uint32_t>(i / 3)});
-        }
-    std::ranges::sort(edges);
-    return edges;
-}
 
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -100,6 +68,7 @@ struct FlatPart {
     glm::dvec3 normal;
     Moments moments;
     glm::dmat3 steps{0};                  ///< Of its facets, by their areas [m^2].
+    glm::dmat3 curvature{0};              ///< The same [m].
     glm::dvec3 lean{0};                   ///< Slopes at its edges, by the squares of the turns there [rad^3].
     double turns = 0, fourths = 0;        ///< Of squares of these turns, and of these by those of half of them.
     glm::dvec3 outward{0};                ///< Turns at its edges by their lengths, as vectors across the edges [m].
@@ -280,6 +249,7 @@ private:
         each([&](uint32_t t, FlatPart& part) {
             part.moments.add(facets_[t].area, cornersOf(t));
             part.steps += facets_[t].area * glm::dmat3(facets_[t].steps);
+            part.curvature += facets_[t].area * glm::dmat3(facets_[t].curvature);
         });
         for (FlatPart& part : parts_) part.turnAxes();
         eachBend([&](uint32_t one, uint32_t other, double turn, const glm::dvec3& edge) {
@@ -306,7 +276,7 @@ private:
         for (size_t k = 0; k < 2; ++k) {
             if (part.bendsAlong(axes[k])) {
                 steps[k] = along(glm::dmat3(facet.steps), axes[k]);
-                curvatures[k] = along(glm::dmat3(facet.curvature), axes[k]);
+                curvatures[k] = along(part.curvature / part.moments.area, axes[k]);
             }
             const double inverse = along(per_square, axes[k]);
             curved[k] = curvatures[k] > flat / 2 * std::sqrt(inverse);

@@ -25,11 +25,14 @@ struct PhysicalBins : Bins {
 
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
         if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;
-        uint bin = min(uint(1.0 / (cell.near_end * bin_width)), bin_count - 1u);
+        uint bin = binOf(cell.near_end);
         while (bin > 0u && edges[bin] < cell.near_end) --bin;
         while (edges[bin + 1u] >= cell.near_end) ++bin;
         uint64_t* of_beam = sums + beam * beam_sums;
-        for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range, bin, of_beam);
+        if (cell.limb > 0.0)
+            for (; edges[bin] > cell.far_end; bin += bins_at_once) addLimbBins(cell, strength_range, bin, of_beam);
+        else
+            for (; edges[bin] > cell.far_end; bin += bins_at_once) addBins(cell, strength_range, bin, of_beam);
     }
 
 private:
@@ -42,8 +45,19 @@ private:
         const Lanes to_above = trapezoidShare(cell, above - cell.centre);
         const Lanes share =
             (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
-        const Lanes amounts = partEnergy(cell, strength_range, share, load(middles + first), above, below);
-        uint64_t* const to = of_beam + first;
+        add(partEnergy(cell, strength_range, share, load(middles + first), above, below), of_beam + first);
+    }
+
+    void addLimbBins(const Footprint& cell, double strength_range, uint first, uint64_t* of_beam) {
+        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Lanes cut_off =
+            above < cell.nearest ? Lanes{} : 0.5 - trapezoidShare(cell, placeOf(cell, above) - cell.centre);
+        const Lanes share = cut_off + limbShare(cell, above) - limbShare(cell, below);
+        add(limbEnergy(cell, strength_range, share, load(middles + first), above, below), of_beam + first);
+    }
+
+    static void add(Lanes amounts, uint64_t* to) {
         Counts counts;
         std::memcpy(&counts, to, sizeof counts);
         // Signed, for which there is an instruction.

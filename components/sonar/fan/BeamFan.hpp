@@ -6,7 +6,6 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/fan/Fan.hpp"
 #include "components/sonar/plan/RenderOptions.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
@@ -43,6 +42,14 @@ constexpr double tallest_image_deg = 150;
 /** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
  *  with `published`. */
 std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams, const RenderOptions& options = {});
+
+/** The part of an image column that belongs to one beam; u = tan(azimuth in the frustum). */
+struct ShareRecord {
+    double middle, width;  ///< Of the part, in u [1].
+    double limit;          ///< The aperture ends at v = +-limit there [1].
+    double shear;          ///< u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1].
+    uint32_t beam, column;
+};
 
 /** Overlap of columns and beams: fractional, or with `published` rounded to whole columns. Planar beams: one row of
  *  columns serves all image rows. */

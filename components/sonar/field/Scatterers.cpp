@@ -1,14 +1,23 @@
 #include "components/sonar/field/Scatterers.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <utility>
 
 #include "components/sonar/field/RandomFields.hpp"
 #include "types/VectorMath.hpp"
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define INSONIFY_HAS_CLONES
+#include <immintrin.h>
+#define INSONIFY_DEFAULT_CLONE __attribute__((target("default")))
+#else
+#define INSONIFY_DEFAULT_CLONE
+#endif
 
 namespace insonify::sonar {
 
@@ -64,16 +73,24 @@ float gammaStrength(float shape, uint32_t bits) {
     return next / shape * root * root * root * std::exp(logarithm(chance) / shape);
 }
 
-INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSquares& squares, int count,
-                                    ScatteredFields& __restrict fields) {
+/** Finds the place of each square's scatterer in its square. */
+INSONIFY_VECTOR_CLONES void place(const LatticePatch& patch, const LatticeSquares& squares, int count,
+                                  LatticeScatterers& __restrict scatterers) {
     const LatticePatch p = patch;
-    const int whole_vectors = (count + LatticeSquares::at_once - 1) & ~(LatticeSquares::at_once - 1);
-    for (int i = 0; i < whole_vectors; ++i) {
-        const uint32_t place = mixed(mixed(p.base_u + static_cast<uint32_t>(squares.u[i]) + p.key) + p.base_v +
-                                     static_cast<uint32_t>(squares.v[i]));
-        const uint32_t power = mixed(place + 0x632be5abu);
-        const float u = static_cast<float>(squares.u[i]) + uniform(place) - p.middle_u;
-        const float v = static_cast<float>(squares.v[i]) + uniform(place >> 16) - p.middle_v;
+    for (int i = 0; i < count; ++i) {
+        const uint32_t bits = mixed(mixed(p.base_u + static_cast<uint32_t>(squares.u[i]) + p.key) + p.base_v +
+                                    static_cast<uint32_t>(squares.v[i]));
+        scatterers.bits[i] = bits;
+        scatterers.u[i] = static_cast<float>(squares.u[i]) + uniform(bits) - p.middle_u;
+        scatterers.v[i] = static_cast<float>(squares.v[i]) + uniform(bits >> 16) - p.middle_v;
+    }
+}
+
+/** Finds which sum a scatterer adds to, how strongly and with the phase of which way. */
+INSONIFY_VECTOR_CLONES void locate(const LatticePatch& patch, int count, LatticeScatterers& __restrict scatterers) {
+    const LatticePatch p = patch;
+    for (int i = 0; i < count; ++i) {
+        const float u = scatterers.u[i], v = scatterers.v[i];
         const float change = u * (p.square_u + p.square_uu * u + p.square_uv * v) + v * (p.square_v + p.square_vv * v);
         const float square = p.range * p.range + change;
         const float range = std::sqrt(square > 1e-12f ? square : 1e-12f), sum = p.range + range;
@@ -94,16 +111,65 @@ INSONIFY_VECTOR_CLONES void scatter(const LatticePatch& patch, const LatticeSqua
                            (aside >= p.columns[0] * ahead) & (aside < p.columns[4] * ahead) & (further >= p.near_end) &
                            (further < p.far_end) & (static_cast<uint32_t>(cell) < p.cell_count) &
                            static_cast<int>(p.seen >> sample);
-        const float field = p.amplitude * std::sqrt(-logarithm(uniform(power))) * per_range * per_range * per_range *
-                            (static_cast<float>(cell) + 0.5f);
-        const float phase = p.turns + p.turns_per_metre * further + uniform(power >> 16);
-        const float turns = phase - nearest(phase);
-        fields.real[i] = field * cosineOf(turns);
-        fields.imaginary[i] = field * sineOf(turns);
-        fields.sum[i] = (inside & 1) != 0 ? first_sum + static_cast<int32_t>(2 * static_cast<uint32_t>(cell)) : -1;
-        fields.bits[i] = place;
+        scatterers.size[i] = p.amplitude * per_range * per_range * per_range * (static_cast<float>(cell) + 0.5f);
+        scatterers.turns[i] = p.turns + p.turns_per_metre * further;
+        scatterers.sum[i] = (inside & 1) != 0 ? first_sum + static_cast<int32_t>(2 * static_cast<uint32_t>(cell)) : -1;
     }
 }
+
+/** Makes the fields of scatterers: complex Gaussian. */
+INSONIFY_VECTOR_CLONES void radiate(int count, LatticeScatterers& __restrict scatterers) {
+    for (int i = 0; i < count; ++i) {
+        const uint32_t power = mixed(scatterers.bits[i] + 0x632be5abu);
+        const float field = scatterers.size[i] * std::sqrt(-logarithm(uniform(power)));
+        const float phase = scatterers.turns[i] + uniform(power >> 16);
+        const float turns = phase - nearest(phase);
+        scatterers.real[i] = field * cosineOf(turns);
+        scatterers.imaginary[i] = field * sineOf(turns);
+    }
+}
+
+/** Rounds fields to quanta. */
+INSONIFY_VECTOR_CLONES void countQuanta(const float* fields, int count, int64_t* __restrict quanta) {
+    constexpr float most = 1048576;
+    for (int i = 0; i < count; ++i) {
+        const float low = fields[i] < most ? fields[i] : most, amount = low > -most ? low : -most;
+        quanta[i] = static_cast<int64_t>(static_cast<double>(amount) * quanta_per_unit);
+    }
+}
+
+/** Keeps the scatterers that the patch holds, in their order. Returns their number. */
+INSONIFY_DEFAULT_CLONE int keepHeld(int count, LatticeScatterers& scatterers) {
+    int held = 0;
+    for (int i = 0; i < count; ++i) {
+        const int32_t sum = scatterers.sum[i];
+        scatterers.bits[held] = scatterers.bits[i];
+        scatterers.size[held] = scatterers.size[i];
+        scatterers.turns[held] = scatterers.turns[i];
+        scatterers.sum[held] = sum;
+        held += sum >= 0 ? 1 : 0;
+    }
+    return held;
+}
+
+#ifdef INSONIFY_HAS_CLONES
+/** The same, 16 at a time: no loop becomes this instruction by itself. */
+__attribute__((target("arch=x86-64-v4"))) int keepHeld(int count, LatticeScatterers& scatterers) {
+    void* const arrays[] = {scatterers.bits, scatterers.size, scatterers.turns, scatterers.sum};
+    int held = 0;
+    for (int i = 0; i < count; i += LatticeSquares::at_once) {
+        const __m512i sums = _mm512_load_si512(scatterers.sum + i);
+        const uint32_t first_ones = (2u << std::min(count - i - 1, 15)) - 1;
+        const auto mask = static_cast<__mmask16>(first_ones & _mm512_cmpge_epi32_mask(sums, _mm512_setzero_si512()));
+        for (void* const array : arrays) {
+            const __m512i all = _mm512_load_si512(static_cast<int32_t*>(array) + i);
+            _mm512_storeu_si512(static_cast<int32_t*>(array) + held, _mm512_maskz_compress_epi32(mask, all));
+        }
+        held += std::popcount(static_cast<uint32_t>(mask));
+    }
+    return held;
+}
+#endif
 
 /** From, to. */
 struct Span {
@@ -143,12 +209,28 @@ public:
         if ((last - first + 1.0) * (last_across_ - first_across_ + 1.0) > LatticeSquares::at_once) setSides(outline);
     }
     bool isAlong(int axis) const { return axis == axis_; }
-    /** The first and the last square of a row, along the other axis. */
-    std::pair<int32_t, int32_t> across(int32_t row) const {
-        double low = first_across_, high = last_across_;
-        for (const Side& side : {lows_[0], lows_[1]}) low = std::max(low, side.at_zero + row * side.slope);
-        for (const Side& side : {highs_[0], highs_[1]}) high = std::min(high, side.at_zero + row * side.slope);
-        return {-below(-std::min(low, last_across_ + 1.0)), below(std::max(high, first_across_ - 1.0))};
+    /** Rows whose ends are found at once. */
+    static constexpr int at_once = 8;
+    struct Ends {
+        alignas(64) int32_t first[at_once], last[at_once];
+    };
+    /** The first and the last square of rows from `row` on, along the other axis. */
+    void setEnds(int32_t row, Ends& ends) const {
+        const Side low_a = lows_[0], low_b = lows_[1], high_a = highs_[0], high_b = highs_[1];
+        const double from = first_across_, to = last_across_;
+        for (int i = 0; i < at_once; ++i) {
+            const double at = row + i;
+            double low = low_a.at_zero + at * low_a.slope, high = high_a.at_zero + at * high_a.slope;
+            const double other_low = low_b.at_zero + at * low_b.slope, other_high = high_b.at_zero + at * high_b.slope;
+            low = low > other_low ? low : other_low;
+            low = low > from ? low : from;
+            low = low < to + 1 ? low : to + 1;
+            high = high < other_high ? high : other_high;
+            high = high < to ? high : to;
+            high = high > from - 1 ? high : from - 1;
+            ends.first[i] = -below(-low);
+            ends.last[i] = below(high);
+        }
     }
 
     int32_t first, last;
@@ -184,6 +266,10 @@ private:
     std::array<Side, 2> lows_{Side{-unbounded}, Side{-unbounded}}, highs_{Side{unbounded}, Side{unbounded}};
     static constexpr double unbounded = std::numeric_limits<double>::infinity();
 };
+
+/** Squares of a row. */
+using SquaresAtOnce = int32_t __attribute__((vector_size(LatticeSquares::at_once * sizeof(int32_t))));
+constexpr SquaresAtOnce upwards{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 double inverseRange(const Patch& patch, const glm::dvec3& direction) {
     return glm::dot(patch.normal, direction) / patch.distance;
@@ -261,12 +347,6 @@ LatticePatch partOf(const EchoRules& rules, const Patch& patch, const PatchLatti
     return part;
 }
 
-uint64_t signedQuanta(float field) {
-    constexpr double most = 1048576;
-    return static_cast<uint64_t>(
-        static_cast<int64_t>(std::clamp(static_cast<double>(field), -most, most) * quanta_per_unit));
-}
-
 }  // namespace
 
 LatticeFrame::LatticeFrame(const ObjectRecord& object) {
@@ -337,35 +417,40 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void Scatterers::depositLevel(co
     const OutlineRows rows(outlineOf(patch, lattice, base, level.spacing, ranges.near, ranges.far));
     int32_t* const across = rows.isAlong(1) ? squares_.u : squares_.v;
     int32_t* const up = rows.isAlong(1) ? squares_.v : squares_.u;
+    OutlineRows::Ends ends;
     int count = 0;
-    for (int32_t row = rows.first; row <= rows.last; ++row)
-        for (auto [at, last] = rows.across(row); at <= last; at += LatticeSquares::at_once) {
+    for (int32_t row = rows.first; row <= rows.last; ++row) {
+        const int i = (row - rows.first) % OutlineRows::at_once;
+        if (i == 0) rows.setEnds(row, ends);
+        for (int32_t at = ends.first[i], last = ends.last[i]; at <= last; at += LatticeSquares::at_once) {
             if (count > LatticeSquares::most - LatticeSquares::at_once) {
                 add(part, level, count);
                 count = 0;
             }
-            for (int i = 0; i < LatticeSquares::at_once; ++i) across[count + i] = at + i;
-            for (int i = 0; i < LatticeSquares::at_once; ++i) up[count + i] = row;
+            const SquaresAtOnce run = at + upwards, same = row + SquaresAtOnce{};
+            std::memcpy(across + count, &run, sizeof run);
+            std::memcpy(up + count, &same, sizeof same);
             count += std::min(last - at + 1, LatticeSquares::at_once);
         }
+    }
     add(part, level, count);
 }
 
 void Scatterers::add(const LatticePatch& part, const LatticeLevel& level, int count) {
-    scatter(part, squares_, count, fields_);
-    int inside = 0;
-    for (int i = 0; i < count; ++i) {
-        inside_[inside] = i;
-        inside += fields_.sum[i] >= 0 ? 1 : 0;
-    }
-    for (int k = 0; k < inside; ++k) {
-        const int i = inside_[k];
-        float root = 1;
-        if (level.stands_for > 0)
-            root = std::sqrt(gammaStrength(static_cast<float>(level.stands_for), mixed(fields_.bits[i] + 0x5bd1e995u)));
-        uint64_t* const cell = sums_ + fields_.sum[i];
-        cell[0] += signedQuanta(root * fields_.real[i]);
-        cell[1] += signedQuanta(root * fields_.imaginary[i]);
+    const auto wholeVectors = [](int n) { return (n + LatticeSquares::at_once - 1) & ~(LatticeSquares::at_once - 1); };
+    place(part, squares_, wholeVectors(count), scatterers_);
+    locate(part, wholeVectors(count), scatterers_);
+    const int held = keepHeld(count, scatterers_);
+    for (int i = 0; level.stands_for > 0 && i < held; ++i)
+        scatterers_.size[i] *=
+            std::sqrt(gammaStrength(static_cast<float>(level.stands_for), mixed(scatterers_.bits[i] + 0x5bd1e995u)));
+    radiate(wholeVectors(held), scatterers_);
+    countQuanta(scatterers_.real, wholeVectors(held), scatterers_.real_quanta);
+    countQuanta(scatterers_.imaginary, wholeVectors(held), scatterers_.imaginary_quanta);
+    for (int i = 0; i < held; ++i) {
+        uint64_t* const sums = sums_ + scatterers_.sum[i];
+        sums[0] += static_cast<uint64_t>(scatterers_.real_quanta[i]);
+        sums[1] += static_cast<uint64_t>(scatterers_.imaginary_quanta[i]);
     }
 }
 

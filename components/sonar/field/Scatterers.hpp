@@ -51,11 +51,15 @@ struct LatticeSquares {
     alignas(64) int32_t u[most + at_once] = {}, v[most + at_once] = {};
 };
 
-/** What scatterers add: a field in units of the square root of a whole cell, and to which of the sums. */
-struct ScatteredFields {
-    alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];
+/** Scatterers of squares, and of those that the patch holds. */
+struct LatticeScatterers {
+    alignas(64) float u[LatticeSquares::most], v[LatticeSquares::most];  ///< From the patch's middle [spacings].
+    alignas(64) uint32_t bits[LatticeSquares::most];                     ///< Random; of the square alone.
+    alignas(64) float size[LatticeSquares::most];   ///< Of the field, in units of the square root of a whole cell.
+    alignas(64) float turns[LatticeSquares::most];  ///< Phase of the way there and back.
     alignas(64) int32_t sum[LatticeSquares::most];  ///< Number of the real part's; -1: the patch does not hold it.
-    alignas(64) uint32_t bits[LatticeSquares::most];
+    alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];  ///< Fields.
+    alignas(64) int64_t real_quanta[LatticeSquares::most], imaginary_quanta[LatticeSquares::most];
 };
 
 /** The estimator of fields: which scatterers lie on what samples see, and what they add to the field of each range cell
@@ -85,8 +89,7 @@ private:
     LatticeFrame frame_;
     uint32_t frame_of_ = 0xffffffff;  ///< An object's number.
     LatticeSquares squares_;
-    ScatteredFields fields_;
-    int32_t inside_[LatticeSquares::most];  ///< Numbers of the fields that the patch holds.
+    LatticeScatterers scatterers_;
 };
 
 }  // namespace insonify::sonar

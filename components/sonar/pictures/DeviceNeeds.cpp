@@ -34,7 +34,7 @@ int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry
     }
     const size_t triangle = sizeof(PlaneRecord) + (setup.rules.laws.hasLobes() ? sizeof(FacetRecord) : 0);
     return static_cast<int64_t>(
-        std::max({setup.sumCount() * sizeof(uint64_t), triangles * triangle, shares * sizeof(ShareRecord),
+        std::max({setup.sumCount() * sizeof(uint64_t), triangles * triangle, shares * sizeof(DeviceShare),
                   starts * sizeof(uint32_t), geometry.objects.size() * sizeof(ObjectRecord),
                   static_cast<size_t>(clusterCount(geometry)) * sizeof(NormalTransform)}));
 }
@@ -57,7 +57,6 @@ gpu::Limits depositNeeds(const DepositSetup& setup, const types::Geometry& geome
     constexpr int64_t group = 64, side = 8;  // invocations in a work group, and columns and rows of a deposit's
     constexpr int64_t group_bytes = 2 * 4 * 8 * 32, own_bytes = 8;  // deposit.comp.glsl: words of the sums of a channel
     gpu::Limits needs;
-    needs.doubles = 1;
     needs.storage_blocks = needs.storage_bindings = SUMS_BINDING + 1;
     needs.storage_bytes = largestBuffer(setup, geometry);
     needs.shared_bytes = group_bytes * static_cast<int64_t>(setup.rules.channels()) + own_bytes;

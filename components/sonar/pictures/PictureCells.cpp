@@ -45,9 +45,11 @@ inline __attribute__((always_inline)) void aimEach(const Shares& shares, const F
     const int count = cells.count;
     for (int i = 0; i < count; ++i) {
         const double ray_u = shares.u[i], ray_v = shares.v[i];
-        const PictureCell cell = pictureCell(ray_u, ray_v, shares.middle[i], shares.width[i], shares.limit[i],
-                                             shares.shear[i], frame.dv, frame.per_pixel);
-        const double u = by_rays ? ray_u : cell.u, v = by_rays ? ray_v : cell.v;
+        const double middle = shares.middle[i], limit = shares.limit[i];
+        const double at = ray_v + ray_v * shares.shear[i] * (middle - ray_u);
+        const PictureRow row = pictureRow(at, frame.dv, -limit, limit);
+        const PictureCell cell = pictureCell(middle, row.middle, shares.width[i], row.rise, frame.per_pixel);
+        const double u = by_rays ? ray_u : middle, v = by_rays ? ray_v : row.middle;
         const double level = sqrt(1.0 + u * u), per_level = 1.0 / level, per_length = 1.0 / sqrt(1.0 + u * u + v * v);
         cells.cos_az[i] = (frame.cosine - frame.sine * u) * per_level;
         cells.sin_az[i] = (frame.sine + frame.cosine * u) * per_level;

@@ -53,7 +53,7 @@ void PictureDeposit::take(size_t frustum, const SurfacePass& surface) {
         if (truth_) picture.view.objects.push_back(command.object);
         const FacetRecord* facets = facets_.empty() ? nullptr : facets_.data() + command.first_triangle;
         picture.view.ranges.push_back(placedRun(surface.objects()[command.object], command, setup_.rules,
-                                                planes_.data() + command.first_triangle, facets));
+                                                planes_.data() + command.first_triangle, facets, nullptr));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
 #include "components/sonar/pictures/SurfaceScene.hpp"
 #include "components/sonar/places/NearestPoint.hpp"
@@ -85,6 +86,13 @@ MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const Mat
     return facets_.of(key, [&] {
         return std::make_shared<const std::vector<FacetRecord>>(facetLobes(*mesh_, world_from_mesh, wavelength));
     });
+}
+
+MeshFacts::Curves MeshFacts::curves(const glm::dmat3& world_from_mesh) {
+    std::array<double, 9> key{};
+    std::copy_n(&world_from_mesh[0].x, 9, key.begin());
+    return curves_.of(
+        key, [&] { return std::make_shared<const std::vector<CurveRecord>>(facetCurves(*mesh_, world_from_mesh)); });
 }
 
 }  // namespace insonify::sonar

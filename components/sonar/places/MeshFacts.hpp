@@ -19,6 +19,7 @@ class MeshFacts {
 public:
     using Planes = std::shared_ptr<const std::vector<PlaneRecord>>;
     using Facets = std::shared_ptr<const std::vector<FacetRecord>>;
+    using Curves = std::shared_ptr<const std::vector<CurveRecord>>;
 
     static constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of triangles(), neighbours in the indices.
 
@@ -38,6 +39,8 @@ public:
     Planes planes();
     /** How each triangle spreads a lobe, as facetLobes() finds it; null where no material of the mesh has one. */
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
+    /** How each triangle bends, as facetCurves() finds it; empty where no part of the mesh is a smooth body. */
+    Curves curves(const glm::dmat3& world_from_mesh);
 
     /** For each triangle, lengths in its map's coordinates per metre, the mean of all directions [1/m]; 0 where it has
      *  no area. The mesh must have uvs. */
@@ -51,6 +54,7 @@ private:
     Lazy<Planes> planes_;
     Lazy<std::vector<float>> map_density_;
     SharedValues<std::array<double, 10>, const std::vector<FacetRecord>> facets_;  ///< By matrix and wavelength [m].
+    SharedValues<std::array<double, 9>, const std::vector<CurveRecord>> curves_;   ///< By matrix.
 };
 
 }  // namespace insonify::sonar

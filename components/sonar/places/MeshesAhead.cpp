@@ -27,12 +27,13 @@ void MeshesAhead::take(const Meshes& meshes, const MaterialLaws& laws) {
 }
 
 MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLaws& laws) try {
-    Made made{MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}};
+    Made made{MeshTree::of(mesh), MeshFacts::of(mesh), {}, {}, {}};
     made.tree->tree();
     made.facts->box();
     made.facts->longestEdge();
     made.planes = made.facts->planes();
     made.facets = made.facts->facets(glm::dmat3(1), laws);
+    made.curves = made.facts->curves(glm::dmat3(1));
     return made;
 } catch (const std::exception&) {
     return {};  // the ping that needs it meets the same, and reports it

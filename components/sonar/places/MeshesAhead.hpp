@@ -32,6 +32,7 @@ private:
         std::shared_ptr<MeshFacts> facts;
         MeshFacts::Planes planes;
         MeshFacts::Facets facets;
+        MeshFacts::Curves curves;
     };
     void work();
     static Made make(const types::MeshPtr& mesh, const MaterialLaws& laws);

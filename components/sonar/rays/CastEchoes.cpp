@@ -115,6 +115,7 @@ private:
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
     std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
     std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
+    std::vector<MeshFacts::Curves> curves_;  ///< Of each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
@@ -150,13 +151,16 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
     std::vector<MeshFacts::Facets> facets;
+    std::vector<MeshFacts::Curves> curves;
     for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
         const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
         planes.push_back(facts->planes());
         facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
+        curves.push_back(facts->curves(worldFromMesh(*geometry_, i)));
     }
     planes_ = std::move(planes);
     facets_ = std::move(facets);
+    curves_ = std::move(curves);
     runs_.reserve(visibility_.commands().size());
     if (ray_paths_) ray_paths_->takeScene(*geometry_);
     if (!same_plan) takePlan();
@@ -234,7 +238,9 @@ void CastEchoes::placeRuns() {
     for (const CommandRecord& command : visibility_.commands()) {
         const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
         const FacetRecord* facets = facets_[mesh] ? facets_[mesh]->data() : nullptr;
-        runs_.push_back(placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data(), facets));
+        const CurveRecord* curves = curves_[mesh]->empty() ? nullptr : curves_[mesh]->data();
+        runs_.push_back(
+            placedRun(places_->records()[command.object], command, rules_, planes_[mesh]->data(), facets, curves));
     }
 }
 

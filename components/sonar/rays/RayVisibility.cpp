@@ -117,13 +117,6 @@ struct Valid {
     }
 };
 
-RTCIntersectContext raysOf(bool are_coherent) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    return context;
-}
-
 /** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
 template <class Meaning>
 void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
@@ -345,9 +338,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::sp
         extend(rays[i], static_cast<float>(nearest), all[i]);
         aim(world, place_, rays[i], all[i]);
     }
-    RTCIntersectContext context = raysOf(true);
-    rtcIntersectNM(here_->trees->scene(), &context, reinterpret_cast<RTCRayHitN*>(all.data()), tile_samples,
-                   static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
+    intersect(here_->trees->scene(), std::span(all).first(rays.size()));
     for (size_t i = 0; i < rays.size(); ++i) {
         std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
         take(all[i], hits[i],
@@ -359,11 +350,10 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::sp
 void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = raysOf(true);
     for (const Mover& mover : here_->movers) {
         if (!mover.mayMeet(rays)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
-        rtcIntersect16(valid, mover.tree, &context, &all);
+        intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -392,9 +382,8 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
                               TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    RTCIntersectContext context = raysOf(true);
     aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
-    rtcIntersect16(valid, here_->trees->scene(), &context, &all);
+    intersect(here_->trees->scene(), valid, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
@@ -403,7 +392,7 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
                 placesOf(paths, rays, piece.end, drift), all);
         else
             aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
-        rtcIntersect16(valid, mover.tree, &context, &all);
+        intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -415,14 +404,13 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     bound(rays, all.ray);
     aim(Rows(world_from_sonar_), place_, rays, all.ray);
     forgetHits(all);
-    RTCIntersectContext context = raysOf(true);
-    rtcIntersect16(valid.of, here_->trees->scene(), &context, &all);
+    intersect(here_->trees->scene(), valid.of, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
         forgetHits(all);
-        rtcIntersect16(valid.of, mover.tree, &context, &all);
+        intersect(mover.tree, valid.of, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
@@ -433,12 +421,12 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     bound(rays, all);
     aim(Rows(world_from_sonar_), place_, rays, all);
     // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
-    RTCIntersectContext context = raysOf(!here_->trees->hasInstances());
-    rtcOccluded16(valid.of, here_->trees->scene(), &context, &all);
+    const bool are_coherent = !here_->trees->hasInstances();
+    occlude(here_->trees->scene(), valid.of, are_coherent, all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
-        rtcOccluded16(valid.of, mover.tree, &context, &all);
+        occlude(mover.tree, valid.of, are_coherent, all);
     }
     uint32_t met = 0;
     for (int i = 0; i < tile_samples; ++i) met |= static_cast<uint32_t>(all.tfar[i] < 0) << i;

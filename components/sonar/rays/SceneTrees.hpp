@@ -1,11 +1,10 @@
 #pragma once
-#include <embree3/rtcore.h>
-
 #include <glm/mat4x4.hpp>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "components/sonar/rays/Embree.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {

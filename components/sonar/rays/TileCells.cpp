@@ -18,6 +18,7 @@ public:
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
           hears_misses_(rules.hears_misses),
+          curves_(!rules.features.has(Feature::Speckle) && !scene.paths),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
@@ -69,6 +70,7 @@ private:
         const int i = cells_.count;
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
+        if (run.curves && curves_) cells_.setCurve(i, run.curves[tile.hits->triangle[sample]]);
         if (mapped_) placeInMap(i, *tile.hits, sample, merged);
         if (mapped_ && scene_.paths) in_map_.setCosines(scene_, i, i + 1, cells_);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
@@ -123,6 +125,7 @@ private:
     }
 
     bool conical_, mapped_, hears_misses_;
+    bool curves_;  ///< Whether a smooth body bends within a cell: not where fields are summed, nor where rays are bent.
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;

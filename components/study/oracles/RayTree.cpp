@@ -1,7 +1,5 @@
 #include "components/study/oracles/RayTree.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <string>
 
 #include "components/sonar/echo/FacetLobes.hpp"
+#include "components/sonar/rays/Embree.hpp"
 
 namespace insonify::study {
 namespace {
@@ -180,11 +179,7 @@ void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found>
             hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersectNM(embree_->scene, &context, reinterpret_cast<RTCRayHitN*>(hits.data()), packet,
-                   static_cast<unsigned>(rays.size()), sizeof(RTCRayHit16));
+    sonar::intersect(embree_->scene, std::span(hits).first(rays.size()));
     for (size_t k = 0; k < rays.size(); ++k)
         for (size_t i = 0; i < packet; ++i)
             found[k][i] = hits[k].hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? none : hits[k].hit.primID[i];

@@ -22,6 +22,7 @@ export class Hands {
   at({offsetX, offsetY}) { return [offsetX * devicePixelRatio, this.fan.canvas.height - offsetY * devicePixelRatio]; }
 
   press(event) {
+    if (event.button !== 0) return;
     this.fan.canvas.setPointerCapture(event.pointerId);
     this.down.set(event.pointerId, {at: this.at(event), far: 0});
   }

@@ -114,7 +114,7 @@ const valuesOf = (status, task) => status?.tasks.find((one) => one.name === task
  *  until Enter, or leaving it, sets the property, or Escape takes it back. */
 export function fieldOf(link, task, property, control) {
   const input = inputFor(property), said = element('span', {className: 'refused'});
-  let is_edited = false, unanswered = 0;
+  let is_edited = false, unanswered = 0, is_left_alone = false;
   const held = () => valuesOf(field.status, task)[property.name];
   const field = {input, said, update(status) {
     field.status = status;
@@ -124,6 +124,7 @@ export function fieldOf(link, task, property, control) {
   input.oninput = () => { is_edited = true; };
   input.onchange = async () => {
     is_edited = false;
+    is_left_alone = true;
     ++unanswered;
     const value = input.type === 'checkbox' ? input.checked : settingOf(property.type, held(), input.value);
     const {refused} = await link.call(`${task}.${setter(property.name)}`, value);
@@ -131,10 +132,12 @@ export function fieldOf(link, task, property, control) {
     said.textContent = refused ?? '';
     if (is_edited || unanswered) return;
     if (refused) put(input, held());
-    if (document.activeElement === input) input.select?.();  // so that typing replaces it
+    if (is_left_alone) input.select?.();  // so that typing replaces it
   };
-  input.onblur = () => { is_edited = false; };
+  input.onblur = () => { is_edited = is_left_alone = false; };
+  input.onpointerdown = () => { is_left_alone = false; };
   input.onkeydown = (event) => {
+    is_left_alone = false;  // or an answer that comes late would move the caret of one who types
     if (event.key !== 'Escape') return;
     is_edited = false;
     said.textContent = '';

@@ -58,20 +58,34 @@ export class World {
     this.steer();
   }
 
-  /** Drag turns, the wheel goes nearer or farther. */
+  /** Dragging turns; the wheel or two fingers go nearer or farther. */
   steer() {
-    this.canvas.addEventListener('pointerdown', (event) => this.canvas.setPointerCapture(event.pointerId));
-    this.canvas.addEventListener('pointermove', (event) => {
-      if (!event.buttons) return;
-      this.azimuth -= event.movementX * 0.006;
-      this.elevation = Math.max(-1.4, Math.min(1.5, this.elevation + event.movementY * 0.006));
-      this.dirty = true;
+    const down = new Map(), on = (kind, heard) => this.canvas.addEventListener(kind, heard, {passive: false});
+    on('pointerdown', (event) => {
+      this.canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
     });
-    this.canvas.addEventListener('wheel', (event) => {
+    on('pointermove', ({pointerId, clientX, clientY}) => {
+      const from = down.get(pointerId), to = [clientX, clientY];
+      if (!from) return;
+      const still = [...down].find(([id]) => id !== pointerId)?.[1], apart = (at) => Math.max(1, Math.hypot(at[0] - still[0], at[1] - still[1]));
+      down.set(pointerId, to);
+      still ? this.approach(apart(from) / apart(to)) : this.turn(to[0] - from[0], to[1] - from[1]);
+    });
+    for (const kind of ['pointerup', 'pointercancel']) on(kind, (event) => down.delete(event.pointerId));
+    on('wheel', (event) => {
       event.preventDefault();
-      this.distance = Math.max(1, Math.min(500, this.distance * Math.exp(event.deltaY * 0.001)));
-      this.dirty = true;
-    }, {passive: false});
+      this.approach(Math.exp(event.deltaY * 0.001));
+    });
+  }
+  turn(dx, dy) {
+    this.azimuth -= dx * 0.006;
+    this.elevation = Math.max(-1.4, Math.min(1.5, this.elevation + dy * 0.006));
+    this.dirty = true;
+  }
+  approach(factor) {
+    this.distance = Math.max(1, Math.min(500, this.distance * factor));
+    this.dirty = true;
   }
 
   /** The scene's meshes: a message of kind 2. */
@@ -192,7 +206,8 @@ export class World {
 
   draw() {
     const {clientWidth: w, clientHeight: h} = this.canvas, {THREE} = this;
-    if (this.canvas.width !== Math.round(w * devicePixelRatio) || this.canvas.height !== Math.round(h * devicePixelRatio)) {
+    if (this.drawn_size !== `${w} ${h} ${devicePixelRatio}`) {
+      this.drawn_size = `${w} ${h} ${devicePixelRatio}`;
       this.renderer.setPixelRatio(devicePixelRatio);
       this.renderer.setSize(w, h, false);
       this.camera.aspect = w / h;

@@ -44,7 +44,7 @@ types::Sonar rocksSonar() {
 
 /** A double and a byte: 16 bytes in memory, of which 7 are padding at the end. */
 struct Padded {
-    static constexpr const char* type_name = "/test/Padded";
+    [[maybe_unused]] static constexpr const char* type_name = "/test/Padded";
     double value = 0;
     uint8_t flag = 0;
     template <class Self, class V>
@@ -55,7 +55,7 @@ struct Padded {
 };
 
 struct PaddedTwice {
-    static constexpr const char* type_name = "/test/PaddedTwice";
+    [[maybe_unused]] static constexpr const char* type_name = "/test/PaddedTwice";
     std::vector<Padded> many{2};
     Padded one;
     template <class Self, class V>
@@ -66,7 +66,7 @@ struct PaddedTwice {
 };
 
 struct Holder {
-    static constexpr const char* type_name = "/test/Holder";
+    [[maybe_unused]] static constexpr const char* type_name = "/test/Holder";
     std::vector<float> values;
     uint8_t flag = 0;
     template <class Self, class V>
@@ -77,7 +77,7 @@ struct Holder {
 };
 
 struct Inner {
-    static constexpr const char* type_name = "/test/Inner";
+    [[maybe_unused]] static constexpr const char* type_name = "/test/Inner";
     Padded first;
     double second = 2;
     template <class Self, class V>

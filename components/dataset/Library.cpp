@@ -1,0 +1,9 @@
+// The component library dataset: what the command loads for `insonify dataset`.
+#include "components/dataset/commands/DatasetCommand.hpp"
+#include "components/loader/Interface.hpp"
+
+INSONIFY_COMPONENT_LIBRARY;
+
+extern "C" void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
+    insonify::dataset::addCommand(app, action);
+}

@@ -1,0 +1,254 @@
+#include "components/dataset/commands/DatasetRun.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
+#include "components/command/Json.hpp"
+#include "components/command/Sha256.hpp"
+#include "components/dataset/commands/SweepFile.hpp"
+#include "components/dataset/commands/SweepScenes.hpp"
+#include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/framework/YamlText.hpp"
+#include "components/pose/Trajectory.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace fs = std::filesystem;
+namespace {
+
+using framework::child, framework::splitPort;
+
+constexpr const char* scene_type = "scene::SceneTask";
+constexpr uint64_t max_poses = 1'000'000;  ///< Of a trajectory.
+
+constexpr const char* no_budget =
+    "budget_ms lets the speed of the machine decide how samples are rendered, which must not depend on it; "
+    "give rows or target_error";
+
+/** A text as a value in YAML. */
+std::string quoted(const std::string& text) { return command::Json(text).dump(); }
+
+std::vector<TimedPose> posesOf(const Sweep& sweep) {
+    std::vector<TimedPose> poses;
+    if (!sweep.trajectory) return poses;
+    const TrajectoryPoses& asked = *sweep.trajectory;
+    const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
+    const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
+    const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last), length = to - from;
+    for (const auto& [key, time] : {std::pair("from", from), std::pair("to", to)})
+        if (time < first || time > last)
+            throw types::ConfigError(
+                {{std::string("poses.trajectory.") + key,
+                  fmt::format("is {:g} s; the trajectory is from {:g} to {:g} s", time, first, last), sweep.file,
+                  asked.line, asked.column}});
+    const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
+    if (count > max_poses)
+        throw types::ConfigError(sweep.file, "poses.trajectory.period",
+                                 fmt::format("makes {} poses; at most {}", count, max_poses));
+    for (uint64_t i = 0; i < count; ++i) {
+        const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
+        const double time = from + step * static_cast<double>(i);
+        poses.push_back({time, trajectory.at(time)});
+    }
+    return poses;
+}
+
+/** Whether what a task has in files decides what a sonar hears. */
+bool decides(const framework::TaskSpec& task) {
+    static const std::set<std::string> others = {"dds", "device", "logger", "output", "replay", "viewer"};
+    return !others.contains(task.type.substr(0, task.type.find("::")));
+}
+
+/** Every text in a block that is the name of a file, relative to a folder, with the sum of its bytes. */
+void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text) {
+    if (!node.IsDefined()) return;
+    if (node.IsSequence())
+        for (const YAML::Node& each : node) addFiles(each, folder, text);
+    if (node.IsMap())
+        for (const auto& entry : node) addFiles(entry.second, folder, text);
+    std::error_code ignored;
+    if (node.IsScalar() && !node.Scalar().empty() && fs::is_regular_file(folder / node.Scalar(), ignored))
+        text += fmt::format("file {}\n", command::sha256OfFile(folder / node.Scalar()));
+}
+
+/** The files that a sweep names for properties, whose folder is that of the deployment, and its scenes. */
+void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
+    for (const Setting& setting : sweep.settings)
+        for (const Written& value : setting.values) addFiles(framework::parseValue(value.yaml), folder, text);
+    for (const SceneChoice& scene : sweep.scenes) {
+        if (!scene.file.empty()) text += fmt::format("file {}\n", command::sha256OfFile(scene.file));
+        for (const auto& [property, value] : scene.set) addFiles(framework::parseValue(value.yaml), folder, text);
+    }
+}
+
+YAML::Node budgetOf(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
+
+/** The deployment's one, where it has one. */
+const std::string& onlyOf(const std::vector<std::string>& names, const std::string& file, const char* what) {
+    if (names.size() == 1) return names.front();
+    throw types::ConfigError(file, "connections",
+                             fmt::format("has several {}: {}; a data set is of one", what, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, Format format)
+    : deployment_(deployer::deploymentIn(deployment)),
+      sweep_(readSweep(sweep)),
+      format_(format),
+      spec_(framework::DeploymentSpec::load(deployment_)) {
+    framework::Registry registry = deployer::coreTasks();
+    framework::Deployment checked(spec_, registry);  // throws what is wrong with the deployment as it stands
+    refuseBudgets();
+    checkAssignments();
+    readScenes();
+    std::vector<SceneParts> parts;
+    std::vector<std::string> objects;
+    for (const SceneFile& scene : scenes_) {
+        parts.push_back(scene.parts);
+        objects.insert(objects.end(), scene.objects.begin(), scene.objects.end());
+    }
+    trajectory_ = posesOf(sweep_);
+    samples_.emplace(sweep_, trajectory_, std::move(parts));
+    classes_.emplace(sweep_, objects);
+    digest_ = digestOfAll();
+}
+
+std::vector<std::string> DatasetRun::tasksOfType(const std::string& type) const {
+    std::vector<std::string> names;
+    for (const framework::TaskSpec& task : spec_.tasks)
+        if (task.type == type) names.push_back(task.name);
+    return names;
+}
+
+/** A time that a machine takes decides nothing that is to be the same everywhere. */
+void DatasetRun::refuseBudgets() const {
+    framework::ConfigReader reader(spec_.file, spec_.origins);
+    for (const framework::TaskSpec& task : spec_.tasks) {
+        const YAML::Node budget = budgetOf(task);
+        if (budget.IsDefined()) reader.report(budget, task.path() + ".properties.quality.budget_ms", no_budget);
+    }
+    if (!reader.diagnostics().empty()) throw types::ConfigError(reader.diagnostics());
+}
+
+void DatasetRun::checkAssignments() const {
+    for (const Setting& setting : sweep_.settings)
+        for (size_t i = 0; i < setting.values.size(); ++i)
+            checkAssignment(fmt::format("settings.{}[{}]", setting.property, i), setting.property, setting.values[i]);
+    for (size_t i = 0; i < sweep_.scenes.size(); ++i)
+        for (const auto& [property, value] : sweep_.scenes[i].set)
+            checkAssignment(fmt::format("scenes[{}].set.{}", i, property), property, value);
+}
+
+/** Throws what is wrong with a value of a property, at its place in the sweep. */
+void DatasetRun::checkAssignment(const std::string& path, const std::string& property, const Written& value) const {
+    framework::Registry registry = deployer::coreTasks();
+    framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
+    spec.set(property + "=" + value.yaml);
+    types::Diagnostics diagnostics;
+    const auto refuse = [&](const std::string& why) {
+        diagnostics.push_back({path, why, sweep_.file, value.line, value.column});
+    };
+    for (const framework::TaskSpec& each : spec.tasks) {
+        const auto file = spec.origins.find(each.path() + ".properties.file");
+        if (each.type == scene_type && file != spec.origins.end() && file->second.file == framework::set_origin)
+            refuse("names the file of " + each.name + ", which decides what objects there are; name it under scenes");
+        if (budgetOf(each).IsDefined()) refuse(no_budget);
+    }
+    const std::string task = splitPort(property).first;
+    if (spec.task(task)) spec = deployer::restrictedTo(std::move(spec), {task});
+    try {
+        const framework::Deployment deployment(std::move(spec), registry);
+    } catch (const types::ConfigError& error) {
+        for (const types::Diagnostic& each : error.diagnostics())
+            if (each.file == framework::set_origin) refuse(each.path + ": " + each.message);
+    }
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+}
+
+DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
+    scene::Scene scene;
+    scene.geometry = std::make_shared<const types::Geometry>();
+    if (!file.empty()) scene = scene::readScene(file);  // else there is but the floor of a survey
+    SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
+                   partsOf(sweep_, scene),
+                   {},
+                   dataset::digestOf(*scene.geometry)};
+    for (const types::Object& object : scene.geometry->objects) read.objects.push_back(object.name);
+    return read;
+}
+
+void DatasetRun::readScenes() {
+    const std::vector<std::string> tasks = tasksOfType(scene_type);
+    if (tasks.empty()) throw types::ConfigError(spec_.file, "tasks", "have no scene; a data set needs one");
+    for (const SceneChoice& choice : sweep_.scenes) {
+        const YAML::Node own = child(spec_.task(tasks.front())->properties, "file");
+        std::string file = choice.file;
+        if (file.empty() && own.IsDefined()) file = (fs::path(deployment_).parent_path() / own.Scalar()).string();
+        scenes_.push_back(readScene(file));
+    }
+}
+
+std::string DatasetRun::digestOfAll() const {
+    const fs::path folder = fs::path(deployment_).parent_path();
+    std::string text = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
+                                   types::EnumNames<Format>::names[static_cast<size_t>(format_)],
+                                   command::sha256Of(spec_.text), command::sha256Of(sweep_.text));
+    for (const framework::TaskSpec& task : spec_.tasks) {
+        if (decides(task)) addFiles(task.properties, folder, text);
+        for (const std::string& file : task.property_files.files)
+            text += fmt::format("file {}\n", command::sha256OfFile(folder / file));
+    }
+    addFiles(sweep_, folder, text);
+    for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
+    if (sweep_.trajectory) text += fmt::format("trajectory {}\n", command::sha256OfFile(sweep_.trajectory->file));
+    return command::sha256Of(text);
+}
+
+std::vector<std::string> DatasetRun::overridesOf(size_t scene, size_t setting) const {
+    std::vector<std::string> all;
+    const SceneChoice& choice = sweep_.scenes[scene];
+    if (!choice.file.empty())
+        for (const std::string& task : tasksOfType(scene_type))
+            all.push_back(task + ".file=" + quoted(fs::absolute(choice.file).string()));
+    std::ranges::copy(deployer::pinnedRays(spec_), std::back_inserter(all));
+    for (const auto& [property, value] : choice.set) all.push_back(property + "=" + value.yaml);
+    for (const auto& [property, value] : samples_->settingsOf(setting)) all.push_back(property + "=" + value);
+    return all;
+}
+
+void DatasetRun::simulate(size_t scene, size_t setting) {
+    if (simulation_ && scene == scene_ && setting == setting_) return;
+    simulation_.reset();
+    deployer::SimulationOptions options;
+    options.overrides = overridesOf(scene, setting);
+    options.truth = true;
+    options.objects = samples_->objectsOf(scene);
+    simulation_ = std::make_unique<deployer::Simulation>(deployment_, std::move(options));
+    scene_ = scene, setting_ = setting;
+}
+
+void DatasetRun::make(uint64_t index, SampleFiles& files) {
+    const Sample sample = samples_->at(index);
+    simulate(sample.scene, sample.setting);
+    std::vector<std::string> vehicles = simulation_->poses();
+    std::map<std::string, types::Pose> at;
+    for (const PlacedObject& object : sample.objects) {
+        at[deployer::Simulation::objectPort(object.name)] = object.at;
+        std::erase(vehicles, deployer::Simulation::objectPort(object.name));
+    }
+    at[onlyOf(vehicles, deployment_, "vehicles")] = sample.at;
+    onlyOf(simulation_->pings(), deployment_, "pings");
+    simulation_->reset(sample.seed);
+    const deployer::SteppedPing made = simulation_->step(std::move(at), simulation_->time() + sample.time).front();
+    if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
+    files.write({sample, *made.ping, *made.truth, scenes_[sample.scene].name, samples_->settingsOf(sample.setting)});
+}
+
+}  // namespace insonify::dataset

@@ -1,0 +1,221 @@
+#include "components/dataset/commands/SweepFile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "components/framework/ConfigReader.hpp"
+#include "components/framework/YamlText.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::dataset {
+namespace {
+
+using framework::child, framework::ConfigReader;
+using types::Field;
+
+YAML::Node absent() { return YAML::Node(YAML::NodeType::Undefined); }
+
+/** The keys of a sweep; what is not described by its values alone is read later. */
+struct SweepKeys {
+    uint64_t seed = 1;
+    YAML::Node scenes = absent(), poses = absent(), settings = absent(), objects = absent(), classes = absent();
+    Split split;
+    output::PlainConfig picture;
+    AnnotationConfig annotations;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"seed", "1", "of all that is drawn at random"}, self.seed);
+        visit(Field{"scenes", "", "files, or blocks of file and set"}, self.scenes);
+        visit(Field{"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
+        visit(Field{"settings", "", "lists of values by task.property"}, self.settings);
+        visit(Field{"objects", "", "those that are placed"}, self.objects);
+        visit(Field{"split", "", "shares of train, val and test"}, self.split);
+        visit(Field{"classes", "", "names of objects by class"}, self.classes);
+        visit(Field{"picture", "", "how samples look"}, self.picture);
+        visit(Field{"annotations", "", "what is annotated"}, self.annotations);
+    }
+};
+
+struct PoseKeys {
+    YAML::Node grid = absent(), random = absent(), trajectory = absent();
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"grid", "", "all combinations of coordinates"}, self.grid);
+        visit(Field{"random", "", "coordinates that are drawn"}, self.random);
+        visit(Field{"trajectory", "", "poses along a path"}, self.trajectory);
+    }
+    void check(types::Diagnostics& diagnostics) const {
+        if (grid.IsDefined() + random.IsDefined() + trajectory.IsDefined() != 1)
+            diagnostics.push_back({"", "must have one of grid, random and trajectory"});
+    }
+};
+
+struct SceneKeys {
+    std::string file;
+    YAML::Node set = absent();
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"file", "", "scene, relative to the sweep; absent: that of the deployment"}, self.file);
+        visit(Field{"set", "", "values by task.property"}, self.set);
+    }
+};
+
+std::string at(const std::string& path, size_t i) { return fmt::format("{}[{}]", path, i); }
+
+Written written(const YAML::Node& node) { return {YAML::Dump(node), node.Mark().line + 1, node.Mark().column + 1}; }
+
+class SweepReader {
+public:
+    explicit SweepReader(const std::filesystem::path& file) : folder_(file.parent_path()), reader_(file.string()) {
+        sweep_.file = file.string();
+        sweep_.text = framework::readFile(file, "a sweep");
+        const std::vector<YAML::Node> documents = framework::parseYaml(sweep_.text, sweep_.file);
+        if (documents.size() != 1 || documents[0].IsNull())
+            throw types::ConfigError(sweep_.file, "", "must be one YAML document; a sweep needs poses");
+        document_.reset(documents[0]);
+    }
+
+    Sweep sweep() {
+        SweepKeys keys;
+        reader_.setFallback(document_.Mark());
+        reader_.read(document_, "", keys);
+        sweep_.seed = keys.seed;
+        sweep_.split = keys.split;
+        sweep_.picture = keys.picture;
+        sweep_.annotations = keys.annotations;
+        readScenes(keys.scenes);
+        readPoses(keys.poses);
+        readSettings(keys.settings);
+        readObjects(keys.objects);
+        readClasses(keys.classes);
+        if (!reader_.diagnostics().empty()) throw types::ConfigError(reader_.diagnostics());
+        return std::move(sweep_);
+    }
+
+private:
+    std::string inFolder(const std::string& file) const {
+        return std::filesystem::path(file).is_absolute() ? file : (folder_ / file).string();
+    }
+
+    void readScenes(const YAML::Node& scenes) {
+        if (!scenes.IsDefined() || !reader_.isSequence(scenes, "scenes")) return;
+        if (scenes.size() == 0) reader_.report(scenes, "scenes", "is empty; without the key it is the deployment's");
+        sweep_.scenes.clear();
+        for (size_t i = 0; i < scenes.size(); ++i) readScene(scenes[i], at("scenes", i));
+    }
+
+    void readScene(const YAML::Node& node, const std::string& path) {
+        SceneKeys keys;
+        if (node.IsScalar())
+            keys.file = node.Scalar();
+        else
+            reader_.read(node, path, keys);
+        SceneChoice& scene = sweep_.scenes.emplace_back();
+        scene.line = node.Mark().line + 1, scene.column = node.Mark().column + 1;
+        if (!keys.file.empty()) scene.file = inFolder(keys.file);
+        if (!keys.file.empty() && !std::filesystem::is_regular_file(scene.file))
+            reader_.report(node, path, "is " + keys.file + "; there is no such file, which is relative to the sweep");
+        if (!keys.set.IsDefined() || !reader_.isMap(keys.set, path + ".set")) return;
+        for (const auto& entry : keys.set) scene.set.emplace_back(entry.first.Scalar(), written(entry.second));
+    }
+
+    void readPoses(const YAML::Node& poses) {
+        PoseKeys keys;
+        if (!poses.IsDefined())
+            return reader_.report(document_, "poses", "is missing; give grid, random or trajectory");
+        if (!reader_.read(poses, "poses", keys)) return;
+        if (keys.grid.IsDefined()) sweep_.grid = readAxes(keys.grid, "poses.grid", {});
+        if (keys.random.IsDefined()) readRandom(keys.random);
+        if (!keys.trajectory.IsDefined()) return;
+        sweep_.trajectory.emplace();
+        reader_.read(keys.trajectory, "poses.trajectory", *sweep_.trajectory);
+        const YAML::Mark place = keys.trajectory.Mark();
+        sweep_.trajectory->line = place.line + 1, sweep_.trajectory->column = place.column + 1;
+        sweep_.trajectory->file = inFolder(sweep_.trajectory->file);
+    }
+
+    void readRandom(const YAML::Node& node) {
+        sweep_.random = readAxes(node, "poses.random", {"count"});
+        const YAML::Node count = child(node, "count");
+        if (!count.IsDefined())
+            return reader_.report(node, "poses.random", "has no count, which says how many poses are drawn");
+        reader_.readValue(count, "poses.random.count", Field{"count", "1", "", 1, 1e8}, sweep_.random_count);
+    }
+
+    /** Coordinates of a grid, or of drawn poses, which have a `count` of all. */
+    PoseAxes readAxes(const YAML::Node& node, const std::string& path, std::vector<std::string> known) {
+        const bool is_drawn = !known.empty();
+        PoseAxes axes;
+        if (!reader_.isMap(node, path)) return axes;
+        PoseAxes::forEach(axes, [&](const char* name, const char* unit, Axis& axis) {
+            known.push_back(name);
+            const YAML::Node value = child(node, name);
+            if (!value.IsDefined() || !readAxis(value, path + "." + name, unit, axis)) return;
+            if (is_drawn && axis.stepCount() != 1)
+                reader_.report(value, path + "." + name,
+                               "has several values; of drawn poses it is a number, {uniform: ...} or {normal: ...}");
+            if (!is_drawn && axis.isDrawn())
+                reader_.report(value, path + "." + name, "is drawn at random; a grid has a number, a list or steps");
+        });
+        reader_.refuseUnknown(node, path, known);
+        return axes;
+    }
+
+    bool readAxis(const YAML::Node& node, const std::string& path, const char* unit, Axis& axis) {
+        const Field field{"", unit, "", -1e7, 1e7};
+        if (node.IsMap()) return reader_.read(node, path, axis);
+        if (!node.IsSequence()) {
+            axis.values.emplace_back();
+            return reader_.readValue(node, path, field, axis.values.front());
+        }
+        if (node.size() == 0) return reader_.report(node, path, "is empty; a coordinate has at least one value"), false;
+        return reader_.readValue(node, path, field, axis.values);
+    }
+
+    void readSettings(const YAML::Node& settings) {
+        if (!settings.IsDefined() || !reader_.isMap(settings, "settings")) return;
+        for (const auto& entry : settings) {
+            const std::string name = entry.first.Scalar(), path = "settings." + name;
+            if (!reader_.isSequence(entry.second, path)) continue;
+            if (entry.second.size() == 0) reader_.report(entry.second, path, "is empty; give at least one value");
+            Setting& setting = sweep_.settings.emplace_back();
+            setting.property = name;
+            for (const YAML::Node& value : entry.second) setting.values.push_back(written(value));
+        }
+    }
+
+    void readObjects(const YAML::Node& objects) {
+        if (!objects.IsDefined()) return;
+        reader_.readValue(objects, "objects", Field{"objects"}, sweep_.objects);
+        for (size_t i = 0; i < sweep_.objects.size(); ++i) {
+            const YAML::Node node = objects.IsSequence() ? objects[i] : objects;
+            sweep_.objects[i].line = node.Mark().line + 1, sweep_.objects[i].column = node.Mark().column + 1;
+        }
+    }
+
+    void readClasses(const YAML::Node& classes) {
+        if (!classes.IsDefined() || !reader_.isMap(classes, "classes")) return;
+        for (const auto& entry : classes) {
+            const std::string name = entry.first.Scalar(), path = "classes." + name;
+            ClassRule& rule = sweep_.classes.emplace_back();
+            rule.name = name;
+            rule.line = entry.first.Mark().line + 1, rule.column = entry.first.Mark().column + 1;
+            if (entry.second.IsScalar())
+                rule.patterns = {entry.second.Scalar()};
+            else
+                reader_.readValue(entry.second, path, Field{"classes"}, rule.patterns);
+        }
+    }
+
+    std::filesystem::path folder_;
+    ConfigReader reader_;
+    YAML::Node document_;
+    Sweep sweep_;
+};
+
+}  // namespace
+
+Sweep readSweep(const std::filesystem::path& file) { return SweepReader(file).sweep(); }
+
+}  // namespace insonify::dataset

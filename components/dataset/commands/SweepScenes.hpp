@@ -1,0 +1,18 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "components/dataset/Samples.hpp"
+#include "components/scene/Scene.hpp"
+
+namespace insonify::dataset {
+
+/** What a sweep takes of a scene: the nodes that it places, where the file has them, what they keep off, and what they
+ *  stand on. Throws types::ConfigError for a node that is kept off or stood on and is not there. */
+SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
+
+/** SHA-256 of all triangles of a scene, where its objects are, and of what material. */
+std::string digestOf(const types::Geometry& geometry);
+
+}  // namespace insonify::dataset

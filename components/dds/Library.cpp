@@ -1,0 +1,7 @@
+// The component library dds: what a deployment loads that names a type of this namespace.
+#include "components/dds/PublisherTask.hpp"
+#include "components/loader/Interface.hpp"
+
+INSONIFY_COMPONENT_LIBRARY;
+
+extern "C" void insonify_register(insonify::framework::Registry& registry) { insonify::dds::registerTasks(registry); }

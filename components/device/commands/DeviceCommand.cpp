@@ -1,0 +1,121 @@
+// insonify device list, and insonify device probe ADDRESS
+#include "components/device/commands/DeviceCommand.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "components/command/Json.hpp"
+#include "components/device/DeviceTask.hpp"
+#include "components/device/Probe.hpp"
+#include "components/framework/Properties.hpp"
+
+namespace insonify::device {
+namespace {
+
+constexpr int answered = 0, silent = 1;
+
+using command::Action, command::Json, command::print;
+
+/** Properties of a task that are ports, and their defaults: "port 12345, discovery.port 30303". */
+Json portsOf(const framework::TaskContext& task) {
+    Json ports = Json::object();
+    for (const auto* properties : task.properties())
+        for (const framework::PropertyInfo& property : properties->list())
+            if (property.name.ends_with("port")) ports[property.name] = Json::parse(property.default_value);
+    return ports;
+}
+
+std::string textOf(const Json& ports) {
+    std::string text;
+    for (const auto& [name, port] : ports.items())
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, port.dump());
+    return text;
+}
+
+int listDevices(bool json) {
+    Json devices = Json::array();
+    framework::Registry registry;
+    registerTasks(registry);
+    for (const auto& entry : registry.list())
+        devices.push_back({{"type", entry.type}, {"doc", entry.doc}, {"ports", portsOf(*entry.make("device"))}});
+    if (json) {
+        print(devices);
+        return 0;
+    }
+    for (const Json& device : devices)
+        fmt::print("{:22} {}\n{:22} {}\n", device["type"].get<std::string>(), device["doc"].get<std::string>(), "",
+                   textOf(device["ports"]));
+    fmt::print("\nproperties: insonify describe TYPE; how to start and connect each: components/device/README.md\n");
+    return 0;
+}
+
+Json jsonOf(const ProbeOutcome& outcome) {
+    return {{"protocol", outcome.protocol},
+            {"asked", outcome.asked},
+            {"device", outcome.device},
+            {"failure", outcome.failure},
+            {"advice", outcome.advice}};
+}
+
+void printOutcome(const ProbeOutcome& outcome) {
+    if (!outcome.device.empty())
+        fmt::print("{}: {}\n", outcome.asked, outcome.device);
+    else
+        fmt::print("{}: {}: {}\n  {}\n", outcome.asked, outcome.protocol, outcome.failure, outcome.advice);
+}
+
+int probeDevice(const std::string& address, double timeout, bool json) {
+    const std::chrono::milliseconds patience(std::lround(1e3 * timeout));
+    const auto outcomes = probe(probeAddress(address), patience);
+    const auto answers = [](const ProbeOutcome& outcome) { return !outcome.device.empty(); };
+    const bool any = std::ranges::any_of(outcomes, answers);
+    Json all = Json::array();
+    for (const ProbeOutcome& outcome : outcomes) {
+        all.push_back(jsonOf(outcome));
+        if (!json && (!any || answers(outcome))) printOutcome(outcome);
+    }
+    if (json) print(all);
+    if (!any) fmt::print(stderr, "insonify: nothing answers at {}\n", address);
+    return any ? answered : silent;
+}
+
+void addList(CLI::App& app, Action& action) {
+    const auto json = std::make_shared<bool>(false);
+    CLI::App* command = app.add_subcommand("list", "Lists the devices that tasks stand in for, and their usual ports");
+    command->add_flag("--json", *json, "for machines");
+    command->callback([json, &action] { action = [json] { return listDevices(*json); }; });
+}
+
+void addProbe(CLI::App& app, Action& action) {
+    struct Options {
+        std::string address;
+        double timeout = 1;
+        bool json = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "probe", "Asks what device answers at an address, real or simulated, and tells why a driver may wait");
+    command->add_option("ADDRESS", options->address, "a host, host:port, or the path of a serial line")->required();
+    command->add_option("--timeout", options->timeout, "for each question [s]")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 60.0));
+    command->add_flag("--json", options->json, "for machines");
+    command->callback([options, &action] {
+        action = [options] { return probeDevice(options->address, options->timeout, options->json); };
+    });
+}
+
+}  // namespace
+
+void addCommand(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("device", "Devices on the wire: those that are simulated, and what answers");
+    command->require_subcommand(1);
+    addList(*command, action);
+    addProbe(*command, action);
+}
+
+}  // namespace insonify::device

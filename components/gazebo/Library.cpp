@@ -1,0 +1,9 @@
+// The component library gazebo: what a deployment loads that names a type of this namespace.
+#include "components/gazebo/PoseTask.hpp"
+#include "components/loader/Interface.hpp"
+
+INSONIFY_COMPONENT_LIBRARY;
+
+extern "C" void insonify_register(insonify::framework::Registry& registry) {
+    insonify::gazebo::registerTasks(registry);
+}

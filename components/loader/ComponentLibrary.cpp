@@ -1,0 +1,211 @@
+#include "components/loader/ComponentLibrary.hpp"
+
+#include <dlfcn.h>
+#include <link.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string_view>
+
+#include "components/loader/Interface.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::loader {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Component all_components[] = {
+    {"dataset", "data sets to learn from"},
+    {"dds", "ROS 2 messages"},
+    {"device", "stand-ins for instruments, and recordings of theirs"},
+    {"gazebo", "poses of Gazebo's"},
+    {"mavlink", "poses of autopilots"},
+    {"nav", "a DVL, an inertial unit and a pressure gauge"},
+    {"sdf", "scenes in SDF, .world and .sdf, with meshes as .dae, .obj and .stl", {".sdf", ".world"}},
+    {"study", "studies of the simulator itself"},
+    {"survey", "surveys of the sea floor"},
+    {"video", "videos", {".avi", ".mp4"}},
+    {"viewer", "the live view"},
+};
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
+    throw types::ConfigError(file.string(), "", why);
+}
+
+/** The library or program that holds this code. */
+fs::path ownFile() {
+    Dl_info info{};
+    std::error_code none;
+    if (!dladdr(reinterpret_cast<const void*>(&folders), &info) || !info.dli_fname) return {};
+    const fs::path file = fs::canonical(info.dli_fname, none);
+    return none ? fs::canonical("/proc/self/exe", none) : file;
+}
+
+bool isName(const std::string& name) {
+    const auto fits = [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; };
+    return !name.empty() && std::ranges::all_of(name, fits);
+}
+
+/** Files of that name, each once though several folders lead to it. */
+std::vector<fs::path> filesOf(const std::string& name) {
+    std::vector<fs::path> files;
+    for (const fs::path& folder : folders()) {
+        std::error_code none;
+        const fs::path file = fs::canonical(folder / (name + ".so"), none);
+        if (!none && std::ranges::count(files, file) == 0) files.push_back(file);
+    }
+    return files;
+}
+
+/** Why the system's loader would fail on a file, or worse: it maps the parts that the headers name, there or not.
+ */
+std::string damageOf(const fs::path& file) {
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) return "is no file";
+    const uintmax_t size = fs::file_size(file, none);
+    std::ifstream bytes(file, std::ios::binary);
+    ElfW(Ehdr) head{};
+    if (!bytes.read(reinterpret_cast<char*>(&head), sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0)
+        return "is no shared object";
+    bytes.seekg(static_cast<std::streamoff>(head.e_phoff));
+    for (int i = 0; i < head.e_phnum; ++i) {
+        ElfW(Phdr) part{};
+        const bool read = static_cast<bool>(bytes.read(reinterpret_cast<char*>(&part), sizeof part));
+        if (!read || part.p_offset > size || part.p_filesz > size - part.p_offset) return "is cut short";
+    }
+    return "";
+}
+
+/** The version in a file, read before any of its code runs; empty where there is none. */
+std::string versionOf(const fs::path& file) {
+    static constexpr std::string_view before = interface_mark;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    for (size_t at = bytes.find(before); at != std::string::npos; at = bytes.find(before, at + 1)) {
+        const std::string version(bytes.c_str() + at + before.size());
+        if (!version.empty() && version.size() < 64) return version;
+    }
+    return "";
+}
+
+void refuseOtherVersion(const fs::path& file) {
+    const std::string version = versionOf(file);
+    if (version == interface_version) return;
+    if (version.empty()) refuse(file, "has no line INSONIFY_COMPONENT_LIBRARY, which every component library has");
+    refuse(file, "is for Insonify " + version + "; this is " + interface_version + ": build it anew");
+}
+
+struct Loaded {
+    std::mutex mutex;
+    std::map<fs::path, ComponentLibrary> all;
+};
+
+Loaded& loaded() {
+    static Loaded loaded;
+    return loaded;
+}
+
+/** Libraries of users that are linked with nothing find the framework in the process. Python would keep it to itself.
+ */
+void showOwnSymbols() {
+    static const bool shown = [] {
+        const fs::path own = ownFile();
+        return own.filename().string().find(".so") != std::string::npos &&
+               dlopen(own.c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) != nullptr;
+    }();
+    static_cast<void>(shown);
+}
+
+const ComponentLibrary& open(const fs::path& file) {
+    const std::lock_guard alone(loaded().mutex);
+    if (const auto known = loaded().all.find(file); known != loaded().all.end()) return known->second;
+    if (const std::string damage = damageOf(file); !damage.empty()) refuse(file, "cannot be loaded: it " + damage);
+    refuseOtherVersion(file);
+    showOwnSymbols();
+    void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) refuse(file, std::string("cannot be loaded: ") + dlerror());
+    return loaded().all.try_emplace(file, file, handle).first->second;
+}
+
+}  // namespace
+
+std::span<const Component> components() { return all_components; }
+
+const Component* findComponent(const std::string& name) {
+    const auto found = std::ranges::find(all_components, name, &Component::name);
+    return found == std::end(all_components) ? nullptr : found;
+}
+
+void* ComponentLibrary::find(const char* name) const { return dlsym(handle_, name); }
+
+std::vector<fs::path> folders() {
+    std::vector<fs::path> all;
+    const char* const given = secure_getenv("INSONIFY_COMPONENT_PATH");
+    std::string rest = given ? given : "";
+    while (!rest.empty()) {
+        const size_t end = std::min(rest.find(':'), rest.size());
+        const fs::path folder = rest.substr(0, end);
+        if (!folder.is_absolute())
+            throw types::ConfigError(
+                "", "INSONIFY_COMPONENT_PATH",
+                "has the folder \"" + folder.string() + "\"; must be absolute: /opt/auv:/home/me/parts");
+        all.push_back(folder);
+        rest.erase(0, end + 1);
+    }
+    const fs::path own = ownFile().parent_path();
+    for (const fs::path& beside : {own / "insonify", own.parent_path() / "lib" / "insonify"})
+        if (std::error_code none; fs::is_directory(beside, none)) {
+            all.push_back(beside);
+            break;
+        }
+    return all;
+}
+
+std::vector<std::string> present() {
+    std::set<std::string> names;
+    for (const fs::path& folder : folders()) {
+        std::error_code none;
+        for (const auto& entry : fs::directory_iterator(folder, none))
+            if (entry.path().extension() == ".so" && isName(entry.path().stem())) names.insert(entry.path().stem());
+    }
+    return {names.begin(), names.end()};
+}
+
+bool isPresent(const std::string& name) { return isName(name) && !filesOf(name).empty(); }
+
+const ComponentLibrary& load(const std::string& name) {
+    const std::vector<fs::path> files = isName(name) ? filesOf(name) : std::vector<fs::path>{};
+    if (files.empty()) throw types::ConfigError("", "", "needs " + absence(name));
+    if (files.size() > 1)
+        refuse(files[0], "is the component library " + name + ", and so is " + files[1].string() + "; one is allowed");
+    return open(files[0]);
+}
+
+const ComponentLibrary& loadFile(const fs::path& file) {
+    std::error_code none;
+    const fs::path whole = fs::canonical(file, none);
+    if (none) refuse(file, "cannot be loaded: " + none.message());
+    return open(whole);
+}
+
+std::string absence(const std::string& name) {
+    const fs::path around = ownFile().parent_path().parent_path();
+    const auto has = [&](const fs::path& file) {
+        std::error_code none;
+        return fs::exists(around / file, none);
+    };
+    if (has("../insonify.libs"))
+        return "the component library " + name +
+               ", which wheels and archives do not hold; the Debian packages do, as insonify-" + name;
+    return "the component library " + name + ", which is not here; `" +
+           (has("build.ninja") ? "scripts/setup " : "apt install insonify-") + name + "` installs it";
+}
+
+}  // namespace insonify::loader

@@ -1,0 +1,12 @@
+# Writes OUTPUT, a header with the VERSION and the hash of all headers of SOURCE_DIR, where it differs from what is there.
+file(GLOB_RECURSE headers RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/components/*.hpp ${SOURCE_DIR}/types/*.hpp)
+list(SORT headers)
+set(all "")
+foreach(header ${headers})
+  file(SHA256 ${SOURCE_DIR}/${header} hash)
+  string(APPEND all "${header} ${hash}\n")
+endforeach()
+string(SHA256 hash "${all}")
+string(SUBSTRING ${hash} 0 8 hash)
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#pragma once\n#define INSONIFY_INTERFACE \"${VERSION} ${hash}\"\n")
+file(TOUCH ${OUTPUT})

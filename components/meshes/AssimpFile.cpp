@@ -1,0 +1,111 @@
+#include "components/meshes/AssimpFile.hpp"
+
+#include <assimp/Exceptional.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <exception>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <new>
+#include <stdexcept>
+#include <type_traits>
+
+namespace insonify::meshes {
+
+using namespace scene;
+namespace {
+
+static_assert(std::is_same_v<ai_real, float>);
+
+Surface surfaceOf(const aiMesh& from) {
+    Surface surface;
+    surface.positions.reserve(from.mNumVertices);
+    for (unsigned i = 0; i < from.mNumVertices; ++i)
+        surface.positions.emplace_back(from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z);
+    for (unsigned i = 0; i < from.mNumFaces; ++i) {
+        const aiFace& face = from.mFaces[i];
+        const auto exists = [&from](unsigned index) { return index < from.mNumVertices; };
+        if (face.mNumIndices == 3 && std::all_of(face.mIndices, face.mIndices + 3, exists))
+            surface.indices.insert(surface.indices.end(), face.mIndices, face.mIndices + 3);
+    }
+    return surface;
+}
+
+/** A placing for each mesh of each node, without recursion. */
+std::vector<FileMeshes::Placing> placingsOf(const aiScene& from, const glm::dmat4& world_from_file) {
+    struct Visit {
+        const aiNode* node;
+        glm::dmat4 world_from_parent;
+    };
+    std::vector<FileMeshes::Placing> placings;
+    std::vector<Visit> waiting = {{from.mRootNode, world_from_file}};
+    while (!waiting.empty()) {
+        const auto [node, world_from_parent] = waiting.back();
+        waiting.pop_back();
+        const glm::dmat4 world_from_node =
+            world_from_parent * glm::transpose(glm::dmat4(glm::make_mat4(&node->mTransformation.a1)));
+        for (unsigned i = 0; i < node->mNumMeshes; ++i)
+            placings.push_back({node->mName.C_Str(), node->mMeshes[i], world_from_node});
+        for (unsigned i = 0; i < node->mNumChildren; ++i) waiting.push_back({node->mChildren[i], world_from_node});
+    }
+    return placings;
+}
+
+/** Assimp keeps what the standard library threw in it, or, of its later steps, only the text of that. */
+void rethrow(const Assimp::Importer& importer) {
+    if (importer.GetException()) std::rethrow_exception(importer.GetException());
+    const std::string text = importer.GetErrorString();
+    if (text == std::bad_alloc().what()) throw std::bad_alloc();
+    if (text.find(' ') == std::string::npos || text.find("::") != std::string::npos) throw std::logic_error(text);
+}
+
+/** Assimp cites what it cannot read, which may be the rest of the file. */
+std::string shortened(const std::string& text) {
+    constexpr size_t most = 160;
+    return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
+/** Assimp's own sentences are passed on; what the standard library throws says nothing of the file. */
+[[noreturn]] void refuse(const Assimp::Importer& importer) {
+    try {
+        rethrow(importer);
+    } catch (const DeadlyErrorBase&) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::length_error&) {
+        throw std::bad_alloc();
+    } catch (...) {
+        throw std::runtime_error("a number, a count or an index in it is not what its format allows");
+    }
+    throw std::runtime_error(shortened(importer.GetErrorString()));
+}
+
+}  // namespace
+
+FileMeshes readByAssimp(const std::filesystem::path& file, const glm::dmat4& world_from_file) {
+    Assimp::Importer importer;
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not ids
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                                            aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                                            aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                                            aiComponent_TEXTURES);
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* from = importer.ReadFile(file.string(), aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                                               aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+    if (!from || !from->mRootNode) refuse(importer);
+    FileMeshes meshes;
+    for (unsigned i = 0; i < from->mNumMaterials; ++i)
+        meshes.materials.push_back(from->mMaterials[i]->GetName().C_Str());
+    for (unsigned i = 0; i < from->mNumMeshes; ++i) {
+        const aiMesh& mesh = *from->mMeshes[i];
+        meshes.parts.push_back({mesh.mName.C_Str(), mesh.mMaterialIndex, surfaceOf(mesh)});
+    }
+    meshes.placings = placingsOf(*from, world_from_file);
+    return meshes;
+}
+
+}  // namespace insonify::meshes

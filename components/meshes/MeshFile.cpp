@@ -1,0 +1,207 @@
+#include "components/meshes/MeshFile.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "components/loader/ComponentLibrary.hpp"
+#include "components/scene/Clusters.hpp"
+#include "components/scene/Gltf.hpp"
+#include "components/scene/Surface.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::meshes {
+
+using namespace scene;
+namespace {
+
+constexpr const char* remedy = "; open the model in its own program and export it again, best as .glb";
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& message) {
+    throw types::ConfigError(file.string(), "", message);
+}
+
+[[noreturn]] void refuseForSystem(const std::filesystem::path& file, const char* what, int error) {
+    refuse(file, fmt::format("cannot be read: {}: {}", what, std::strerror(error)));
+}
+
+std::filesystem::path findReader(const std::filesystem::path& file) {
+    if (const char* named = std::getenv("INSONIFY_MESH_READER")) return named;
+    for (const std::filesystem::path& folder : loader::folders())
+        if (access((folder / mesh_reader).c_str(), X_OK) == 0) return folder / mesh_reader;
+    refuse(file, fmt::format("cannot be read: needs {}, with its program {}", loader::absence("meshes"), mesh_reader));
+}
+
+/** A file in memory that goes with its last user. */
+class MemoryFile {
+public:
+    explicit MemoryFile(const std::filesystem::path& file) : descriptor_(memfd_create("insonify meshes", MFD_CLOEXEC)) {
+        if (descriptor_ < 0) refuseForSystem(file, "memfd_create", errno);
+    }
+    ~MemoryFile() {
+        if (mapped_) munmap(mapped_, size_);
+        close(descriptor_);
+    }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    /** What is in it now; to be called once. */
+    std::span<const std::byte> bytes(const std::filesystem::path& file) {
+        struct stat state {};
+        if (fstat(descriptor_, &state) != 0) refuseForSystem(file, "fstat", errno);
+        if (state.st_size == 0) return {};
+        size_ = static_cast<size_t>(state.st_size);
+        void* mapped = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor_, 0);
+        if (mapped == MAP_FAILED) refuseForSystem(file, "mmap", errno);
+        mapped_ = mapped;
+        return {static_cast<const std::byte*>(mapped_), size_};
+    }
+
+private:
+    int descriptor_;
+    void* mapped_ = nullptr;
+    size_t size_ = 0;
+};
+
+/** How the process is started: nothing of ours but the reply is open there, no signal blocked or ignored, and a
+ *  terminal's SIGINT does not reach it. */
+class SpawnSettings {
+public:
+    explicit SpawnSettings(int reply) {
+        posix_spawn_file_actions_init(&actions_);
+        posix_spawn_file_actions_adddup2(&actions_, reply, mesh_reply_descriptor);
+        posix_spawn_file_actions_addclosefrom_np(&actions_, mesh_reply_descriptor + 1);
+        for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+            posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
+        posix_spawnattr_init(&attributes_);
+        sigset_t signals;
+        sigemptyset(&signals);
+        posix_spawnattr_setsigmask(&attributes_, &signals);
+        sigfillset(&signals);
+        posix_spawnattr_setsigdefault(&attributes_, &signals);
+        posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+    }
+    ~SpawnSettings() {
+        posix_spawnattr_destroy(&attributes_);
+        posix_spawn_file_actions_destroy(&actions_);
+    }
+    SpawnSettings(const SpawnSettings&) = delete;
+    SpawnSettings& operator=(const SpawnSettings&) = delete;
+
+    int start(std::vector<std::string> words, pid_t& process) const {
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        return posix_spawn(&process, arguments[0], &actions_, &attributes_, arguments.data(), environ);
+    }
+
+private:
+    posix_spawn_file_actions_t actions_;
+    posix_spawnattr_t attributes_;
+};
+
+/** Why a process that ended by a signal did so. */
+std::string causeOf(int signal, const ReadLimits& limits) {
+    switch (signal) {
+        case SIGXCPU: return fmt::format("takes more than {} s to compute", limits.processor_s);
+        case SIGALRM: return fmt::format("was not read within {} s", limits.wall_s);
+        case SIGXFSZ: return fmt::format("holds more than {} MB", limits.memory >> 20);
+        case SIGKILL: return "was too much to read: its reader was killed, as for want of memory";
+        default: return fmt::format("crashes the library that reads it (assimp, SIG{})", sigabbrev_np(signal));
+    }
+}
+
+/** Waits for the end. Where a program ignores SIGCHLD there is no status; then the reply alone tells. */
+void await(pid_t process, const std::filesystem::path& file, const ReadLimits& limits) {
+    int status = 0;
+    while (waitpid(process, &status, 0) < 0)
+        if (errno != EINTR) return;
+    if (WIFSIGNALED(status)) refuse(file, causeOf(WTERMSIG(status), limits) + remedy);
+    if (WEXITSTATUS(status) != 0)
+        refuse(file, fmt::format("cannot be read: its reader ended with {}{}", WEXITSTATUS(status), remedy));
+}
+
+/** The meshes of a file, by their index there; without triangles where there is none that can be drawn. */
+std::vector<types::Mesh> meshesOf(FileMeshes& from, std::vector<std::string>& notices) {
+    std::vector<types::Mesh> meshes(from.parts.size());
+    DroppedTriangles dropped;
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        Surface surface = std::move(from.parts[i].surface);
+        cleanUp(surface, dropped);
+        meshes[i].name = from.parts[i].name;
+        if (surface.indices.empty()) continue;
+        appendSurface(surface, static_cast<int>(from.parts[i].material), meshes[i]);
+        buildClusters(meshes[i]);
+    }
+    dropped.addTo(notices);
+    return meshes;
+}
+
+types::GeometryPtr readApart(const std::filesystem::path& file, bool is_y_up) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .dae, .obj or .stl file");
+    const ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file, error));
+    FileMeshes from = readMeshesApart(file, is_y_up, limits);
+    auto geometry = std::make_shared<types::Geometry>();
+    for (const std::string& name : from.materials) geometry->materials.emplace_back().name = name;
+    geometry->meshes = meshesOf(from, geometry->notices);
+    for (const FileMeshes::Placing& placing : from.placings)
+        if (!geometry->meshes[placing.part].indices.empty())
+            geometry->objects.push_back({placing.name, static_cast<int>(placing.part), placing.world_from_part});
+    if (geometry->objects.empty()) throw types::ConfigError(file.string(), "", "has no triangles");
+    return geometry;
+}
+
+}  // namespace
+
+ReadLimits ReadLimits::forFile(uintmax_t bytes) {
+    ReadLimits limits;
+    const auto megabytes = static_cast<unsigned>(std::min<uintmax_t>(bytes >> 20, 1 << 20));
+    limits.processor_s += 2 * megabytes;
+    limits.wall_s += 20 * megabytes;
+    limits.memory += (uint64_t{megabytes} << 20) * 128;
+    return limits;
+}
+
+FileMeshes readMeshesApart(const std::filesystem::path& file, bool is_y_up, const ReadLimits& limits) {
+    MemoryFile memory(file);
+    const SpawnSettings settings(memory.descriptor());
+    pid_t process = -1;
+    const std::filesystem::path reader = findReader(file);
+    const int error = settings.start(
+        {reader, std::filesystem::absolute(file), is_y_up ? "y" : "z", std::to_string(limits.processor_s),
+         std::to_string(limits.wall_s), std::to_string(limits.memory)},
+        process);
+    if (error != 0) refuseForSystem(file, reader.c_str(), error);
+    await(process, file, limits);
+    MeshReply reply;
+    try {
+        reply = parseReply(memory.bytes(file));
+    } catch (const std::runtime_error& failure) {
+        refuse(file, fmt::format("cannot be read: the answer of {} is damaged: {}", mesh_reader, failure.what()));
+    }
+    if (!reply.refusal.empty()) refuse(file, fmt::format("cannot be read: {}{}", reply.refusal, remedy));
+    return std::move(reply.meshes);
+}
+
+types::GeometryPtr readMeshFile(const std::filesystem::path& file) {
+    const std::string extension = extensionOf(file);
+    if (extension == ".gltf" || extension == ".glb") return readGltf(file).geometry;
+    if (extension == ".dae") return readApart(file, true);  // turned to y-up and metres by its importer
+    if (extension == ".obj" || extension == ".stl") return readApart(file, false);
+    throw types::ConfigError(file.string(), "",
+                             fmt::format("has extension \"{}\"; may be .dae, .obj, .stl, .gltf or .glb", extension));
+}
+
+}  // namespace insonify::meshes

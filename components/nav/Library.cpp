@@ -1,0 +1,7 @@
+// The component library nav: what a deployment loads that names a type of this namespace.
+#include "components/loader/Interface.hpp"
+#include "components/nav/ImuTask.hpp"
+
+INSONIFY_COMPONENT_LIBRARY;
+
+extern "C" void insonify_register(insonify::framework::Registry& registry) { insonify::nav::registerTasks(registry); }

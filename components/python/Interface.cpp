@@ -1,0 +1,182 @@
+#include "components/python/Interface.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "components/deployer/Json.hpp"
+#include "components/deployer/Simulation.hpp"
+#include "components/python/Samples.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::python {
+namespace {
+
+using command::Json;
+
+class SimulationHandle final : public Handle {
+public:
+    SimulationHandle(const std::string& deployment, deployer::SimulationOptions options)
+        : simulation(deployment, std::move(options)) {}
+    Json facts() const override {
+        return {{"poses", simulation.poses()},
+                {"pings", simulation.pings()},
+                {"period", simulation.period()},
+                {"time", simulation.time()}};
+    }
+    deployer::Simulation simulation;
+};
+
+class LogHandle final : public Handle {
+public:
+    explicit LogHandle(const std::string& file) : log(log::openLog(file)), samples(log->streams().size()) {
+        times_.resize(samples.size());
+        for (const log::SampleRef& at : log->samples()) {
+            samples[at.stream].push_back(at);
+            times_[at.stream].push_back(at.time.seconds());
+        }
+    }
+    Json facts() const override {
+        Json streams = Json::array();
+        for (const log::Stream& stream : log->streams())
+            streams.push_back({{"name", stream.name}, {"type", stream.type}, {"metadata", stream.metadata}});
+        return streams;
+    }
+    std::vector<Array> arrays() const override {
+        std::vector<Array> arrays;
+        for (const auto& times : times_) arrays.push_back({"times", "f8", times.data(), {times.size()}, 1});
+        return arrays;
+    }
+
+    std::shared_ptr<log::Reader> log;
+    std::vector<std::vector<log::SampleRef>> samples;  ///< By stream.
+    std::mutex reading;                                ///< Python's threads call side by side; the reader is for one.
+
+private:
+    std::vector<std::vector<double>> times_;
+};
+
+thread_local std::string said;
+
+const char* keep(const Json& json) {
+    said = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return said.c_str();
+}
+
+void keepError(const char* kind, const std::exception& error, const types::Diagnostics& diagnostics = {}) {
+    Json all = Json::array();
+    for (const types::Diagnostic& each : diagnostics) all.push_back(deployer::toJson(each));
+    keep({{"kind", kind}, {"message", error.what()}, {"diagnostics", all}});
+}
+
+/** What `work` gives; `failed` where it throws. */
+template <class Work>
+auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
+    try {
+        return work();
+    } catch (const types::ConfigError& error) {
+        keepError("ConfigError", error, error.diagnostics());
+    } catch (const UnreadableType& error) {
+        keepError("TypeError", error);
+    } catch (const std::invalid_argument& error) {
+        keepError("ValueError", error);
+    } catch (const std::out_of_range& error) {
+        keepError("IndexError", error);
+    } catch (const std::bad_alloc& error) {
+        keepError("MemoryError", error);
+    } catch (const std::exception& error) {
+        keepError("RuntimeError", error);
+    }
+    return failed;
+}
+
+/** A name of an enumeration as its value. */
+template <class Enum>
+Enum valueOf(const std::string& name, const char* what) {
+    const auto& names = types::EnumNames<Enum>::names;
+    const auto found = std::ranges::find(names, name);
+    if (found != std::end(names)) return static_cast<Enum>(found - std::begin(names));
+    std::string known;
+    for (const std::string_view each : names) known += (known.empty() ? "" : ", ") + std::string(each);
+    throw types::ConfigError("", what, "is " + name + "; it may be " + known);
+}
+
+template <class Number>
+std::optional<Number> unlessNull(const Number* number) {
+    return number ? std::optional(*number) : std::nullopt;
+}
+
+types::Pose poseOf(const double* numbers) {
+    types::Pose pose;
+    pose.position = {numbers[0], numbers[1], numbers[2]};
+    pose.orientation = glm::dquat(numbers[3], numbers[4], numbers[5], numbers[6]);
+    return pose;
+}
+
+}  // namespace
+
+const char* insonify_error() { return said.c_str(); }
+
+void insonify_free(Handle* handle) { delete handle; }
+
+const char* insonify_facts(const Handle* handle) {
+    return guarded(nullptr, [&] { return keep(handle->facts()); });
+}
+
+size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
+    const std::vector<Array> all = handle->arrays();
+    std::copy_n(all.begin(), std::min(room, all.size()), arrays);
+    return all.size();
+}
+
+Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
+                            int truth, const double* period) {
+    return guarded(nullptr, [&]() -> Handle* {
+        return new SimulationHandle(
+            deployment, {seed, {overrides, overrides + override_count}, truth != 0, unlessNull(period), {}});
+    });
+}
+
+int insonify_step(Handle* simulation, const char* const* ports, const double* poses, size_t port_count,
+                  const double* time, Handle** pings) {
+    return guarded(-1, [&] {
+        std::map<std::string, types::Pose> at;
+        for (size_t i = 0; i < port_count; ++i) at[ports[i]] = poseOf(poses + 7 * i);
+        const auto made = dynamic_cast<SimulationHandle&>(*simulation).simulation.step(std::move(at), unlessNull(time));
+        for (const auto& each : made) *pings++ = each.ping ? pingHandle(each.ping, each.truth).release() : nullptr;
+        return 0;
+    });
+}
+
+int insonify_reset(Handle* simulation, const uint64_t* seed) {
+    return guarded(-1, [&] {
+        dynamic_cast<SimulationHandle&>(*simulation).simulation.reset(unlessNull(seed));
+        return 0;
+    });
+}
+
+Handle* insonify_fan(const Handle* ping, uint32_t width, double dynamic_range_db, const double* reference_db,
+                     const char* colour_map, const char* scale, int code_bits) {
+    return guarded(nullptr, [&]() -> Handle* {
+        return fanHandle(*ping, {width, dynamic_range_db, unlessNull(reference_db),
+                                 valueOf<output::ColourMap>(colour_map, "colour_map"),
+                                 valueOf<output::BinScale>(scale, "scale"), code_bits})
+            .release();
+    });
+}
+
+Handle* insonify_log(const char* file) {
+    return guarded(nullptr, [&]() -> Handle* { return new LogHandle(file); });
+}
+
+Handle* insonify_sample(Handle* log, size_t stream, size_t index) {
+    return guarded(nullptr, [&]() -> Handle* {
+        auto& opened = dynamic_cast<LogHandle&>(*log);
+        const std::lock_guard alone(opened.reading);
+        return sampleHandle(*opened.log, opened.samples.at(stream).at(index)).release();
+    });
+}
+
+}  // namespace insonify::python

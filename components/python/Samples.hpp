@@ -1,0 +1,29 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "components/log/Reader.hpp"
+#include "components/output/PictureConfig.hpp"
+#include "components/python/Handle.hpp"
+#include "types/Sonar.hpp"
+#include "types/SonarTruth.hpp"
+
+namespace insonify::python {
+
+/** Facts `{kind: ping, time, ...}`, arrays `bins` [beams, bins], `bearings` [rad] and `ranges` [m], which is the slant
+ *  range at the middle of each bin.
+ *  @param truth null: none; otherwise its arrays are there as well, and its `objects` among the facts. */
+std::unique_ptr<Handle> pingHandle(types::SonarPtr ping, types::SonarTruthPtr truth);
+/** The ping of such a handle as a fan. Throws types::ConfigError for what no picture can be. */
+std::unique_ptr<Handle> fanHandle(const Handle& ping, const output::DisplayConfig& display);
+
+/** A sample of a log; its kind is ping, truth, pose, picture, number, integer or text. Throws UnreadableType for
+ * others. */
+std::unique_ptr<Handle> sampleHandle(log::Reader& log, const log::SampleRef& at);
+
+class UnreadableType : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace insonify::python

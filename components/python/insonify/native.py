@@ -1,0 +1,169 @@
+"""The part that is C++, by its C interface: components/python/Interface.hpp."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import math
+import operator
+import os
+import pathlib
+import weakref
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class ConfigError(ValueError):
+    """A deployment, a scene or a log that cannot be used."""
+
+    __module__ = "insonify"
+
+    def __init__(self, message: str, diagnostics: Sequence[dict] = ()) -> None:
+        super().__init__(message)
+        self.diagnostics = list(diagnostics)
+        """All of them, each with `file`, `line`, `column`, `path` and `message`."""
+        first = self.diagnostics[0] if self.diagnostics else {}
+        self.file: str | None = first.get("file")
+        self.line: int | None = first.get("line")
+        self.column: int | None = first.get("column")
+
+
+class _Array(ctypes.Structure):
+    _fields_ = [
+        ("name", ctypes.c_char_p),
+        ("type", ctypes.c_char_p),
+        ("numbers", ctypes.c_void_p),
+        ("shape", ctypes.c_uint64 * 3),
+        ("dimensions", ctypes.c_uint32),
+    ]
+
+
+_text, _handle, _size = ctypes.c_char_p, ctypes.c_void_p, ctypes.c_size_t
+_library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("_insonify.so")))
+for _name, _result, *_arguments in (
+    ("error", _text),
+    ("free", None, _handle),
+    ("facts", _text, _handle),
+    ("arrays", _size, _handle, ctypes.POINTER(_Array), _size),
+    ("simulation", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double)),
+    ("step", ctypes.c_int, _handle, ctypes.POINTER(_text), _handle, _size, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(_handle)),
+    ("reset", ctypes.c_int, _handle, ctypes.POINTER(ctypes.c_uint64)),
+    ("fan", _handle, _handle, ctypes.c_uint32, ctypes.c_double, ctypes.POINTER(ctypes.c_double), _text, _text, ctypes.c_int),
+    ("log", _handle, _text),
+    ("sample", _handle, _handle, _size, _size),
+):
+    _function = getattr(_library, "insonify_" + _name)
+    _function.restype, _function.argtypes = _result, _arguments
+
+_ERRORS = {error.__name__: error for error in (IndexError, MemoryError, RuntimeError, TypeError, ValueError)}
+
+
+def _raise() -> None:
+    error = json.loads(_library.insonify_error())
+    if error["kind"] == "ConfigError":
+        raise ConfigError(error["message"], error["diagnostics"])
+    raise _ERRORS[error["kind"]](error["message"])
+
+
+class Handle:
+    """What C++ holds of a thing: facts, and arrays, which stay as long as somebody has them."""
+
+    def __init__(self, pointer: int | None) -> None:
+        if pointer is None:
+            _raise()
+        self.pointer = pointer
+        weakref.finalize(self, _library.insonify_free, pointer)
+
+    def facts(self):
+        told = _library.insonify_facts(self.pointer)
+        if told is None:
+            _raise()
+        return json.loads(told)
+
+    def arrays(self) -> list[tuple[str, NDArray]]:
+        """By name, not to be written to."""
+        room = 16
+        while True:
+            found = (_Array * room)()
+            count = _library.insonify_arrays(self.pointer, found, room)
+            if count <= room:
+                return [(each.name.decode(), self._view(each)) for each in found[:count]]
+            room = count
+
+    def _view(self, array: _Array) -> NDArray:
+        shape, kind = tuple(array.shape[: array.dimensions]), np.dtype(array.type.decode())
+        size = kind.itemsize * int(np.prod(shape))
+        if not size:
+            return np.empty(shape, kind)
+        memory = (ctypes.c_char * size).from_address(array.numbers)
+        memory.owner = self
+        view = np.ndarray(shape, kind, memory)
+        view.flags.writeable = False
+        return view
+
+
+def _whole(name: str, number: int, end: int) -> int:
+    """A number from 0 to below `end`; numpy's as well."""
+    whole = operator.index(number)
+    if not 0 <= whole < end:
+        raise ValueError(f"{name}: is {whole}; may be 0 to {end - 1}")
+    return whole
+
+
+def _optional(name: str, number: float | None):
+    """A pointer to it; None: null."""
+    if number is not None and not math.isfinite(number):
+        raise ValueError(f"{name}: is {number}; must be finite")
+    return None if number is None else ctypes.byref(ctypes.c_double(number))
+
+
+def simulation(deployment: str, seed: int, overrides: Sequence[str], truth: bool, period: float | None) -> Handle:
+    seed, period = _whole("seed", seed, 2**64), _optional("period", period)
+    texts = (_text * len(overrides))(*(each.encode() for each in overrides))
+    return Handle(_library.insonify_simulation(os.fsencode(deployment), seed, texts, len(texts), truth, period))
+
+
+def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, count: int) -> list[Handle | None]:
+    """`count` pings, of poses of seven numbers each: x, y, z [m] and a quaternion w, x, y, z."""
+    ports = (_text * len(poses))(*(port.encode() for port in poses))
+    numbers = np.array([*poses.values()], float).reshape(len(poses), 7)
+    made = (_handle * count)()
+    at = _optional("time", time)
+    if _library.insonify_step(simulation.pointer, ports, numbers.ctypes.data, len(ports), at, made):
+        _raise()
+    return [each and Handle(each) for each in made]
+
+
+def reset(simulation: Handle, seed: int | None) -> None:
+    given = None if seed is None else ctypes.byref(ctypes.c_uint64(_whole("seed", seed, 2**64)))
+    if _library.insonify_reset(simulation.pointer, given):
+        _raise()
+
+
+def fan(
+    ping: Handle, width: int, dynamic_range_db: float, reference_db: float | None, colour_map: str, scale: str, code_bits: int
+) -> NDArray[np.uint8]:
+    """A picture [height, width, 3], red first."""
+    width, code_bits = _whole("width", width, 2**32), _whole("code_bits", code_bits, 2**31)
+    reference_db = _optional("reference_db", reference_db)
+    painted = _library.insonify_fan(
+        ping.pointer, width, dynamic_range_db, reference_db, colour_map.encode(), scale.encode(), code_bits
+    )
+    return pixels(Handle(painted))
+
+
+def pixels(picture: Handle) -> NDArray[np.uint8]:
+    return dict(picture.arrays())["pixels"].copy()
+
+
+def log(path: str) -> Handle:
+    return Handle(_library.insonify_log(os.fsencode(path)))
+
+
+def sample(log: Handle, stream: int, index: int) -> Handle:
+    whole = operator.index(index)
+    if whole < 0:
+        raise IndexError("no such sample")
+    return Handle(_library.insonify_sample(log.pointer, stream, whole))

@@ -1,0 +1,9 @@
+// The component library sdf: what a scene loads whose file is in SDF.
+#include "components/loader/Interface.hpp"
+#include "components/sdf/Sdf.hpp"
+
+INSONIFY_COMPONENT_LIBRARY;
+
+extern "C" void insonify_read_scene(const std::filesystem::path& file, insonify::scene::Scene& scene) {
+    scene = insonify::sdf::readSdf(file);
+}

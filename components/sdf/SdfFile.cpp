@@ -1,0 +1,317 @@
+#include "components/sdf/SdfFile.hpp"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <sdf/Error.hh>
+#include <sdf/Exception.hh>
+#include <sdf/ParserConfig.hh>
+#include <sdf/World.hh>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "types/ConfigError.hpp"
+#include "types/Reason.hpp"
+
+namespace insonify::sdf {
+namespace {
+
+/** More work is refused. One is what libsdformat has with an element, about half a millisecond; besides it compares
+ *  what stands in one element with each other, 2000 pairs in the same time. What is included counts each time. */
+constexpr size_t max_sdf_work = 100'000;
+
+/** Models that include each other deeper are refused. */
+constexpr size_t max_sdf_depth = 50;
+
+/** Larger files are refused, whatever is in them [bytes]. */
+constexpr size_t max_sdf_bytes = size_t{64} << 20;
+
+std::string textOf(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::file_size(file, error) > max_sdf_bytes && !error)
+        throw types::ConfigError(file.string(), "",
+                                 fmt::format("is larger than {} MB; divide it", max_sdf_bytes >> 20));
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/** Counts what libsdformat will have to do with a file, and gathers the uris of its includes. */
+class Work final : public tinyxml2::XMLVisitor {
+public:
+    explicit Work(const std::string& xml) {
+        tinyxml2::XMLDocument document(true, tinyxml2::COLLAPSE_WHITESPACE);  // as libsdformat reads it
+        if (document.Parse(xml.data(), xml.size()) == tinyxml2::XML_SUCCESS) document.Accept(this);
+    }
+    size_t amount = 0;
+    std::vector<std::string> included;
+
+private:
+    bool VisitEnter(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute* /*first*/) override {
+        size_t parts = 0;
+        for (const auto* part = element.FirstChildElement(); part; part = part->NextSiblingElement()) ++parts;
+        for (const auto* attribute = element.FirstAttribute(); attribute; attribute = attribute->Next()) ++parts;
+        amount += 1 + parts * parts / 2000;
+        const tinyxml2::XMLElement* uri = element.FirstChildElement("uri");
+        if (std::string_view(element.Name()) == "include" && uri && uri->GetText()) included.push_back(uri->GetText());
+        return true;
+    }
+};
+
+class Includes {
+public:
+    explicit Includes(const SdfPaths& paths) : paths_(paths) {}
+
+    /** With a file and all that it includes. */
+    size_t workOf(const std::filesystem::path& file) {
+        if (const auto known = work_.find(file); known != work_.end()) return known->second;
+        if (open_.size() == max_sdf_depth)
+            throw types::ConfigError(
+                file.string(), "include",
+                fmt::format("models include each other {} deep; may be up to {}", max_sdf_depth + 1, max_sdf_depth));
+        open_.push_back(file);
+        const Work own(textOf(file));
+        size_t amount = own.amount;
+        for (const std::string& uri : own.included)
+            if (amount <= max_sdf_work) amount += workOfInclude(uri, file);
+        open_.pop_back();
+        return work_[file] = amount;
+    }
+
+private:
+    size_t workOfInclude(const std::string& uri, const std::filesystem::path& from) {
+        const auto found = paths_.find(uri, from);
+        size_t most = 0;  // of a model's versions one is read
+        for (const std::filesystem::path& included : found ? filesOf(*found) : std::vector<std::filesystem::path>()) {
+            if (std::ranges::count(open_, included) > 0)
+                throw types::ConfigError(
+                    from.string(), "include",
+                    fmt::format("{} comes back to {}; a model may not include itself", uri, included.string()));
+            most = std::max(most, workOf(included));
+        }
+        return most;
+    }
+
+    static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& found) {
+        if (std::filesystem::is_regular_file(found)) return {std::filesystem::canonical(found)};
+        std::vector<std::filesystem::path> files;
+        if (std::filesystem::is_directory(found))
+            for (const auto& entry : std::filesystem::directory_iterator(found))
+                if (entry.path().extension() == ".sdf") files.push_back(std::filesystem::canonical(entry.path()));
+        return files;
+    }
+
+    const SdfPaths& paths_;
+    std::vector<std::filesystem::path> open_;
+    std::map<std::filesystem::path, size_t> work_;
+};
+
+/** Follows the includes of an SDF file, and throws types::ConfigError where libsdformat would follow them until its
+ *  stack or its user's patience ends: at a model that includes itself, and at more than may be read. */
+void checkIncludes(const std::filesystem::path& file, const SdfPaths& paths) {
+    if (Includes(paths).workOf(std::filesystem::canonical(file)) <= max_sdf_work) return;
+    throw types::ConfigError(file.string(), "",
+                             "would take minutes to read: with what it includes it may hold up to 100000 elements, or "
+                             "14000 in one; divide it, or make one mesh of many shapes");
+}
+
+/** Puts our search into libsdformat's global configuration, the only one that nested includes see. */
+class SearchConfig {
+public:
+    SearchConfig(const std::filesystem::path& world, const SdfPaths& paths, const std::set<std::string>& unreadable)
+        : before_(global()) {
+        if (unreadable.empty())  // these come before libsdformat's own search, the callback after it
+            for (const std::filesystem::path& folder : paths.folders()) global().AddURIPath("model://", folder);
+        global().SetFindCallback([&](const std::string& uri) {
+            const auto found = paths.find(uri, world);
+            const auto isIt = [&](const std::filesystem::path& file) {
+                return file == *found || file.parent_path() == *found;
+            };
+            return found && std::ranges::none_of(unreadable, isIt) ? found->string() : "";
+        });
+    }
+    ~SearchConfig() { global() = before_; }
+    SearchConfig(const SearchConfig&) = delete;
+    SearchConfig& operator=(const SearchConfig&) = delete;
+
+private:
+    static ::sdf::ParserConfig& global() { return ::sdf::ParserConfig::GlobalConfig(); }
+    ::sdf::ParserConfig before_;
+};
+
+/** On one line, with one space between words. */
+std::string joined(const std::string& text) {
+    std::istringstream words(text);
+    std::string line;
+    for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+    return line;
+}
+
+/** Loads `file`, or `text` in its place where there is one. Libsdformat throws what is no std::exception, and more than
+ *  it documents: returns the reason, empty when there is none. */
+std::string load(::sdf::Root& root, const std::filesystem::path& file, const std::string& text, ::sdf::Errors& errors) {
+    const ::sdf::ParserConfig& config = ::sdf::ParserConfig::GlobalConfig();
+    try {
+        errors = text.empty() ? root.Load(file.string(), config) : root.LoadSdfString(text, config);
+        return "";
+    } catch (const ::sdf::Exception& failure) {
+        return joined(failure.GetErrorStr());
+    } catch (const std::exception& failure) {
+        return types::reasonOf(failure);
+    } catch (...) {
+        return "no reason is given";
+    }
+}
+
+/** The file with "__" in the place of each "::"; empty when there is none. */
+std::string withoutColons(const std::filesystem::path& file) {
+    std::string text = textOf(file);
+    size_t at = text.find("::");
+    if (at == std::string::npos) return "";
+    for (; at != std::string::npos; at = text.find("::", at)) text.replace(at, 2, "__");
+    return text;
+}
+
+/** "Error parsing XML in file [...]: Error=XML_ERROR_PARSING_TEXT ... XMLElement name=pose" in plain words. */
+std::string plain(const std::string& message) {
+    if (!message.starts_with("Error parsing XML")) return message;
+    const auto wordAfter = [&message](const std::string& key) {
+        const size_t at = message.find(key);
+        if (at == std::string::npos) return std::string();
+        return message.substr(at + key.size(), message.find_first_of(" \n", at + key.size()) - at - key.size());
+    };
+    const std::string error = wordAfter("Error=XML_ERROR_"), element = wordAfter("XMLElement name=");
+    std::string what = "something in it is neither an element nor text";
+    if (error == "EMPTY_DOCUMENT") what = "it is empty";
+    if (error == "MISMATCHED_ELEMENT") what = "an element is not closed, or by another's tag";
+    if (error == "PARSING_ELEMENT") what = "a tag is not finished";
+    if (error == "PARSING_ATTRIBUTE") what = "an attribute is not of the form name=\"value\"";
+    if (error == "PARSING_TEXT") what = "a text is not followed by a tag";
+    if (error == "PARSING_COMMENT") what = "a comment is not closed";
+    if (error == "ELEMENT_DEPTH_EXCEEDED") what = "its elements are nested too deep";
+    return "is no XML: " + what + (element.empty() ? "" : " (<" + element + ">)");
+}
+
+std::string withoutColours(std::string line) {
+    for (size_t begin = 0; (begin = line.find('\033')) != std::string::npos;)
+        line.erase(begin, line.find('m', begin) - begin + 1);
+    return line;
+}
+
+/** "Error Code 13: [/sdf/world[...]/uri:a.world:L43]: Msg: Unable to..." or "Error [Param.cc:598]  The value..."; of
+ *  other lines, warnings among them, the message stays empty. */
+types::Diagnostic readLine(const std::string& line) {
+    types::Diagnostic diagnostic;
+    const auto after = [&line](size_t at) {
+        return line.substr(std::min(line.find_first_not_of(' ', at), line.size()));
+    };
+    if (const size_t message = line.find("Msg: "); line.starts_with("Error Code") && message != std::string::npos) {
+        diagnostic.message = after(message + 5);
+        const size_t begin = line.find('['), number = line.rfind(":L", message), file = line.rfind(':', number - 1);
+        if (begin > file || number == std::string::npos) return diagnostic;
+        diagnostic.path = line.substr(begin + 1, file - begin - 1);
+        diagnostic.file = line.substr(file + 1, number - file - 1);
+        diagnostic.line = std::atoi(line.c_str() + number + 2);
+    } else if (const size_t end = line.find("] "); line.starts_with("Error [") && end != std::string::npos) {
+        diagnostic.message = after(end + 2);
+        if (const size_t number = line.find("Line number="); number != std::string::npos)
+            diagnostic.line = std::atoi(line.c_str() + number + 12);
+    }
+    return diagnostic;
+}
+
+/** Adds a diagnostic that says more than those that are known: not the same again, nor that of an element around. */
+void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
+    diagnostic.message = plain(diagnostic.message);
+    const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
+    const auto tellsAll = [&](const types::Diagnostic& known) {
+        const bool is_same_place =
+            !diagnostic.path.empty() && known.path == diagnostic.path && known.line == diagnostic.line;
+        return known.text() == diagnostic.text() || is_same_place ||
+               (says("Error reading element") && known.path.starts_with(diagnostic.path));
+    };
+    if (says("Unable to read file:") || says("Failed to load a world")) return;
+    if (!diagnostic.message.empty() && std::ranges::none_of(diagnostics, tellsAll)) diagnostics.push_back(diagnostic);
+}
+
+/** Adds what libsdformat printed and what it returned. */
+void add(const std::string& console, const ::sdf::Errors& errors, types::Diagnostics& diagnostics) {
+    std::istringstream lines(console);
+    for (std::string line; std::getline(lines, line);) add(readLine(withoutColours(line)), diagnostics);
+    for (const ::sdf::Error& error : errors)
+        add({error.XmlPath().value_or(""), error.Message(), error.FilePath().value_or(""),
+             error.LineNumber().value_or(0)},
+            diagnostics);
+}
+
+/** Adds the files of "Unable to read file[/models/vase/model.sdf]". */
+void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>& unreadable) {
+    constexpr std::string_view text = "Unable to read file[";
+    for (const types::Diagnostic& diagnostic : diagnostics)
+        if (diagnostic.message.starts_with(text))
+            unreadable.insert(diagnostic.message.substr(text.size(), diagnostic.message.rfind(']') - text.size()));
+}
+
+/** Joins those without a place, which say what is wrong, to the first with one, which says where. */
+[[noreturn]] void refuse(const std::filesystem::path& file, types::Diagnostics diagnostics) {
+    if (diagnostics.empty()) diagnostics.push_back({"", "holds neither a world nor a model of SDF"});
+    const auto placed =
+        std::ranges::stable_partition(diagnostics, [](const auto& diagnostic) { return !diagnostic.file.empty(); });
+    std::string reasons;
+    for (const types::Diagnostic& diagnostic : placed) reasons += (reasons.empty() ? "" : "; ") + diagnostic.message;
+    const int line = placed.empty() ? 0 : placed.front().line;
+    diagnostics.erase(placed.begin(), placed.end());
+    if (diagnostics.empty())
+        diagnostics.push_back({"", reasons, file.string(), line});
+    else if (!reasons.empty())
+        diagnostics.front().message += ": " + reasons;
+    throw types::ConfigError(std::move(diagnostics));
+}
+
+}  // namespace
+
+std::mutex CerrCapture::mutex_;
+
+CerrCapture::CerrCapture() : lock_(mutex_), before_(std::cerr.rdbuf(text_.rdbuf())) {}
+CerrCapture::~CerrCapture() { std::cerr.rdbuf(before_); }
+
+std::string CerrCapture::take() {
+    const std::string text = text_.str();
+    text_.str("");
+    return text;
+}
+
+::sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, CerrCapture& console,
+                        std::vector<std::string>& notices) {
+    if (!std::filesystem::is_regular_file(file))
+        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world or .sdf file");
+    checkIncludes(file, paths);
+    std::set<std::string> unreadable;
+    std::string renamed;
+    types::Diagnostics diagnostics;
+    while (true) {
+        const SearchConfig search(file, paths, unreadable);
+        const size_t known = unreadable.size();
+        ::sdf::Root root;
+        ::sdf::Errors errors;
+        const std::string failure = load(root, file, renamed, errors);
+        if (!failure.empty()) add({"", "cannot be read as SDF: " + failure}, diagnostics);
+        add(console.take(), errors, diagnostics);
+        findUnreadable(diagnostics, unreadable);
+        if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
+            for (const types::Diagnostic& diagnostic : diagnostics)
+                notices.push_back(diagnostic.text() + (diagnostic.path.ends_with("/uri") ? "; left out" : ""));
+            if (!renamed.empty()) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
+            return root;
+        }
+        if (unreadable.size() > known) continue;  // again without the include that costs the whole world
+        if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(diagnostics));
+    }
+}
+
+}  // namespace insonify::sdf

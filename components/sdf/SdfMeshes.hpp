@@ -1,0 +1,69 @@
+#pragma once
+#include <compare>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "components/scene/Acoustics.hpp"
+#include "components/scene/Surface.hpp"
+#include "types/ConfigError.hpp"
+#include "types/Geometry.hpp"
+
+namespace insonify::sdf {
+
+/** What a visual says about its material. */
+struct Look {
+    std::string name;                 ///< Of its material script; empty: the mesh's own, or "default".
+    scene::AcousticValues acoustics;  ///< Known to be right.
+    auto operator<=>(const Look&) const = default;
+};
+
+/** A mesh in a visual. */
+struct Placing {
+    int mesh = 0;  ///< Index into Geometry::meshes.
+    glm::dmat4 visual_from_object{1};
+};
+
+/** Makes the meshes of a world's visuals, each once however often it stands there with the same material. */
+class SdfMeshes {
+public:
+    explicit SdfMeshes(types::Geometry& geometry) : geometry_(geometry) {}
+
+    /** `make()` is called for the first visual of that key and material. */
+    template <class Make>
+    Placing shape(const std::string& key, const Look& look, Make make) {
+        const auto [known, is_new] = shapes_.try_emplace({key, look}, -1);
+        if (is_new) known->second = add(make(), key, look);
+        return {known->second};
+    }
+    /** The objects of a mesh file, or those that are called `submesh` or whose mesh is; none when there is no such.
+     *  A file that cannot be read is a types::ConfigError. */
+    const std::vector<Placing>& file(const std::filesystem::path& path, const std::string& submesh, const Look& look);
+
+    /** The same, moved so that the centre of their box is the origin. */
+    std::vector<Placing> centred(std::vector<Placing> placings) const;
+
+private:
+    /** What a mesh file gave: one that cannot be read is not tried again for each visual. */
+    struct FileRead {
+        types::GeometryPtr geometry;
+        std::optional<types::ConfigError> failure;
+    };
+
+    const types::GeometryPtr& readOnce(const std::filesystem::path& path);
+    int add(scene::Surface surface, const std::string& name, const Look& look);
+    int material(types::Material material, const Look& look);
+    std::vector<Placing> merge(const types::Geometry& from, const std::string& submesh, const Look& look);
+    int mergeMesh(const types::Geometry& from, int mesh, const Look& look, std::map<int, int>& materials);
+
+    types::Geometry& geometry_;
+    std::map<Look, int> materials_;  ///< Of shapes.
+    std::map<std::pair<std::string, Look>, int> shapes_;
+    std::map<std::string, FileRead> files_;
+    std::map<std::tuple<std::string, std::string, Look>, std::vector<Placing>> placings_;
+};
+
+}  // namespace insonify::sdf

@@ -1,0 +1,68 @@
+#pragma once
+// Embree 3 and 4, which differ in how rays are cast.
+#include <cstddef>
+#include <span>
+
+#if !__has_include(<embree3/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace insonify::sonar {
+
+#if RTC_VERSION_MAJOR >= 4
+
+/** What 16 rays meet first. `valid`: -1 for those that are looked at, aligned to 64 bytes. */
+inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &rays, &arguments);
+}
+
+/** The same for packets of rays that are all looked at; one whose tfar is below its tnear meets nothing. */
+inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
+    alignas(64) static constexpr int all[16] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    for (RTCRayHit16& rays : packets) intersect(scene, all, rays);
+}
+
+/** Sets tfar of each ray that meets anything to -infinity. */
+inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay16& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = are_coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    rtcOccluded16(valid, scene, &rays, &arguments);
+}
+
+#else
+
+inline RTCIntersectContext contextOf(bool are_coherent) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = are_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+
+/** What 16 rays meet first. `valid`: -1 for those that are looked at, aligned to 64 bytes. */
+inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    RTCIntersectContext context = contextOf(true);
+    rtcIntersect16(valid, scene, &context, &rays);
+}
+
+/** The same for packets of rays that are all looked at; one whose tfar is below its tnear meets nothing. */
+inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
+    RTCIntersectContext context = contextOf(true);
+    rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets.data()), 16,
+                   static_cast<unsigned>(packets.size()), sizeof(RTCRayHit16));
+}
+
+/** Sets tfar of each ray that meets anything to -infinity. */
+inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay16& rays) {
+    RTCIntersectContext context = contextOf(are_coherent);
+    rtcOccluded16(valid, scene, &context, &rays);
+}
+
+#endif
+
+}  // namespace insonify::sonar

@@ -1,0 +1,62 @@
+// insonify study multipath
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+#include "components/command/Json.hpp"
+#include "components/command/OutputFolder.hpp"
+#include "components/study/MultipathStudy.hpp"
+#include "components/study/commands/StudyCommand.hpp"
+
+namespace insonify::study {
+namespace {
+
+using command::Json;
+
+Json toJson(const MultipathResult& result) {
+    Json json{{"curves", Json::array()}, {"verdicts", Json::array()}};
+    for (const HeardCurve& curve : result.curves) {
+        Json points = Json::array();
+        for (const HeardPoint& point : curve.points)
+            points.push_back({{"x", point.x}, {"heard", point.heard}, {"expected", point.expected}});
+        json["curves"].push_back({{"name", curve.name},
+                                  {"title", curve.title},
+                                  {"x", curve.x_label},
+                                  {"y", curve.y_label},
+                                  {"worst", curve.worst()},
+                                  {"points", std::move(points)}});
+    }
+    json["verdicts"] = verdictsOf(result.claims);
+    return json;
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    if (!(file << text).flush()) throw std::runtime_error(path.string() + " cannot be written");
+}
+
+int runStudy(const std::string& out) {
+    const MultipathResult result = studyMultipath();
+    command::OutputFolder folder(out, "study_multipath");
+    folder.keep();
+    write(folder.path() / "multipath.csv", csvOf(result));
+    command::write(toJson(result), (folder.path() / "multipath.json").string());
+    for (const Claim& claim : result.claims)
+        fmt::print("{}  {}: {:.3g}, at most {:.3g}\n", claim.verdict(), claim.text, claim.measured, claim.bound);
+    fmt::print("report in {}\n", folder.path().string());
+    return std::ranges::any_of(result.claims, &Claim::fails) ? 1 : 0;
+}
+
+}  // namespace
+
+void addMultipathStudy(CLI::App& study, command::Action& action) {
+    const auto out = std::make_shared<std::string>();
+    CLI::App* command = study.add_subcommand("multipath", "Echoes by way of mirrors against closed forms");
+    command->add_option("--out", *out, "folder of the report");
+    command->callback([out, &action] { action = [out] { return runStudy(*out); }; });
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,86 @@
+// insonify study rays DEPLOYMENT: for scripts/bench
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "components/command/Json.hpp"
+#include "components/study/commands/StudyCommand.hpp"
+#include "components/study/oracles/EmbreeCaster.hpp"
+
+namespace insonify::study {
+namespace {
+
+struct Options {
+    std::string deployment;
+    uint64_t ping = 1;
+    int pings = 30;
+};
+
+/** How long rays take (EmbreeCaster) of the number that a sonar's quality asks for: what a renderer is measured by. */
+struct RayTimes {
+    size_t rays = 0, met = 0;                      ///< Cast in a ping, and those that met something [1].
+    double alone_median_ms = 0, alone_p99_ms = 0;  ///< Primary rays and nothing else [ms].
+    double ping_median_ms = 0, ping_p99_ms = 0;    ///< With their energies in bins [ms].
+};
+
+/** Of `pings` calls after a first one, shortest first [ms]. */
+template <class Work>
+std::vector<double> sortedTimes(int pings, const Work& work) {
+    using Clock = std::chrono::steady_clock;
+    work();
+    std::vector<double> times;
+    for (int i = 0; i < pings; ++i) {
+        const Clock::time_point start = Clock::now();
+        work();
+        times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    }
+    std::ranges::sort(times);
+    return times;
+}
+
+double share(const std::vector<double>& sorted, double part) {
+    return sorted[static_cast<size_t>(std::ceil(part * static_cast<double>(sorted.size()))) - 1];
+}
+
+/** Times so many pings of each kind after a first one, the tree not counted. `config` as for EmbreeCaster. */
+RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene, int pings) {
+    EmbreeCaster caster(scene);
+    caster.prepare(config);
+    RayTimes result;
+    result.rays = static_cast<size_t>(config.rows()) * static_cast<size_t>(config.columnsPerBeam() * config.beams());
+    const auto alone = sortedTimes(pings, [&] { result.met = caster.castOnly(scene.sonar); });
+    std::vector<float> energies;
+    const auto whole = sortedTimes(pings, [&] { caster.render(scene.sonar, energies); });
+    result.alone_median_ms = share(alone, 0.5), result.alone_p99_ms = share(alone, 0.99);
+    result.ping_median_ms = share(whole, 0.5), result.ping_p99_ms = share(whole, 0.99);
+    return result;
+}
+
+int runStudy(const Options& options, const FindSonar& sonarAt) {
+    const SonarAt sonar = sonarAt(options.deployment, options.ping);
+    const RayTimes times = timeRays(sonar.config, sonar.snapshot, options.pings);
+    command::print({{"rays", times.rays},
+                    {"met", times.met},
+                    {"alone_median_ms", times.alone_median_ms},
+                    {"alone_p99_ms", times.alone_p99_ms},
+                    {"ping_median_ms", times.ping_median_ms},
+                    {"ping_p99_ms", times.ping_p99_ms}});
+    return 0;
+}
+
+}  // namespace
+
+void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = study.add_subcommand("rays", "Times as many rays (Embree) as a sonar's quality asks for");
+    command->group("");  // no part of what is documented
+    command->add_option("DEPLOYMENT", options->deployment, "a YAML file with a sonar")->required();
+    command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
+    command->add_option("--pings", options->pings, "timed of each kind")->check(CLI::Range(1, 100000));
+    command->callback(
+        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+}
+
+}  // namespace insonify::study

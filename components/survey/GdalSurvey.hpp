@@ -1,0 +1,13 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+
+#include "components/scene/Survey.hpp"
+
+namespace insonify::survey {
+
+/** Opens a survey by GDAL: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of them. As
+ * scene::openSurvey. */
+std::unique_ptr<scene::Survey> open(const std::filesystem::path& file, int band);
+
+}  // namespace insonify::survey

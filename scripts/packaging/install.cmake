@@ -1,0 +1,70 @@
+# What `cmake --install` puts in a prefix besides the command and the libraries, and what `cpack -G DEB` packs.
+include(CMakePackageConfigHelpers)
+set(documents ${CMAKE_INSTALL_DATAROOTDIR}/doc/insonify)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Insonify)
+install(EXPORT InsonifyTargets NAMESPACE Insonify:: DESTINATION ${package_folder} COMPONENT development)
+configure_package_config_file(scripts/packaging/InsonifyConfig.cmake.in ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake
+  INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake
+  DESTINATION ${package_folder} COMPONENT development)
+
+# The manual page is what the command and component libraries say of themselves.
+get_property(components GLOBAL PROPERTY insonify_components)
+add_custom_command(
+  OUTPUT ${PROJECT_BINARY_DIR}/insonify.1
+  COMMAND insonify man > ${PROJECT_BINARY_DIR}/insonify.1
+  DEPENDS insonify ${components}
+  VERBATIM)
+add_custom_target(insonify_man ALL DEPENDS ${PROJECT_BINARY_DIR}/insonify.1)
+install(FILES ${PROJECT_BINARY_DIR}/insonify.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+
+# Of the shaders, which are in the command, only the one that a header includes.
+install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
+install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
+install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
+# Where systemd looks, below /usr as below /usr/local, whatever the libraries' folder is called.
+install(FILES deploy/insonify.service DESTINATION lib/systemd/system COMPONENT runtime)
+file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md components/*/*.md types/*.md)
+foreach(page ${pages})
+  get_filename_component(folder ${page} DIRECTORY)
+  install(FILES ${page} DESTINATION ${documents}/${folder} COMPONENT runtime)
+endforeach()
+install(FILES LICENSE DESTINATION ${documents} RENAME copyright COMPONENT runtime)
+
+# insonify, the command with its examples; insonify-NAME for each component library; and insonify-dev.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME insonify)
+set(CPACK_PACKAGE_CONTACT "The Insonify developers")
+get_property(packages GLOBAL PROPERTY insonify_packages)
+set(CPACK_COMPONENTS_ALL runtime development ${packages})
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME insonify)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Imaging sonar from a 3-D scene, in real time
+ The insonify command and deployments as examples.")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")  # opened while running
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)  # libinsonify.so is in another package
+foreach(package ${packages})
+  string(TOUPPER ${package} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME insonify-${package})
+  set(CPACK_DEBIAN_${upper}_DESCRIPTION "Imaging sonar from a 3-D scene: component library ${package}")
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "insonify (= ${PROJECT_VERSION})")
+endforeach()
+set(CPACK_DEBIAN_SDF_PACKAGE_RECOMMENDS insonify-meshes)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME insonify-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to write components with
+ find_package(Insonify) gives the framework and the library of each component.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, libignition-msgs-dev, libignition-transport-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
+# What the packages hold.
+get_property(installed GLOBAL PROPERTY insonify_installed)
+add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})
+include(CPack)

@@ -1,0 +1,61 @@
+// Shared by GLSL and a test in C++: numbers as sums of two floats, for devices that count slowly in double. They have 44 bits at
+// least, however roughly the device divides and takes roots. Sum and product with their rounding: D. E. Knuth, The Art of
+// Computer Programming 2, 4.2.2; T. J. Dekker, "A floating-point technique for extending the available precision",
+// Numer. Math. 18, 1971. `precise` keeps a compiler from rearranging them; C++ defines it as nothing.
+
+struct Pair {
+    float high, low;  // high is the sum, rounded
+};
+
+Pair exactSum(float a, float b) {
+    precise float sum = a + b;
+    precise float of_b = sum - a;
+    precise float rest = (a - (sum - of_b)) + (b - of_b);
+    return Pair(sum, rest);
+}
+
+// The first half of the bits of a float, so that products of halves are exact.
+float firstHalf(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u); }
+
+Pair exactProduct(float a, float b) {
+    precise float product = a * b;
+    precise float a_first = firstHalf(a), b_first = firstHalf(b);
+    precise float a_rest = a - a_first, b_rest = b - b_first;
+    precise float rest = ((a_first * b_first - product) + a_first * b_rest + a_rest * b_first) + a_rest * b_rest;
+    return Pair(product, rest);
+}
+
+Pair negative(Pair a) { return Pair(-a.high, -a.low); }
+
+Pair sumOf(Pair a, Pair b) {
+    Pair high = exactSum(a.high, b.high);
+    precise float low = high.low + (a.low + b.low);
+    return exactSum(high.high, low);
+}
+
+Pair productOf(Pair a, Pair b) {
+    Pair high = exactProduct(a.high, b.high);
+    precise float low = high.low + (a.high * b.low + a.low * b.high);
+    return exactSum(high.high, low);
+}
+
+Pair quotientOf(Pair a, Pair b) {
+    precise float first = a.high / b.high;
+    Pair rest = sumOf(a, negative(productOf(b, Pair(first, 0.0f))));
+    precise float second = rest.high / b.high;
+    return exactSum(first, second);
+}
+
+// Of a number above 0.
+Pair rootOf(Pair a) {
+    precise float first = sqrt(a.high);
+    Pair rest = sumOf(a, negative(exactProduct(first, first)));
+    precise float second = 0.5f * rest.high / first;
+    return exactSum(first, second);
+}
+
+// What a number is beyond a float: exact where the two are close.
+float beyond(Pair a, float origin) {
+    precise float difference = (a.high - origin) + a.low;
+    return difference;
+}

@@ -1,0 +1,84 @@
+// The wheel and the archive that scripts/package makes.
+#include <gmock/gmock.h>
+
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "tests/install/Outside.hpp"
+#include "tests/support/Paths.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+/** The file in build/packages with this end. */
+std::string packed(const std::string& end) {
+    for (const auto& entry : fs::directory_iterator(insonify::test::build_dir + std::string("/packages")))
+        if (entry.path().filename().string().ends_with(end)) return entry.path();
+    throw std::runtime_error("no package " + end);
+}
+
+/** Of the libraries that a program loads, those of the system. */
+std::set<std::string> fromSystem(const TestFolder& folder, const std::string& program) {
+    std::istringstream lines(call(folder, {"ldd", program}).out);
+    std::set<std::string> names;
+    for (std::string line; std::getline(lines, line);)
+        if (const auto at = line.find("=> "); at != std::string::npos && line.find(folder.path()) == std::string::npos)
+            names.insert(line.substr(1, line.find(".so") - 1));
+    return names;
+}
+
+void runArchive(const WallFolder& folder) {
+    const std::string archive = packed(".tar.zst"), name = fs::path(archive).stem().stem();
+    ASSERT_EQ(call(folder, {"tar", "--zstd", "-xf", archive}).code, 0);
+    const std::string program = folder / (name + "/bin/insonify");
+    const Outcome ran = call(folder, {"env", "-i", program, "run", "wall.yml", "--pings", "1", "--out", "out"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(fs::exists(folder / "out"));
+
+    const fs::path package = folder / (name + "/insonify");
+    std::vector<std::string> programs = {package / "bin/insonify"};
+    for (const auto& entry : fs::directory_iterator(package / "lib/insonify")) programs.push_back(entry.path());
+    EXPECT_GT(programs.size(), 8u);
+    for (const std::string& each : programs)
+        for (const std::string& library : fromSystem(folder, each))
+            EXPECT_THAT(library, testing::MatchesRegex("lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\\+\\+|z|expat)"))
+                << each;
+    EXPECT_GT(std::distance(fs::directory_iterator(package / "../insonify.libs/licences"), {}), 20);
+    EXPECT_THAT(
+        call(folder, {program, "check", std::string(insonify::test::source_dir) + "/deploy/survey_mission.yml"}).err,
+        HasSubstr("the component library survey, which wheels and archives do not hold"));
+}
+
+void runWheel(const WallFolder& folder) {
+    const std::string wheel = packed(".whl");
+    EXPECT_THAT(wheel, HasSubstr("-py3-none-manylinux_2_"));
+    ASSERT_EQ(call(folder, {"/usr/bin/python3", "-m", "venv", "--system-site-packages", "env"}).code, 0);
+    const Outcome installed = call(folder, {"env/bin/pip", "install", "--no-index", "--no-deps", wheel});
+    ASSERT_EQ(installed.code, 0) << installed.err;
+    const Outcome ran = call(folder, {"env/bin/insonify", "run", "wall.yml", "--pings", "1", "--out", "out"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const Outcome stepped =
+        call(folder, {"env/bin/python", "-c",
+                      "import insonify, glob\n"
+                      "ping = insonify.Simulation('wall.yml').step(insonify.Pose([0, 0, 0]))\n"
+                      "[log] = glob.glob('out/wall.0.log')\n"
+                      "print(insonify.__file__, ping.bins.max() > 0, len(insonify.read_log(log)) > 0)"});
+    EXPECT_THAT(stepped.out, testing::AllOf(HasSubstr("/env/lib/"), HasSubstr("True True"))) << stepped.err;
+}
+
+}  // namespace
+
+TEST(PackageTest, TheArchiveRunsFromItsFolderAndTheWheelInAnyPython) {
+    const WallFolder folder;
+    const std::string script = insonify::test::source_dir + std::string("/scripts/package");
+    const Outcome made = call(folder, {script, "wheel", "archive"});
+    if (made.err.find("No matching distribution") != std::string::npos)
+        GTEST_SKIP() << "NOT TESTED: auditwheel and what else makes wheels cannot be had from PyPI";
+    ASSERT_EQ(made.code, 0) << made.err;
+    runArchive(folder);
+    runWheel(folder);
+    EXPECT_EQ(call(folder, {script, "rpm"}).code, 2) << "what it may be is said";
+}

@@ -1,0 +1,200 @@
+// Component libraries as users meet them: by the command and by Python, there, absent and broken.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+#include "tests/support/Paths.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+using testing::HasSubstr, testing::Not;
+namespace fs = std::filesystem;
+
+const fs::path build = test::build_dir, parts = build / "tests/loader/parts", components = build / "lib/insonify";
+
+std::string deploymentOf(const std::string& type) {
+    return "tasks:\n  a: {type: " + type + ", activity: {period: 0.1}}\n";
+}
+
+/** Insonify as it is installed, in a folder of its own, so that libraries may be absent or broken. */
+class ComponentLibraryTest : public testing::Test {
+protected:
+    ComponentLibraryTest() {
+        fs::create_directories(folder_ / "lib/insonify");
+        fs::create_directories(folder_ / "parts");
+        fs::copy_file(fs::canonical(build / "lib/libinsonify.so"), folder_ / "lib/libinsonify.so.0.1");
+    }
+    void add(const std::string& name) const { fs::copy_file(components / (name + ".so"), installed(name)); }
+    fs::path installed(const std::string& name) const { return folder_ / "lib/insonify" / (name + ".so"); }
+    /** Beside the user's own folder of components. */
+    Outcome call(std::vector<std::string> words, const std::string& path = "") const {
+        std::vector<std::string> all{"env", "LD_LIBRARY_PATH=" + (folder_ / "lib").string(),
+                                     "INSONIFY_COMPONENT_PATH=" + path, build / "bin/insonify"};
+        all.insert(all.end(), words.begin(), words.end());
+        return Process(std::move(all), folder_.path()).wait();
+    }
+    Outcome check(const std::string& type, const std::string& path = "") const {
+        writeFile(folder_ / "a.yml", deploymentOf(type));
+        return call({"check", "a.yml"}, path);
+    }
+    std::string partsOfUser() const { return folder_ / "parts"; }
+    void give(const std::string& part) const {
+        fs::copy_file(parts / (part + ".so"), folder_ / "parts" / (part + ".so"));
+    }
+    /** A library of this name with these bytes is one error at the place of its type, without a crash. */
+    void expectRefused(const std::string& bytes, const std::string& why) const {
+        writeFile(folder_ / "parts/mine.so", bytes);
+        const Outcome outcome = check("mine::Task", partsOfUser());
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr("a.yml:2:13: tasks.a.type: is mine::Task: "));
+        EXPECT_THAT(outcome.err, HasSubstr("parts/mine.so: " + why));
+    }
+
+    /** A simulation by Python with one more task: "made", or its error. */
+    Outcome simulate(const std::string& type) const {
+        writeFile(folder_ / "wall.gltf", wallGltf());
+        writeFile(folder_ / "a.yml", replaced(wall_deployment, "tasks:\n",
+                                              "tasks:\n  more: {type: " + type + ", activity: {period: 0.1}}\n"));
+        return Process(
+                   {"env", "LD_LIBRARY_PATH=" + (folder_ / "lib").string(), "INSONIFY_COMPONENT_PATH=" + partsOfUser(),
+                    "PYTHONPATH=" + (build / "python").string(), "/usr/bin/python3", "-c",
+                    "import insonify\ntry:\n    insonify.Simulation('a.yml')\n    print('made')\n"
+                    "except insonify.ConfigError as error:\n    print(error)\n"},
+                   folder_.path())
+            .wait();
+    }
+
+    const TestFolder folder_;
+};
+
+TEST_F(ComponentLibraryTest, OneOfAUserIsLoadedByTheNamespaceOfATypeAlone) {
+    give("one_type");
+    const Outcome outcome = check("one_type::CounterTask", partsOfUser());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(call({"describe"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
+    EXPECT_THAT(call({"schema"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
+    EXPECT_THAT(call({"completion", "bash"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
+    EXPECT_THAT(check("one_type::CountTask", partsOfUser()).err, HasSubstr("did you mean one_type::CounterTask?"));
+}
+
+TEST_F(ComponentLibraryTest, TheWorkingFolderIsNotSearched) {
+    for (const char* place : {"one_type.so", "insonify/one_type.so"}) {
+        fs::create_directories((folder_ / place).parent_path());
+        fs::copy_file(parts / "one_type.so", folder_ / place);
+    }
+    EXPECT_THAT(check("one_type::CounterTask").err, HasSubstr("is one_type::CounterTask; known: "));
+    for (const char* relative : {".", "insonify", ":", "/nowhere:.", "/nowhere::/nowhere"}) {
+        const Outcome outcome = check("one_type::CounterTask", relative);
+        EXPECT_EQ(outcome.code, 2) << relative;
+        EXPECT_THAT(outcome.err, HasSubstr("INSONIFY_COMPONENT_PATH: has the folder \"")) << relative;
+    }
+    EXPECT_EQ(check("../one_type::CounterTask", folder_.path()).code, 2);
+}
+
+TEST_F(ComponentLibraryTest, OneOfAnotherVersionIsRefusedBeforeItRuns) {
+    give("other_version");
+    const Outcome outcome = check("other_version::Task", partsOfUser());
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("other_version.so: is for Insonify 0.0.9 00000000; this is 0.1.0 "));
+    EXPECT_THAT(outcome.err, HasSubstr("build it anew"));
+    give("no_interface");
+    EXPECT_THAT(check("no_interface::Task", partsOfUser()).err, HasSubstr("has no line INSONIFY_COMPONENT_LIBRARY"));
+}
+
+TEST_F(ComponentLibraryTest, AMissingSymbolIsNamed) {
+    give("missing_symbol");
+    const Outcome outcome = check("missing_symbol::Task", partsOfUser());
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("missing_symbol.so: cannot be loaded: "));
+    EXPECT_THAT(outcome.err, HasSubstr("neverWritten"));
+}
+
+TEST_F(ComponentLibraryTest, BrokenOnesAreRefusedWithoutACrash) {
+    const std::string whole = readFile(parts / "one_type.so");
+    expectRefused("", "cannot be loaded: it is no shared object");
+    expectRefused("INPUT(/etc/passwd)\n", "cannot be loaded: it is no shared object");
+    for (const size_t length : {size_t{4}, size_t{63}})
+        expectRefused(whole.substr(0, length), "cannot be loaded: it is no shared object");
+    for (const size_t length : {size_t{64}, size_t{500}, whole.size() / 4, whole.size() / 2})
+        expectRefused(whole.substr(0, length), "cannot be loaded: it is cut short");
+    std::string other = whole;
+    other[18] = static_cast<char>(0xB7);  // of another processor
+    expectRefused(other, "cannot be loaded: ");
+    fs::remove(folder_ / "parts/mine.so");
+    fs::create_directories(folder_ / "parts/mine.so");
+    EXPECT_THAT(check("mine::Task", partsOfUser()).err, HasSubstr("cannot be loaded: it is no file"));
+}
+
+TEST_F(ComponentLibraryTest, OfTwoOfOneNameNoneIsChosen) {
+    give("one_type");
+    fs::create_directories(folder_ / "more");
+    fs::copy_file(parts / "one_type.so", folder_ / "more/one_type.so");
+    const std::string both = partsOfUser() + ":" + (folder_ / "more").string();
+    const Outcome outcome = check("one_type::CounterTask", both);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("is the component library one_type, and so is "));
+    fs::remove(folder_ / "more/one_type.so");
+    fs::create_symlink(folder_ / "parts/one_type.so", folder_ / "more/one_type.so");
+    EXPECT_EQ(check("one_type::CounterTask", both).code, 0) << "the same file";
+}
+
+TEST_F(ComponentLibraryTest, AnAbsentOneIsAnsweredWithWhatInstallsIt) {
+    const std::string nav =
+        "which needs the component library nav, which is not here; `apt install insonify-nav` installs it";
+    const Outcome by_type = check("nav::ImuTask");
+    EXPECT_EQ(by_type.code, 2);
+    EXPECT_THAT(by_type.err, HasSubstr("a.yml:2:13: tasks.a.type: is nav::ImuTask, " + nav));
+    writeFile(folder_ / "b.world", "<sdf version='1.9'><world name='w'></world></sdf>\n");
+    const Outcome by_file = call({"scene", "b.world"});
+    EXPECT_EQ(by_file.code, 2);
+    EXPECT_THAT(by_file.err, HasSubstr("b.world: needs the component library sdf, which is not here"));
+    for (const char* command : {"study", "dataset", "device"}) {
+        const Outcome by_command = call({command, "error", "--scene", "flat_bottom"});
+        EXPECT_EQ(by_command.code, 2) << command;
+        EXPECT_THAT(by_command.err, HasSubstr(std::string(command) + ": is in the component library " + command +
+                                              ", which is not here"));
+    }
+    EXPECT_THAT(call({"--help"}).out, HasSubstr("(not installed)"));
+    add("nav");
+    EXPECT_EQ(check("nav::ImuTask").err.find("not here"), std::string::npos);
+}
+
+TEST_F(ComponentLibraryTest, PythonAnswersAsTheCommandDoes) {
+    if (!fs::exists(build / "python/insonify")) GTEST_SKIP() << "SKIPPED: the Python module is not built";
+    EXPECT_THAT(simulate("nav::ImuTask").out, HasSubstr("needs the component library nav, which is not here"));
+    add("nav");
+    EXPECT_THAT(simulate("nav::ImuTask").out, HasSubstr("tasks.more: input port pose")) << "it is loaded, and checked";
+}
+
+TEST_F(ComponentLibraryTest, OneThatIsLinkedWithNothingIsLoadedInPythonToo) {
+    if (!fs::exists(build / "python/insonify")) GTEST_SKIP() << "SKIPPED: the Python module is not built";
+    give("one_type");
+    const Outcome outcome = simulate("one_type::CounterTask");
+    EXPECT_EQ(outcome.out, "made\n") << outcome.err;
+}
+
+TEST_F(ComponentLibraryTest, TheListTellsWhichAreHereAbsentAndBroken) {
+    add("nav");
+    writeFile(installed("study"), "no library\n");
+    const std::string list = call({"libraries"}).out;
+    EXPECT_THAT(list, HasSubstr("nav        here     a DVL"));
+    EXPECT_THAT(list, HasSubstr("viewer     absent   the live view"));
+    EXPECT_THAT(list, HasSubstr("study      broken   "));
+    EXPECT_THAT(call({"--help"}).err, HasSubstr("notice: ")) << "a broken one stands in nobody's way";
+    EXPECT_EQ(call({"study"}).code, 2);
+    EXPECT_EQ(call({"describe"}).code, 0);
+}
+
+TEST_F(ComponentLibraryTest, ADeploymentTellsWhichItLacks) {
+    add("nav");
+    writeFile(folder_ / "a.yml", R"(tasks:
+  scene: {type: scene::SceneTask, properties: {file: tank.world, bathymetry: {file: floor.tif}}}
+  imu: {type: nav::ImuTask}
+  ros: {type: dds::PublisherTask}
+  fan: {type: output::FanImageTask, properties: {file: fan.mp4}}
+)");
+    EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\nsdf\nsurvey\nvideo\n");
+}
+
+}  // namespace
+}  // namespace insonify::deployer

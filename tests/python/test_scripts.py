@@ -1,0 +1,19 @@
+"""Scripts in Python, of which most run only by hand: each is Python that Debian's understands."""
+
+import pytest
+from conftest import ROOT
+
+SCRIPTS = [
+    file
+    for file in sorted((ROOT / "scripts").rglob("*"))
+    if file.is_file() and (file.suffix == ".py" or file.read_bytes().startswith(b"#!/usr/bin/env python3"))
+]
+
+
+@pytest.mark.parametrize("file", SCRIPTS, ids=lambda file: str(file.relative_to(ROOT)))
+def test_it_compiles(file):
+    compile(file.read_text(), str(file), "exec")
+
+
+def test_the_benchmarks_are_among_them():
+    assert {"bench", "build.py", "wheel.py"} <= {file.name for file in SCRIPTS}

@@ -1,0 +1,203 @@
+// Models, links, frames and joints of SDF worlds; where things stand is known in closed form.
+#include "components/sdf/Sdf.hpp"
+#include "tests/sdf/SdfFiles.hpp"
+
+namespace insonify::sdf {
+
+using namespace scene;
+namespace {
+
+class SdfTest : public SdfFiles {
+protected:
+    static std::vector<std::string> namesOf(const std::vector<Part>& parts, const Scene& scene) {
+        std::vector<std::string> names;
+        for (const Part& part : parts) names.push_back(scene.geometry->objects[part.object].name);
+        return names;
+    }
+    static std::string parentOf(const Scene& scene, const std::string& name) {
+        const int node = findNode(scene, name);
+        if (node < 0) return "no such node";
+        const int parent = scene.nodes[static_cast<size_t>(node)].parent;
+        return parent < 0 ? "" : scene.nodes[static_cast<size_t>(parent)].name;
+    }
+    static std::string link(const std::string& name) { return "<link name='" + name + "'/>"; }
+    static std::string joint(const std::string& parent, const std::string& child) {
+        static int count = 0;
+        return "<joint name='joint_" + std::to_string(++count) + "' type='revolute'><parent>" + parent +
+               "</parent><child>" + child + "</child><axis><xyz>0 0 1</xyz></axis></joint>";
+    }
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(SdfTest, ABoxStandsWhereModelLinkAndVisualPutIt) {
+    const Scene scene =
+        world("<model name='m'>" + pose("10 0 0 0 0 1.5707963267948966") + "<link name='l'>" + pose("3 0 0 0 0 0") +
+              visual("v", box_, pose("0 0 5 1.5707963267948966 0 0")) + "</link></model>");
+    // in the visual the box turns about x: 2 x 6 x 4; the model turns it about z: 6 x 2 x 4 about (10, 3, 5)
+    expectBounds(boundsOf(*scene.geometry), {7, 2, 3}, {13, 4, 7});
+    expectSound(*scene.geometry);
+    EXPECT_EQ(scene.geometry->objects.at(0).name, "m::l::v");
+    EXPECT_TRUE(scene.geometry->notices.empty());
+}
+
+TEST_F(SdfTest, PosesAreRelativeToTheFrameThatTheyName) {
+    const Scene scene = world("<frame name='f'>" + pose("10 0 0 0 0 1.5707963267948966") + "</frame><model name='m'>" +
+                              "<pose relative_to='f'>1 0 0 0 0 0</pose><frame name='top'>" + pose("0 0 7 0 0 0") +
+                              "</frame><link name='l'><pose relative_to='top'>2 0 0 0 0 0</pose>" + visual("v", box_) +
+                              "</link></model>");
+    // f turns x to y: the model is at (10, 1, 0), its link at (10, 3, 7)
+    expectBounds(boundsOf(*scene.geometry), {8, 2, 4}, {12, 4, 10});
+}
+
+TEST_F(SdfTest, IncludedAndNestedModelsStandInTheirScopes) {
+    writeModel("inner", model("inner", box_));
+    writeModel("outer",
+               "<model name='outer'>" + link("base") +
+                   "<include><uri>model://inner</uri><name>arm</name><pose>0 0 3 0 0 0</pose></include></model>");
+    const Scene scene = world("<include><uri>model://outer</uri><name>rov</name>" + pose("5 0 0 0 0 0") + "</include>");
+    EXPECT_TRUE(scene.geometry->notices.empty());
+    expectBounds(boundsOf(*scene.geometry), {4, -2, 0}, {6, 2, 6});
+    EXPECT_EQ(parentOf(scene, "rov"), "");
+    EXPECT_EQ(parentOf(scene, "rov::arm"), "rov");
+    EXPECT_EQ(parentOf(scene, "rov::arm::hull"), "rov::arm");
+    EXPECT_EQ(scene.geometry->objects.at(0).name, "rov::arm::hull::skin");
+}
+
+TEST_F(SdfTest, AnIncludeStandsByItsPlacementFrame) {
+    writeModel("post", "<model name='post'><frame name='foot'>" + pose("0 0 -3 0 0 0") + "</frame><link name='l'>" +
+                           visual("v", box_) + "</link></model>");
+    const Scene scene = world("<include><uri>model://post</uri><placement_frame>foot</placement_frame>" +
+                              pose("1 1 0 0 0 0") + "</include>");
+    expectBounds(boundsOf(*scene.geometry), {0, -1, 0}, {2, 3, 6});
+}
+
+TEST_F(SdfTest, AModelsPoseMovesAllThatIsInIt) {
+    const Scene scene = world("<model name='m'>" + pose("10 0 0 0 0 1") + "<link name='l'>" + pose("0 0 2 0 0 0") +
+                              visual("v", box_) + "</link></model>" + model("other", box_));
+    const std::vector<Part> parts = partsOf(scene, findNode(scene, "m"));
+    ASSERT_EQ(namesOf(parts, scene), Names{"m::l::v"});
+    // the body is the model's frame: its own pose, yaw and place, no longer counts
+    const glm::dmat4 scaled = glm::scale(glm::translate(glm::dmat4(1), {0, 0, 2}), {2, 4, 6});
+    for (int column = 0; column < 4; ++column)
+        EXPECT_LT(glm::distance(parts[0].body_from_object[column], scaled[column]), 1e-12);
+}
+
+TEST_F(SdfTest, ALinkHangsOnTheLinkThatAJointNames) {
+    const Scene scene =
+        world("<model name='arm'>" + ("<link name='hand'>" + pose("4 0 0 0 0 0") + visual("v", box_) + "</link>") +
+              link("elbow") + link("base") + joint("elbow", "hand") + joint("base", "elbow") + "</model>");
+    EXPECT_EQ(parentOf(scene, "arm::base"), "arm");
+    EXPECT_EQ(parentOf(scene, "arm::elbow"), "arm::base");
+    EXPECT_EQ(parentOf(scene, "arm::hand"), "arm::elbow");
+    EXPECT_EQ(namesOf(partsOf(scene, findNode(scene, "arm::elbow")), scene), Names{"arm::hand::v"});
+    expectBounds(boundsOf(*scene.geometry), {3, -2, -3}, {5, 2, 3});
+}
+
+TEST_F(SdfTest, ANestedModelHangsOnTheLinkThatAJointNames) {
+    writeModel("gripper", model("gripper", box_));
+    const Scene scene = world("<model name='rov'>" + link("wrist") + "<include><uri>model://gripper</uri>" +
+                              pose("1 0 0 0 0 0") + "</include>" + joint("wrist", "gripper::hull") + "</model>");
+    EXPECT_EQ(parentOf(scene, "rov::gripper"), "rov::wrist");
+    EXPECT_EQ(namesOf(partsOf(scene, findNode(scene, "rov::wrist")), scene), Names{"rov::gripper::hull::skin"});
+}
+
+TEST_F(SdfTest, JointsInACircleEndAtTheModel) {
+    const Scene scene =
+        world("<model name='m'>" + link("a") + link("b") + joint("a", "b") + joint("b", "a") + "</model>");
+    EXPECT_EQ(parentOf(scene, "m::b"), "m");
+    EXPECT_EQ(parentOf(scene, "m::a"), "m::b");
+}
+
+TEST_F(SdfTest, NamesOfOldWorldsMayHoldColons) {
+    // libsdformat takes the links of a scope for those of a nested model, which old worlds did not have
+    const Scene scene = world("<model name='a::b'><link name='x::l'>" + pose("1 0 0 0 0 0") + visual("v::v", box_) +
+                                  "</link>" + link("tip") + joint("x::l", "tip") + "</model>",
+                              "1.6");
+    EXPECT_EQ(parentOf(scene, "a::b::x::l"), "a::b::x");
+    EXPECT_EQ(parentOf(scene, "a::b::tip"), "a::b::x::l");
+    EXPECT_EQ(scene.geometry->objects.at(0).name, "a::b::x::l::v::v");
+    expectBounds(boundsOf(*scene.geometry), {0, -2, -3}, {2, 2, 3});
+}
+
+TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
+    const std::string body = model("a::b", "<mesh><uri>plate.obj</uri></mesh>");
+    write("plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Scene scene = world(body, "1.9");
+    expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
+    EXPECT_GE(findNode(scene, "a__b"), 0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "names are read with \"__\" for \"::\""));
+    // here it throws, and no std::exception
+    const Scene old = world("<model name='m'>" + link("x::l") + link("x::k") +
+                                "<joint name='x::j' type='revolute'><parent>x::l</parent><child>x::k</child><axis>"
+                                "<xyz>0 0 1</xyz></axis></joint></model>",
+                            "1.4");
+    EXPECT_EQ(parentOf(old, "m::x__k"), "m::x__l");
+    EXPECT_TRUE(hasNotice(*old.geometry, "cannot be read as SDF: SDF ASSERTION Error: <xyz>'s attribute"));
+}
+
+TEST_F(SdfTest, AModelAloneIsASceneAndFindsItsOwnFiles) {
+    std::filesystem::create_directories(folder_ / "anchor/meshes");
+    write("anchor/meshes/fluke.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    writeModel("anchor",
+               model("anchor", "<mesh><uri>model://anchor/meshes/fluke.obj</uri></mesh>", pose("0 0 2 0 0 0")));
+    const Scene scene = readScene(folder_ / "anchor/model.sdf");
+    expectBounds(boundsOf(*scene.geometry), {0, 0, 2}, {1, 1, 2});
+    EXPECT_GE(findNode(scene, "anchor"), 0);
+}
+
+TEST_F(SdfTest, OfSeveralWorldsTheFirstIsRead) {
+    const Scene scene =
+        readScene(write("two.sdf", "<sdf version='1.9'><world name='a'>" + model("m", box_) +
+                                       "</world><world name='b'>" + model("n", box_) + "</world></sdf>"));
+    EXPECT_EQ(scene.geometry->objects.size(), 1u);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "worlds left out, the first of the file is read: 1"));
+}
+
+TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
+    const Scene scene =
+        world(model("m", box_) + "<state world_name='w'><model name='m'>" + pose("9 0 0 0 0 0") +
+              "</model></state><actor name='diver'><skin><filename>diver.dae</filename></skin></actor>");
+    expectBounds(boundsOf(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
+    EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not taken"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "actors left out: 1"));
+}
+
+TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
+    const Scene scene = world("<include><uri>model://sun</uri></include>\n" + model("m", box_) +
+                              "\n<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>\n");
+    EXPECT_EQ(scene.geometry->objects.size(), 1u);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://sun]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
+}
+
+TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
+    writeModel("outer", "<model name='outer'>" + link("l") + "<include><uri>model://nowhere</uri></include></model>");
+    const Scene scene = world("<include><uri>model://outer</uri></include>");
+    EXPECT_TRUE(hasNotice(*scene.geometry, "outer/model.sdf:1: ")) << scene.geometry->notices.at(0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; left out"));
+}
+
+TEST_F(SdfTest, AnIncludeThatCannotBeReadIsLeftOutWithTheReason) {
+    writeModel("bad", "<model name='bad'>" + pose("1 2 3") + link("l") + "</model>");
+    writeModel("good", model("good", box_));
+    const Scene scene = world("<include><uri>model://bad</uri></include><include><uri>model://good</uri></include>");
+    EXPECT_GE(findNode(scene, "good"), 0);
+    EXPECT_LT(findNode(scene, "bad"), 0);
+    EXPECT_TRUE(hasNotice(*scene.geometry, "must have 6 values, but 3 were found"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; left out"));
+}
+
+TEST_F(SdfTest, LibsdformatKeepsQuiet) {
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    world("<include><uri>model://sun</uri></include>");
+    diagnosticOfWorld("<model name='m'>" + pose("1 2 x") + "</model>");
+    diagnosticOf(write("urdf.sdf", "<html/>"));
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+}  // namespace
+}  // namespace insonify::sdf

@@ -1,0 +1,169 @@
+// Shapes, materials and heightmaps of SDF visuals, against their closed forms.
+#include <numbers>
+
+#include "components/scene/Acoustics.hpp"
+#include "components/sdf/SdfMeshes.hpp"
+#include "tests/sdf/SdfFiles.hpp"
+
+namespace insonify::sdf {
+
+using namespace scene;
+namespace {
+
+class SdfVisualsTest : public SdfFiles {
+protected:
+    types::GeometryPtr shape(const std::string& geometry) const { return world(model("m", geometry)).geometry; }
+    static const types::Material& materialOf(const types::Geometry& geometry, size_t object) {
+        const types::Mesh& mesh = geometry.meshes.at(static_cast<size_t>(geometry.objects.at(object).mesh));
+        return geometry.materials.at(static_cast<size_t>(mesh.clusters.at(0).material));
+    }
+    static std::string acoustics(const std::string& keys) {
+        return "<insonify:acoustics>" + keys + "</insonify:acoustics>";
+    }
+};
+
+/** Volume of a body of revolution with 64 facets over that of the round one. */
+const double faceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numbers::pi);
+
+TEST_F(SdfVisualsTest, ABoxHasItsSize) {
+    const auto geometry = shape("<box><size>2 4 6</size></box>");
+    expectBounds(boundsOf(*geometry), {-1, -2, -3}, {1, 2, 3});
+    EXPECT_NEAR(volumeOf(*geometry), 48, 1e-5);
+    EXPECT_EQ(geometry->triangleCount(), 12u);
+}
+
+TEST_F(SdfVisualsTest, TheCornersOfASphereLieOnIt) {
+    const auto geometry = shape("<sphere><radius>3</radius></sphere>");
+    expectSound(*geometry);
+    for (const glm::dvec3 corner : worldCorners(*geometry)) EXPECT_NEAR(glm::length(corner), 3, 1e-6);
+    const double volume = 4 * std::numbers::pi / 3 * 27;
+    EXPECT_LT(volumeOf(*geometry), volume);
+    EXPECT_GT(volumeOf(*geometry), volume * 0.995);
+}
+
+TEST_F(SdfVisualsTest, AnEllipsoidIsASphereOfThreeRadii) {
+    const auto geometry = shape("<ellipsoid><radii>1 2 3</radii></ellipsoid>");
+    for (const glm::dvec3 corner : worldCorners(*geometry))
+        EXPECT_NEAR(glm::length(corner / glm::dvec3(1, 2, 3)), 1, 1e-6);
+}
+
+TEST_F(SdfVisualsTest, ACylinderStandsAlongZ) {
+    const auto geometry = shape("<cylinder><radius>0.5</radius><length>4</length></cylinder>");
+    expectBounds(boundsOf(*geometry), {-0.5, -0.5, -2}, {0.5, 0.5, 2});
+    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted, 1e-5);
+    EXPECT_EQ(geometry->triangleCount(), 4u * 64);
+}
+
+TEST_F(SdfVisualsTest, ACapsuleIsACylinderBetweenHalfSpheres) {
+    const auto geometry = shape("<capsule><radius>0.5</radius><length>4</length></capsule>");
+    expectSound(*geometry);
+    for (const glm::dvec3 corner : worldCorners(*geometry)) {
+        const double beyond = std::max(0.0, std::abs(corner.z) - 2);
+        EXPECT_NEAR(glm::length(glm::dvec3(corner.x, corner.y, beyond)), 0.5, 1e-6);
+    }
+    const double half_spheres = volumeOf(*shape("<sphere><radius>0.5</radius></sphere>"));
+    EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted + half_spheres, 1e-5);
+}
+
+TEST_F(SdfVisualsTest, APlaneLiesSquareToItsNormal) {
+    expectBounds(boundsOf(*shape("<plane><normal>0 0 1</normal><size>20 10</size></plane>")), {-10, -5, 0}, {10, 5, 0});
+    const auto wall = shape("<plane><normal>1 0 0</normal><size>20 10</size></plane>");
+    expectBounds(boundsOf(*wall), {0, -5, -10}, {0, 5, 10});
+    const auto corners = worldCorners(*wall);
+    EXPECT_GT(glm::cross(corners[1] - corners[0], corners[2] - corners[0]).x, 0);
+}
+
+TEST_F(SdfVisualsTest, EqualVisualsShareTheirMesh) {
+    const Scene scene =
+        world(model("a", box_) + model("b", "<box><size>1 1 9</size></box>") + "<model name='c'><link name='l'>" +
+              visual("v", box_, acoustics("<material>steel</material>")) + "</link></model>");
+    const auto& objects = scene.geometry->objects;
+    EXPECT_EQ(scene.geometry->meshes.size(), 2u);
+    EXPECT_EQ(objects.at(0).mesh, objects.at(1).mesh);
+    EXPECT_NE(objects.at(0).mesh, objects.at(2).mesh);
+}
+
+TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
+    const Scene scene =
+        world("<model name='a'><link name='l'>" +
+              visual("v", box_, acoustics("<sediment>rough_rock</sediment><roughness_slope>0.2</roughness_slope>")) +
+              visual("u", box_, "<insonify:acoustics material='steel'/>") + visual("w", box_) + "</link></model>");
+    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).lambert_db, -5);
+    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).roughness_slope.value(), 0.2f);
+    EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 1).reflection, 0.936f);
+    EXPECT_TRUE(materialOf(*scene.geometry, 1).has_acoustics);
+    EXPECT_FALSE(materialOf(*scene.geometry, 2).has_acoustics);
+}
+
+TEST_F(SdfVisualsTest, AWrongAcousticTagIsToldWithItsLine) {
+    const std::string diagnostic = diagnosticOfWorld(
+        "<model name='a'>\n<link name='l'>\n" +
+        visual("v", box_, "\n" + acoustics("<sediment>sandd</sediment><lamber_db>1</lamber_db>")) + "</link></model>");
+    EXPECT_NE(diagnostic.find("case.world:4: a::l::v.insonify:acoustics.sediment: is \"sandd\"; may be rough_rock, "),
+              std::string::npos)
+        << diagnostic;
+    EXPECT_NE(diagnostic.find("insonify:acoustics.lamber_db: is not known; did you mean lambert_db? may be sediment, "),
+              std::string::npos)
+        << diagnostic;
+}
+
+TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {
+    const std::string script = "<material><script><name>Gazebo/Wood</name></script></material>";
+    const Scene scene = world("<model name='pier'><link name='l'>" + visual("v", box_, script) + "</link></model>" +
+                              model("rov", box_) + model("rock", box_));
+    Acoustics wood, steel;
+    wood.lambert_db = -30;
+    steel.material = Matter::Steel;
+    types::Diagnostics diagnostics;
+    const auto geometry = overrideMaterials(scene, {{"Gazebo/Wood", wood}, {"rov", steel}}, diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_FLOAT_EQ(materialOf(*geometry, 0).lambert_db, -30);
+    EXPECT_FLOAT_EQ(materialOf(*geometry, 1).reflection, 0.936f);
+    EXPECT_FALSE(materialOf(*geometry, 2).has_acoustics);
+}
+
+TEST_F(SdfVisualsTest, AHeightmapIsAGridOfItsPixels) {
+    write("hill.pgm", "P5 3 2 255\n" + std::string("\x00\x33\x66\x99\xcc\xff", 6));
+    const Scene scene = world(model(
+        "m", "<heightmap><uri>hill.pgm</uri><size>20 10 5</size><pos>100 0 -7</pos></heightmap>", pose("0 0 2 0 0 0")));
+    expectSound(*scene.geometry);
+    EXPECT_EQ(scene.geometry->triangleCount(), 4u);
+    // pixels are 0, 1, 2 m in the top row, at +y, and 3, 4, 5 m in the row below
+    for (const glm::dvec3 corner : worldCorners(*scene.geometry)) {
+        const double height = (corner.x - 90) / 10 + (corner.y > 0 ? 0 : 3);
+        EXPECT_NEAR(corner.z, height - 5, 1e-6);
+        EXPECT_NEAR(std::abs(corner.y), 5, 1e-6);
+    }
+    const auto corners = worldCorners(*scene.geometry);
+    EXPECT_GT(glm::cross(corners[1] - corners[0], corners[2] - corners[0]).z, 0);
+}
+
+TEST_F(SdfVisualsTest, AHeightmapOfManyPixelsIsReadInSteps) {
+    write("plain.pgm", "P5 4097 3 255\n" + std::string(4097 * 3, '\xff'));
+    const auto geometry = shape("<heightmap><uri>plain.pgm</uri><size>20 10 5</size></heightmap>");
+    EXPECT_EQ(geometry->triangleCount(), 2u * 2048 * 2);
+    expectBounds(boundsOf(*geometry), {-10, -5, 5}, {10, 5, 5});
+}
+
+TEST_F(SdfVisualsTest, AVisualThatCannotBeDrawnIsANotice) {
+    write("words.png", "no picture");
+    write("animation.png",
+          std::string("GIF89a\2\0\2\0\0\0\0,\0\0\0\0\2\0\2\0\0\2\2\x84Q\0;", 27));  // stb_image would read it
+    const Scene scene =
+        world("<model name='m'><link name='l'>" + visual("a", "<mesh><uri>model://gone.dae</uri></mesh>") +
+              visual("b", "<heightmap><uri>words.png</uri></heightmap>") +
+              visual("f", "<heightmap><uri>animation.png</uri></heightmap>") +
+              visual("c", "<heightmap><uri>gone.png</uri></heightmap>") + visual("d", "<box><size>1 0 1</size></box>") +
+              visual("e", "<empty/>") + "</link></model>");
+    EXPECT_TRUE(scene.geometry->objects.empty());
+    for (const char* part : {"visual m::l::a is left out: model://gone.dae is not found",
+                             "visual m::l::b is left out: words.png is neither PNG nor JPEG",
+                             "visual m::l::f is left out: animation.png is neither PNG nor JPEG",
+                             "visual m::l::c is left out: gone.png is not found",
+                             "visuals left out, their size is zero in some direction or not finite: 1",
+                             "visual m::l::e is left out: its geometry is not one of those", "an empty sea"})
+        EXPECT_TRUE(hasNotice(*scene.geometry, part)) << part;
+}
+
+}  // namespace
+}  // namespace insonify::sdf
