@@ -9,10 +9,11 @@ namespace insonify::framework {
 
 class OutputPortBase;
 
-/** The reading end of one connection, without its type. */
+/** Where samples of one connection wait: a ring of fixed capacity, whose samples Channel holds. The mutex of its input
+ *  port guards it. */
 class ChannelBase {
 public:
-    explicit ChannelBase(OutputPortBase& source) : source_(source) {}
+    ChannelBase(OutputPortBase& source, ConnPolicy policy);
     virtual ~ChannelBase() = default;
     ChannelBase(const ChannelBase&) = delete;
     ChannelBase& operator=(const ChannelBase&) = delete;
@@ -23,51 +24,39 @@ public:
     uint64_t passedOver() const { return passed_over_.load(std::memory_order_relaxed); }
     void notePassedOver() { passed_over_.fetch_add(1, std::memory_order_relaxed); }
 
+    /** Of a sample of the ports' type; false when it was refused (full buffer). */
+    bool push(const void* sample);
+    /** Into a sample of the ports' type; false when none waits. */
+    bool pop(void* sample);
+    bool empty() const { return count_ == 0; }
+    void clear();
+
 protected:
-    std::atomic<uint64_t> lost_{0};
+    const size_t capacity_;
 
 private:
+    virtual void set(size_t slot, const void* sample) = 0;
+    virtual void take(size_t slot, void* sample) = 0;
+    virtual void drop(size_t slot) = 0;
+    size_t wrapped(size_t slot) const { return slot < capacity_ ? slot : slot - capacity_; }
+
     OutputPortBase& source_;
-    std::atomic<uint64_t> passed_over_{0};
+    const ConnPolicy::Type type_;
+    size_t first_ = 0, count_ = 0;
+    std::atomic<uint64_t> lost_{0}, passed_over_{0};
 };
 
-/** Where samples of one connection wait: a ring of fixed capacity. The mutex of its input port guards it. */
 template <class T>
 class Channel final : public ChannelBase {
 public:
-    Channel(OutputPortBase& source, ConnPolicy policy)
-        : ChannelBase(source), policy_(policy), ring_(policy.type == ConnPolicy::Data ? 1 : policy.size) {}
-
-    /** False when the sample was refused (full buffer). */
-    bool push(const T& sample) {
-        if (count_ == ring_.size()) {
-            lost_.fetch_add(1, std::memory_order_relaxed);
-            if (policy_.type == ConnPolicy::Buffer) return false;
-            first_ = wrapped(first_ + 1);
-            --count_;
-        }
-        ring_[wrapped(first_ + count_++)] = sample;
-        return true;
-    }
-    bool pop(T& sample) {
-        if (count_ == 0) return false;
-        sample = std::move(ring_[first_]);
-        first_ = wrapped(first_ + 1);
-        --count_;
-        return true;
-    }
-    bool empty() const { return count_ == 0; }
-    void clear() {
-        for (T dropped; pop(dropped);) {
-        }
-    }
+    Channel(OutputPortBase& source, ConnPolicy policy) : ChannelBase(source, policy), ring_(capacity_) {}
 
 private:
-    size_t wrapped(size_t index) const { return index < ring_.size() ? index : index - ring_.size(); }
+    void set(size_t slot, const void* sample) override { ring_[slot] = *static_cast<const T*>(sample); }
+    void take(size_t slot, void* sample) override { *static_cast<T*>(sample) = std::move(ring_[slot]); }
+    void drop(size_t slot) override { ring_[slot] = T{}; }
 
-    ConnPolicy policy_;
     std::vector<T> ring_;
-    size_t first_ = 0, count_ = 0;
 };
 
 }  // namespace insonify::framework

@@ -35,8 +35,8 @@ struct DynamicInput final {
     using Carried = types::Carried<T>;
 
     template <class... Args>
-    DynamicInput(TaskContext* owner, const std::string& name, const OutputPortBase& source, const Args&... with)
-        : port(owner, name, "samples of " + source.path(), Need::Optional), kept{with...} {}
+    DynamicInput(TaskContext* owner, const std::string& name, const std::string& doc, const Args&... with)
+        : port(owner, name, doc, Need::Optional), kept{with...} {}
     InputPort<Carried> port;
     Kept<T> kept{};
 };
@@ -67,7 +67,8 @@ public:
     template <class... Args>
     InputPortBase* make(const std::string& name, const OutputPortBase& source, const Args&... with) {
         InputPortBase* made = nullptr;
-        (void)((made = makeIf<T>(name, source, with...)) || ...);
+        const std::string doc = "samples of " + source.path();
+        (void)((source.type() == typeid(types::Carried<T>) && (made = makeOne<T>(name, doc, with...))) || ...);
         return made;
     }
     bool empty() const { return inputs_.empty(); }
@@ -83,11 +84,9 @@ public:
 
 private:
     template <class Sample, class... Args>
-    InputPortBase* makeIf(const std::string& name, const OutputPortBase& source, const Args&... with) {
-        if (!dynamic_cast<const OutputPort<types::Carried<Sample>>*>(&source)) return nullptr;
+    InputPortBase* makeOne(const std::string& name, const std::string& doc, const Args&... with) {
         using Input = DynamicInput<Sample, Kept>;
-        auto& made = inputs_.emplace_back(std::in_place_type<Input>, owner_, name, source, with...);
-        return &std::get<Input>(made).port;
+        return &std::get<Input>(inputs_.emplace_back(std::in_place_type<Input>, owner_, name, doc, with...)).port;
     }
 
     TaskContext* owner_;

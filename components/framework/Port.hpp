@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include "components/framework/Activity.hpp"
@@ -24,7 +25,7 @@ namespace insonify::framework {
 enum class FlowStatus { NoData, OldData, NewData };
 enum class Need { Required, Optional };
 
-/** What is known of a port without its type. */
+/** What a port is and does without its type. */
 class PortBase {
 public:
     PortBase(TaskContext* owner, std::string name, std::string doc, std::string content)
@@ -39,6 +40,8 @@ public:
     const std::string& content() const { return content_; }
     std::string path() const { return owner_->name() + "." + name_; }
     virtual std::string typeName() const = 0;
+    /** Of its samples, as they travel. */
+    virtual const std::type_info& type() const = 0;
     /** Whether its samples are what runs are counted in, see types::Counted. */
     virtual bool counted() const = 0;
 
@@ -49,52 +52,78 @@ private:
 
 class InputPortBase : public PortBase {
 public:
-    InputPortBase(TaskContext* owner, std::string name, std::string doc, Need need, std::string content)
-        : PortBase(owner, std::move(name), std::move(doc), std::move(content)), need_(need) {
-        owner->enlist(this);
-    }
+    InputPortBase(TaskContext* owner, std::string name, std::string doc, Need need, std::string content);
     Need need() const { return need_; }
-    virtual bool connected() const = 0;
-    virtual bool hasNew() const = 0;
+    bool connected() const;
+    bool hasNew() const;
     /** Forgets every waiting and old sample; loss counters stay. */
-    virtual void clear() = 0;
-    virtual std::vector<std::shared_ptr<const ChannelBase>> channels() const = 0;
-    /** For OutputPort, which calls this when it disconnects. */
-    virtual void drop(const OutputPortBase& source) = 0;
+    void clear();
+    std::vector<std::shared_ptr<const ChannelBase>> channels() const;
     /** Whether a new sample wakes the task. */
     bool triggers() const { return triggers_; }
     void setTriggers(bool on) { triggers_ = on; }
 
+    // For OutputPortBase alone.
+    std::shared_ptr<ChannelBase> connect(OutputPortBase& source, ConnPolicy policy);
+    void drop(const OutputPortBase& source);
+    /** Wakes the task if the sample is taken and this port triggers. */
+    void push(ChannelBase& channel, const void* sample);
+
 protected:
-    /** A sample has arrived: wakes the task if this port triggers. */
-    void signal() const {
-        if (triggers_) owner().activity().trigger();
-    }
-    bool newestCounts() const { return owner().activity().realtime(); }  ///< The task runs in realtime.
+    void disconnectAll();
+    // The reading of InputPort, into a sample of its type.
+    FlowStatus readInto(void* sample, bool copy_old);
+    FlowStatus readNewestInto(void* sample, bool copy_old);
+    FlowStatus takeNextInto(void* sample);
 
 private:
+    virtual std::shared_ptr<ChannelBase> makeChannel(OutputPortBase& source, ConnPolicy policy) const = 0;
+    virtual void* last() = 0;
+    virtual void copyLast(void* sample) const = 0;
+    virtual void forgetLast() = 0;
+
+    /** `taken_from` is set to where a new sample was taken from, for who wants to know. */
+    FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old);
+
     Need need_;
     bool triggers_ = true;
+    mutable std::mutex mutex_;  ///< Of the channels and all in them; held for one copy of a sample.
+    std::vector<std::shared_ptr<ChannelBase>> channels_;
+    bool has_last_ = false;
 };
 
 class OutputPortBase : public PortBase {
 public:
-    OutputPortBase(TaskContext* owner, std::string name, std::string doc, std::string content = "")
-        : PortBase(owner, std::move(name), std::move(doc), std::move(content)) {
-        owner->enlist(this);
-    }
+    OutputPortBase(TaskContext* owner, std::string name, std::string doc, std::string content = "");
+    ~OutputPortBase() override;
     /** False when the types differ. */
-    virtual bool connectTo(InputPortBase& reader, ConnPolicy policy) = 0;
+    bool connectTo(InputPortBase& reader, ConnPolicy policy);
     /** Ends every connection with `reader`: once this returns nothing of this port reaches it any more. */
-    virtual void disconnect(InputPortBase& reader) = 0;
-    virtual bool connected() const = 0;
+    void disconnect(InputPortBase& reader);
+    bool connected() const;
+    /** From now on a reader that connects later, with `init`, gets the last sample. A connection with `init` sees to
+     *  that itself, for those after it. */
+    void keepLast();
     uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
 protected:
+    /** A sample of the port's type. */
+    void writeFrom(const void* sample);
     /** A sample of this stamp has been written: the owner's latency in realtime. */
     void noteWritten(types::Time stamp) const { noteLatency(owner(), stamp); }
 
+private:
+    struct Reader {
+        InputPortBase* port;
+        std::shared_ptr<ChannelBase> channel;
+    };
+    virtual const void* last() const = 0;
+    virtual void setLast(const void* sample) = 0;
+
     std::atomic<uint64_t> written_{0};
+    mutable std::mutex mutex_;  ///< Of the list; taken before that of an input port, never after.
+    std::vector<Reader> readers_;
+    bool keep_last_ = false, has_last_ = false;
 };
 
 template <class T>
@@ -103,151 +132,52 @@ public:
     InputPort(TaskContext* owner, std::string name, std::string doc, Need need = Need::Required,
               std::string content = "")
         : InputPortBase(owner, std::move(name), std::move(doc), need, std::move(content)) {}
-    ~InputPort() override {
-        for (const auto& channel : channels()) channel->source().disconnect(*this);
-    }
+    ~InputPort() override { disconnectAll(); }
 
     /** The next sample; with OldData `sample` becomes the last one read, unless `copy_old` is false. */
-    FlowStatus read(T& sample, bool copy_old = true) { return readFrom(nullptr, sample, copy_old); }
+    FlowStatus read(T& sample, bool copy_old = true) { return readInto(&sample, copy_old); }
     /** Drains the port and gives the newest sample; those before it count as passed over in their connections. */
-    FlowStatus readNewest(T& sample, bool copy_old = true) {
-        std::shared_ptr<ChannelBase> taken_from, next_from;
-        const FlowStatus first = readFrom(&taken_from, sample, copy_old);
-        for (; first == FlowStatus::NewData && readFrom(&next_from, sample, false) == FlowStatus::NewData;
-             taken_from = std::move(next_from))
-            taken_from->notePassedOver();
-        return first;
-    }
+    FlowStatus readNewest(T& sample, bool copy_old = true) { return readNewestInto(&sample, copy_old); }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
     /** The sample to work on: in lockstep the next; in realtime the newest, as of readNewest. False: none is new. */
-    bool takeNext(T& sample) {
-        return newestCounts() ? readNewest(sample, false) == FlowStatus::NewData : readNew(sample);
-    }
+    bool takeNext(T& sample) { return takeNextInto(&sample) == FlowStatus::NewData; }
 
     std::string typeName() const override { return types::typeName<T>(); }
+    const std::type_info& type() const override { return typeid(T); }
     bool counted() const override { return types::Counted<T>; }
-    bool connected() const override {
-        std::lock_guard lock(mutex_);
-        return !channels_.empty();
-    }
-    bool hasNew() const override {
-        std::lock_guard lock(mutex_);
-        for (const auto& channel : channels_)
-            if (!channel->empty()) return true;
-        return false;
-    }
-    void clear() override {
-        std::lock_guard lock(mutex_);
-        for (const auto& channel : channels_) channel->clear();
-        forgetLast();
-    }
-    std::vector<std::shared_ptr<const ChannelBase>> channels() const override {
-        std::lock_guard lock(mutex_);
-        return {channels_.begin(), channels_.end()};
-    }
-    void drop(const OutputPortBase& source) override {
-        std::lock_guard lock(mutex_);
-        std::erase_if(channels_, [&](const auto& channel) { return &channel->source() == &source; });
-        if (channels_.empty()) forgetLast();
-    }
-
-    // For OutputPort only.
-    std::shared_ptr<Channel<T>> connect(OutputPortBase& source, ConnPolicy policy) {
-        auto channel = std::make_shared<Channel<T>>(source, policy);
-        std::lock_guard lock(mutex_);
-        return channels_.emplace_back(std::move(channel));
-    }
-    void push(Channel<T>& channel, const T& sample) {
-        bool taken = false;
-        {
-            std::lock_guard lock(mutex_);
-            taken = channel.push(sample);
-        }
-        if (taken) signal();
-    }
 
 private:
-    /** read(), which tells where a new sample was taken from, to who wants to know. */
-    FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, T& sample, bool copy_old) {
-        std::lock_guard lock(mutex_);
-        for (const auto& channel : channels_)
-            if (channel->pop(last_)) {
-                has_last_ = true;
-                owner().noteTaken();
-                sample = last_;
-                if (taken_from) *taken_from = channel;
-                return FlowStatus::NewData;
-            }
-        if (!has_last_) return FlowStatus::NoData;
-        if (copy_old) sample = last_;
-        return FlowStatus::OldData;
+    std::shared_ptr<ChannelBase> makeChannel(OutputPortBase& source, ConnPolicy policy) const override {
+        return std::make_shared<Channel<T>>(source, policy);
     }
-    void forgetLast() {
-        last_ = T{};
-        has_last_ = false;
-    }
+    void* last() override { return &last_; }
+    void copyLast(void* sample) const override { *static_cast<T*>(sample) = last_; }
+    void forgetLast() override { last_ = T{}; }
 
-    mutable std::mutex mutex_;  ///< Of the channels and all in them; held for one copy of a sample.
-    std::vector<std::shared_ptr<Channel<T>>> channels_;
     T last_{};
-    bool has_last_ = false;
 };
 
 template <class T>
 class OutputPort final : public OutputPortBase {
 public:
     using OutputPortBase::OutputPortBase;
-    ~OutputPort() override {
-        std::lock_guard lock(mutex_);
-        for (const Reader& reader : readers_) reader.port->drop(*this);
-    }
+
     void write(const T& sample) {
-        written_.fetch_add(1, std::memory_order_relaxed);
-        std::lock_guard lock(mutex_);
-        for (const Reader& reader : readers_) reader.port->push(*reader.channel, sample);
-        if (keep_last_) last_ = sample;
-        has_last_ = keep_last_;
+        writeFrom(&sample);
         if constexpr (requires { sample->time.microseconds; })
             noteWritten(sample ? sample->time : types::Time{});
         else if constexpr (requires { sample.time.microseconds; })
             noteWritten(sample.time);
     }
-    /** From now on a reader that connects later, with `init`, gets the last sample. A connection with `init` sees to
-     *  that itself, for those after it. */
-    void keepLast() {
-        std::lock_guard lock(mutex_);
-        keep_last_ = true;
-    }
     std::string typeName() const override { return types::typeName<T>(); }
+    const std::type_info& type() const override { return typeid(T); }
     bool counted() const override { return types::Counted<T>; }
-    bool connected() const override {
-        std::lock_guard lock(mutex_);
-        return !readers_.empty();
-    }
-    bool connectTo(InputPortBase& reader, ConnPolicy policy) override {
-        auto* port = dynamic_cast<InputPort<T>*>(&reader);
-        if (!port) return false;
-        std::lock_guard lock(mutex_);
-        readers_.push_back({port, port->connect(*this, policy)});
-        keep_last_ = keep_last_ || policy.init;
-        if (policy.init && has_last_) port->push(*readers_.back().channel, last_);
-        return true;
-    }
-    void disconnect(InputPortBase& reader) override {
-        std::lock_guard lock(mutex_);
-        std::erase_if(readers_, [&](const Reader& other) { return other.port == &reader; });
-        reader.drop(*this);
-    }
 
 private:
-    struct Reader {
-        InputPort<T>* port;
-        std::shared_ptr<Channel<T>> channel;
-    };
-    mutable std::mutex mutex_;  ///< Of the list; taken before that of an input port, never after.
-    std::vector<Reader> readers_;
+    const void* last() const override { return &last_; }
+    void setLast(const void* sample) override { last_ = *static_cast<const T*>(sample); }
+
     T last_{};
-    bool keep_last_ = false, has_last_ = false;
 };
 
 }  // namespace insonify::framework

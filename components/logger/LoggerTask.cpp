@@ -36,12 +36,24 @@ log::Metadata withNames(log::Metadata metadata, const T& sample) {
     return metadata;
 }
 
-/** Of the stream of an input. */
 template <class Input>
-Declare declaration(const Input& input, log::Metadata metadata) {
-    return [name = input.kept.name.path(), metadata = std::move(metadata)](log::Writer& log) {
-        return log.addStream<typename Input::Sample>(name, metadata);
+constexpr size_t sampleOf(const Input&) {
+    return types::sampleIndex<typename Input::Sample>();
+}
+
+/** Of a stream of the type at that place of types::SampleTypes. */
+Declare declaration(size_t sample, const framework::StreamName& stream, log::Metadata metadata) {
+    return [sample, name = stream.path(), metadata = std::move(metadata)](log::Writer& log) {
+        return log.add(sample, name, metadata);
     };
+}
+
+/** @param streams those of the inputs before. */
+void checkInput(const framework::InputPortBase& port, const std::string& stream, std::set<std::string>& streams) {
+    if (port.channels().size() > 1)
+        throw types::ConfigError("", port.path(), "has several connections; give each a port of its own on the logger");
+    if (!streams.insert(stream).second)
+        throw types::ConfigError("", port.path(), "logs " + stream + " a second time; connect it once");
 }
 
 /** Of the sonar whose pings an input takes [kHz]; none: it takes others, or that is not known. */
@@ -80,14 +92,7 @@ std::vector<std::string> LoggerTask::notices() const {
 
 void LoggerTask::checkInputs() const {
     std::set<std::string> streams;
-    inputs_.forEach([&](const auto& input) {
-        const std::string path = input.port.path();
-        if (input.port.channels().size() > 1)
-            throw types::ConfigError("", path, "has several connections; give each a port of its own on the logger");
-        const std::string stream = input.kept.name.path();
-        if (!streams.insert(stream).second)
-            throw types::ConfigError("", path, "logs " + stream + " a second time; connect it once");
-    });
+    inputs_.forEach([&](const auto& input) { checkInput(input.port, input.kept.name.path(), streams); });
 }
 
 log::Metadata LoggerTask::runMetadata() const {
@@ -181,7 +186,7 @@ void LoggerTask::updateHook() {
             if (!input.kept.number) {
                 log::Metadata metadata =
                     withNames(streamMetadata(input.kept.name, frequencyOf(input)), *types::carriedSample(sample));
-                thread_->declare(declaration(input, std::move(metadata)));
+                thread_->declare(declaration(sampleOf(input), input.kept.name, std::move(metadata)));
                 input.kept.number = declared_++;
             }
             thread_->push(*input.kept.number, received, std::move(sample));
@@ -208,7 +213,7 @@ void LoggerTask::cleanupHook() {
     } end{*this};
     inputs_.forEach([&](const auto& input) {
         if (input.kept.number) return;
-        declaration(input, streamMetadata(input.kept.name, frequencyOf(input)))(*log_);
+        declaration(sampleOf(input), input.kept.name, streamMetadata(input.kept.name, frequencyOf(input)))(*log_);
         ++declared_;
     });
     log_->close();
