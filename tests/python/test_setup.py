@@ -1,0 +1,138 @@
+"""What scripts/setup and scripts/run install and build. Commands that note what they are asked stand in for the system."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+from conftest import ROOT
+
+COMMANDS = {
+    "dpkg-query": 'grep -qx "${@: -1}" installed && echo installed',
+    "apt-cache": '! grep -qx "$2" unknown',
+    "apt-get": 'echo "apt-get $*" >>asked',
+    "cmake": 'echo "cmake $*" >>asked',
+    "sudo": 'exec "$@"',
+}
+
+
+def packages(*folders):
+    return [name for folder in folders for name in (ROOT / folder / "packages").read_text().split()]
+
+
+@pytest.fixture
+def system(tmp_path):
+    """A clone, and a system that has the packages of the core."""
+    for folder in ("components", "types", "tests", "deploy"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
+    (tmp_path / "scripts").mkdir()
+    for script in ("run", "setup", "requirements.txt"):
+        shutil.copy(ROOT / "scripts" / script, tmp_path / "scripts")
+    for name, line in COMMANDS.items():
+        stand_in(tmp_path / "commands" / name, line)
+    stand_in(tmp_path / "build/bin/insonify", '[ "$1" = libraries ] && cat libraries || echo "insonify $*" >>asked')
+    (tmp_path / "build/build.ninja").touch()
+    (tmp_path / "libraries").touch()
+    (tmp_path / "unknown").touch()
+    core = [folder for folder in (ROOT / "components").glob("*/packages") if not is_optional(folder.parent.name)]
+    names = packages("components", "types", *(folder.parent.relative_to(ROOT) for folder in core))
+    (tmp_path / "installed").write_text("\n".join(names) + "\n")
+    return tmp_path
+
+
+def is_optional(component):
+    built = (ROOT / "components" / component / "CMakeLists.txt").read_text()
+    return component in ("python", "meshes") or "insonify_component(" in built
+
+
+def stand_in(file, line):
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(f"#!/usr/bin/env bash\n{line}\n")
+    file.chmod(0o755)
+
+
+def asked(system, script, *arguments):
+    """What it asked of the system, and what it said."""
+    (system / "asked").write_text("")
+    done = subprocess.run(
+        [f"scripts/{script}", *arguments],
+        cwd=system,
+        env=os.environ | {"PATH": f"{system}/commands:{os.environ['PATH']}"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    return done.returncode, (system / "asked").read_text().splitlines(), done.stderr
+
+
+def installed(lines):
+    return [line.split("--no-install-recommends ")[1].split() for line in lines if " install " in line]
+
+
+def test_with_all_there_the_core_is_built_and_nothing_else(system):
+    assert asked(system, "setup", "insonify") == (0, ["cmake --build build --target insonify"], "")
+
+
+def test_what_the_core_lacks_is_installed_first(system):
+    lacks = ["libyaml-cpp-dev", "libepoxy-dev"]
+    there = (system / "installed").read_text().split()
+    assert set(lacks) <= set(there)
+    (system / "installed").write_text("\n".join(name for name in there if name not in lacks) + "\n")
+    code, lines, _ = asked(system, "setup", "insonify")
+    assert code == 0
+    assert [sorted(names) for names in installed(lines)] == [sorted(lacks)]
+    assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake looks anew"
+
+
+def test_a_component_library_brings_its_own_packages_alone(system):
+    code, lines, _ = asked(system, "setup", "survey")
+    assert code == 0
+    assert installed(lines) == [packages("components/survey")]
+    assert lines[-1] == "cmake --build build --target insonify_component_survey"
+
+
+def test_sdf_brings_the_files_of_meshes_that_it_names(system):
+    code, lines, _ = asked(system, "setup", "sdf")
+    assert code == 0
+    assert sorted(installed(lines)[0]) == sorted(packages("components/sdf", "components/meshes"))
+    assert lines[-1] == "cmake --build build --target insonify_component_sdf insonify_component_meshes"
+
+
+def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
+    (system / "unknown").write_text("\n".join(packages("components/sdf")) + "\n")
+    code, lines, said = asked(system, "setup", "sdf")
+    assert code == 0
+    assert installed(lines) == [packages("components/meshes")]
+    for name in packages("components/sdf"):
+        assert f"this system has no package {name}; what of components/sdf needs it is left out" in said
+
+
+def test_without_a_package_of_the_core_it_ends_and_says_so(system):
+    there = (system / "installed").read_text().split()
+    (system / "installed").write_text("\n".join(name for name in there if name != "libyaml-cpp-dev") + "\n")
+    (system / "unknown").write_text("libyaml-cpp-dev\n")
+    code, lines, said = asked(system, "setup", "insonify")
+    assert code == 1
+    assert said == "scripts/setup: this system has no package libyaml-cpp-dev, which components/framework needs\n"
+    assert not installed(lines)
+
+
+def test_a_run_sets_up_what_its_deployment_names(system):
+    (system / "libraries").write_text("viewer\nsurvey\n")
+    code, lines, _ = asked(system, "run", "mine.yml", "--duration", "1")
+    assert code == 0
+    assert sorted(installed(lines)[0]) == sorted(packages("components/viewer", "components/survey"))
+    assert lines[0] == "cmake --build build --target insonify"
+    assert lines[-2:] == [
+        "cmake --build build --target insonify_component_viewer insonify_component_survey",
+        "insonify run mine.yml --duration 1",
+    ]
+
+
+def test_without_a_deployment_the_harbour_is_run(system):
+    code, lines, _ = asked(system, "run", "--duration", "1")
+    assert code == 0
+    assert lines == [
+        "cmake --build build --target insonify",
+        f"insonify run {system}/deploy/harbour_fls.yml --duration 1",
+    ]
