@@ -38,7 +38,7 @@ float backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 
 Pair pairOf(vec2 both) { return Pair(both.x, both.y); }
 
-// Of the cell at hand: the inverse range from which its places count, and the place of its pixel's echo.
+// The cell at hand: the inverse range from which its places count, and the place of its pixel's echo.
 float origin = 0.0, pixel_place = 0.0;
 float inverseRange(float place) { return origin + place; }
 

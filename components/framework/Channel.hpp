@@ -24,9 +24,9 @@ public:
     uint64_t passedOver() const { return passed_over_.load(std::memory_order_relaxed); }
     void notePassedOver() { passed_over_.fetch_add(1, std::memory_order_relaxed); }
 
-    /** Of a sample of the ports' type; false when it was refused (full buffer). */
+    /** Copies a sample of the ports' type; false when it was refused (full buffer). */
     bool push(const void* sample);
-    /** Into a sample of the ports' type; false when none waits. */
+    /** Moves the oldest into a sample of the ports' type; false when none waits. */
     bool pop(void* sample);
     bool empty() const { return count_ == 0; }
     void clear();

@@ -40,7 +40,7 @@ public:
     const std::string& content() const { return content_; }
     std::string path() const { return owner_->name() + "." + name_; }
     virtual std::string typeName() const = 0;
-    /** Of its samples, as they travel. */
+    /** The C++ type of its samples, as they travel. */
     virtual const std::type_info& type() const = 0;
     /** Whether its samples are what runs are counted in, see types::Counted. */
     virtual bool counted() const = 0;
@@ -87,7 +87,7 @@ private:
 
     Need need_;
     bool triggers_ = true;
-    mutable std::mutex mutex_;  ///< Of the channels and all in them; held for one copy of a sample.
+    mutable std::mutex mutex_;  ///< Guards the channels and all in them; held for one copy of a sample.
     std::vector<std::shared_ptr<ChannelBase>> channels_;
     bool has_last_ = false;
 };
@@ -121,7 +121,7 @@ private:
     virtual void setLast(const void* sample) = 0;
 
     std::atomic<uint64_t> written_{0};
-    mutable std::mutex mutex_;  ///< Of the list; taken before that of an input port, never after.
+    mutable std::mutex mutex_;  ///< Guards the list; taken before that of an input port, never after.
     std::vector<Reader> readers_;
     bool keep_last_ = false, has_last_ = false;
 };

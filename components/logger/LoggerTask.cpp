@@ -41,7 +41,7 @@ constexpr size_t sampleOf(const Input&) {
     return types::sampleIndex<typename Input::Sample>();
 }
 
-/** Of a stream of the type at that place of types::SampleTypes. */
+/** Declares a stream. @param sample place of its type in types::SampleTypes. */
 Declare declaration(size_t sample, const framework::StreamName& stream, log::Metadata metadata) {
     return [sample, name = stream.path(), metadata = std::move(metadata)](log::Writer& log) {
         return log.add(sample, name, metadata);

@@ -7,7 +7,7 @@
 namespace insonify::python {
 
 /** What insonify/native.py calls, the same for every version of Python: handles, arrays and JSON. What gives a handle
- * or a text gives null on errors, and then insonify_error has told why. */
+ * or a text gives null on errors, and then insonify_error has the reason. */
 extern "C" {
 
 /** What went wrong in this thread's last call: `{kind, message, diagnostics}`, where kind is an exception of Python's

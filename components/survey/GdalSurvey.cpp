@@ -18,7 +18,7 @@
 namespace insonify::survey {
 namespace {
 
-/** Of the parts of files that GDAL keeps, whatever the machine has [bytes]. */
+/** Memory for the parts of files that GDAL keeps, whatever the machine has [bytes]. */
 constexpr int64_t cache_size = int64_t{64} << 20;
 
 /** Formats that are read by blocks. Not GDAL's others: of a text grid that ends too early it seeks the missing lines

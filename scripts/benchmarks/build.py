@@ -29,7 +29,7 @@ def slowest_files():
 
 
 def headers():
-    """Of the headers of others that ours include: how many files get each, directly or not, and what it takes alone."""
+    """The headers of others that ours include: how many files get each, directly or not, and what it takes alone."""
     included = set()
     for folder in ("types", "components", "tests"):
         for source in (ROOT / folder).rglob("*.[ch]pp"):
@@ -59,13 +59,13 @@ def measure_build(_options):
     return {"parts_s": parts, "files": slowest_files()[:10], "headers": headers()[:10]}
 
 
-def show_build(told):
+def show_build(measured):
     print("build from nothing, without a compiler cache [s]")
-    for name, seconds in told["parts_s"].items():
+    for name, seconds in measured["parts_s"].items():
         print(f"  {name:58}{seconds:8.0f}")
     print("slowest files [s]")
-    for each in told["files"]:
+    for each in measured["files"]:
         print(f"  {each['file']:58}{each['s']:8.1f}")
     print("headers of others: files that get them, seconds of one, and of all")
-    for each in told["headers"]:
+    for each in measured["headers"]:
         print(f"  {each['header']:38}{each['files']:10}{each['alone_s']:10.2f}{each['s']:8.0f}")

@@ -40,7 +40,7 @@ def stage() -> pathlib.Path:
 
 
 def licences(bundled: pathlib.Path, to: pathlib.Path) -> None:
-    """Of each library that was copied, as its Debian package has it."""
+    """Copies the licence of each library that was copied, as its Debian package has it."""
     to.mkdir()
     for library in sorted(bundled.glob("*.so*")):
         name = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library.name)

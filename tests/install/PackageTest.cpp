@@ -20,7 +20,7 @@ std::string packed(const std::string& end) {
     throw std::runtime_error("no package " + end);
 }
 
-/** Of the libraries that a program loads, those of the system. */
+/** The libraries of the system that a program loads. */
 std::set<std::string> fromSystem(const TestFolder& folder, const std::string& program) {
     std::istringstream lines(call(folder, {"ldd", program}).out);
     std::set<std::string> names;

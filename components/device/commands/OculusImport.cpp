@@ -23,7 +23,7 @@ namespace {
 using framework::Deployment;
 using framework::DeploymentSpec;
 
-/** Of the deployment, what takes part. */
+/** The tasks of the deployment that take part. */
 struct Chain {
     std::string sonar, receiver;
     double largest_code = 0;

@@ -160,7 +160,7 @@ class Ping:
 
     @property
     def bearings(self) -> NDArray[np.float64]:
-        """Of each beam [rad], positive to port."""
+        """Bearing of each beam [rad], positive to port."""
         return self._arrays["bearings"]
 
     @property

@@ -77,10 +77,10 @@ class Handle:
         weakref.finalize(self, _library.insonify_free, pointer)
 
     def facts(self):
-        told = _library.insonify_facts(self.pointer)
-        if told is None:
+        facts = _library.insonify_facts(self.pointer)
+        if facts is None:
             _raise()
-        return json.loads(told)
+        return json.loads(facts)
 
     def arrays(self) -> list[tuple[str, NDArray]]:
         """By name, not to be written to."""

@@ -14,8 +14,8 @@ struct PlacedRun {
     double near_limit, far_limit;                  ///< Inverse ranges of the object [1/m].
     double strength;                               ///< Of the material at normal incidence [1].
     const PlaneRecord* planes;                     ///< Of the mesh's triangles.
-    const FacetRecord* facets;                     ///< Of the same; null where no material of the mesh has a lobe.
-    const CurveRecord* curves;                     ///< Of the same; null where no part of the mesh is a smooth body.
+    const FacetRecord* facets;                     ///< One per triangle; null where no material of the mesh has a lobe.
+    const CurveRecord* curves;                     ///< The same; null where no part of the mesh is a smooth body.
     uint32_t material;                             ///< Its law in EchoRules::laws [1].
 };
 /** `planes`, `facets`, `curves`: of the triangles of the object's mesh; null where it has no lobes, or is no smooth

@@ -15,7 +15,7 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double flat = 1e-3;                    ///< Edges that are turned by less are neither hollow nor bent [rad].
-constexpr double coarse = 0.3;                   ///< Of a body with 20 facets round [rad].
+constexpr double coarse = 0.3;                   ///< Between facets of a body with 20 round [rad].
 constexpr double crease = std::numbers::pi / 3;  ///< Where a smooth part ends, as for lobes [rad].
 
 /** Finds the facets that stand for a smooth convex surface. */
@@ -98,7 +98,7 @@ private:
     const types::Mesh& mesh_;
     glm::dmat3 world_from_mesh_;
     std::vector<Edge> edges_;
-    std::vector<uint32_t> body_;   ///< Of each triangle another one of its body, or itself.
+    std::vector<uint32_t> body_;   ///< For each triangle another one of its body, or itself.
     std::vector<bool> open_;       ///< By body.
     std::vector<double> volumes_;  ///< By body, six times, with the sign of their winding [m^3].
     std::vector<bool> rough_;      ///< By vertex.

@@ -7,9 +7,9 @@ namespace {
 
 /** A cell that the body bends away from (ACOUSTICS.md 4.7). */
 struct BentCell {
-    double curvature;              ///< Of the body along the ray, above 0 [1/m].
+    double curvature;              ///< The body's along the ray, above 0 [1/m].
     double perpendicular;          ///< Distance of the plane that the body touches in the cell's middle [m].
-    double width, height, cos_el;  ///< Of the cell [rad], and of its middle.
+    double width, height, cos_el;  ///< The cell's angles [rad], and that of its middle.
     double sag;                    ///< How far the mean of 1/r over the plane is below its middle [1/m].
     double near_limit, far_limit;  ///< Inverse ranges of the object [1/m].
     double near_edge, far_edge;    ///< Inverse ranges of the bins [1/m].

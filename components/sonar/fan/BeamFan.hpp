@@ -45,9 +45,9 @@ std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams,
 
 /** The part of an image column that belongs to one beam; u = tan(azimuth in the frustum). */
 struct ShareRecord {
-    double middle, width;  ///< Of the part, in u [1].
+    double middle, width;  ///< The part's, in u [1].
     double limit;          ///< The aperture ends at v = +-limit there [1].
-    double shear;          ///< u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1].
+    double shear;  ///< u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1].
     uint32_t beam, column;
 };
 

@@ -55,7 +55,7 @@ struct LatticeSquares {
 struct LatticeScatterers {
     alignas(64) float u[LatticeSquares::most], v[LatticeSquares::most];  ///< From the patch's middle [spacings].
     alignas(64) uint32_t bits[LatticeSquares::most];                     ///< Random; of the square alone.
-    alignas(64) float size[LatticeSquares::most];   ///< Of the field, in units of the square root of a whole cell.
+    alignas(64) float size[LatticeSquares::most];   ///< The field's, in units of the square root of a whole cell.
     alignas(64) float turns[LatticeSquares::most];  ///< Phase of the way there and back.
     alignas(64) int32_t sum[LatticeSquares::most];  ///< Number of the real part's; -1: the patch does not hold it.
     alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];  ///< Fields.

@@ -113,9 +113,9 @@ private:
     std::unique_ptr<ObjectPlaces> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
-    std::vector<MeshFacts::Planes> planes_;  ///< Of each mesh.
-    std::vector<MeshFacts::Facets> facets_;  ///< Of each mesh.
-    std::vector<MeshFacts::Curves> curves_;  ///< Of each mesh.
+    std::vector<MeshFacts::Planes> planes_;  ///< One for each mesh.
+    std::vector<MeshFacts::Facets> facets_;  ///< One for each mesh.
+    std::vector<MeshFacts::Curves> curves_;  ///< One for each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
