@@ -83,7 +83,7 @@ StudyScene twoSpheres() {
 
 StudyScene shinySphere() {
     const double slope = 0.3;
-    const auto geometry = copyOf(sceneOf({sphere(1, 512)}, {{10, 0, 0}}));
+    const auto geometry = copyOf(sceneOf({sphere(1, 256)}, {{10, 0, 0}}));
     geometry->materials[0].lambert_db = -9.23f;
     geometry->materials[0].reflection = 1;
     geometry->materials[0].roughness_slope = static_cast<float>(slope);

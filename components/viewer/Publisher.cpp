@@ -12,7 +12,7 @@
 namespace insonify::viewer {
 namespace {
 
-constexpr auto status_period = std::chrono::milliseconds(500);
+constexpr auto status_period = std::chrono::milliseconds(250);
 constexpr uint32_t status_stream = 0, first_source_stream = 1;
 
 /** When it started. */

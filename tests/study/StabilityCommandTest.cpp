@@ -6,15 +6,17 @@ using namespace insonify::deployer;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-TEST(StabilityCommandTest, EveryCaseIsJudgedOnBothSheetsAndNoneFails) {
+// That none of all cases fails is StabilityTest.
+TEST(StabilityCommandTest, EveryCaseThatIsAskedForIsJudgedOnBothSheets) {
     const TestFolder folder;
-    const Outcome outcome = callInsonify(folder, {"study", "stability", "--out", "new/sheets"});
+    const Outcome outcome = callInsonify(folder, {"study", "stability", "--only", "beam", "--out", "new/sheets"});
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr(" 0 fail, "));
     const json rows = json::parse(readFile(folder / "new/sheets/stability.json"));
     const std::string sheet = readFile(folder / "new/sheets/stability.md");
-    EXPECT_EQ(rows.size(), 69u);
+    EXPECT_EQ(rows.size(), 3u);
     for (const json& row : rows) {
+        EXPECT_THAT(row.at("case"), HasSubstr("beam"));
         EXPECT_THAT(row.at("verdict"), AnyOf("pass", "not run")) << row;
         EXPECT_TRUE(row.at("conditions").is_object() && row.at("deviation").is_number()) << row;
         EXPECT_FALSE(row.at("expected").get<std::string>().empty() || row.at("got").get<std::string>().empty()) << row;
@@ -29,4 +31,12 @@ TEST(StabilityCommandTest, AFolderThatIsMissingOrCannotBeMadeIsWrongUsage) {
     const Outcome outcome = callInsonify(folder, {"study", "stability", "--out", "file/sheets"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("cannot be made"));
+}
+
+TEST(StabilityCommandTest, ATextThatIsInNoNameIsWrongUsage) {
+    const TestFolder folder;
+    const Outcome outcome = callInsonify(folder, {"study", "stability", "--only", "kraken", "--out", "sheets"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--only: no case has \"kraken\" in its name"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "sheets"));
 }

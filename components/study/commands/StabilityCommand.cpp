@@ -1,4 +1,4 @@
-// insonify study stability --out DIR
+// insonify study stability --out DIR [--only TEXT]
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -29,9 +29,17 @@ void printRow(const StabilityRow& row) {
     std::fflush(stdout);
 }
 
-int runStudy(const std::filesystem::path& folder) {
-    makeFolder(folder);
+/** The cases whose names hold `text`; all where it is empty. */
+std::vector<StabilityCase> casesWith(const std::string& text) {
     std::vector<StabilityCase> cases = stabilityCases();
+    std::erase_if(cases, [&](const StabilityCase& c) { return c.name.find(text) == c.name.npos; });
+    if (cases.empty()) throw types::ConfigError("", "--only", fmt::format("no case has \"{}\" in its name", text));
+    return cases;
+}
+
+int runStudy(const std::filesystem::path& folder, const std::string& only) {
+    std::vector<StabilityCase> cases = casesWith(only);
+    makeFolder(folder);
     fmt::print("case  verdict    deviation\n");
     command::StudyProgress progress(true, cases.size());
     const std::vector<StabilityRow> rows = studyStability(std::move(cases), [&](const StabilityRow& row) {
@@ -50,10 +58,11 @@ int runStudy(const std::filesystem::path& folder) {
 }  // namespace
 
 void addStabilityStudy(CLI::App& study, command::Action& action) {
-    const auto folder = std::make_shared<std::string>();
+    const auto folder = std::make_shared<std::string>(), only = std::make_shared<std::string>();
     CLI::App* command = study.add_subcommand("stability", "Runs stiff and extreme cases and judges each");
     command->add_option("--out", *folder, "folder for stability.md and stability.json")->required();
-    command->callback([folder, &action] { action = [folder] { return runStudy(*folder); }; });
+    command->add_option("--only", *only, "the cases that have this text in their names");
+    command->callback([=, &action] { action = [=] { return runStudy(*folder, *only); }; });
 }
 
 }  // namespace insonify::study
