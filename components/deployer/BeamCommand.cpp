@@ -71,7 +71,7 @@ Cut elevationCut(const sonar::RenderPlan& plan) {
     return cut;
 }
 
-Json toJson(const Cut& cut) {
+Json cutJson(const Cut& cut) {
     const auto orNull = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
     Json first_null = cut.shape.first_null ? Json(degrees(*cut.shape.first_null)) : Json();
     return {{"angle_deg", cut.angle_deg},
@@ -115,7 +115,7 @@ int showBeam(const BeamOptions& options) {
         sonar::makeRenderPlan(sonarOf(deployment, options).locatedConfig(), types::Geometry{});
     const Cut azimuth = azimuthCut(plan), elevation = elevationCut(plan);
     if (options.json) {
-        print(Json{{"azimuth", toJson(azimuth)}, {"elevation", toJson(elevation)}});
+        print(Json{{"azimuth", cutJson(azimuth)}, {"elevation", cutJson(elevation)}});
     } else {
         printCut("azimuth", azimuth);
         printCut("elevation", elevation);

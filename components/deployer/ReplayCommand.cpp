@@ -22,18 +22,18 @@ namespace {
 
 constexpr const char* rerendered_file = "rerendered.0.log";
 
-struct Options : RunOptions {
+struct Asked : RunOptions {
     ReplayOptions replay;
     bool score = false, step = false;
     size_t worst = 10;
 };
 
-void notice(const Options& options, const std::string& text) {
+void notice(const Asked& options, const std::string& text) {
     if (!options.quiet && !text.empty()) fmt::print(stderr, "notice: {}\n", text);
 }
 
 /** The log's own settings, below those of the user; gives what changed while it was recorded. */
-std::vector<RecordedProperty> takeSettings(const log::Reader& log, Options& options) {
+std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& options) {
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
     notice(options, recorded.notice);
@@ -48,7 +48,7 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Options& opti
 }
 
 /** Which tasks do not run, since others would hear them. */
-void tellLeftOut(const framework::DeploymentSpec& spec, const Options& options) {
+void tellLeftOut(const framework::DeploymentSpec& spec, const Asked& options) {
     if (options.replay.outside) return;
     for (const std::string& task : outsideTasks(spec))
         notice(options, task + " is left out, since it talks to others; --outside lets it run");
@@ -97,7 +97,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
 }
 
 /** What is done between two instants: properties follow the log, and `--step` waits. */
-void followLog(Options& options, std::vector<RecordedProperty> changed) {
+void followLog(Asked& options, std::vector<RecordedProperty> changed) {
     const auto live = std::make_shared<LiveSettings>(std::move(changed));
     std::function<void(framework::Deployment&, const framework::Progress&)> step;
     if (options.step)
@@ -114,7 +114,7 @@ void followLog(Options& options, std::vector<RecordedProperty> changed) {
     };
 }
 
-int replay(Options options) {
+int replay(Asked options) {
     const auto opened = log::openLog(options.replay.log);
     log::Reader& log = *opened;
     std::vector<RecordedProperty> changed;
@@ -135,7 +135,7 @@ int replay(Options options) {
 }  // namespace
 
 void addReplayCommand(CLI::App& app, Action& action) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<Asked>();
     CLI::App* command =
         app.add_subcommand("replay", "Runs a deployment on a log's time, with its streams in the place of tasks");
     command->add_option("LOG", options->replay.log, "a pocolog or MCAP file")->required();

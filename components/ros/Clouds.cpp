@@ -13,7 +13,7 @@
 namespace insonify::ros {
 namespace {
 
-constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 /** One field of the points of a cloud. */
 class FieldReader {
@@ -127,7 +127,7 @@ void convert(const types::DepthMap& map, const std::string& frame_id, PointCloud
             const size_t cell = row * map.horizontal_size + column;
             const float range = map.distances[cell];
             const glm::vec3 p =
-                std::isfinite(range) ? glm::vec3(map.direction(row, column)) * range : glm::vec3(unknown);
+                std::isfinite(range) ? glm::vec3(map.direction(row, column)) * range : glm::vec3(not_a_number);
             message.is_dense = message.is_dense && std::isfinite(range);
             addPoint(
                 {p.x, p.y, p.z, map.remissions.empty() ? 0 : map.remissions[cell], range,

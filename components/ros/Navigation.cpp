@@ -14,7 +14,7 @@ namespace {
 
 using Covariance3 = std::array<double, 9>;
 
-Vector3 toRos(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+Vector3 vectorOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 glm::dvec3 fromRos(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 /** By rows; -1 first where the value itself is not known. */
@@ -39,7 +39,7 @@ glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
 /** A vector of the body, and its covariance. */
 void tell(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& told, Covariance3& rows) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
-    told = isUnknown(value) ? Vector3{} : toRos(body(value));
+    told = isUnknown(value) ? Vector3{} : vectorOf(body(value));
     rows = rowsOf(both(covariance, body), !isUnknown(value), 0);
 }
 
@@ -54,7 +54,7 @@ glm::dvec3 turnedOver(glm::dvec3 v) { return {v.x, -v.y, -v.z}; }
 
 void tellBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {
     const double range = dvl.beam_ranges[beam], variance = dvl.beam_velocity_variances[beam];
-    message.beam_unit_vec[beam] = toRos(turnedOver(dvl.beam_directions[beam]));
+    message.beam_unit_vec[beam] = vectorOf(turnedOver(dvl.beam_directions[beam]));
     message.range[beam] = range;
     message.beam_quality[beam] = std::isfinite(range) ? 1.0f : 0.0f;
     message.beam_velocity[beam] = static_cast<float>(dvl.beam_velocities[beam]);
@@ -124,7 +124,7 @@ void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
     message.header = {toRos(dvl.time), frame_id};
     message.velocity_mode = Dvl::bottom;
     message.dvl_type = Dvl::piston;
-    message.velocity = toRos(v);
+    message.velocity = vectorOf(v);
     message.velocity_covar = rowsOf(both(dvl.cov_velocity, turnedOver), true, -1);
     message.altitude = dvl.altitude;
     message.course_gnd = std::atan2(v.y, v.x);

@@ -13,8 +13,8 @@
 namespace insonify::scene {
 namespace {
 
-constexpr const char* name = "bathymetry";  ///< Of the object and of its material.
-constexpr double max_posts = 4096;          ///< Of a window, along each side.
+constexpr const char* floor_name = "bathymetry";  ///< Of the object and of its material.
+constexpr double max_posts = 4096;                ///< Of a window, along each side.
 
 int wholeDown(double value) { return static_cast<int>(std::clamp(std::floor(value), -1e9, 1e9)); }
 
@@ -58,10 +58,11 @@ Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::pa
 }
 
 void Bathymetry::addMaterial(Scene& scene) {
-    if (findNode(scene, name) >= 0)
-        throw types::ConfigError("", "", fmt::format("has a node {}, which is the name of the survey's floor", name));
+    if (findNode(scene, floor_name) >= 0)
+        throw types::ConfigError("", "",
+                                 fmt::format("has a node {}, which is the name of the survey's floor", floor_name));
     auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
-    geometry->materials.emplace_back().name = name;
+    geometry->materials.emplace_back().name = floor_name;
     scene.geometry = std::move(geometry);
 }
 
@@ -115,7 +116,7 @@ types::MeshPtr Bathymetry::meshOf(const Tile& tile, int material) const {
         }
     addTriangles(values, posts, survey_->spacing().x * survey_->spacing().y > 0, surface);
     types::Mesh mesh;
-    mesh.name = name;
+    mesh.name = floor_name;
     DroppedTriangles dropped;
     cleanUp(surface, dropped);
     if (surface.indices.empty()) return nullptr;
@@ -189,7 +190,7 @@ types::MeshPtr Bathymetry::wait(const Tile& tile) {
 types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::GeometryPtr& rest) {
     const PostWindow needed = postsAbout(place);
     if (rest != rest_) {
-        const auto material = std::ranges::find(rest->materials, name, &types::Material::name);
+        const auto material = std::ranges::find(rest->materials, floor_name, &types::Material::name);
         keep({});
         const std::lock_guard alone(mutex_);
         material_ = static_cast<int>(material - rest->materials.begin());
@@ -208,7 +209,7 @@ types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::Geome
     for (const Tile& tile : tiles) {
         types::MeshPtr mesh = wait(tile);
         if (!mesh) continue;
-        geometry->objects.push_back({name, static_cast<int>(geometry->meshes.size()), glm::dmat4(1), true});
+        geometry->objects.push_back({floor_name, static_cast<int>(geometry->meshes.size()), glm::dmat4(1), true});
         geometry->meshes.push_back(std::move(mesh));
     }
     tiles.insert(tiles.end(), around_.begin(), around_.end());

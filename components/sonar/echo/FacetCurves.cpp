@@ -14,9 +14,8 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double flat = 1e-3;                    ///< Edges that are turned by less are neither hollow nor bent [rad].
-constexpr double coarse = 0.3;                   ///< Between facets of a body with 20 round [rad].
-constexpr double crease = std::numbers::pi / 3;  ///< Where a smooth part ends, as for lobes [rad].
+constexpr double straight = 1e-3;  ///< Edges that are turned by less are neither hollow nor bent [rad].
+constexpr double coarse = 0.3;     ///< Between facets of a body with 20 round [rad].
 
 /** Finds the facets that stand for a smooth convex surface. */
 class SmoothFacets {
@@ -91,7 +90,7 @@ private:
         const glm::dvec3 n = glm::cross(a[1] - a[0], a[2] - a[0]), m = glm::cross(b[1] - b[0], b[2] - b[0]);
         const double turn = std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
         const glm::dvec3 onward = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
-        const bool hollow = turn > flat && glm::dot(n, onward) * volumes_[bodyOf(one.triangle)] > 0;
+        const bool hollow = turn > straight && glm::dot(n, onward) * volumes_[bodyOf(one.triangle)] > 0;
         if (hollow || (turn > coarse && turn < crease)) rough_[one.low] = rough_[one.high] = true;
     }
 

@@ -12,9 +12,8 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double flat = 1e-3;                    ///< Normals that differ by less are one [rad].
-constexpr double crease = std::numbers::pi / 3;  ///< [rad]
-constexpr double similar = 4;                    ///< Facets share the turn at their edge up to this ratio of areas [1].
+constexpr double flat = 1e-3;  ///< Normals that differ by less are one [rad].
+constexpr double similar = 4;  ///< Facets share the turn at their edge up to this ratio of areas [1].
 constexpr uint32_t nobody = 0xffffffff;
 
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {

@@ -2,11 +2,14 @@
 #include <compare>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <vector>
 
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
+
+constexpr double crease = std::numbers::pi / 3;  ///< Between neighbours of one smooth part there is less [rad].
 
 /** An edge of a triangle by the places of its ends, the lesser first: meshes have a vertex several times. */
 struct Edge {

@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string words(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string speedWords(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("below {:.2g} m/s it is under half a bin", what.value);
 }
 
@@ -22,7 +22,7 @@ public:
             return leaveOut(plan, {.effect = "motion within a ping",
                                    .reason = Reason::Approximated,
                                    .value = motionBound(plan.config, plan.grid).speed,
-                                   .words = words});
+                                   .words = speedWords});
         plan.effect_features.emplace_back("motion_in_ping");
         return true;
     }

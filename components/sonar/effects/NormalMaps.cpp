@@ -3,14 +3,14 @@
 namespace insonify::sonar {
 namespace {
 
-std::string noMaterial(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string noMap(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
 
 /** Normals by a texture of the material (ACOUSTICS.md 3.3). */
 class NormalMaps final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
         if (std::ranges::none_of(geometry.materials, [](const auto& material) { return material.normal_map >= 0; }))
-            return leaveOut(plan, {.effect = "normal maps", .reason = Reason::NoneInScene, .words = noMaterial});
+            return leaveOut(plan, {.effect = "normal maps", .reason = Reason::NoneInScene, .words = noMap});
         plan.features.add(Feature::NormalMap);
         return true;
     }

@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string words(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string lengthWords(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
 }
 
@@ -26,7 +26,7 @@ public:
         if (!plan.config.pulse) return leaveOut(plan, {name, Reason::NotConfigured});
         const acoustics::Pulse pulse(*plan.config.pulse, plan.grid.speed_of_sound);
         if (isShort(pulse, plan.grid))
-            return leaveOut(plan, {name, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2, words});
+            return leaveOut(plan, {name, Reason::BelowBound, pulse.resolution(), plan.grid.bin_width / 2, lengthWords});
         plan.add(Pass::Pulse);
         return true;
     }

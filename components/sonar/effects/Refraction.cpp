@@ -28,7 +28,7 @@ std::shared_ptr<const acoustics::SoundProfile> bendingProfile(const SonarConfig&
     return matters(*profile, config, grid) ? profile : nullptr;
 }
 
-std::string words(const LeftOut& what, const BinGrid& grid) {
+std::string bendWords(const LeftOut& what, const BinGrid& grid) {
     return fmt::format("a gradient of {:.3g} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m",
                        2 * what.value * grid.speed_of_sound / (grid.range_max * grid.range_max), what.value,
                        grid.range_max, what.bound);
@@ -51,7 +51,7 @@ public:
                                     : speed_gradient;
         const Bending bent = bending(plan.config, plan.grid, gradient);
         if (bent.offset < bent.tolerated)
-            leaveOut(plan, {"refraction", Reason::BelowBound, bent.offset, bent.tolerated, words});
+            leaveOut(plan, {"refraction", Reason::BelowBound, bent.offset, bent.tolerated, bendWords});
         return false;
     }
     std::vector<std::string> features() const override { return {"refraction"}; }
