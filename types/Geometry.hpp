@@ -14,6 +14,18 @@
 
 namespace insonify::types {
 
+/** A wall that a surface stands for, with water on both sides or air behind it. */
+struct Shell {
+    double thickness = 0;    ///< [m]
+    double density = 0;      ///< [kg/m^3]
+    double sound_speed = 0;  ///< Of longitudinal waves [m/s].
+    double shear_speed = 0;  ///< 0: as a fluid [m/s].
+    double loss = 0;         ///< Imaginary over real part of the wave numbers [1].
+    bool has_air = false;    ///< Air behind it, and not water.
+
+    bool operator==(const Shell&) const = default;
+};
+
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
 struct Material {
     std::string name;
@@ -22,6 +34,7 @@ struct Material {
     std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
     float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
     std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
+    std::optional<Shell> shell = {};            ///< A thin wall: what goes through is heard; else nothing does.
     bool mirror = false;                        ///< Reflects sound as a flat mirror does, beside what it scatters.
     float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
     bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.

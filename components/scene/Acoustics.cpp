@@ -57,8 +57,29 @@ constexpr MatterRow matters[] = {
     {Matter::Pvc, 0.37},      {Matter::Acrylic, 0.35},         {Matter::Hdpe, 0.21},
     {Matter::Neoprene, 0.15}, {Matter::NaturalRubber, -0.02},  {Matter::WaterloggedWood, -0.07},
     {Matter::DryWood, -0.5},  {Matter::ClosedCellFoam, -0.94}, {Matter::Ice, 0.39},
-    {Matter::Air, -0.9995},
+    {Matter::Air, -0.9995},   {Matter::Glass, 0.80},           {Matter::Fibreglass, 0.57},
 };
+
+/** What walls may be of: typical values (ACOUSTICS.md 3.10). */
+struct WallRow {
+    Matter matter;
+    double density, sound_speed, shear_speed, loss;  ///< [kg/m^3], [m/s], [m/s], [1]
+};
+constexpr WallRow walls[] = {
+    {Matter::Steel, 7850, 5900, 3230, 1e-4},      {Matter::CarbonSteel, 7850, 5900, 3230, 1e-4},
+    {Matter::Aluminium, 2700, 6320, 3130, 1e-4},  {Matter::CastIron, 7200, 4600, 2650, 1e-3},
+    {Matter::Bronze, 8860, 4500, 2230, 1e-3},     {Matter::Granite, 2650, 5500, 3000, 2e-3},
+    {Matter::Basalt, 2700, 5400, 3000, 2e-3},     {Matter::Concrete, 2300, 3700, 2200, 1e-2},
+    {Matter::Limestone, 2400, 3000, 1700, 1e-2},  {Matter::Pvc, 1380, 2400, 1060, 1e-2},
+    {Matter::Acrylic, 1190, 2700, 1340, 5e-3},    {Matter::Hdpe, 960, 2430, 950, 1e-2},
+    {Matter::Neoprene, 1310, 1600, 0, 5e-2},      {Matter::NaturalRubber, 950, 1550, 0, 2e-2},
+    {Matter::Ice, 917, 3800, 1900, 5e-3},         {Matter::Glass, 2500, 5660, 3420, 5e-4},
+    {Matter::Fibreglass, 1800, 3100, 1700, 1e-2},
+};
+const WallRow* wallOf(Matter matter) {
+    const auto* found = std::ranges::find(walls, matter, &WallRow::matter);
+    return found == std::end(walls) ? nullptr : found;
+}
 
 /** Whether there is a row for each name of an enum, in its order. */
 template <class E, class Rows>
@@ -82,8 +103,23 @@ public:
 
     template <class T>
     void operator()(const types::Field& field, std::optional<T>& value) {
+        const std::string key = block_ + std::string(field.name);
+        known_.push_back(key);
+        types::Field keyed = field;
+        keyed.name = key.c_str();
+        if (const auto found = values_.find(key); found != values_.end()) read(keyed, found->second, value);
+    }
+    void operator()(const types::Field& field, std::optional<ShellAcoustics>& value) {
+        block_ = std::string(field.name) + ".";
+        ShellAcoustics block;
+        ShellAcoustics::describe(block, *this);
+        if (std::ranges::any_of(values_, [&](const auto& given) { return given.first.starts_with(block_); }))
+            value = block;
+        else if (values_.contains(std::string(field.name)))
+            diagnostics_.push_back(
+                {std::string(field.name), "must be a block such as {thickness_mm: 2, material: pvc}"});
         known_.emplace_back(field.name);
-        if (const auto found = values_.find(field.name); found != values_.end()) read(field, found->second, value);
+        block_.clear();
     }
     void refuseUnknown() {
         for (const auto& [key, value] : values_)
@@ -137,6 +173,7 @@ private:
 
     const AcousticValues& values_;
     types::Diagnostics& diagnostics_;
+    std::string block_;  ///< "shell.", within that block.
     std::vector<std::string> known_;
 };
 
@@ -199,7 +236,8 @@ void Acoustics::readTable(const std::filesystem::path& folder, types::Diagnostic
 }
 
 void Acoustics::applyTo(types::Material& target) const {
-    if (sediment || material || lambert_db || table) {
+    if (sediment || material || lambert_db || table || shell) {
+        target.shell.reset();
         target.seabed.clear();
         target.measured = measured;
     }
@@ -212,6 +250,11 @@ void Acoustics::applyTo(types::Material& target) const {
         target.lambert_db = static_cast<float>(lambertDb(*material));
         target.reflection = static_cast<float>(scene::reflection(*material));
     }
+    if (shell) {
+        target.shell = shell->shell();
+        target.lambert_db = static_cast<float>(convex_body_db);
+        target.reflection = 1;
+    }
     if (lambert_db) target.lambert_db = static_cast<float>(*lambert_db);
     if (reflection) target.reflection = static_cast<float>(*reflection);
     if (roughness_slope) target.roughness_slope = static_cast<float>(*roughness_slope);
@@ -220,7 +263,35 @@ void Acoustics::applyTo(types::Material& target) const {
     target.has_acoustics = true;
 }
 
+void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
+    if (!thickness_mm) diagnostics.push_back({"thickness_mm", "is missing"});
+    if (material && !wallOf(*material)) {
+        std::vector<std::string_view> names;
+        for (const WallRow& row : walls)
+            names.push_back(types::EnumNames<Matter>::names[static_cast<size_t>(row.matter)]);
+        diagnostics.push_back({"material", fmt::format("has no speeds of its own; give density and sound_speed, or one "
+                                                       "of {}",
+                                                       fmt::join(names, ", "))});
+    }
+    if (!material && !(density && sound_speed))
+        diagnostics.push_back({"material", "is missing; or give density and sound_speed"});
+    const double speed =
+        sound_speed.value_or(material && wallOf(*material) ? wallOf(*material)->sound_speed : INFINITY);
+    if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
+        diagnostics.push_back(
+            {"shear_speed", fmt::format("is {}; must be below 0.87 times the sound_speed of {}", *shear_speed, speed)});
+}
+
+types::Shell ShellAcoustics::shell() const {
+    static constexpr WallRow fluid{Matter::Air, 0, 0, 0, 0};
+    const WallRow& row = material && wallOf(*material) ? *wallOf(*material) : fluid;
+    return {thickness_mm.value_or(0) / 1000,       density.value_or(row.density), sound_speed.value_or(row.sound_speed),
+            shear_speed.value_or(row.shear_speed), loss.value_or(row.loss),       fill == Fill::Air};
+}
+
 void Acoustics::check(types::Diagnostics& diagnostics) const {
+    if (shell && (sediment || material || table))
+        diagnostics.push_back({"shell", "stands beside `sediment`, `material` or `table`; give one of them"});
     if (sediment && material) diagnostics.push_back({"material", "stands beside `sediment`; give one of the two"});
     if (table && (sediment || lambert_db))
         diagnostics.push_back({"table", "stands beside `sediment` or `lambert_db`; give one of them"});
@@ -233,6 +304,12 @@ Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::pat
     Acoustics::describe(acoustics, reader);
     reader.refuseUnknown();
     acoustics.check(diagnostics);
+    if (acoustics.shell) {
+        types::Diagnostics of_shell;
+        acoustics.shell->check(of_shell);
+        for (const types::Diagnostic& diagnostic : of_shell)
+            diagnostics.push_back({"shell." + diagnostic.path, diagnostic.message});
+    }
     acoustics.readTable(folder, diagnostics);
     return acoustics;
 }

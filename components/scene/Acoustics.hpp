@@ -56,7 +56,9 @@ enum class Matter {
     DryWood,
     ClosedCellFoam,
     Ice,
-    Air
+    Air,
+    Glass,
+    Fibreglass
 };
 
 double lambertDb(Sediment sediment);  ///< [dB]
@@ -65,8 +67,37 @@ double reflection(Matter matter);     ///< Signed pressure reflection coefficien
  *  ACOUSTICS.md 3.3. */
 double lambertDb(Matter matter);
 
+/** What is behind a shell. */
+enum class Fill { Water, Air };
+
+/** A thin wall of a solid, by name or by numbers beside it. */
+struct ShellAcoustics {
+    std::optional<double> thickness_mm;
+    std::optional<Matter> material;
+    std::optional<double> density, sound_speed, shear_speed, loss;
+    std::optional<Fill> fill;
+
+    void check(types::Diagnostics& diagnostics) const;
+    /** Of a shell that check() finds nothing wrong with. */
+    types::Shell shell() const;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"thickness_mm", "mm", "of the wall", 1e-3, 1000}, self.thickness_mm);
+        visit(Field{"material", "", "matter of the table that has these numbers: density, speeds and loss"},
+              self.material);
+        visit(Field{"density", "kg/m^3", "of the wall", 1, 30000}, self.density);
+        visit(Field{"sound_speed", "m/s", "of its longitudinal waves", 100, 20000}, self.sound_speed);
+        visit(Field{"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
+        visit(Field{"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
+        visit(Field{"fill", "", "what is behind it"}, self.fill);
+    }
+};
+
 /** The acoustic values that a file or a property gives to a material. What is absent stays as it was.
  *
+ *  A `shell` makes the surface a thin wall, whose echo is that of a rigid body times the reflection of the wall.
  *  A `sediment` sets the seabed and lambert_db; a `material` sets reflection and lambert_db; numbers beside them
  *  refine, a `lambert_db` by Lambert's law, a `table` by what was measured. */
 struct Acoustics {
@@ -75,6 +106,7 @@ struct Acoustics {
     std::optional<double> lambert_db, reflection, roughness_slope, reflectivity;
     std::optional<bool> mirror;
     std::optional<std::string> table;
+    std::optional<ShellAcoustics> shell;
     std::vector<glm::dvec2> measured;  ///< What stands in `table`, once it is read [deg, dB].
 
     /** Reads `table`, whose path is relative to `folder`; what is wrong with it goes to `diagnostics`. */
@@ -98,10 +130,11 @@ struct Acoustics {
               self.mirror);
         visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
         visit(Field{"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
+        visit(Field{"shell", "", "the surface is a thin wall, which sound goes through"}, self.shell);
     }
 };
 
-/** What a file gives to a key: a number, a text, a yes or no, or neither. */
+/** What a file gives to a key: a number, a text, a yes or no, or neither; "shell.density" for a key of a block. */
 using AcousticValue = std::variant<std::monostate, double, std::string, bool>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
@@ -131,5 +164,9 @@ struct insonify::types::EnumNames<insonify::scene::Matter> {
         "steel",    "carbon_steel",     "aluminium", "cast_iron", "bronze",         "granite",
         "basalt",   "concrete",         "limestone", "gravel",    "sand",           "mud",
         "pvc",      "acrylic",          "hdpe",      "neoprene",  "natural_rubber", "waterlogged_wood",
-        "dry_wood", "closed_cell_foam", "ice",       "air"};
+        "dry_wood", "closed_cell_foam", "ice",       "air",       "glass",          "fibreglass"};
+};
+template <>
+struct insonify::types::EnumNames<insonify::scene::Fill> {
+    static constexpr std::string_view names[] = {"water", "air"};
 };

@@ -17,17 +17,19 @@ namespace {
 /** Larger images are refused before they are decoded [pixels a side]. */
 constexpr int max_image_side = 8192;
 
-/** The values of a JSON object by key. */
-AcousticValues valuesOf(const tinygltf::Value& object) {
-    AcousticValues values;
+/** Adds the values of a JSON object by key, those of an object in it by "name.key". */
+void addValues(const tinygltf::Value& object, const std::string& prefix, AcousticValues& values) {
     for (const std::string& key : object.Keys()) {
         const tinygltf::Value& json = object.Get(key);
-        AcousticValue& value = values[key];
+        if (json.IsObject() && prefix.empty() && !json.Keys().empty()) {
+            addValues(json, key + ".", values);
+            continue;
+        }
+        AcousticValue& value = values[prefix + key];
         if (json.IsNumber()) value = json.GetNumberAsDouble();
         if (json.IsString()) value = json.Get<std::string>();
         if (json.IsBool()) value = json.Get<bool>();
     }
-    return values;
 }
 
 void readExtras(const tinygltf::Value& extras, const std::filesystem::path& folder, types::Material& material,
@@ -36,7 +38,9 @@ void readExtras(const tinygltf::Value& extras, const std::filesystem::path& fold
     const tinygltf::Value& json = extras.Get("acoustics");
     if (!json.IsObject())
         return diagnostics.push_back({"", "must be an object such as {\"sediment\": \"medium_sand\"}"});
-    readAcoustics(valuesOf(json), folder, diagnostics).applyTo(material);
+    AcousticValues values;
+    addValues(json, "", values);
+    readAcoustics(values, folder, diagnostics).applyTo(material);
 }
 
 /** Bytes of an encoded image; empty when its file was not found. */

@@ -257,8 +257,11 @@ private:
         if (!tag) return look;
         for (const ::sdf::ParamPtr& attribute : tag->GetAttributes())
             look.acoustics[attribute->GetKey()] = valueOf(attribute->GetAsString());
-        for (::sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement())
-            look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
+        for (::sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement()) {
+            if (!key->GetFirstElement()) look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
+            for (::sdf::ElementPtr of = key->GetFirstElement(); of; of = of->GetNextElement())
+                look.acoustics[key->GetName() + "." + of->GetName()] = valueOf(of->Get<std::string>());
+        }
         types::Diagnostics diagnostics;
         const auto folder = std::filesystem::path(visual.Element()->FilePath()).parent_path();
         const Acoustics known = readAcoustics(look.acoustics, folder, diagnostics);

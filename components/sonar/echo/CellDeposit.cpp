@@ -163,7 +163,7 @@ CellDeposit::CellDeposit(const EchoRules& rules, const WaterView& water, bool be
     : rules_(rules), water_(water), bent_(bent), to_(to), estimator_(estimatorOf(rules.features)) {}
 
 void CellDeposit::finish() {
-    for (size_t i = 0; i < rules_.own.size(); ++i)
+    for (size_t i = 0; i < rules_.own.size() && !to_.behind_walls; ++i)
         rules_.own[i]->addCells(
             {rules_, water_, cells, covered, to_.first_beam, to_.sums + rules_.ownOffset(i), rules_.sumCount()});
     cells.clear();

@@ -12,6 +12,7 @@ struct EchoSums {
     int first_beam;  ///< Of the sums [1].
     uint64_t* sums;  ///< EchoRules::sumCount() for each beam from the first on: [bin][channel] in quanta.
     const TruthSink* truth = nullptr;  ///< Where the truth of the sums is reported; null: nowhere.
+    bool behind_walls = false;         ///< The cells are behind walls; effects have added the water before these.
 };
 
 /** Adds the echoes of a batch to sums; one function for each estimator of what a bin holds. */

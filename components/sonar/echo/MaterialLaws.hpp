@@ -26,15 +26,20 @@ struct LobeSample {
 /** What materials give back to a sonar (ACOUSTICS.md 3): by Lambert's law, or by a table, and by a lobe about the
  *  normal. */
 struct MaterialLaws {
-    std::vector<MaterialRecord> records;  ///< One for each material.
-    std::vector<double> tables;           ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
-    std::optional<double> wavelength;     ///< None without a frequency [m].
-    bool has_measured = false;            ///< A table is measured.
-    bool has_seabeds = false;             ///< A table is that of APL-UW TR 9407.
-    bool lacks_frequency = false;         ///< There are seabeds, which follow Lambert's law for want of a frequency.
-    std::string outside_validity;         ///< What lies outside of what TR 9407 covers; empty: nothing.
+    std::vector<MaterialRecord> records;    ///< One for each material.
+    std::vector<double> tables;             ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
+    std::vector<std::vector<float>> walls;  ///< Share of energy that shells let through both ways, one for each
+                                            ///< material, over the cosine from 0 to 1; empty: nothing [1].
+    std::optional<double> wavelength;       ///< None without a frequency [m].
+    bool has_measured = false;              ///< A table is measured.
+    bool has_seabeds = false;               ///< A table is that of APL-UW TR 9407.
+    bool lacks_frequency = false;           ///< There are seabeds, which follow Lambert's law for want of a frequency.
+    std::string outside_validity;           ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;
+    bool hasWalls() const;
+    /** Returns the share of energy that goes through a material's shell and back at a cosine of incidence [1]. */
+    float passed(size_t material, double cosine) const;
     bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     bool hasLobe(size_t material) const { return records[material].law.y > 0; }
     /** sigma_b / cos(theta) of a material at a cosine [1]; of one with a lobe, as the lobe is seen. */

@@ -91,7 +91,7 @@ void PathTruth::report(types::SonarTruth& truth) const {
             for (uint8_t path = 1; path < energies_.size(); ++path)
                 if (energies_[path][at] > energies_[loudest][at]) loudest = path;
             if (!knows_direct_ && truth.hits[at] > 0) loudest = 0;
-            truth.path[at] = loudest;
+            if (loudest > 0) truth.path[at] = loudest;
             if (loudest > 0 || truth.hits[at] > 0) last = j;
         }
         for (size_t j = 0; j < bin_count_; ++j) {

@@ -20,6 +20,7 @@ const Effect& ringDown();
 const Effect& volume();
 const Effect& speckle();
 const Effect& multipath();
+const Effect& walls();
 const Effect& slabs();
 const Effect& refraction();
 const Effect& motionInPing();
@@ -31,9 +32,10 @@ namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(), &backscatter(),  &publishedMeans(), &beamPatterns(), &pulse(),
-                                   &ringDown(),   &volume(),       &speckle(),        &multipath(),    &slabs(),
-                                   &refraction(), &motionInPing(), &normalMaps(),     &pointTargets(), &truth()};
+    std::vector<const Effect*> all{&absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),
+                                   &pulse(),        &ringDown(),    &volume(),         &speckle(),
+                                   &multipath(),    &walls(),       &slabs(),          &refraction(),
+                                   &motionInPing(), &normalMaps(),  &pointTargets(),   &truth()};
 };
 
 List& list() {

@@ -60,7 +60,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Paths, Beams, Beamform, Pulse, RingDown };
+enum class Pass { Cull, Surface, Rays, Deposit, Walls, Paths, Beams, Beamform, Pulse, RingDown };
 
 /** Why something is left out; LeftOut::words have the rest. */
 enum class Reason {
@@ -139,6 +139,6 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull",  "surface",  "rays",  "deposit",  "paths",
-                                                 "beams", "beamform", "pulse", "ring_down"};
+    static constexpr std::string_view names[] = {"cull",  "surface", "rays",     "deposit", "walls",
+                                                 "paths", "beams",   "beamform", "pulse",   "ring_down"};
 };

@@ -31,6 +31,9 @@ using Clock = std::chrono::steady_clock;
 /** Samples of a part: few enough to stay in a thread's cache, and to share out one beam of very many [1]. */
 constexpr int part_samples = 8192;
 
+/** Share of the energy below which a ray ends that has gone through walls: 60 dB [1]. */
+constexpr float min_passed = 1e-6f;
+
 /** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
 struct Part {
     int first_beam, beams, first_row, rows;
@@ -61,7 +64,8 @@ private:
     /** What one thread works with. */
     struct Worker {
         std::vector<CastTile> tiles;
-        std::vector<TileHits> hits;  ///< Of each tile.
+        std::vector<TileHits> hits;                           ///< Of each tile.
+        std::vector<std::array<float, tile_samples>> passed;  ///< The same, where there are walls.
         std::vector<uint64_t> sums;
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
@@ -90,10 +94,14 @@ private:
     }
     CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
     void addEnergies(types::Sonar& ping);
-    void depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker);
+    void depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker);
+    void deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
+    /** Follows rays on through the walls that they have met; whether there are any. */
+    bool castThrough(std::span<CastTile> tiles, Worker& worker) const;
+    bool castThrough(CastTile& tile) const;
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
-    std::span<const CastTile> cast(const Part& part, Worker& worker) const;
+    std::span<CastTile> cast(const Part& part, Worker& worker) const;
     /** Fills the bins of a cell from its sums; whether it has any echo. */
     bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
@@ -209,6 +217,7 @@ void CastEchoes::shareOut() {
     for (Worker& worker : workers_) {
         worker.hits.resize(static_cast<size_t>(across * (rows / up)));
         worker.tiles.resize(worker.hits.size());
+        if (plan_.has(Pass::Walls)) worker.passed.resize(worker.hits.size());
         worker.sums.resize(static_cast<size_t>(together) * rules_.sumCount());
     }
 }
@@ -244,7 +253,7 @@ void CastEchoes::placeRuns() {
     }
 }
 
-std::span<const CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
+std::span<CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
     const int begin = part.first_beam * view_.cells.beam_columns, end = begin + part.beams * view_.cells.beam_columns;
     std::array<TileRays, RayVisibility::tiles_at_once> rays;
     size_t count = 0, waiting = 0;
@@ -276,25 +285,73 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
     return true;
 }
 
-void CastEchoes::depositPart(const Part& part, std::span<const CastTile> tiles, Worker& worker) {
-    std::fill(worker.sums.begin(), worker.sums.end(), 0);
-    const EchoSums sums{part.first_beam, worker.sums.data()};
+bool CastEchoes::castThrough(CastTile& tile) const {
+    const TileRays straight = directions_.rays(view_.cells, tile.first_column, tile.first_row);
+    PathRays on{};
+    on.towards = straight;
+    on.towards.active = 0;
+    for (int i = 0; i < tile_samples; ++i) {
+        on.nearest[i] = 1;  // of rays that end
+        if (!(straight.active >> i & 1) || tile.hits->command[i] == TileHits::nothing) continue;
+        const PlacedRun& run = runs_[tile.hits->command[i]];
+        const glm::dvec3 way(straight.x[i], straight.y[i], straight.z[i]),
+            normal = turned(run, run.planes[tile.hits->triangle[i]].normal);
+        const double length = glm::length(way),
+                     cosine = std::abs(glm::dot(normal, way)) / (glm::length(normal) * length);
+        tile.passed[i] *= rules_.laws.passed(run.material, cosine);
+        const float begin =
+            tile.hits->distance[i] * (1 + 1e-5f) + static_cast<float>(RayVisibility::nearest / 10 / length);
+        const auto end = static_cast<float>(rules_.bins.range_max / length);
+        if (!(tile.passed[i] >= min_passed) || !(begin < end)) continue;
+        on.nearest[i] = begin;
+        on.farthest[i] = end;
+        on.towards.active |= 1u << i;
+    }
+    if (on.towards.active) visibility_.cast(on, *tile.hits);
+    return on.towards.active;
+}
+
+bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
+    bool any = false;
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        if (!tiles[i].passed) worker.passed[i].fill(1);
+        tiles[i].passed = worker.passed[i].data();
+        if (castThrough(tiles[i]))
+            any = true;
+        else
+            std::fill_n(tiles[i].hits->command, tile_samples, TileHits::nothing);
+    }
+    return any;
+}
+
+void CastEchoes::deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
+    const EchoSums sums{first_beam, worker.sums.data(), nullptr, behind_walls};
     if (field_)
         depositPatches(rules_, view_, scene(), tiles, sums);
     else if (!truth_)
         depositTiles(rules_, view_, scene(), tiles, sums);
     if (!truth_) return;
-    worker.shown->clear();
     std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
     const TruthSink truth{*worker.shown, {}, worker.one_beam};
-    depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles, {part.first_beam, told.data(), &truth});
+    depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles,
+                 {first_beam, told.data(), &truth, behind_walls});
+}
+
+void CastEchoes::depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker) {
+    std::fill(worker.sums.begin(), worker.sums.end(), 0);
+    if (truth_) worker.shown->clear();
+    deposit(tiles, false, part.first_beam, worker);
+    const int walls = plan_.has(Pass::Walls) ? plan_.config.max_walls : 0;
+    for (int wall = 0; wall < walls && castThrough(tiles, worker); ++wall)
+        deposit(tiles, true, part.first_beam, worker);
+    if (!truth_) return;
     for (int beam = 0; beam < part.beams; ++beam)
         truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
                           *truth_);
 }
 
 void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
-    const std::span<const CastTile> tiles = cast(part, worker);
+    const std::span<CastTile> tiles = cast(part, worker);
     worker.lap(DrawStage);
     effects_.followRays(castPing(), tiles);
     depositPart(part, tiles, worker);

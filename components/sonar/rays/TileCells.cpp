@@ -17,7 +17,7 @@ public:
     TileCells(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
-          hears_misses_(rules.hears_misses),
+          hears_misses_(rules.hears_misses && !to.behind_walls),
           curves_(!rules.features.has(Feature::Speckle) && !scene.paths),
           view_(view.cells),
           shape_(view.shape),
@@ -70,12 +70,13 @@ private:
         const int i = cells_.count;
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
+        if (tile.passed) cells_.size[i] *= tile.meanPassed(sample, merged);
         if (run.curves && curves_) cells_.setCurve(i, run.curves[tile.hits->triangle[sample]]);
         if (mapped_) placeInMap(i, *tile.hits, sample, merged);
         if (mapped_ && scene_.paths) in_map_.setCosines(scene_, i, i + 1, cells_);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
         if (deposit_.to().truth) {
-            cells_.object[i] = object;
+            cells_.object[i] = tile.passed ? object | behind_walls : object;
             cells_.hits[i] = static_cast<uint32_t>(merged);
         }
         if (++cells_.count == Cells::capacity) finish();

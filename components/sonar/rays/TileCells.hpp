@@ -33,6 +33,14 @@ struct CastTile {
     int first_column, first_row;
     int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
     TileHits* hits;
+    float* passed = nullptr;  ///< Share of each sample's energy that walls let through both ways; null: all [1].
+
+    /** Mean share of `count` samples from one on [1]. */
+    double meanPassed(int first, int count) const {
+        double sum = 0;
+        for (int i = first; i < first + count; ++i) sum += static_cast<double>(passed[i]);
+        return sum / count;
+    }
 };
 
 /** A ping that is ray-traced, at the quality in force. */

@@ -19,7 +19,7 @@ public:
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
           has_own_(!rules.own.empty()),
-          hears_misses_(rules.hears_misses),
+          hears_misses_(rules.hears_misses && !to.behind_walls),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
@@ -131,9 +131,18 @@ private:
         const CommandRecord& command = scene_.commands[command_[first]];
         cells_.setPlane(i, scene_.ranges[command_[first]], triangle_[first]);
         setLookDirection(view_, conical_, all, i, cells_);
+        if (tile.passed) cells_.size[i] *= meanPassed(tile, samples);
         sources_[i] = {all, samplesIn(all, samples, tile), command.object, command.lattice};
         if (mapped_) placeInMap(i, *tile.hits, samples);
         count();
+    }
+
+    /** Mean share of some samples that walls let through [1]. */
+    double meanPassed(const CastTile& tile, uint32_t samples) const {
+        double sum = 0;
+        for (uint32_t left = samples; left != 0; left &= left - 1)
+            sum += tile.meanPassed(sample_[std::countr_zero(left)], 1);
+        return sum / std::popcount(samples);
     }
 
     /** As in Patch. */

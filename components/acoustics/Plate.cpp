@@ -1,0 +1,62 @@
+#include "components/acoustics/Plate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace insonify::acoustics {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double grazing_cosine = 1e-6;  ///< Nearer to grazing, a wave is taken as one of this angle [1].
+constexpr double min_loss = 1e-9;    ///< Keeps resonances finite [1].
+constexpr double max_decay = 300;    ///< Beyond exp(-this) nothing passes [Np].
+
+/** One kind of wave in the plate. */
+struct Wave {
+    Complex impedance;     ///< Density times phase speed along the normal [Pa s/m].
+    Complex cot, inverse;  ///< Of the phase across the plate: cotangent, and 1 / sine [1].
+};
+
+/** @param slowness along the plate [s/m] */
+Wave waveIn(const Plate& plate, double speed, double frequency, double slowness) {
+    const Complex number = Complex(1, std::max(plate.loss, min_loss)) / speed;  // over the angular frequency [s/m]
+    Complex normal = std::sqrt(number * number - slowness * slowness);
+    if (normal.imag() < 0) normal = -normal;
+    Complex phase = 2 * std::numbers::pi * frequency * plate.thickness * normal;
+    phase.imag(std::min(phase.imag(), max_decay));
+    const Complex sine = std::sin(phase);
+    return {plate.density / normal, std::cos(phase) / sine, 1.0 / sine};
+}
+
+/** Impedance of a wave in a fluid along the normal [Pa s/m]. */
+Complex impedanceOf(const Fluid& fluid, double slowness) {
+    const Complex normal = std::sqrt(Complex(1 / (fluid.sound_speed * fluid.sound_speed) - slowness * slowness, 0));
+    return fluid.density /
+           (std::abs(normal) > grazing_cosine / fluid.sound_speed ? normal : grazing_cosine / fluid.sound_speed);
+}
+
+}  // namespace
+
+PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
+                            double cos_incidence) {
+    const double cosine = std::clamp(cos_incidence, grazing_cosine, 1.0);
+    const double slowness = std::sqrt(1 - cosine * cosine) / before.sound_speed;
+    const Wave pressure = waveIn(plate, plate.sound_speed, frequency, slowness);
+    Complex along = pressure.impedance * pressure.cot, across = pressure.impedance * pressure.inverse;
+    if (plate.shear_speed > 0) {
+        const Wave shear = waveIn(plate, plate.shear_speed, frequency, slowness);
+        const Complex sine = slowness * plate.shear_speed / Complex(1, std::max(plate.loss, min_loss));
+        const Complex square = 1.0 - 2.0 * sine * sine;  // cos^2 of twice the shear waves' angle, its root
+        const Complex of_pressure = square * square, of_shear = 1.0 - of_pressure;
+        along = of_pressure * along + of_shear * shear.impedance * shear.cot;
+        across = of_pressure * across + of_shear * shear.impedance * shear.inverse;
+    }
+    const Complex one = before.density * before.sound_speed / cosine, other = impedanceOf(behind, slowness);
+    const Complex i(0, 1), behind_plate = other + i * along;  // pressures go as exp(-i omega t)
+    const Complex at_face = i * along + across * across / behind_plate;
+    return {(at_face - one) / (at_face + one), 2.0 * i * across * other / (behind_plate * (at_face + one))};
+}
+
+}  // namespace insonify::acoustics

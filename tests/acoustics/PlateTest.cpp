@@ -1,0 +1,137 @@
+// A plate between two fluids (ACOUSTICS.md 3.10).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+
+#include "components/acoustics/Plate.hpp"
+
+namespace insonify::acoustics {
+namespace {
+
+using std::numbers::pi;
+
+constexpr Fluid water{1025, 1500}, air{1.21, 343};
+
+Plate steel(double thickness) { return {thickness, 7850, 5900, 3230, 0}; }
+double transmittedPower(const Plate& plate, const Fluid& fluid, double frequency, double cosine) {
+    return std::norm(plateResponse(plate, fluid, fluid, frequency, cosine).transmitted);
+}
+
+/** Draws plates of all kinds, and waves. */
+class Draw {
+public:
+    double between(double low, double high) {
+        return std::exp(std::uniform_real_distribution(std::log(low), std::log(high))(random_));
+    }
+    double uniform() { return std::uniform_real_distribution(0.0, 1.0)(random_); }
+
+private:
+    std::mt19937 random_{3};
+};
+
+TEST(PlateTest, WhatIsNotReflectedIsTransmittedWithoutLossInAnyFluids) {
+    Draw draw;
+    for (int i = 0; i < 2000; ++i) {
+        Plate plate{draw.between(1e-4, 0.1), draw.between(500, 9000), draw.between(1000, 7000), 0, 0};
+        if (i % 2) plate.shear_speed = plate.sound_speed * (0.3 + 0.3 * draw.uniform());
+        const Fluid before{draw.between(800, 2000), draw.between(1000, 2000)};
+        const Fluid behind{draw.between(800, 2000), draw.between(1000, 2000)};
+        const double cosine = draw.uniform(), frequency = draw.between(1e4, 3e6);
+        const double sine = std::sqrt(1 - cosine * cosine) * behind.sound_speed / before.sound_speed;
+        if (sine > 0.999) continue;  // totally reflected
+        const PlateResponse response = plateResponse(plate, before, behind, frequency, cosine);
+        const double one = before.density * before.sound_speed / cosine,
+                     other = behind.density * behind.sound_speed / std::sqrt(1 - sine * sine);
+        EXPECT_NEAR(std::norm(response.reflected) + std::norm(response.transmitted) * one / other, 1, 1e-4)
+            << plate.thickness << " m, " << frequency << " Hz, cosine " << cosine;
+    }
+}
+
+TEST(PlateTest, BothWaysThroughAreTheSame) {
+    Draw draw;
+    for (int i = 0; i < 500; ++i) {
+        const Plate plate{draw.between(1e-3, 0.05), 1200, 2700, 1340, 0.01};
+        const Fluid one{1000, 1500}, other{900, 1400};
+        const double frequency = draw.between(1e4, 2e6), cosine = 0.1 + 0.9 * draw.uniform();
+        const double sine = std::sqrt(1 - cosine * cosine) * other.sound_speed / one.sound_speed;
+        const double there = std::sqrt(1 - sine * sine);
+        const double z_one = one.density * one.sound_speed / cosine,
+                     z_other = other.density * other.sound_speed / there;
+        const auto out = plateResponse(plate, one, other, frequency, cosine).transmitted;
+        const auto back = plateResponse(plate, other, one, frequency, there).transmitted;
+        EXPECT_LT(std::abs(out / z_other - back / z_one) * z_one, 1e-6 * std::abs(out)) << frequency;
+    }
+}
+
+/** Kinsler et al. 2000, 6.3: a fluid layer at normal incidence. */
+TEST(PlateTest, AFluidLayerAtTheNormalIsThatOfTextbooks) {
+    Draw draw;
+    for (int i = 0; i < 500; ++i) {
+        const Plate layer{draw.between(1e-4, 0.1), draw.between(500, 9000), draw.between(1000, 7000), 0, 0};
+        const double frequency = draw.between(1e4, 3e6),
+                     phase = 2 * pi * frequency * layer.thickness / layer.sound_speed;
+        const double ratio = layer.density * layer.sound_speed / (water.density * water.sound_speed);
+        const double power = 1 / (1 + std::pow((ratio - 1 / ratio) / 2 * std::sin(phase), 2));
+        EXPECT_NEAR(transmittedPower(layer, water, frequency, 1), power, 1e-5);
+    }
+}
+
+TEST(PlateTest, APlateOfHalfAWavelengthIsNotThereAndOneOfAQuarterReflectsMost) {
+    const double frequency = 500e3, wave = 5900 / frequency;
+    EXPECT_NEAR(transmittedPower(steel(wave / 2), water, frequency, 1), 1, 1e-5);
+    const double quarter = transmittedPower(steel(wave / 4), water, frequency, 1), ratio = 7850. * 5900 / (1025 * 1500);
+    EXPECT_NEAR(quarter, 4 / std::pow(ratio + 1 / ratio, 2), 1e-6);
+}
+
+/** Fahy and Gardonio 2007, 5.2: 1 / (1 + (omega m cos / (2 rho c))^2). */
+TEST(PlateTest, AThinPlateFollowsTheLawOfMassBelowCoincidence) {
+    for (const double cosine : {1.0, 0.8, 0.5})
+        for (const double frequency : {100., 1000., 3000.}) {
+            const double mass = 7850 * 1e-3, load = 2 * pi * frequency * mass * cosine / (2 * 1.21 * 343);
+            const double power = transmittedPower(steel(1e-3), air, frequency, cosine);
+            EXPECT_NEAR(power * (1 + load * load), 1, 0.2) << cosine << ", " << frequency << " Hz";
+        }
+}
+
+/** Fahy and Gardonio 2007, table 5.1: critical frequency times thickness of steel in air, 12.4 m/s. Just above it a
+ * plate without loss lets everything through at the angle at which its flexural waves are as fast along it. */
+TEST(PlateTest, SteelInAirIsClearAtTheAngleOfCoincidence) {
+    const double thickness = 1e-3, critical = 12.4 / thickness;
+    for (const double over : {1.2, 2.0, 4.0}) {
+        double best = 0, at = 0;
+        for (double sine = 0.2; sine < 1; sine += 1e-5) {
+            const double power = transmittedPower(steel(thickness), air, over * critical, std::sqrt(1 - sine * sine));
+            if (power > best) best = power, at = sine;
+        }
+        EXPECT_GT(best, 0.5) << over;
+        EXPECT_NEAR(at * std::sqrt(over), 1, 0.02) << over;
+        EXPECT_LT(transmittedPower(steel(thickness), air, over * critical, 1), 1e-3);
+    }
+}
+
+TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
+    const PlateResponse backed = plateResponse(steel(0.003), water, air, 200e3, 0.9);
+    EXPECT_NEAR(std::abs(backed.reflected), 1, 1e-2);
+    const Plate rubber{0.1, 1100, 1550, 0, 0.2};
+    const PlateResponse lost = plateResponse(rubber, water, water, 3e6, 1);
+    EXPECT_LT(std::abs(lost.transmitted), 1e-30);
+    EXPECT_NEAR(std::abs(lost.reflected), std::abs(1100. * 1550 - 1025. * 1500) / (1100. * 1550 + 1025. * 1500), 0.1);
+}
+
+TEST(PlateTest, ExtremeOnesAreFinite) {
+    for (const double thickness : {1e-9, 1e-3, 10.})
+        for (const double frequency : {1., 1e5, 1e8})
+            for (const double cosine : {0., 1e-12, 0.5, 1.})
+                for (const double shear : {0., 3230.}) {
+                    const Plate plate{thickness, 7850, 5900, shear, 0};
+                    const PlateResponse r = plateResponse(plate, water, water, frequency, cosine);
+                    EXPECT_TRUE(std::isfinite(std::norm(r.reflected)) && std::isfinite(std::norm(r.transmitted)));
+                    EXPECT_LE(std::norm(r.reflected) + std::norm(r.transmitted), 1 + 1e-3) << thickness << frequency;
+                }
+}
+
+}  // namespace
+}  // namespace insonify::acoustics
