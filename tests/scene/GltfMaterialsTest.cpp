@@ -55,6 +55,42 @@ TEST_F(GltfMaterialsTest, AcousticNumbersAreTaken) {
     EXPECT_FLOAT_EQ(m.reflectivity, 0.25);
 }
 
+TEST_F(GltfMaterialsTest, AShellIsOfMatterOrOfNumbers) {
+    const types::Material pvc =
+        acoustics(R"({"shell":{"thickness_mm":3,"material":"pvc","loss":0.02,"fill":"air"},"roughness_slope":0.1})");
+    EXPECT_EQ(pvc.shell.value(), (types::Shell{0.003, 1380, 2400, 1060, 0.02, true}));
+    EXPECT_FLOAT_EQ(pvc.reflection, 1) << "times what the plate reflects";
+    EXPECT_FLOAT_EQ(pvc.lambert_db, -9.23f);
+    const types::Material fluid =
+        acoustics(R"({"shell":{"thickness_mm":1,"density":1100,"sound_speed":1600},"lambert_db":-20})");
+    EXPECT_EQ(fluid.shell.value(), (types::Shell{0.001, 1100, 1600, 0, 0, false}));
+    EXPECT_FLOAT_EQ(fluid.lambert_db, -20);
+    EXPECT_FALSE(acoustics(R"({"material":"steel"})").shell);
+}
+
+TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"({"shell":{"material":"pvc"}})", "acoustics.shell.thickness_mm: is missing"},
+        {R"({"shell":{"thickness_mm":0,"material":"pvc"}})",
+         "shell.thickness_mm: is 0; must be a number from 0.001 to 1000"},
+        {R"({"shell":{"thickness_mm":2}})", "shell.material: is missing; or give density and sound_speed"},
+        {R"({"shell":{"thickness_mm":2,"material":"mud"}})",
+         "shell.material: has no speeds of its own; give density and "},
+        {R"({"shell":{"thickness_mm":2,"material":"stel"}})", "shell.material: is \"stel\"; did you mean steel?"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","shear_speed":2400}})",
+         "shell.shear_speed: is 2400; must be below 0.87 times the sound_speed of 2400"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","thick":2}})", "shell.thick: is not known; "},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"oil"}})", "shell.fill: is \"oil\"; may be water, air"},
+        {R"({"shell":2})", "acoustics.shell: must be a block such as"},
+        {R"({"shell":{}})", "acoustics.shell: must be a block such as"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc"},"material":"steel"})",
+         "acoustics.shell: stands beside `sediment`, `material` or `table`; give one of them"},
+        {R"({"sediment":{"thickness_mm":2}})", "sediment.thickness_mm: is not known"}};
+    for (const auto& [json, part] : cases)
+        EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
+            << json << ": " << diagnosticOfAcoustics(json);
+}
+
 TEST_F(GltfMaterialsTest, NamesOfTheTablesAreTakenAndNumbersRefineThem) {
     EXPECT_FLOAT_EQ(acoustics(R"({"sediment":"cobble"})").lambert_db, -8.1f);
     const types::Material steel = acoustics(R"({"material":"steel","reflectivity":0.5})");

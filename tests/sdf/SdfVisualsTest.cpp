@@ -95,6 +95,17 @@ TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
     EXPECT_FALSE(materialOf(*scene.geometry, 2).has_acoustics);
 }
 
+TEST_F(SdfVisualsTest, AShellIsABlockOfElements) {
+    const auto shell = [&](const std::string& keys) {
+        return "<model name='a'><link name='l'>" + visual("v", box_, acoustics("<shell>" + keys + "</shell>")) +
+               "</link></model>";
+    };
+    const Scene scene = world(shell("<thickness_mm>2</thickness_mm><material>glass</material><fill>air</fill>"));
+    EXPECT_EQ(materialOf(*scene.geometry, 0).shell.value(), (types::Shell{0.002, 2500, 5660, 3420, 5e-4, true}));
+    EXPECT_NE(diagnosticOfWorld(shell("<material>glass</material>")).find("shell.thickness_mm: is missing"),
+              std::string::npos);
+}
+
 TEST_F(SdfVisualsTest, AWrongAcousticTagIsToldWithItsLine) {
     const std::string diagnostic = diagnosticOfWorld(
         "<model name='a'>\n<link name='l'>\n" +
