@@ -14,8 +14,13 @@ constexpr int32_t none = types::SonarTruth::no_object;
 class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-              const Classes& classes, const AnnotationConfig& config, output::BinScale scale)
-        : ping_(ping), truth_(truth), picture_(picture), config_(config), decibel_(scale == output::BinScale::Decibel) {
+              const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width)
+        : ping_(ping),
+          truth_(truth),
+          picture_(picture),
+          config_(config),
+          decibel_(scale == output::BinScale::Decibel),
+          bin_width_(bin_width) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
         for (const std::string& name : truth.objects) class_of_.push_back(classes.of(name));
@@ -73,11 +78,12 @@ private:
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
         const double bearing = picture_.bearing(beam);
-        Annotation& annotation = annotationOf(object, bearing, ping_.binStart(first));
+        const double near = first * bin_width_, far = last * bin_width_;
+        Annotation& annotation = annotationOf(object, bearing, near);
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);
-        annotation.range_min = std::min(annotation.range_min, ping_.binStart(first));
-        annotation.range_max = std::max(annotation.range_max, ping_.binStart(last));
+        annotation.range_min = std::min(annotation.range_min, near);
+        annotation.range_max = std::max(annotation.range_max, far);
         for (uint32_t k = first; k < last; ++k) {
             const size_t bin = size_t{beam} * ping_.bin_count + k;
             if (truth_.object[bin] != object) continue;
@@ -152,6 +158,7 @@ private:
     const output::PlainPicture& picture_;
     const AnnotationConfig& config_;
     const bool decibel_;
+    const double bin_width_;          ///< [m]
     std::vector<uint32_t> class_of_;  ///< Of each object of the truth.
     std::vector<int32_t> object_of_;  ///< Of each cell.
     std::map<int32_t, Annotation> found_;
@@ -160,8 +167,8 @@ private:
 }  // namespace
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale) {
-    return Annotator(ping, truth, picture, classes, config, scale).annotated();
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width) {
+    return Annotator(ping, truth, picture, classes, config, scale, bin_width).annotated();
 }
 
 }  // namespace insonify::dataset

@@ -39,8 +39,9 @@ struct Annotated {
 /** Finds which objects a picture shows. A cell is of the object that gives most energy to one of its bins, if its share
  *  there is at least `min_share`, it has a class, and the cell's grey level is at least `min_level`. An object of fewer
  *  than `min_pixels` pixels is not annotated, and its pixels belong to none.
- *  @param picture that took the ping. Throws std::runtime_error for a truth of another grid. */
+ *  @param picture that took the ping; @param bin_width exact [m]. Throws std::runtime_error for a truth of another
+ * grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale);
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width);
 
 }  // namespace insonify::dataset

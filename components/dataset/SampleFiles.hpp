@@ -16,6 +16,7 @@ struct Heard {
     const Sample& sample;
     const types::Sonar& ping;
     const types::SonarTruth& truth;
+    double bin_width;                                             ///< Exact [m].
     std::string scene;                                            ///< Name of its file.
     std::vector<std::pair<std::string, std::string>> settings{};  ///< "task.property", value in YAML.
 };

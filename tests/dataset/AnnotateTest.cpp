@@ -14,6 +14,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr uint32_t beams = 61, bins = 100;
+constexpr double bin_width = 0.0213;  // [m]; other than the ping's rounded duration says
 
 /** A floor everywhere at -20 dB, a "rock" and a "pile" at 0 dB in it. */
 class AnnotateTest : public ::testing::Test {
@@ -45,7 +46,7 @@ protected:
         shown_.emplace(picture_);
         shown_->take(ping_);
         const Classes classes(sweep_, truth_.objects);
-        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale);
+        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale, bin_width);
     }
     /** Of the pixel at which a bin is shown. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
@@ -102,8 +103,8 @@ TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     EXPECT_EQ(pile.category, 2u);
     EXPECT_EQ(rock.bins, 40u);
     EXPECT_NEAR(rock.energy, 40, 1e-3);
-    EXPECT_NEAR(rock.range_min, ping_.binStart(50), 1e-9);
-    EXPECT_NEAR(rock.range_max, ping_.binStart(60), 1e-9);
+    EXPECT_NEAR(rock.range_min, 50 * bin_width, 1e-9);
+    EXPECT_NEAR(rock.range_max, 60 * bin_width, 1e-9);
     EXPECT_EQ(rock.bearing_min, ping_.bearings[20].rad);
     EXPECT_EQ(rock.bearing_max, ping_.bearings[23].rad);
     for (uint32_t beam = 20; beam < 24; ++beam)

@@ -1,4 +1,5 @@
 // insonify dataset: data sets of a small sonar in the harbour.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <map>
@@ -347,6 +348,34 @@ classes: {rock: rock_000}
         EXPECT_LT(found["range_m"][0], std::hypot(11.6, 2, 3.5));
         EXPECT_GT(found["range_m"][1], std::hypot(11.6, 2, 3.5) - 1);
     }
+}
+
+TEST_F(DatasetCommandTest, RangesInARecordAreThoseOfTheSonarHoweverBinsAreRounded) {
+    writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5}}
+settings:
+  sonar.range: [6.3]
+  sonar.range_rounding: [sample, exact]
+  sonar.range_min: [0, 2]
+  sonar.bin_count: [100, 375, 1000]
+objects: [{names: [rock_000], x: [5, 5.001], y: [0, 0.001], z: [-6.5, -6.499], frame: vehicle}]
+classes: {rock: rock_000}
+)");
+    ASSERT_EQ(make("out").code, 0);
+    double nearest = 0;
+    for (int i = 0; i < 12; ++i) {
+        const json record = recordOf("out", fmt::format("{:06}", i));
+        const double c = record["ping"]["speed_of_sound_m_s"], bins = record["ping"]["bins"];
+        const bool exact = record["settings"]["sonar.range_rounding"] == "exact";
+        const double range = exact ? 6.3 : bins * std::ceil(6.3 / bins / c * 1e6) * 1e-6 * c;
+        EXPECT_NEAR(record["ping"]["range_m"], range, 1e-9) << i;
+        ASSERT_EQ(record["annotations"].size(), 1u) << i;
+        const double near = record["annotations"][0]["range_m"][0], cell = range / 100;
+        if (i == 2) nearest = near;  // the finest of bins of whole microseconds
+        if (i > 2) {
+            EXPECT_NEAR(near, nearest, 2 * cell) << i;
+        }
+    }
+    EXPECT_NEAR(nearest, std::hypot(4.6, 0.8), 1);
 }
 
 TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {

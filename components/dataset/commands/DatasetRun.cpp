@@ -248,7 +248,8 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     simulation_->reset(sample.seed);
     const deployer::SteppedPing made = simulation_->step(std::move(at), simulation_->time() + sample.time).front();
     if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
-    files.write({sample, *made.ping, *made.truth, scenes_[sample.scene].name, samples_->settingsOf(sample.setting)});
+    files.write({sample, *made.ping, *made.truth, made.bin_width, scenes_[sample.scene].name,
+                 samples_->settingsOf(sample.setting)});
 }
 
 }  // namespace insonify::dataset
