@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
@@ -62,9 +63,11 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
         const double drawn = between({double(group.count[0]), double(group.count[1]) + 1}, first_word - 1);
         wanted = std::min<size_t>({wanted, static_cast<size_t>(drawn), group.count[1]});
     }
+    const std::vector<bool> present = chosen(names.size(), wanted, first_word - 2);
+    size_t placed_count = 0;
     for (size_t i = 0; i < names.size(); ++i) {
         const Placeable& object = scene_.placeables.at(names[i]);
-        if (i >= wanted) {
+        if (!present[i]) {
             objects_.push_back({names[i], object.filed, false});
             objects_.back().at.position.z -= out_of_hearing;
             continue;
@@ -77,10 +80,22 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
                 {{fmt::format("objects[{}]", number),
                   fmt::format("has room for {} of its {} objects at pose {}, of {} tries each; give "
                               "it a larger area, fewer objects or a smaller gap",
-                              i, wanted, pose_, tries),
+                              placed_count, wanted, pose_, tries),
                   sweep_.file, group.line, group.column}});
         objects_.push_back(std::move(*placed));
+        ++placed_count;
     }
+}
+
+std::vector<bool> Placement::chosen(size_t count, size_t wanted, uint64_t last_word) const {
+    std::vector<size_t> order(count);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::vector<bool> is_chosen(count, false);
+    for (size_t i = 0; i < wanted; ++i) {
+        std::swap(order[i], order[i + types::hashed(sweep_.seed, pose_, last_word - i) % (count - i)]);
+        is_chosen[order[i]] = true;
+    }
+    return is_chosen;
 }
 
 std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word) {

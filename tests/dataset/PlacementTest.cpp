@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 
 #include "components/dataset/Placement.hpp"
 #include "types/ConfigError.hpp"
@@ -111,6 +112,26 @@ TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
         for (const PlacedObject& object : objects) EXPECT_EQ(object.present, object.at.position.z > -1000);
     }
     for (size_t i = 0; i < 7; ++i) EXPECT_EQ(seen[i] > 0, i >= 2 && i <= 5) << i;
+}
+
+TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
+    Sweep sweep = sweepOf({-20, 20}, {-20, 20});
+    sweep.objects[0].count = {2, 2};
+    constexpr int poses = 1200;
+    std::array<int, 6> chosen{};
+    std::map<std::pair<size_t, size_t>, int> pairs;
+    for (uint64_t pose = 0; pose < poses; ++pose) {
+        const auto objects = placed(sweep, stones(6), 6, pose), again = placed(sweep, stones(6), 6, pose);
+        std::vector<size_t> there;
+        for (size_t i = 0; i < 6; ++i) {
+            EXPECT_EQ(objects[i].present, again[i].present);
+            if (objects[i].present) ++chosen[i], there.push_back(i);
+        }
+        ASSERT_EQ(there.size(), 2u);
+        ++pairs[{there[0], there[1]}];
+    }
+    for (const int count : chosen) EXPECT_NEAR(count, poses / 3, 5 * std::sqrt(poses * 2 / 9.0));
+    EXPECT_EQ(pairs.size(), 15u);
 }
 
 TEST(PlacementTest, WhereThereIsNoRoomItSaysHowManyFitted) {
