@@ -16,7 +16,8 @@ std::string withoutNumber(const std::string& name) {
 
 Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects) : rules_(sweep.classes) {
     for (const ClassRule& rule : rules_) {
-        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column);
+        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column,
+                sweep.scenes.size() > 1 ? "any of the scenes" : "the scene");
         names_.push_back(rule.name);
     }
     if (!rules_.empty()) return;

@@ -21,6 +21,7 @@ struct Placeable {
 
 /** What placing objects takes of a scene. */
 struct SceneParts {
+    std::vector<std::string> nodes;  ///< Names of all nodes, whether with a mesh or not.
     std::map<std::string, Placeable> placeables;
     std::map<std::string, types::Extent> boxes;                             ///< Of nodes that are kept off.
     std::map<std::string, std::vector<std::array<glm::dvec3, 3>>> grounds;  ///< Triangles of nodes that are stood on.
@@ -57,7 +58,7 @@ struct TimedPose {
 class Samples {
 public:
     /** @param trajectory the poses of Sweep::trajectory, empty without; @param scenes one for each of Sweep::scenes.
-     *  Throws types::ConfigError for names of objects that a scene has not, and for more than 10^8 samples. */
+     *  Throws types::ConfigError for names of objects that no scene has, and for more than 10^8 samples. */
     Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes);
 
     uint64_t count() const { return count_; }
@@ -73,6 +74,8 @@ public:
 private:
     types::Pose poseOf(uint64_t pose, double& time) const;
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
+    /** Throws where a pattern of a group matches in none of the scenes. */
+    void refuseUnmatched(size_t group) const;
     std::vector<std::string> namesOf(size_t scene, size_t group) const;
 
     const Sweep& sweep_;
@@ -83,8 +86,10 @@ private:
 };
 
 /** Names that one of the patterns matches, in order. Throws types::ConfigError, as of `what` in the sweep, for a
- *  pattern that matches none. */
+ *  pattern that matches none.
+ *  @param where what has the known names */
 std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
-                                 const std::vector<std::string>& known, const std::string& what, int line, int column);
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column,
+                                 const char* where = "the scene");
 
 }  // namespace insonify::dataset

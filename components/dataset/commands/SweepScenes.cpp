@@ -95,17 +95,16 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
     SceneParts parts;
     if (sweep.objects.empty()) return parts;
-    std::vector<std::string> known;
     for (size_t node = 0; node < scene.nodes.size(); ++node) {
         addNode(sweep, scene, node, parts);
-        known.push_back(scene.nodes[node].name);
+        parts.nodes.push_back(scene.nodes[node].name);
     }
     for (size_t i = 0; i < sweep.objects.size(); ++i) {
         const ObjectGroup& group = sweep.objects[i];
         const std::string path = fmt::format("objects[{}].", i);
-        resolve(sweep, group.avoid, known, path + "avoid", group.line, group.column);
-        if (!group.ground) continue;
-        resolve(sweep, {*group.ground}, known, path + "ground", group.line, group.column);
+        const auto isOfGroup = [&](const auto& each) { return anyMatches(group.names, each.first); };
+        if (!group.ground || std::ranges::none_of(parts.placeables, isOfGroup)) continue;
+        resolve(sweep, {*group.ground}, parts.nodes, path + "ground", group.line, group.column);
         auto& ground = parts.grounds[*group.ground] = groundOf(scene, *group.ground);
         if (ground.empty())
             throw types::ConfigError({{path + "ground", "is " + *group.ground + ", which has no surface to stand on",
