@@ -277,10 +277,9 @@ TEST(SonarConfigTest, ARangeThatBinsDoNotReachIsRefusedWithTheNextRangesThatFit)
     const auto refused = diagnosticsOf<SonarConfig>("{range: 2.97, bin_count: 675, speed_of_sound: 1466}");
     EXPECT_THAT(refused, ElementsAre(HasSubstr("range: is 2.97 m; 675 bins of whole microseconds reach 3.9582 m, which "
                                                "may be at most 25 % more: give 2.968 m or 3.958 m, lower bin_count")));
-    for (const char* range : {"2.968", "3.958"})
-        EXPECT_THAT(
-            diagnosticsOf<SonarConfig>(std::string("{bin_count: 675, speed_of_sound: 1466, range: ") + range + "}"),
-            IsEmpty());
+    for (const char* fits : {"{range: 2.968, bin_count: 675, speed_of_sound: 1466}",
+                             "{range: 3.958, bin_count: 675, speed_of_sound: 1466}"})
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(fits), IsEmpty());
 }
 
 TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {
