@@ -14,7 +14,7 @@ namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t max_samples = 100'000'000;
-constexpr uint64_t pose_stream = 0x706f7365, noise_stream = 0x6e6f697365;
+constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365;
 
 /** The coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
@@ -57,6 +57,10 @@ std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::stri
     }
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     return names;
+}
+
+uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number) {
+    return types::hashed(sweep.seed, index, setting_stream + number);
 }
 
 Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes)
@@ -149,6 +153,9 @@ Sample Samples::at(uint64_t index) const {
     sample.scene = index / poses_ / settings_;
     sample.at = poseOf(sample.pose, sample.time);
     sample.objects = place(sample.scene, sample.pose, sample.at);
+    sample.settings = settingsOf(sample.setting);
+    for (size_t i = 0; i < sweep_.drawn.size(); ++i)
+        sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(wordOf(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
     sample.part = sweep_.split.of(sweep_.seed, index);
     return sample;

@@ -15,8 +15,10 @@ namespace insonify::dataset {
 /** A node of a scene that can be put elsewhere. */
 struct Placeable {
     types::Pose filed;  ///< Where the file has it, as a pose of the node.
-    double radius = 0;  ///< Of an upright cylinder about the node's origin that holds it, however it turns [m].
+    double radius = 0;  ///< Of an upright cylinder about the node's origin that holds it, whatever its yaw [m].
     double low = 0;     ///< Of its lowest point, above the node's origin [m].
+    /** Its vertices from the origin in the world's axes, as the file turns them; empty where no group tilts it. */
+    std::vector<glm::vec3> points;
 };
 
 /** What placing objects takes of a scene. */
@@ -35,7 +37,8 @@ struct PlacedObject {
 };
 
 /** What one sample is of. It depends on its own number alone: whoever makes it, and whatever else is made, it is the
- *  same. Poses and places of objects are those of the pose's number, the same in each scene and setting. */
+ *  same. Poses and places of objects are those of the pose's number, the same in each scene and setting. Drawn settings
+ *  are those of the sample's number. */
 struct Sample {
     uint64_t index = 0;
     size_t scene = 0, setting = 0;  ///< Numbers in Sweep::scenes, and of the combination of settings.
@@ -43,7 +46,8 @@ struct Sample {
     double time = 0;  ///< Since the start [s].
     types::Pose at;
     std::vector<PlacedObject> objects;
-    uint64_t seed = 1;  ///< Of noise and the like; not 0.
+    std::vector<std::pair<std::string, std::string>> settings;  ///< "task.property" and YAML: listed ones, drawn ones.
+    uint64_t seed = 1;                                          ///< Of noise and the like; not 0.
     Part part = Part::Train;
 };
 
@@ -84,6 +88,9 @@ private:
     std::vector<std::vector<std::vector<std::string>>> names_;  ///< Of each scene and group, patterns resolved.
     uint64_t poses_ = 0, settings_ = 1, count_ = 0;
 };
+
+/** The random word by which a sample draws the setting `number` of Sweep::drawn. */
+uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number);
 
 /** Names that one of the patterns matches, in order. Throws types::ConfigError, as of `what` in the sweep, for a
  *  pattern that matches none.

@@ -101,6 +101,26 @@ TEST(PlacementTest, TheyStandOnTheHighestGroundBelowTheirOrigin) {
     EXPECT_NEAR(*highestAt(slope, 1, 1), 1, 1e-12);
 }
 
+TEST(PlacementTest, ATiltedObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
+    Sweep sweep = sweepOf({1, 30}, {1, 30});
+    sweep.objects[0].ground = "floor";
+    sweep.objects[0].roll_deg = {90, 90};
+    SceneParts scene = stones(2);
+    scene.grounds["floor"] = {{glm::dvec3(-99, -99, -9), glm::dvec3(99, -99, -9), glm::dvec3(0, 200, -9)}};
+    for (auto& [name, pole] : scene.placeables) {  // upright, from its origin to 3 m above
+        pole.radius = 0.1, pole.low = 0;
+        pole.points = {{0.1, 0, 0}, {0, 0.1, 0}, {0, -0.1, 0}, {0, 0, 3}};
+    }
+    for (uint64_t pose = 0; pose < 50; ++pose) {
+        const auto poles = placed(sweep, scene, 2, pose);
+        EXPECT_GE(apart(poles[0].at.position, poles[1].at.position), 6.1) << pose;
+        EXPECT_NEAR(poles[0].at.position.z, -8.9, 1e-6);  // half its thickness above the ground
+        EXPECT_NEAR((poles[0].at.orientation * glm::dvec3(0, 0, 1)).y, -1, 1e-9);
+    }
+    sweep.objects[0].roll_deg = {180, 180};
+    EXPECT_NEAR(placed(sweep, scene, 2, 0)[0].at.position.z, -6, 1e-6);
+}
+
 TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
     Sweep sweep = sweepOf({-20, 20}, {-20, 20});
     sweep.objects[0].count = {2, 5};

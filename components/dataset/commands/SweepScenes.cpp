@@ -13,7 +13,7 @@ namespace insonify::dataset {
 namespace {
 
 /** The node's objects in the axes of the world, about the node's origin, as the file turns them. */
-Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts) {
+Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts, bool tilts) {
     const types::Geometry& geometry = *scene.geometry;
     const scene::Part& first = parts.front();
     const glm::dmat4 world_from_body =
@@ -31,6 +31,7 @@ Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>&
             const glm::dvec3 turned = placeable.filed.orientation * in_body;
             placeable.radius = std::max(placeable.radius, std::hypot(turned.x, turned.y));
             placeable.low = any ? std::min(placeable.low, turned.z) : turned.z;
+            if (tilts) placeable.points.emplace_back(turned);
             any = true;
         }
     return placeable;
@@ -75,7 +76,9 @@ void addNode(const Sweep& sweep, const scene::Scene& scene, size_t node, ScenePa
     if (objects.empty()) return;
     for (const ObjectGroup& group : sweep.objects)
         if (anyMatches(group.avoid, name)) parts.boxes[name] = boxOf(scene, objects);
-    parts.placeables[name] = placeableOf(scene, objects);
+    const bool tilts = std::ranges::any_of(
+        sweep.objects, [&](const ObjectGroup& group) { return group.tilts() && anyMatches(group.names, name); });
+    parts.placeables[name] = placeableOf(scene, objects, tilts);
 }
 
 template <class T>
