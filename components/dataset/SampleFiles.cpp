@@ -25,6 +25,7 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"name", annotation.name},
             {"class", classes.names()[annotation.category - 1]},
             {"category", annotation.category},
+            {"shadow", annotation.is_shadow},
             {"bbox", {box.x, box.y, box.width, box.height}},
             {"area", annotation.area},
             {"bins", annotation.bins},

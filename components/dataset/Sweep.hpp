@@ -142,6 +142,7 @@ struct AnnotationConfig {
     double min_share = 0.5;
     uint32_t min_level = 1;
     uint32_t min_pixels = 12;
+    bool shadows = false;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -150,6 +151,7 @@ struct AnnotationConfig {
               self.min_share);
         visit(Field{"min_level", "1", "grey level of the picture from which a place is seen", 0, 255}, self.min_level);
         visit(Field{"min_pixels", "1", "of an object, from which it is annotated", 1, 1e6}, self.min_pixels);
+        visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
     }
 };
 
