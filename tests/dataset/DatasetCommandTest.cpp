@@ -447,6 +447,29 @@ classes: {rock: rock_000}
     EXPECT_NEAR(nearest, std::hypot(4.6, 0.8), 1);
 }
 
+TEST_F(DatasetCommandTest, AShadowLiesBehindItsObjectAsFarAsItsHeightTells) {
+    writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
+objects: [{names: [rock_000], x: [10, 10.001], y: [1, 1.001], frame: vehicle, ground: sea_floor}]
+classes: {rock: rock_000}
+annotations: {shadows: true}
+)");
+    ASSERT_EQ(make("out").code, 0);
+    EXPECT_EQ(json::parse(readFile(folder_ / "out/manifest.json"))["classes"], json::array({"rock", "rock_shadow"}));
+    for (const char* index : {"000000", "000001"}) {
+        const json record = recordOf("out", index);
+        ASSERT_EQ(record["annotations"].size(), 2u) << index;
+        const json &rock = record["annotations"][0], &shadow = record["annotations"][1];
+        EXPECT_EQ(rock["shadow"], false);
+        EXPECT_EQ(shadow["shadow"], true);
+        EXPECT_EQ(shadow["name"], "rock_000");
+        EXPECT_EQ(shadow["class"], "rock_shadow");
+        EXPECT_GE(shadow["range_m"][0], rock["range_m"][0]);
+        EXPECT_GT(shadow["range_m"][1], rock["range_m"][1]);
+        EXPECT_GE(shadow["bearing_rad"][0].get<double>(), rock["bearing_rad"][0].get<double>() - 0.02);
+        EXPECT_LE(shadow["bearing_rad"][1].get<double>(), rock["bearing_rad"][1].get<double>() + 0.02);
+    }
+}
+
 TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
     writeFile(folder_ / "sweep.yml", "scenes: [" + (root / "deploy/scenes/tank.glb").string() +
                                          ", {set: {sonar.bin_count: 100}}]\nposes: {grid: {z: -3}}\n");
@@ -514,6 +537,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{
             "SettingOutOfBounds", grid + "settings:\n  sonar.range: [30, -5]\n",
             "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
+        BadSweep{
+            "SettingWithOneValue", grid + "settings: {sonar.range: 30}\n",
+            "sweep.yml:2:25: settings.sonar.range: must be a list of values, or one of uniform, normal and choice"},
+        BadSweep{"ChoiceOfOne", grid + "settings: {sonar.range: {choice: 30}}\n",
+                 "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
+        BadSweep{"TiltWithoutBounds",
+                 grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
+                 "sweep.yml:3:5: objects[0].roll_deg: must be two numbers, [least, most]"},
         BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
                  "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",

@@ -198,6 +198,8 @@ private:
             if (entry.second.IsMap()) {
                 sweep_.drawn.emplace_back().property = name;
                 readDrawn(entry.second, path, sweep_.drawn.back());
+            } else if (!entry.second.IsSequence()) {
+                reader_.report(entry.second, path, "must be a list of values, or one of uniform, normal and choice");
             } else {
                 sweep_.settings.emplace_back().property = name;
                 readList(entry.second, path, sweep_.settings.back().values);
@@ -206,7 +208,6 @@ private:
     }
 
     void readList(const YAML::Node& list, const std::string& path, std::vector<Written>& values) {
-        if (!reader_.isSequence(list, path)) return;
         if (list.size() == 0) reader_.report(list, path, "is empty; give at least one value");
         for (const YAML::Node& value : list) values.push_back(written(value));
     }
@@ -216,7 +217,8 @@ private:
         drawn.line = node.Mark().line + 1, drawn.column = node.Mark().column + 1;
         if (!reader_.read(node, path, keys)) return;
         drawn.law.uniform = keys.uniform, drawn.law.normal = keys.normal;
-        if (keys.choice.IsDefined()) readList(keys.choice, path + ".choice", drawn.choice);
+        if (keys.choice.IsDefined() && reader_.isSequence(keys.choice, path + ".choice"))
+            readList(keys.choice, path + ".choice", drawn.choice);
     }
 
     void readObjects(const YAML::Node& objects) {
