@@ -1,10 +1,9 @@
 #pragma once
-#include <yaml-cpp/yaml.h>
-
 #include <string>
 #include <vector>
 
 #include "components/command/Json.hpp"
+#include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
 
