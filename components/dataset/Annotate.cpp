@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -14,11 +15,17 @@ constexpr int32_t none = types::SonarTruth::no_object;
 class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-              const Classes& classes, const AnnotationConfig& config, output::BinScale scale)
-        : ping_(ping), truth_(truth), picture_(picture), config_(config), decibel_(scale == output::BinScale::Decibel) {
+              const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width)
+        : ping_(ping),
+          truth_(truth),
+          picture_(picture),
+          config_(config),
+          decibel_(scale == output::BinScale::Decibel),
+          bin_width_(bin_width) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
         for (const std::string& name : truth.objects) class_of_.push_back(classes.of(name));
+        for (size_t i = 0; i < truth.objects.size(); ++i) class_of_.push_back(classes.shadowOf(class_of_[i]));
     }
 
     Annotated annotated() {
@@ -49,14 +56,47 @@ private:
     void labelCells() {
         const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
         object_of_.assign(size_t{ping_.beam_count} * cells, none);
-        for (uint32_t beam = 0; beam < ping_.beam_count; ++beam)
+        for (uint32_t beam = 0; beam < ping_.beam_count; ++beam) {
+            if (ping_.bearings[beam].isUnknown()) continue;
+            if (config_.shadows) findShadows(beam);
             for (uint32_t cell = 0; cell < cells; ++cell) {
                 const size_t at = size_t{beam} * cells + cell;
-                if (picture_.levels()[at] < config_.min_level || ping_.bearings[beam].isUnknown()) continue;
                 const uint32_t last = std::min((cell + 1) * step, ping_.bin_count);
-                labelCell(beam, cell * step, last, object_of_[at]);
+                if (picture_.levels()[at] >= config_.min_level) labelCell(beam, cell * step, last, object_of_[at]);
+                if (config_.shadows && object_of_[at] == none) object_of_[at] = shadow_of_[cell * step];
                 if (object_of_[at] != none) addCell(beam, cell, cell * step, last, object_of_[at]);
             }
+        }
+    }
+
+    /** Finds for each bin of a beam whose shadow it is. The sound that just passes the object meets what lies behind
+     * the shadow: of all that is nearer, the object's echo has the elevation next to that of the first echo behind. */
+    void findShadows(uint32_t beam) {
+        const size_t start = size_t{beam} * ping_.bin_count;
+        shadow_of_.assign(ping_.bin_count, none);
+        uint32_t first = 0;  // bin of the shadow
+        for (uint32_t k = 0; k < ping_.bin_count; ++k) {
+            if (truth_.shadow[start + k] != 0) continue;
+            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], casterOf(start, first, k));
+            first = k + 1;
+        }
+    }
+
+    /** The number of the shadow of what hides the bins from `first` to `behind`; none where that has no class or is
+     *  what lies behind them as well, as where a floor is uneven. */
+    int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
+        double nearest = std::numeric_limits<double>::infinity();
+        int32_t caster = none;
+        for (uint32_t k = 0; k < first; ++k) {
+            const double apart =
+                std::abs(static_cast<double>(truth_.elevation[start + k] - truth_.elevation[start + behind]));
+            if (truth_.object[start + k] == none || !(apart <= nearest)) continue;
+            nearest = apart;
+            caster = truth_.object[start + k];
+        }
+        if (caster == none || caster == truth_.object[start + behind]) return none;
+        const auto shadow = caster + static_cast<int32_t>(truth_.objects.size());
+        return class_of_[static_cast<size_t>(shadow)] == 0 ? none : shadow;
     }
 
     void labelCell(uint32_t beam, uint32_t first, uint32_t last, int32_t& object) const {
@@ -73,15 +113,17 @@ private:
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
         const double bearing = picture_.bearing(beam);
-        Annotation& annotation = annotationOf(object, bearing, ping_.binStart(first));
+        const double near = first * bin_width_, far = last * bin_width_;
+        Annotation& annotation = annotationOf(object, bearing, near);
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);
-        annotation.range_min = std::min(annotation.range_min, ping_.binStart(first));
-        annotation.range_max = std::max(annotation.range_max, ping_.binStart(last));
+        annotation.range_min = std::min(annotation.range_min, near);
+        annotation.range_max = std::max(annotation.range_max, far);
         for (uint32_t k = first; k < last; ++k) {
             const size_t bin = size_t{beam} * ping_.bin_count + k;
-            if (truth_.object[bin] != object) continue;
+            if (annotation.is_shadow ? shadow_of_[k] != object : truth_.object[bin] != object) continue;
             ++annotation.bins;
+            if (annotation.is_shadow) continue;
             annotation.energy += intensityOf(bin) * static_cast<double>(truth_.share[bin]);
         }
         const cv::Point at = picture_.pixelOf(beam, cell);
@@ -91,8 +133,10 @@ private:
     Annotation& annotationOf(int32_t object, double bearing, double range) {
         const auto [at, is_new] = found_.try_emplace(object);
         if (is_new) {
-            at->second.object = object;
-            at->second.name = truth_.objects[static_cast<size_t>(object)];
+            const auto objects = static_cast<int32_t>(truth_.objects.size());
+            at->second.is_shadow = object >= objects;
+            at->second.object = object % objects;
+            at->second.name = truth_.objects[static_cast<size_t>(object % objects)];
             at->second.category = class_of_[static_cast<size_t>(object)];
             at->second.bearing_min = at->second.bearing_max = bearing;
             at->second.range_min = at->second.range_max = range;
@@ -152,16 +196,18 @@ private:
     const output::PlainPicture& picture_;
     const AnnotationConfig& config_;
     const bool decibel_;
-    std::vector<uint32_t> class_of_;  ///< Of each object of the truth.
-    std::vector<int32_t> object_of_;  ///< Of each cell.
+    const double bin_width_;          ///< [m]
+    std::vector<uint32_t> class_of_;  ///< Of each object of the truth, then of each shadow.
+    std::vector<int32_t> object_of_;  ///< Of each cell; for a shadow the object's number and that of all objects.
+    std::vector<int32_t> shadow_of_;  ///< Of each bin of a beam, likewise.
     std::map<int32_t, Annotation> found_;
 };
 
 }  // namespace
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale) {
-    return Annotator(ping, truth, picture, classes, config, scale).annotated();
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width) {
+    return Annotator(ping, truth, picture, classes, config, scale, bin_width).annotated();
 }
 
 }  // namespace insonify::dataset

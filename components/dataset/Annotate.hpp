@@ -21,6 +21,7 @@ struct Annotation {
     int32_t object = 0;  ///< Index into the truth's objects.
     std::string name;
     uint32_t category = 0;                    ///< From 1.
+    bool is_shadow = false;                   ///< Of the object, instead of its echo.
     Box box;                                  ///< Holds its pixels and the middle of each of its cells.
     uint32_t area = 0;                        ///< [px]
     uint32_t bins = 0;                        ///< Of the ping, of which it is the strongest.
@@ -36,11 +37,13 @@ struct Annotated {
     std::vector<uint16_t> labels;         ///< Of each pixel, row by row: number of its annotation from 1; 0: none.
 };
 
-/** Finds which objects a picture shows. A cell is of the object that gives most energy to one of its bins, if its share
- *  there is at least `min_share`, it has a class, and the cell's grey level is at least `min_level`. An object of fewer
- *  than `min_pixels` pixels is not annotated, and its pixels belong to none.
- *  @param picture that took the ping. Throws std::runtime_error for a truth of another grid. */
+/** Finds which objects a picture shows, and with AnnotationConfig::shadows which shadows. A cell is of the object that
+ * gives most energy to one of its bins, if its share there is at least `min_share`, it has a class, and the cell's grey
+ * level is at least `min_level`. An object of fewer than `min_pixels` pixels is not annotated, and its pixels belong to
+ * none.
+ *  @param picture that took the ping; @param bin_width exact [m]. Throws std::runtime_error for a truth of another
+ * grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale);
+                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width);
 
 }  // namespace insonify::dataset

@@ -16,13 +16,16 @@ std::string withoutNumber(const std::string& name) {
 
 Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects) : rules_(sweep.classes) {
     for (const ClassRule& rule : rules_) {
-        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column);
+        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column,
+                sweep.scenes.size() > 1 ? "any of the scenes" : "the scene");
         names_.push_back(rule.name);
     }
-    if (!rules_.empty()) return;
     std::set<std::string> bare;
     for (const std::string& object : objects) bare.insert(withoutNumber(object));
-    names_.assign(bare.begin(), bare.end());
+    if (rules_.empty()) names_.assign(bare.begin(), bare.end());
+    if (!sweep.annotations.shadows) return;
+    first_shadow_ = static_cast<uint32_t>(names_.size());
+    for (uint32_t i = 0; i < first_shadow_; ++i) names_.push_back(names_[i] + "_shadow");
 }
 
 uint32_t Classes::of(const std::string& object) const {

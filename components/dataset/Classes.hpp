@@ -10,16 +10,22 @@ namespace insonify::dataset {
 class Classes {
 public:
     /** By the rules of a sweep, of which the first that matches counts; without any, an object's class is its name
-     *  without the number at its end: "pile_07" is a pile. Throws types::ConfigError for a pattern that matches none.
+     *  without the number at its end: "pile_07" is a pile. With AnnotationConfig::shadows the classes of their shadows
+     *  follow, "pile_shadow". Throws types::ConfigError for a pattern that matches none.
      *  @param objects names of all objects of all scenes */
     Classes(const Sweep& sweep, const std::vector<std::string>& objects);
 
     const std::vector<std::string>& names() const { return names_; }  ///< Of class 1 and on.
     uint32_t of(const std::string& object) const;
+    /** The class of the shadows of a class; 0 where shadows have none. */
+    uint32_t shadowOf(uint32_t category) const {
+        return category == 0 || first_shadow_ == 0 ? 0 : first_shadow_ + category;
+    }
 
 private:
     std::vector<ClassRule> rules_;
     std::vector<std::string> names_;
+    uint32_t first_shadow_ = 0;  ///< Number of classes before those of shadows.
 };
 
 /** "pile" of "pile_07", "pile.007" and "pile 7"; a name of digits alone stays. */

@@ -4,17 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
-#include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Hash.hpp"
+#include "types/Mount.hpp"
 
 namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t tries = 1000, words_per_try = 4;
-constexpr uint64_t stream = 0x706c6163650000;  ///< Of the random words of places; groups and objects are added.
-constexpr double out_of_hearing = 1e5;         ///< How far below its place an object is that is not there [m].
+constexpr uint64_t stream = 0x706c6163650000;       ///< Of the random words of places; groups and objects are added.
+constexpr uint64_t tilt_words = uint64_t{1} << 40;  ///< Where the words of roll and pitch begin, behind all others.
+constexpr double out_of_hearing = 1e5;              ///< How far below its place an object is that is not there [m].
+
+/** Radius and lowest point of an object after a turn, without its points. */
+Placeable turned(const Placeable& object, const glm::dquat& turn) {
+    Placeable result;
+    result.filed = object.filed, result.low = std::numeric_limits<double>::infinity();
+    for (const glm::dvec3 point : object.points) {
+        const glm::dvec3 at = turn * point;
+        result.radius = std::max(result.radius, std::hypot(at.x, at.y));
+        result.low = std::min(result.low, at.z);
+    }
+    return result;
+}
 
 double headingOf(const types::Pose& pose) {
     const glm::dvec3 ahead = pose.orientation * glm::dvec3(1, 0, 0);
@@ -62,9 +77,11 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
         const double drawn = between({double(group.count[0]), double(group.count[1]) + 1}, first_word - 1);
         wanted = std::min<size_t>({wanted, static_cast<size_t>(drawn), group.count[1]});
     }
+    const std::vector<bool> present = chosen(names.size(), wanted, first_word - 2);
+    size_t placed_count = 0;
     for (size_t i = 0; i < names.size(); ++i) {
         const Placeable& object = scene_.placeables.at(names[i]);
-        if (i >= wanted) {
+        if (!present[i]) {
             objects_.push_back({names[i], object.filed, false});
             objects_.back().at.position.z -= out_of_hearing;
             continue;
@@ -77,29 +94,46 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
                 {{fmt::format("objects[{}]", number),
                   fmt::format("has room for {} of its {} objects at pose {}, of {} tries each; give "
                               "it a larger area, fewer objects or a smaller gap",
-                              i, wanted, pose_, tries),
+                              placed_count, wanted, pose_, tries),
                   sweep_.file, group.line, group.column}});
         objects_.push_back(std::move(*placed));
+        ++placed_count;
     }
 }
 
+std::vector<bool> Placement::chosen(size_t count, size_t wanted, uint64_t last_word) const {
+    std::vector<size_t> order(count);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::vector<bool> is_chosen(count, false);
+    for (size_t i = 0; i < wanted; ++i) {
+        std::swap(order[i], order[i + types::hashed(sweep_.seed, pose_, last_word - i) % (count - i)]);
+        is_chosen[order[i]] = true;
+    }
+    return is_chosen;
+}
+
 std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word) {
-    const Placeable& object = scene_.placeables.at(name);
+    const Placeable& filed = scene_.placeables.at(name);
     glm::dvec2 at{between(group.x, word), between(group.y, word + 1)};
     if (group.frame == Frame::Vehicle) {
         const double heading = headingOf(vehicle_), c = std::cos(heading), s = std::sin(heading);
         at = {vehicle_.position.x + c * at.x - s * at.y, vehicle_.position.y + s * at.x + c * at.y};
     }
+    const auto angle = [&](const std::vector<double>& span, uint64_t of) {
+        return span.empty() ? 0 : between(span, of);
+    };
+    const types::Mount turn{{},
+                            angle(group.roll_deg, word + tilt_words),
+                            angle(group.pitch_deg, word + tilt_words + 1),
+                            angle(group.yaw_deg, word + 3)};
+    const Placeable object = group.tilts() ? turned(filed, turn.orientation()) : filed;
     const Circle circle{at.x, at.y, object.radius};
     if (!isFree(group, circle)) return std::nullopt;
     const std::optional<double> z = heightOf(group, object, circle, word + 2);
     if (!z) return std::nullopt;
     PlacedObject placed{name, object.filed, true};
     placed.at.position = {at.x, at.y, *z};
-    if (!group.yaw_deg.empty()) {
-        const double yaw = types::radians(between(group.yaw_deg, word + 3));
-        placed.at.orientation = glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * placed.at.orientation;
-    }
+    placed.at.orientation = turn.orientation() * placed.at.orientation;
     taken_.push_back(circle);
     return placed;
 }

@@ -19,6 +19,8 @@ private:
     struct Circle {
         double x, y, radius;
     };
+    /** Chooses at random, each equally likely. Takes words from `last_word` downwards. */
+    std::vector<bool> chosen(size_t count, size_t wanted, uint64_t last_word) const;
     std::optional<PlacedObject> tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word);
     bool isFree(const ObjectGroup& group, const Circle& circle) const;
     /** A random number between two by its number in this sample; the first where they are the same. */

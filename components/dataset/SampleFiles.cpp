@@ -25,6 +25,7 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"name", annotation.name},
             {"class", classes.names()[annotation.category - 1]},
             {"category", annotation.category},
+            {"shadow", annotation.is_shadow},
             {"bbox", {box.x, box.y, box.width, box.height}},
             {"area", annotation.area},
             {"bins", annotation.bins},
@@ -34,10 +35,10 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"segmentation", {{"size", {picture.height(), picture.width()}}, {"counts", annotation.runs}}}};
 }
 
-Json toJson(const types::Sonar& ping, const types::BeamArc& arc) {
+Json toJson(const types::Sonar& ping, double bin_width, const types::BeamArc& arc) {
     return {{"beams", ping.beam_count},
             {"bins", ping.bin_count},
-            {"range_m", ping.binStart(ping.bin_count)},
+            {"range_m", ping.bin_count * bin_width},
             {"bearing_rad", {arc.bearings.front(), arc.bearings.back()}},
             {"speed_of_sound_m_s", ping.speed_of_sound}};
 }
@@ -72,7 +73,7 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
     const std::vector<size_t> shape{ping.beam_count, ping.bin_count};
     std::vector<double> bearings, ranges;
     for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
-    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back(ping.binStart(k + 0.5));
+    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * heard.bin_width);
     log::NpzFile npz(file);
     npz.array("bins", shape, ping.bins);
     npz.array("bearings", {bearings.size()}, bearings);
@@ -114,8 +115,8 @@ SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& class
 
 void SampleFiles::write(const Heard& heard) {
     picture_.take(heard.ping);
-    const Annotated annotated =
-        annotate(heard.ping, heard.truth, picture_, classes_, sweep_.annotations, sweep_.picture.scale);
+    const Annotated annotated = annotate(heard.ping, heard.truth, picture_, classes_, sweep_.annotations,
+                                         sweep_.picture.scale, heard.bin_width);
     Json record = recordOf(heard, annotated);
     record["files"] = writeFiles(store_.stemOf(heard.sample.index), heard, annotated, record);
     store_.putRecord(heard.sample.index, std::move(record));
@@ -132,7 +133,7 @@ Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const
                 {"settings", Json::object()},
                 {"pose", toJson(sample.at)},
                 {"objects", Json::array()},
-                {"ping", toJson(heard.ping, picture_.arc())},
+                {"ping", toJson(heard.ping, heard.bin_width, picture_.arc())},
                 {"picture",
                  {{"width", picture_.width()},
                   {"height", picture_.height()},

@@ -16,8 +16,9 @@ struct Heard {
     const Sample& sample;
     const types::Sonar& ping;
     const types::SonarTruth& truth;
-    std::string scene;                                            ///< Name of its file.
-    std::vector<std::pair<std::string, std::string>> settings{};  ///< "task.property", value in YAML.
+    double bin_width;                                      ///< Exact [m].
+    std::string scene;                                     ///< Name of its file.
+    std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.
 };
 
 /** Writes the files of samples in one format, and their records. */

@@ -14,7 +14,7 @@ namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t max_samples = 100'000'000;
-constexpr uint64_t pose_stream = 0x706f7365, noise_stream = 0x6e6f697365;
+constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365;
 
 /** The coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
@@ -38,7 +38,8 @@ std::vector<double> drawn(const PoseAxes& axes, uint64_t seed, uint64_t pose) {
 }  // namespace
 
 std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
-                                 const std::vector<std::string>& known, const std::string& what, int line, int column) {
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column,
+                                 const char* where) {
     std::vector<std::string> names;
     types::Diagnostics diagnostics;
     for (size_t i = 0; i < patterns.size(); ++i) {
@@ -50,12 +51,16 @@ std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::stri
         }
         if (!found)
             diagnostics.push_back({fmt::format("{}[{}]", what, i),
-                                   fmt::format("is {}, which is no name in the scene; {}insonify scene lists them",
-                                               patterns[i], types::didYouMean(patterns[i], known)),
+                                   fmt::format("is {}, which is no name in {}; {}insonify scene lists them",
+                                               patterns[i], where, types::didYouMean(patterns[i], known)),
                                    sweep.file, line, column});
     }
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     return names;
+}
+
+uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number) {
+    return types::hashed(sweep.seed, index, setting_stream + number);
 }
 
 Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes)
@@ -68,17 +73,32 @@ Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vec
         throw types::ConfigError(sweep.file, "",
                                  fmt::format("makes {:g} samples; at most {} go into one data set", all, max_samples));
     count_ = poses_ * settings_ * sweep.scenes.size();
+    for (size_t group = 0; group < sweep.objects.size(); ++group) refuseUnmatched(group);
     names_.resize(scenes_.size());
     for (size_t scene = 0; scene < scenes_.size(); ++scene)
         for (size_t group = 0; group < sweep.objects.size(); ++group) names_[scene].push_back(namesOf(scene, group));
 }
 
+void Samples::refuseUnmatched(size_t number) const {
+    const ObjectGroup& group = sweep_.objects[number];
+    std::vector<std::string> placeable, nodes;
+    for (const SceneParts& scene : scenes_) {
+        for (const auto& [name, each] : scene.placeables) placeable.push_back(name);
+        nodes.insert(nodes.end(), scene.nodes.begin(), scene.nodes.end());
+    }
+    const char* where = scenes_.size() > 1 ? "any of the scenes" : "the scene";
+    const std::string path = fmt::format("objects[{}].", number);
+    resolve(sweep_, group.names, placeable, path + "names", group.line, group.column, where);
+    resolve(sweep_, group.avoid, nodes, path + "avoid", group.line, group.column, where);
+}
+
 std::vector<std::string> Samples::namesOf(size_t scene, size_t number) const {
     const ObjectGroup& group = sweep_.objects[number];
-    std::vector<std::string> known;
-    for (const auto& [name, placeable] : scenes_[scene].placeables) known.push_back(name);
+    std::vector<std::string> names;
+    for (const std::string& pattern : group.names)
+        for (const auto& [name, placeable] : scenes_[scene].placeables)
+            if (matches(pattern, name) && std::ranges::count(names, name) == 0) names.push_back(name);
     const std::string path = fmt::format("objects[{}].names", number);
-    const auto names = resolve(sweep_, group.names, known, path, group.line, group.column);
     for (size_t before = 0; before < number; ++before)
         for (const std::string& name : names_[scene][before])
             if (std::ranges::count(names, name) > 0)
@@ -133,6 +153,9 @@ Sample Samples::at(uint64_t index) const {
     sample.scene = index / poses_ / settings_;
     sample.at = poseOf(sample.pose, sample.time);
     sample.objects = place(sample.scene, sample.pose, sample.at);
+    sample.settings = settingsOf(sample.setting);
+    for (size_t i = 0; i < sweep_.drawn.size(); ++i)
+        sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(wordOf(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
     sample.part = sweep_.split.of(sweep_.seed, index);
     return sample;

@@ -15,12 +15,15 @@ namespace insonify::dataset {
 /** A node of a scene that can be put elsewhere. */
 struct Placeable {
     types::Pose filed;  ///< Where the file has it, as a pose of the node.
-    double radius = 0;  ///< Of an upright cylinder about the node's origin that holds it, however it turns [m].
+    double radius = 0;  ///< Of an upright cylinder about the node's origin that holds it, whatever its yaw [m].
     double low = 0;     ///< Of its lowest point, above the node's origin [m].
+    /** Its vertices from the origin in the world's axes, as the file turns them; empty where no group tilts it. */
+    std::vector<glm::vec3> points;
 };
 
 /** What placing objects takes of a scene. */
 struct SceneParts {
+    std::vector<std::string> nodes;  ///< Names of all nodes, whether with a mesh or not.
     std::map<std::string, Placeable> placeables;
     std::map<std::string, types::Extent> boxes;                             ///< Of nodes that are kept off.
     std::map<std::string, std::vector<std::array<glm::dvec3, 3>>> grounds;  ///< Triangles of nodes that are stood on.
@@ -34,7 +37,8 @@ struct PlacedObject {
 };
 
 /** What one sample is of. It depends on its own number alone: whoever makes it, and whatever else is made, it is the
- *  same. Poses and places of objects are those of the pose's number, the same in each scene and setting. */
+ *  same. Poses and places of objects are those of the pose's number, the same in each scene and setting. Drawn settings
+ *  are those of the sample's number. */
 struct Sample {
     uint64_t index = 0;
     size_t scene = 0, setting = 0;  ///< Numbers in Sweep::scenes, and of the combination of settings.
@@ -42,7 +46,8 @@ struct Sample {
     double time = 0;  ///< Since the start [s].
     types::Pose at;
     std::vector<PlacedObject> objects;
-    uint64_t seed = 1;  ///< Of noise and the like; not 0.
+    std::vector<std::pair<std::string, std::string>> settings;  ///< "task.property" and YAML: listed ones, drawn ones.
+    uint64_t seed = 1;                                          ///< Of noise and the like; not 0.
     Part part = Part::Train;
 };
 
@@ -57,7 +62,7 @@ struct TimedPose {
 class Samples {
 public:
     /** @param trajectory the poses of Sweep::trajectory, empty without; @param scenes one for each of Sweep::scenes.
-     *  Throws types::ConfigError for names of objects that a scene has not, and for more than 10^8 samples. */
+     *  Throws types::ConfigError for names of objects that no scene has, and for more than 10^8 samples. */
     Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes);
 
     uint64_t count() const { return count_; }
@@ -73,6 +78,8 @@ public:
 private:
     types::Pose poseOf(uint64_t pose, double& time) const;
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
+    /** Throws where a pattern of a group matches in none of the scenes. */
+    void refuseUnmatched(size_t group) const;
     std::vector<std::string> namesOf(size_t scene, size_t group) const;
 
     const Sweep& sweep_;
@@ -82,9 +89,14 @@ private:
     uint64_t poses_ = 0, settings_ = 1, count_ = 0;
 };
 
+/** The random word by which a sample draws the setting `number` of Sweep::drawn. */
+uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number);
+
 /** Names that one of the patterns matches, in order. Throws types::ConfigError, as of `what` in the sweep, for a
- *  pattern that matches none. */
+ *  pattern that matches none.
+ *  @param where what has the known names */
 std::vector<std::string> resolve(const Sweep& sweep, const std::vector<std::string>& patterns,
-                                 const std::vector<std::string>& known, const std::string& what, int line, int column);
+                                 const std::vector<std::string>& known, const std::string& what, int line, int column,
+                                 const char* where = "the scene");
 
 }  // namespace insonify::dataset

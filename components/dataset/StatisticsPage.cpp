@@ -10,7 +10,8 @@ namespace insonify::dataset {
 namespace {
 
 constexpr size_t max_examples = 12;
-constexpr int range_step = 5;  ///< [m]
+constexpr size_t max_values = 24;  ///< Of a setting that is shown; one that is drawn may have a value in each sample.
+constexpr int range_step = 5;      ///< [m]
 
 std::string escaped(const std::string& text) {
     std::string safe;
@@ -29,7 +30,8 @@ void StatisticsPage::add(const Json& record, const std::string& picture) {
     ++parts_[record["part"]];
     ++scenes_[record["scene"]];
     for (const auto& [property, value] : record["settings"].items())
-        ++settings_[property + " = " + value.get<std::string>()];
+        if (auto& counts = settings_[property]; counts.size() <= max_values)
+            ++counts[property + " = " + (value.is_string() ? value.get<std::string>() : textOf(value))];
     std::set<uint32_t> seen;
     for (const Json& each : record["annotations"]) {
         const auto category = each["category"].get<uint32_t>();
@@ -111,7 +113,10 @@ std::string StatisticsPage::text() const {
                        "figure rect{fill:none;stroke-width:2}</style></head>\n<body><h1>" +
                        escaped(title_) + fmt::format("</h1>\n<p>{} samples</p>\n", samples_);
     page += drawn("Samples by part", named(parts_)) + drawn("Samples by scene", named(scenes_));
-    if (!settings_.empty()) page += drawn("Samples by setting", named(settings_));
+    Bars settings;
+    for (const auto& [property, counts] : settings_)
+        if (counts.size() <= max_values) settings.insert(settings.end(), counts.begin(), counts.end());
+    if (!settings.empty()) page += drawn("Samples by setting", settings);
     page += tableOfClasses();
     page += drawn("Objects in a sample", objects) + drawn("Objects by size", areas) + drawn("Objects by range", ranges);
     if (!examples_.empty()) page += "<h2>Examples</h2>\n";

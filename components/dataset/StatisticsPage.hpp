@@ -34,7 +34,8 @@ private:
     const std::string title_;
     const Classes& classes_;
     uint64_t samples_ = 0;
-    std::map<std::string, uint64_t> parts_, scenes_, settings_;
+    std::map<std::string, uint64_t> parts_, scenes_;
+    std::map<std::string, std::map<std::string, uint64_t>> settings_;  ///< By property.
     std::map<uint32_t, OfClass> of_class_;
     std::map<int, uint64_t> areas_, ranges_;  ///< By power of two of pixels, by steps of range.
     std::map<size_t, uint64_t> objects_in_picture_;

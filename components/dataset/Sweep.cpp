@@ -52,6 +52,10 @@ void Axis::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"normal", "must be two numbers, [mean, deviation], the deviation not below 0"});
 }
 
+std::string DrawnSetting::draw(uint64_t random) const {
+    return choice.empty() ? fmt::format("{}", law.draw(random)) : choice[random % choice.size()].yaml;
+}
+
 uint64_t PoseAxes::gridSize() const {
     uint64_t size = 1;
     forEach(*this, [&](const char*, const char*, const Axis& axis) {
@@ -73,6 +77,8 @@ void ObjectGroup::check(types::Diagnostics& diagnostics) const {
     checkSpan("x", x, true, diagnostics);
     checkSpan("y", y, true, diagnostics);
     checkSpan("z", z, false, diagnostics);
+    checkSpan("roll_deg", roll_deg, false, diagnostics);
+    checkSpan("pitch_deg", pitch_deg, false, diagnostics);
     checkSpan("yaw_deg", yaw_deg, false, diagnostics);
     checkSpan("count", count, false, diagnostics);
     if (ground && !z.empty()) diagnostics.push_back({"ground", "is given beside z; one tells the height"});

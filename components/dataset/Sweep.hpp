@@ -89,7 +89,7 @@ struct ObjectGroup {
     std::vector<std::string> names, avoid;
     std::optional<std::string> ground;
     Frame frame = Frame::World;
-    std::vector<double> x, y, z, yaw_deg;
+    std::vector<double> x, y, z, roll_deg, pitch_deg, yaw_deg;
     double gap = 0.1;
     std::vector<uint32_t> count;
     int line = 0, column = 0;  ///< Where it stands in the sweep.
@@ -107,11 +107,16 @@ struct ObjectGroup {
               self.ground);
         visit(Field{"yaw_deg", "deg", "turn about the vertical, beside that in the file: [least, most]", -360, 360},
               self.yaw_deg);
+        visit(Field{"roll_deg", "deg", "before yaw_deg, turn about the world's x axis: [least, most]", -360, 360},
+              self.roll_deg);
+        visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [least, most]", -360, 360},
+              self.pitch_deg);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
         visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
         visit(Field{"avoid", "", "nodes that stay where they are, from whose boxes they keep off"}, self.avoid);
         visit(Field{"count", "1", "how many of them are there: [least, most]; absent: all", 0, 1e6}, self.count);
     }
+    bool tilts() const { return !roll_deg.empty() || !pitch_deg.empty(); }
     void check(types::Diagnostics& diagnostics) const;
 };
 
@@ -137,6 +142,7 @@ struct AnnotationConfig {
     double min_share = 0.5;
     uint32_t min_level = 1;
     uint32_t min_pixels = 12;
+    bool shadows = false;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -145,6 +151,7 @@ struct AnnotationConfig {
               self.min_share);
         visit(Field{"min_level", "1", "grey level of the picture from which a place is seen", 0, 255}, self.min_level);
         visit(Field{"min_pixels", "1", "of an object, from which it is annotated", 1, 1e6}, self.min_pixels);
+        visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
     }
 };
 
@@ -158,6 +165,17 @@ struct Written {
 struct Setting {
     std::string property;  ///< "task.property.path"
     std::vector<Written> values;
+};
+
+/** A property of the deployment that each sample draws a value of: from a law, or one of `choice`. */
+struct DrawnSetting {
+    std::string property;  ///< "task.property.path"
+    Axis law;
+    std::vector<Written> choice;
+    int line = 0, column = 0;  ///< Where it stands in the sweep.
+
+    /** The value in YAML that a random word gives. */
+    std::string draw(uint64_t random) const;
 };
 
 /** One of the scenes: a file, and properties that go with it. */
@@ -174,13 +192,15 @@ struct ClassRule {
     int line = 0, column = 0;
 };
 
-/** Every sample is one of `scenes`, with one combination of the values of `settings`, at one pose. */
+/** Every sample is one of `scenes`, with one combination of the values of `settings`, at one pose. What is `drawn` it
+ *  has of its own. */
 struct Sweep {
     std::string file;  ///< As given, for diagnostics.
     std::string text;
     uint64_t seed = 1;
     std::vector<SceneChoice> scenes{1};
     std::vector<Setting> settings;
+    std::vector<DrawnSetting> drawn;
     // Exactly one of these:
     std::optional<PoseAxes> grid;
     std::optional<PoseAxes> random;

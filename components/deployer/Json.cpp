@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 namespace insonify::deployer {
 
 Json toJson(const types::Diagnostic& diagnostic) {
@@ -17,6 +19,26 @@ Json toJson(const std::vector<types::Omission>& omitted) {
     for (const types::Omission& omission : omitted)
         list.push_back({{"name", omission.name}, {"reason", omission.reason}});
     return list;
+}
+
+Json toJson(const YAML::Node& node) {
+    if (!node.IsDefined() || node.IsNull()) return nullptr;
+    if (node.IsMap()) {
+        Json block = Json::object();
+        for (const auto& entry : node) block[entry.first.Scalar()] = toJson(entry.second);
+        return block;
+    }
+    if (node.IsSequence()) {
+        Json list = Json::array();
+        for (const auto& element : node) list.push_back(toJson(element));
+        return list;
+    }
+    const bool is_quoted = node.Tag() == "!";
+    const Json value = is_quoted ? Json() : Json::parse(node.Scalar(), nullptr, false);
+    if (value.is_number() || value.is_boolean()) return value;
+    double number = 0;  // as YAML has it: .5, +3
+    const bool is_number = !is_quoted && YAML::convert<double>::decode(node, number) && std::isfinite(number);
+    return is_number ? Json(number) : Json(node.Scalar());
 }
 
 std::string qualityText(const types::Plan& plan) {

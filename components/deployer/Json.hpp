@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "components/command/Json.hpp"
+#include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Plan.hpp"
 
@@ -14,6 +15,8 @@ using command::text;
 using command::write;
 
 Json toJson(const types::Diagnostic& diagnostic);
+/** Numbers, truth values, texts, lists and blocks of YAML as such; null for what is not there. */
+Json toJson(const YAML::Node& node);
 Json toJson(const std::vector<types::Omission>& omitted);
 /** One line on the samples that a sonar takes. */
 std::string qualityText(const types::Plan& plan);

@@ -23,7 +23,6 @@
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
-namespace {
 
 std::string refuseUnlessWhole(const std::string& text) {
     uint64_t number = 0;
@@ -31,8 +30,6 @@ std::string refuseUnlessWhole(const std::string& text) {
     const auto [stop, error] = std::from_chars(text.data(), end, number);
     return error == std::errc() && stop == end ? "" : text + " is no whole number from 0 to 2^64 - 1";
 }
-
-}  // namespace
 
 std::string refuseUnlessPositive(const std::string& text) {
     double number = 0;

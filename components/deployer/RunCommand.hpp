@@ -38,6 +38,7 @@ framework::DeploymentSpec loadSpec(const RunOptions& options);
  *  @param folder where its files went; null when nobody wants to know. */
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* folder = nullptr);
 
+std::string refuseUnlessWhole(const std::string& text);     ///< Why it is no uint64_t; empty when it is.
 std::string refuseUnlessPositive(const std::string& text);  ///< Why it is no number above 0; empty when it is.
 
 }  // namespace insonify::deployer

@@ -164,12 +164,15 @@ void printExtent(const Json& bounds) {
 }
 
 void printMaterial(const Json& material) {
-    fmt::print("  {:20} {:7.1f} dB lambert_db, reflection {:.2g}, reflectivity {:.2g}, {} triangles, {:.4g} m2{}{}\n",
-               material["name"].get<std::string>(), material["lambert_db"].get<double>(),
-               material["reflection"].get<double>(), material["reflectivity"].get<double>(),
-               material["triangles"].get<size_t>(), material["area_m2"].get<double>(),
-               material["normal_map"].get<bool>() ? ", normal map" : "",
-               material["source"] == "default" ? "; no acoustics in the file: medium sand" : "");
+    fmt::print(
+        "  {:20} {:7.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
+        "triangles, {:.4g} m2{}{}\n",
+        material["name"].get<std::string>(), material["lambert_db"].get<double>(), material["reflection"].get<double>(),
+        material["roughness_slope"].is_null() ? "none"
+                                              : fmt::format("{:.2g}", material["roughness_slope"].get<double>()),
+        material["reflectivity"].get<double>(), material["triangles"].get<size_t>(), material["area_m2"].get<double>(),
+        material["normal_map"].get<bool>() ? ", normal map" : "",
+        material["source"] == "default" ? "; no acoustics in the file: medium sand" : "");
 }
 
 void printObjects(const Json& objects) {

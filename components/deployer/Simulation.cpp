@@ -70,6 +70,10 @@ std::set<std::string> tasksThatLeadToPings(const framework::Deployment& deployme
     return upstreamOf(std::move(names), deployment);
 }
 
+double binWidthOf(const PingReader& reader, const types::Sonar& ping) {
+    return reader.sonar ? sonar::makeBinGrid(reader.sonar->sonarConfig()).bin_width : ping.binStart(1);
+}
+
 void throwAny(const std::vector<std::string>& failures) {
     if (!failures.empty()) throw std::runtime_error(failures.front());
 }
@@ -168,6 +172,7 @@ void Simulation::connectReaders(bool truth) {
             throw types::ConfigError(deployment_->spec().file, port->path(),
                                      "comes from no sonar that tells its truth");
         told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
+        reader.sonar = dynamic_cast<const sonar::AimedTask*>(&told->owner());
     }
 }
 
@@ -219,6 +224,7 @@ std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at,
     for (size_t i = 0; i < readers_.size(); ++i) {
         readers_[i]->ping.readNewest(made[i].ping, false);
         readers_[i]->truth.readNewest(made[i].truth, false);
+        if (made[i].ping && made[i].truth) made[i].bin_width = binWidthOf(*readers_[i], *made[i].ping);
     }
     return made;
 }

@@ -29,6 +29,7 @@ struct SimulationOptions {
 struct SteppedPing {
     types::SonarPtr ping;
     types::SonarTruthPtr truth;  ///< Null where it was not asked for.
+    double bin_width = 0;        ///< Exact, where the ping's `bin_duration` is rounded; 0 without the truth [m].
 };
 
 /** A deployment that goes on by one pose at a time, given by who calls.

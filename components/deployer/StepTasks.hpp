@@ -11,6 +11,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/sonar/AimedTask.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"
@@ -60,6 +61,7 @@ struct PingReader : framework::TaskContext {
     explicit PingReader(std::string source) : TaskContext(std::move(source)) {}
     framework::InputPort<types::SonarPtr> ping{this, "ping", "of the last step"};
     framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "of the same", framework::Need::Optional};
+    const sonar::AimedTask* sonar = nullptr;  ///< The source of the truth; null where that is no task of ours.
 };
 
 }  // namespace insonify::deployer

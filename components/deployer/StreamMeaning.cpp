@@ -17,23 +17,6 @@ using framework::TaskSpec;
 
 constexpr const char* quaternion_order = "w, x, y, z";
 
-/** Numbers, truth values, texts, lists and blocks of YAML as such; null for what is not there. */
-Json jsonOf(const YAML::Node& node) {
-    if (!node.IsDefined() || node.IsNull()) return nullptr;
-    if (node.IsMap()) {
-        Json block = Json::object();
-        for (const auto& entry : node) block[entry.first.Scalar()] = jsonOf(entry.second);
-        return block;
-    }
-    if (node.IsSequence()) {
-        Json list = Json::array();
-        for (const auto& element : node) list.push_back(jsonOf(element));
-        return list;
-    }
-    const Json value = Json::parse(node.Scalar(), nullptr, false);
-    return value.is_number() || value.is_boolean() ? value : Json(node.Scalar());
-}
-
 /** The nearest task of a type from which another one hears, itself included; null when there is none. */
 const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::set<std::string>& types) {
     std::vector<std::string> waiting{from};
@@ -54,7 +37,7 @@ Json property(const TaskSpec* task, std::initializer_list<const char*> path) {
     if (!task) return nullptr;
     YAML::Node node = task->properties;
     for (const char* key : path) node.reset(child(node, key));
-    return jsonOf(node);
+    return toJson(node);
 }
 
 Json orElse(const Json& value, const char* otherwise) { return value.is_null() ? Json(otherwise) : value; }
@@ -93,7 +76,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"tvg", property(receiver, {"tvg"})},
             {"gain_db", property(receiver, {"gain_db"})},
             {"code", property(receiver, {"code"})},
-            {"noise", noise ? jsonOf(noise->properties) : Json(nullptr)},
+            {"noise", noise ? toJson(noise->properties) : Json(nullptr)},
             {"frequency_khz", frequencyOf(sonar)},
             {"absorption", property(sonar, {"absorption"})},
             {"range_m", "slant range of the middle of each bin, [pings, bins]"},

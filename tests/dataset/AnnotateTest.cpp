@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "components/dataset/Annotate.hpp"
@@ -14,6 +15,7 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr uint32_t beams = 61, bins = 100;
+constexpr double bin_width = 0.0213;  // [m]; other than the ping's rounded duration says
 
 /** A floor everywhere at -20 dB, a "rock" and a "pile" at 0 dB in it. */
 class AnnotateTest : public ::testing::Test {
@@ -34,6 +36,7 @@ protected:
     struct Span {
         uint32_t first, last;
     };
+    static constexpr int32_t nothing = types::SonarTruth::no_object;
     void put(int32_t object, Span in_beams, Span in_bins, float intensity = 1, float share = 1) {
         for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
             for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
@@ -45,7 +48,7 @@ protected:
         shown_.emplace(picture_);
         shown_->take(ping_);
         const Classes classes(sweep_, truth_.objects);
-        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale);
+        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale, bin_width);
     }
     /** Of the pixel at which a bin is shown. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
@@ -102,14 +105,54 @@ TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     EXPECT_EQ(pile.category, 2u);
     EXPECT_EQ(rock.bins, 40u);
     EXPECT_NEAR(rock.energy, 40, 1e-3);
-    EXPECT_NEAR(rock.range_min, ping_.binStart(50), 1e-9);
-    EXPECT_NEAR(rock.range_max, ping_.binStart(60), 1e-9);
+    EXPECT_NEAR(rock.range_min, 50 * bin_width, 1e-9);
+    EXPECT_NEAR(rock.range_max, 60 * bin_width, 1e-9);
     EXPECT_EQ(rock.bearing_min, ping_.bearings[20].rad);
     EXPECT_EQ(rock.bearing_max, ping_.bearings[23].rad);
     for (uint32_t beam = 20; beam < 24; ++beam)
         for (uint32_t bin = 50; bin < 60; ++bin) EXPECT_TRUE(holds(rock.box, beam, bin)) << beam << " " << bin;
     EXPECT_FALSE(holds(rock.box, 40, 70));
     EXPECT_TRUE(holds(pile.box, 40, 70));
+}
+
+TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
+    sweep_.annotations.shadows = config_.shadows = true;
+    truth_.shadow.assign(ping_.bins.size(), 0);
+    truth_.elevation.resize(ping_.bins.size());
+    for (uint32_t beam = 0; beam < beams; ++beam)
+        for (uint32_t bin = 0; bin < bins; ++bin)  // a floor 20 bins below
+            truth_.elevation[size_t{beam} * bins + bin] = -std::asin(20.0f / static_cast<float>(std::max(bin, 20u)));
+    const auto hide = [&](Span in_beams, Span in_bins, float above) {  // an object at 50 to 60 hides what is behind
+        put(nothing, in_beams, in_bins, 0, 0);
+        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam) {
+            for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
+                truth_.shadow[size_t{beam} * bins + bin] = 1;
+                truth_.elevation[size_t{beam} * bins + bin] = std::numeric_limits<float>::quiet_NaN();
+            }
+            for (uint32_t bin = 50; bin < 60; ++bin)
+                truth_.elevation[size_t{beam} * bins + bin] =
+                    truth_.elevation[size_t{beam} * bins + in_bins.last] - above;
+        }
+    };
+    hide({20, 24}, {60, 80}, 0.001f);  // it stands on the floor
+    put(1, {30, 34}, {50, 60});
+    hide({30, 34}, {75, 90}, 0.02f);   // it floats, and the floor is seen between it and its shadow
+    hide({50, 54}, {75, 90}, 0.001f);  // the floor's own
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(3));
+    const Annotation& shadow = all.annotations[2];
+    EXPECT_TRUE(shadow.is_shadow && !all.annotations[0].is_shadow);
+    EXPECT_EQ(shadow.name, "rock");
+    EXPECT_EQ(shadow.object, 1);
+    EXPECT_EQ(shadow.category, 3u);
+    EXPECT_EQ(shadow.bins, 4u * 20 + 4 * 15);
+    EXPECT_EQ(shadow.energy, 0);
+    EXPECT_NEAR(shadow.range_min, 60 * bin_width, 1e-9);
+    EXPECT_NEAR(shadow.range_max, 90 * bin_width, 1e-9);
+    EXPECT_EQ(shadow.bearing_min, ping_.bearings[20].rad);
+    EXPECT_EQ(shadow.bearing_max, ping_.bearings[33].rad);
+    EXPECT_TRUE(holds(shadow.box, 21, 70) && holds(shadow.box, 33, 89));
+    EXPECT_FALSE(holds(shadow.box, 52, 80));
 }
 
 TEST_F(AnnotateTest, RunsLabelsAndAreaTellTheSamePixels) {

@@ -31,6 +31,17 @@ TEST(ClassesTest, OfRulesTheFirstThatMatchesCountsInTheOrderOfTheFile) {
     EXPECT_EQ(classes.of("rock.001"), 0u);
 }
 
+TEST(ClassesTest, ShadowsHaveClassesBehindAllOthers) {
+    Sweep sweep;
+    EXPECT_EQ(Classes(sweep, objects).shadowOf(3), 0u);
+    sweep.annotations.shadows = true;
+    const Classes classes(sweep, objects);
+    EXPECT_THAT(classes.names(),
+                ElementsAre("12", "hull", "pile", "rock", "12_shadow", "hull_shadow", "pile_shadow", "rock_shadow"));
+    EXPECT_EQ(classes.shadowOf(classes.of("pile_01")), 7u);
+    EXPECT_EQ(classes.shadowOf(0), 0u);
+}
+
 TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {
     Sweep sweep;
     sweep.file = "sweep.yml";

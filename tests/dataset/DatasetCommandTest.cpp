@@ -1,4 +1,5 @@
 // insonify dataset: data sets of a small sonar in the harbour.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <map>
@@ -61,6 +62,12 @@ picture: {height: 200}
 annotations: {min_pixels: 30}
 )";
 
+const std::string drawn_settings = R"(settings:
+  scene.materials.sand.lambert_db: {uniform: [-30, -15]}
+  scene.water_surface: {normal: [0, 0.2]}
+  noise.speckle: {choice: [{law: rayleigh}, {law: k, shape: 5}]}
+)";
+
 /** Bytes of all files of a folder, by name. */
 std::map<std::string, std::string> filesOf(const fs::path& folder) {
     std::map<std::string, std::string> files;
@@ -114,8 +121,8 @@ TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
     EXPECT_EQ(manifest["files"].size() + 1, files.size());
     for (const auto& [name, sum] : manifest["files"].items()) EXPECT_TRUE(files.contains(name)) << name;
     const json near = recordOf("out", "000001"), far = recordOf("out", "000005");
-    EXPECT_EQ(near["settings"]["sonar.range"], "20");
-    EXPECT_EQ(far["settings"]["sonar.range"], "30");
+    EXPECT_EQ(near["settings"]["sonar.range"], 20);
+    EXPECT_EQ(far["settings"]["sonar.range"], 30);
     EXPECT_EQ(near["pose"], far["pose"]);
     EXPECT_EQ(near["objects"], far["objects"]);
     EXPECT_NEAR(far["ping"]["range_m"], 30, 0.3);
@@ -123,7 +130,9 @@ TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
 }
 
 TEST_F(DatasetCommandTest, TheBytesAreTheSameWhoeverMadeThem) {
-    writeFile(folder_ / "sweep.yml", replaced(sweep, "count: 4", "count: 2"));
+    const std::string few = replaced(sweep, "count: 4", "count: 2");
+    const std::string tilted = replaced(few, "ground: sea_floor,", "ground: sea_floor, roll_deg: [0, 90],");
+    writeFile(folder_ / "sweep.yml", replaced(tilted, "settings:\n", drawn_settings));
     for (const char* format : {"coco", "mcap", "npz"}) {
         const std::string one = std::string("one_") + format, three = std::string("three_") + format;
         ASSERT_EQ(make(one, {"--format", format}).code, 0);
@@ -134,6 +143,67 @@ TEST_F(DatasetCommandTest, TheBytesAreTheSameWhoeverMadeThem) {
         EXPECT_EQ(namesOf(folder_ / one), namesOf(folder_ / three)) << format;
         EXPECT_EQ(filesOf(folder_ / one), filesOf(folder_ / three)) << format;
     }
+}
+
+TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
+    writeFile(folder_ / "sweep.yml", "poses: {random: {count: 3, x: 5, y: -4, z: -5.5}}\n" +
+                                         replaced(drawn_settings, ", {law: k, shape: 5}]", "]"));
+    const Outcome outcome = make("out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    std::set<double> strengths;
+    for (const char* index : {"000000", "000001", "000002"}) {
+        const json settings = recordOf("out", index)["settings"];
+        strengths.insert(settings["scene.materials.sand.lambert_db"].get<double>());
+        EXPECT_TRUE(settings["scene.water_surface"].is_number());
+        EXPECT_EQ(settings["noise.speckle"]["law"], "rayleigh");
+    }
+    EXPECT_EQ(strengths.size(), 3u);
+    EXPECT_TRUE(*strengths.begin() >= -30 && *strengths.rbegin() <= -15);
+}
+
+TEST_F(DatasetCommandTest, ASettingOfTheCommandLineIsUnderThoseOfTheSweepAndItsSeedGoesBeforeTheFiles) {
+    writeFile(folder_ / "sweep.yml",
+              "poses: {random: {count: 1, x: {uniform: [0, 20]}, y: -4, z: -5.5}}\nsettings: {sonar.range: [20]}\n");
+    const std::vector<std::string> set = {"--set", "sonar.range=30", "--set", "sonar.bin_count=100"};
+    ASSERT_EQ(make("plain").code, 0);
+    ASSERT_EQ(make("set", set).code, 0);
+    ASSERT_EQ(make("seed", {"--seed", "9"}).code, 0);
+    const json plain = recordOf("plain", "000000"), changed = recordOf("set", "000000");
+    EXPECT_EQ(plain["ping"]["bins"], 200);
+    EXPECT_EQ(changed["ping"]["bins"], 100);
+    EXPECT_NEAR(changed["ping"]["range_m"], 20, 0.3);
+    EXPECT_EQ(changed["pose"], plain["pose"]);
+    EXPECT_NE(recordOf("seed", "000000")["pose"], plain["pose"]);
+    EXPECT_THAT(make("plain", set).err, HasSubstr("a sample of another sweep"));
+    EXPECT_THAT(make("plain", {"--seed", "9"}).err, HasSubstr("a sample of another sweep"));
+}
+
+/** Paths of the values of a record; those of lists of numbers, settings and files end there. */
+void addKeys(const json& value, const std::string& path, std::set<std::string>& keys) {
+    if (value.is_array() && !value.empty() && value[0].is_object()) {
+        for (const json& each : value) addKeys(each, path + "[]", keys);
+    } else if (value.is_object() && path != "settings" && path != "files") {
+        for (const auto& [key, inner] : value.items()) addKeys(inner, path.empty() ? key : path + "." + key, keys);
+    } else {
+        keys.insert(path);
+    }
+}
+
+TEST_F(DatasetCommandTest, ARecordHasTheKeysOfThePage) {
+    ASSERT_EQ(make("out", {"--shard", "1/8"}).code, 0);
+    std::set<std::string> written, documented;
+    addKeys(recordOf("out", "000001"), "", written);
+    const std::string page = readFile(root / "components/dataset/README.md");
+    const size_t begin = page.find("\n## The record\n");
+    ASSERT_NE(begin, std::string::npos);
+    std::istringstream lines(page.substr(begin + 1, page.find("\n## ", begin + 1) - begin));
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("| `")) {
+            std::istringstream cell(line.substr(1, line.find('|', 1) - 1));
+            for (std::string part; std::getline(cell, part, '`') && std::getline(cell, part, '`');)
+                documented.insert(part);
+        }
+    EXPECT_EQ(documented, written);
 }
 
 TEST_F(DatasetCommandTest, WhatIsThereIsKeptAndWhatIsMissingOrDamagedIsMadeAgain) {
@@ -349,6 +419,57 @@ classes: {rock: rock_000}
     }
 }
 
+TEST_F(DatasetCommandTest, RangesInARecordAreThoseOfTheSonarHoweverBinsAreRounded) {
+    writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5}}
+settings:
+  sonar.range: [6.3]
+  sonar.range_rounding: [sample, exact]
+  sonar.range_min: [0, 2]
+  sonar.bin_count: [100, 375, 1000]
+objects: [{names: [rock_000], x: [5, 5.001], y: [0, 0.001], z: [-6.5, -6.499], frame: vehicle}]
+classes: {rock: rock_000}
+)");
+    ASSERT_EQ(make("out").code, 0);
+    double nearest = 0;
+    for (int i = 0; i < 12; ++i) {
+        const json record = recordOf("out", fmt::format("{:06}", i));
+        const double c = record["ping"]["speed_of_sound_m_s"], bins = record["ping"]["bins"];
+        const bool exact = record["settings"]["sonar.range_rounding"] == "exact";
+        const double range = exact ? 6.3 : bins * std::ceil(6.3 / bins / c * 1e6) * 1e-6 * c;
+        EXPECT_NEAR(record["ping"]["range_m"], range, 1e-9) << i;
+        ASSERT_EQ(record["annotations"].size(), 1u) << i;
+        const double near = record["annotations"][0]["range_m"][0], cell = range / 100;
+        if (i == 2) nearest = near;  // the finest of bins of whole microseconds
+        if (i > 2) {
+            EXPECT_NEAR(near, nearest, 2 * cell) << i;
+        }
+    }
+    EXPECT_NEAR(nearest, std::hypot(4.6, 0.8), 1);
+}
+
+TEST_F(DatasetCommandTest, AShadowLiesBehindItsObjectAsFarAsItsHeightTells) {
+    writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
+objects: [{names: [rock_000], x: [10, 10.001], y: [1, 1.001], frame: vehicle, ground: sea_floor}]
+classes: {rock: rock_000}
+annotations: {shadows: true}
+)");
+    ASSERT_EQ(make("out").code, 0);
+    EXPECT_EQ(json::parse(readFile(folder_ / "out/manifest.json"))["classes"], json::array({"rock", "rock_shadow"}));
+    for (const char* index : {"000000", "000001"}) {
+        const json record = recordOf("out", index);
+        ASSERT_EQ(record["annotations"].size(), 2u) << index;
+        const json &rock = record["annotations"][0], &shadow = record["annotations"][1];
+        EXPECT_EQ(rock["shadow"], false);
+        EXPECT_EQ(shadow["shadow"], true);
+        EXPECT_EQ(shadow["name"], "rock_000");
+        EXPECT_EQ(shadow["class"], "rock_shadow");
+        EXPECT_GE(shadow["range_m"][0], rock["range_m"][0]);
+        EXPECT_GT(shadow["range_m"][1], rock["range_m"][1]);
+        EXPECT_GE(shadow["bearing_rad"][0].get<double>(), rock["bearing_rad"][0].get<double>() - 0.02);
+        EXPECT_LE(shadow["bearing_rad"][1].get<double>(), rock["bearing_rad"][1].get<double>() + 0.02);
+    }
+}
+
 TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
     writeFile(folder_ / "sweep.yml", "scenes: [" + (root / "deploy/scenes/tank.glb").string() +
                                          ", {set: {sonar.bin_count: 100}}]\nposes: {grid: {z: -3}}\n");
@@ -416,6 +537,35 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{
             "SettingOutOfBounds", grid + "settings:\n  sonar.range: [30, -5]\n",
             "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
+        BadSweep{
+            "SettingWithOneValue", grid + "settings: {sonar.range: 30}\n",
+            "sweep.yml:2:25: settings.sonar.range: must be a list of values, or one of uniform, normal and choice"},
+        BadSweep{"ChoiceOfOne", grid + "settings: {sonar.range: {choice: 30}}\n",
+                 "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
+        BadSweep{"TiltWithoutBounds",
+                 grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
+                 "sweep.yml:3:5: objects[0].roll_deg: must be two numbers, [least, most]"},
+        BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
+                 "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
+        BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
+                 "sweep.yml:3:17: settings.sonar.range.unifrm: is not a key here; did you mean uniform?"},
+        BadSweep{"LawWithoutBounds", grid + "settings:\n  sonar.range: {uniform: [30, 20]}\n",
+                 "settings.sonar.range.uniform: must be two numbers, [least, most]"},
+        BadSweep{"EmptyChoice", grid + "settings:\n  sonar.range: {choice: []}\n",
+                 "sweep.yml:3:25: settings.sonar.range.choice: is empty; give at least one value"},
+        BadSweep{"ChoiceOutOfBounds", grid + "settings:\n  sonar.range: {choice: [30, -5]}\n",
+                 "sweep.yml:3:30: settings.sonar.range.choice[1]: tasks.sonar.properties.range: is -5 m; may be"},
+        BadSweep{"DrawnOutOfBounds", grid + "settings:\n  sonar.range: {uniform: [-9, -5]}\n",
+                 "sweep.yml:3:16: settings.sonar.range: tasks.sonar.properties.range: is -"},
+        BadSweep{"DrawnNumberThatIsNotWhole", grid + "settings:\n  sonar.bin_count: {uniform: [100, 200]}\n",
+                 "sweep.yml:3:20: settings.sonar.bin_count: tasks.sonar.properties.bin_count: is 1"},
+        BadSweep{"DrawnMaterialThatIsNotThere",
+                 grid + "settings:\n  scene.materials.snad.lambert_db: {uniform: [-30, -20]}\n",
+                 "sweep.yml:3:36: settings.scene.materials.snad.lambert_db: "},
+        BadSweep{"ChoiceThatLacksAValue", grid + "settings:\n  noise.speckle: {choice: [{law: k}]}\n",
+                 "sweep.yml:3:28: settings.noise.speckle.choice[0]: tasks.noise.properties.speckle.shape: is absent"},
+        BadSweep{"DrawnBudget", grid + "settings:\n  sonar.quality.budget_ms: {uniform: [5, 9]}\n",
+                 "sweep.yml:3:28: settings.sonar.quality.budget_ms: budget_ms lets the speed of the machine decide"},
         BadSweep{"EmptySetting", grid + "settings: {sonar.range: []}\n", "settings.sonar.range: is empty"},
         BadSweep{"Budget", grid + "settings: {sonar.quality.budget_ms: [5]}\n",
                  "sweep.yml:2:38: settings.sonar.quality.budget_ms[0]: budget_ms lets the speed of the machine decide"},
@@ -446,6 +596,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
     EXPECT_THAT(make("out", {"--shard", "3/3"}).err, HasSubstr("of 3 shards i may be from 0 to 2"));
     EXPECT_EQ(make("out", {"--format", "voc"}).code, 2);
+    EXPECT_THAT(make("out", {"--seed", "-1"}).err, HasSubstr("-1 is no whole number from 0 to 2^64 - 1"));
+    const Outcome set = make("out", {"--set", "sonr.range=5"});
+    EXPECT_EQ(set.code, 2);
+    EXPECT_THAT(set.err, HasSubstr("--set: sonr.range=5: there is no task sonr; did you mean sonar?"));
+    EXPECT_THAT(make("out", {"--set", "sonar.quality.rows=null", "--set", "sonar.quality.columns_per_beam=null",
+                             "--set", "sonar.quality.budget_ms=5"})
+                    .err,
+                HasSubstr("budget_ms lets the speed"));
     EXPECT_THAT(callInsonify(folder_, {"dataset", "d.yml", "--sweep", "no.yml", "--out", "out"}).err,
                 HasSubstr("no.yml"));
     writeFile(folder_ / "d.yml", deployment.substr(0, deployment.find("quality")) + "quality: {budget_ms: 5}\n" +

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 
 #include "components/dataset/Placement.hpp"
 #include "types/ConfigError.hpp"
@@ -100,6 +101,26 @@ TEST(PlacementTest, TheyStandOnTheHighestGroundBelowTheirOrigin) {
     EXPECT_NEAR(*highestAt(slope, 1, 1), 1, 1e-12);
 }
 
+TEST(PlacementTest, ATiltedObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
+    Sweep sweep = sweepOf({1, 30}, {1, 30});
+    sweep.objects[0].ground = "floor";
+    sweep.objects[0].roll_deg = {90, 90};
+    SceneParts scene = stones(2);
+    scene.grounds["floor"] = {{glm::dvec3(-99, -99, -9), glm::dvec3(99, -99, -9), glm::dvec3(0, 200, -9)}};
+    for (auto& [name, pole] : scene.placeables) {  // upright, from its origin to 3 m above
+        pole.radius = 0.1, pole.low = 0;
+        pole.points = {{0.1, 0, 0}, {0, 0.1, 0}, {0, -0.1, 0}, {0, 0, 3}};
+    }
+    for (uint64_t pose = 0; pose < 50; ++pose) {
+        const auto poles = placed(sweep, scene, 2, pose);
+        EXPECT_GE(apart(poles[0].at.position, poles[1].at.position), 6.1) << pose;
+        EXPECT_NEAR(poles[0].at.position.z, -8.9, 1e-6);  // half its thickness above the ground
+        EXPECT_NEAR((poles[0].at.orientation * glm::dvec3(0, 0, 1)).y, -1, 1e-9);
+    }
+    sweep.objects[0].roll_deg = {180, 180};
+    EXPECT_NEAR(placed(sweep, scene, 2, 0)[0].at.position.z, -6, 1e-6);
+}
+
 TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
     Sweep sweep = sweepOf({-20, 20}, {-20, 20});
     sweep.objects[0].count = {2, 5};
@@ -111,6 +132,26 @@ TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
         for (const PlacedObject& object : objects) EXPECT_EQ(object.present, object.at.position.z > -1000);
     }
     for (size_t i = 0; i < 7; ++i) EXPECT_EQ(seen[i] > 0, i >= 2 && i <= 5) << i;
+}
+
+TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
+    Sweep sweep = sweepOf({-20, 20}, {-20, 20});
+    sweep.objects[0].count = {2, 2};
+    constexpr int poses = 1200;
+    std::array<int, 6> chosen{};
+    std::map<std::pair<size_t, size_t>, int> pairs;
+    for (uint64_t pose = 0; pose < poses; ++pose) {
+        const auto objects = placed(sweep, stones(6), 6, pose), again = placed(sweep, stones(6), 6, pose);
+        std::vector<size_t> there;
+        for (size_t i = 0; i < 6; ++i) {
+            EXPECT_EQ(objects[i].present, again[i].present);
+            if (objects[i].present) ++chosen[i], there.push_back(i);
+        }
+        ASSERT_EQ(there.size(), 2u);
+        ++pairs[{there[0], there[1]}];
+    }
+    for (const int count : chosen) EXPECT_NEAR(count, poses / 3, 5 * std::sqrt(poses * 2 / 9.0));
+    EXPECT_EQ(pairs.size(), 15u);
 }
 
 TEST(PlacementTest, WhereThereIsNoRoomItSaysHowManyFitted) {

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <map>
 #include <set>
 
 #include "components/dataset/Samples.hpp"
@@ -119,6 +121,57 @@ TEST(SamplesTest, ObjectsThatAreNotThereOrTwiceAreRefusedWithTheirPlace) {
     EXPECT_EQ(messageOf(), "sweep.yml:9: objects[1].names: places stone_1 for the second time");
     sweep.objects[1].names = {"stne_0"};
     EXPECT_THAT(messageOf(), HasSubstr("objects[1].names[0]: is stne_0, which is no name in the scene; did you mean"));
+}
+
+TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
+    Sweep sweep = drawn(1);
+    sweep.scenes.resize(2);
+    ObjectGroup& group = sweep.objects.emplace_back();
+    group.names = {"stone_0", "stone_3"};
+    group.avoid = {"wall"};
+    group.x = group.y = {-10, 10};
+    SceneParts few = stones(1), many = stones(4);
+    few.nodes = {"wall"};
+    const Samples samples(sweep, {}, {few, many});
+    EXPECT_THAT(samples.objectsOf(0), ElementsAre("stone_0"));
+    EXPECT_THAT(samples.objectsOf(1), ElementsAre("stone_0", "stone_3"));
+    const auto messageOf = [&] {
+        try {
+            const Samples refused(sweep, {}, {few, many});
+        } catch (const types::ConfigError& error) {
+            return error.diagnostics().front().text();
+        }
+        return std::string("none");
+    };
+    group.avoid = {"wal"};
+    EXPECT_THAT(messageOf(), HasSubstr("objects[0].avoid[0]: is wal, which is no name in any of the scenes"));
+    group.names = {"stone_4"};
+    EXPECT_THAT(messageOf(), HasSubstr("objects[0].names[0]: is stone_4, which is no name in any of the scenes"));
+}
+
+TEST(SamplesTest, EachSampleDrawsItsSettingsByItsNumberAlone) {
+    Sweep sweep = drawn(400);
+    DrawnSetting& law = sweep.drawn.emplace_back();
+    law.property = "scene.materials.sand.lambert_db", law.law.uniform = {-30, -10};
+    DrawnSetting& choice = sweep.drawn.emplace_back();
+    choice.property = "sonar.range", choice.choice = {{"20", 1, 1}, {"30", 1, 1}, {"50", 1, 1}};
+    const Samples samples(sweep, {}, {SceneParts{}});
+    std::map<std::string, int> laws, choices;
+    for (uint64_t index = 0; index < 400; ++index) {
+        const Sample sample = samples.at(index);
+        EXPECT_EQ(sample.settings, samples.at(index).settings);
+        ASSERT_EQ(sample.settings.size(), 2u);
+        EXPECT_EQ(sample.settings[0].first, "scene.materials.sand.lambert_db");
+        const double value = std::stod(sample.settings[0].second);
+        EXPECT_TRUE(value >= -30 && value <= -10) << value;
+        ++laws[sample.settings[0].second], ++choices[sample.settings[1].second];
+    }
+    EXPECT_GT(laws.size(), 395u);
+    EXPECT_EQ(choices.size(), 3u);
+    for (const auto& [value, count] : choices) EXPECT_NEAR(count, 400 / 3.0, 5 * std::sqrt(400 * 2 / 9.0)) << value;
+    const std::string seventh = samples.at(7).settings[0].second;
+    sweep.settings = {{"sonar.bin_count", {{"100", 1, 1}, {"200", 1, 1}}}};
+    EXPECT_EQ(Samples(sweep, {}, {SceneParts{}}).at(7).settings[1].second, seventh);
 }
 
 TEST(SamplesTest, MoreThanCanBeAreRefused) {

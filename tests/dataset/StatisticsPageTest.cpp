@@ -12,7 +12,7 @@ Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
     return {{"index", index},
             {"part", part},
             {"scene", "har<bour>.glb"},
-            {"settings", {{"sonar.range", "30"}}},
+            {"settings", {{"sonar.range", 30}, {"sonar.gain", 0.5 * double(index)}}},
             {"picture", {{"width", 100}, {"height", 50}}},
             {"annotations",
              {{{"name", "pile_0"}, {"category", 1}, {"bbox", {1, 2, 3, 4}}, {"area", area}, {"range_m", {4.0, 8.5}}}}}};
@@ -35,6 +35,15 @@ TEST(StatisticsPageTest, ItTellsCountsSizesAndRangesAndShowsExamples) {
     EXPECT_THAT(text, HasSubstr("har&lt;bour&gt;.glb"));
     EXPECT_THAT(text, HasSubstr("<image href=\"000001_b.png\" width=\"100\" height=\"50\"/>"));
     EXPECT_THAT(text, HasSubstr("<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\""));
+}
+
+TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsNotShown) {
+    Sweep sweep;
+    const Classes classes(sweep, {"pile_0"});
+    StatisticsPage page("sweep.yml", classes);
+    for (uint64_t index = 0; index < 30; ++index) page.add(recordOf(index, "train", 100), "");
+    EXPECT_THAT(page.text(), HasSubstr("sonar.range = 30"));
+    EXPECT_THAT(page.text(), Not(HasSubstr("sonar.gain")));
 }
 
 TEST(StatisticsPageTest, WithoutPicturesThereAreNoExamples) {

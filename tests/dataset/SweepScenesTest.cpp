@@ -36,6 +36,7 @@ dataset::Sweep standingOn(const std::string& ground) {
     dataset::Sweep sweep;
     sweep.file = "sweep.yml";
     dataset::ObjectGroup& group = sweep.objects.emplace_back();
+    group.names = {"floor_*"};
     group.ground = ground;
     group.line = 4, group.column = 5;
     return sweep;

@@ -46,6 +46,7 @@ TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
         callInsonify(folder, {"scene", fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb"});
     EXPECT_THAT(words.out, HasSubstr("from [10, -20, -3] to [11, 20, 3] m"));
     EXPECT_THAT(words.out, HasSubstr("concrete"));
+    EXPECT_THAT(words.out, HasSubstr(", roughness_slope none, "));
 }
 
 TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) {

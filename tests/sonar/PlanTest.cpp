@@ -168,6 +168,10 @@ TEST(PlanTest, NoticesOfTheConfiguration) {
     for (const Case& c :
          {Case{"range reached is 50.25 m, 0.5 % more than 50 m: bins last 67 us", [](SonarConfig& s) { s.range = 50; }},
           Case{"Warning: range reached is 51 m, 2 % more", [](SonarConfig& s) { s.range = 50, s.bin_count = 1000; }},
+          Case{"125 of 500 bins are empty, because bin_count counts from range 0 and range_min is 18.75 m; with "
+               "bin_count: "
+               "667 there are 500 bins beyond it",
+               [](SonarConfig& s) { s.range_min = s.range / 4; }},
           Case{"off by 10.1 bins",
                [](SonarConfig& s) { s.range = 50, s.bin_count = 1000, s.range_rounding = RangeRounding::Exact; }},
           Case{"speed of sound is 1700 m/s", [](SonarConfig& s) { s.speed_of_sound = 1700, s.range = 85; }},

@@ -246,7 +246,8 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"published: true", "published: ", "only with model: cerqueira2017"},
           Case{"{model: cerqueira2017, published: true, bin_count: 1}", "bin_count: ", "at least 2"},
           Case{"{model: cerqueira2017, published: true, field_of_view_deg: 180}", "published: ", "less than 180"},
-          Case{"{range: 1, bin_count: 1000}", "range: ", "1000 bins of whole microseconds reach 1.5 m"}})
+          Case{"{range: 1, bin_count: 1000}", "range: ",
+               "1000 bins of whole microseconds reach 1.5 m, which may be at most 25 % more: give 1.5 m, lower"}})
         EXPECT_THAT(diagnosticsOf<SonarConfig>(c.yaml), ElementsAre(AllOf(HasSubstr(c.path), HasSubstr(c.words))))
             << c.yaml;
 }
@@ -270,6 +271,15 @@ TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfS
 TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
     EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{beam_width_deg: 60, quality: {columns_per_beam: 4096}}"),
                 IsEmpty());
+}
+
+TEST(SonarConfigTest, ARangeThatBinsDoNotReachIsRefusedWithTheNextRangesThatFit) {
+    const auto refused = diagnosticsOf<SonarConfig>("{range: 2.97, bin_count: 675, speed_of_sound: 1466}");
+    EXPECT_THAT(refused, ElementsAre(HasSubstr("range: is 2.97 m; 675 bins of whole microseconds reach 3.9582 m, which "
+                                               "may be at most 25 % more: give 2.968 m or 3.958 m, lower bin_count")));
+    for (const char* fits : {"{range: 2.968, bin_count: 675, speed_of_sound: 1466}",
+                             "{range: 3.958, bin_count: 675, speed_of_sound: 1466}"})
+        EXPECT_THAT(diagnosticsOf<SonarConfig>(fits), IsEmpty());
 }
 
 TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {

@@ -10,6 +10,7 @@
 #include "components/command/ProgressLine.hpp"
 #include "components/dataset/Collection.hpp"
 #include "components/dataset/commands/DatasetRun.hpp"
+#include "components/deployer/RunCommand.hpp"
 #include "components/deployer/StopSignal.hpp"
 
 namespace insonify::dataset {
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 
 struct DatasetOptions {
     std::string deployment, sweep, out, format = "coco", shard = "0/1";
+    Changes changes;
     bool quiet = false;
 };
 
@@ -57,7 +59,7 @@ Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
 }
 
 int makeDataset(const DatasetOptions& options) {
-    DatasetRun run(options.deployment, options.sweep, formatOf(options.format));
+    DatasetRun run(options.deployment, options.sweep, formatOf(options.format), options.changes);
     command::OutputFolder folder(options.out, options.deployment);
     folder.keep();
     Store store(folder.path(), run.digest());
@@ -95,6 +97,13 @@ void addCommand(CLI::App& app, command::Action& action) {
         ->capture_default_str();
     command->add_option("--shard", options->shard, "i/N: makes each sample whose number leaves i when divided by N")
         ->check([](const std::string& text) { return command::Shard::refuse(text); });
+    command
+        ->add_option("--set", options->changes.set,
+                     "task.property.path=value: a property other than in the deployment; may be repeated")
+        ->allow_extra_args(false);
+    command->add_option("--seed", options->changes.seed, "the sweep's seed (0: as the sweep says)")
+        ->type_name("N")
+        ->check(deployer::refuseUnlessWhole);
     command->add_flag("--quiet", options->quiet, "no progress and no summary");
     command->callback([options, &action] { action = [options] { return makeDataset(*options); }; });
 }

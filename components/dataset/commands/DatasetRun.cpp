@@ -12,6 +12,7 @@
 #include "components/dataset/commands/SweepFile.hpp"
 #include "components/dataset/commands/SweepScenes.hpp"
 #include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/YamlText.hpp"
@@ -33,6 +34,11 @@ constexpr const char* no_budget =
 
 /** A text as a value in YAML. */
 std::string quoted(const std::string& text) { return command::Json(text).dump(); }
+
+Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
+    if (seed.value_or(0) != 0) sweep.seed = *seed;
+    return sweep;
+}
 
 std::vector<TimedPose> posesOf(const Sweep& sweep) {
     std::vector<TimedPose> poses;
@@ -81,6 +87,8 @@ void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text)
 void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     for (const Setting& setting : sweep.settings)
         for (const Written& value : setting.values) addFiles(framework::parseValue(value.yaml), folder, text);
+    for (const DrawnSetting& drawn : sweep.drawn)
+        for (const Written& value : drawn.choice) addFiles(framework::parseValue(value.yaml), folder, text);
     for (const SceneChoice& scene : sweep.scenes) {
         if (!scene.file.empty()) text += fmt::format("file {}\n", command::sha256OfFile(scene.file));
         for (const auto& [property, value] : scene.set) addFiles(framework::parseValue(value.yaml), folder, text);
@@ -98,11 +106,12 @@ const std::string& onlyOf(const std::vector<std::string>& names, const std::stri
 
 }  // namespace
 
-DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, Format format)
+DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, Format format, Changes changes)
     : deployment_(deployer::deploymentIn(deployment)),
-      sweep_(readSweep(sweep)),
+      changes_(std::move(changes)),
+      sweep_(seeded(readSweep(sweep), changes_.seed)),
       format_(format),
-      spec_(framework::DeploymentSpec::load(deployment_)) {
+      spec_(loaded()) {
     framework::Registry registry = deployer::coreTasks();
     framework::Deployment checked(spec_, registry);  // throws what is wrong with the deployment as it stands
     refuseBudgets();
@@ -117,7 +126,14 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     trajectory_ = posesOf(sweep_);
     samples_.emplace(sweep_, trajectory_, std::move(parts));
     classes_.emplace(sweep_, objects);
+    checkDrawn();
     digest_ = digestOfAll();
+}
+
+framework::DeploymentSpec DatasetRun::loaded() const {
+    framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
+    for (const std::string& assignment : changes_.set) spec.set(assignment);
+    return spec;
 }
 
 std::vector<std::string> DatasetRun::tasksOfType(const std::string& type) const {
@@ -146,28 +162,49 @@ void DatasetRun::checkAssignments() const {
             checkAssignment(fmt::format("scenes[{}].set.{}", i, property), property, value);
 }
 
+/** Every value of a choice; of a law the least and the greatest that a sample draws, and the first, which may have
+ *  decimals where the ends have none. */
+void DatasetRun::checkDrawn() const {
+    for (size_t i = 0; i < sweep_.drawn.size(); ++i) {
+        const DrawnSetting& drawn = sweep_.drawn[i];
+        const std::string path = "settings." + drawn.property;
+        for (size_t k = 0; k < drawn.choice.size(); ++k)
+            checkAssignment(fmt::format("{}.choice[{}]", path, k), drawn.property, drawn.choice[k]);
+        if (!drawn.choice.empty()) continue;
+        const double first = drawn.law.draw(wordOf(sweep_, 0, i));
+        double least = first, most = first;
+        for (uint64_t index = 1; index < samples_->count(); ++index) {
+            const double value = drawn.law.draw(wordOf(sweep_, index, i));
+            least = std::min(least, value), most = std::max(most, value);
+        }
+        for (const double value : {first, least, most})
+            checkAssignment(path, drawn.property, {fmt::format("{}", value), drawn.line, drawn.column});
+    }
+}
+
 /** Throws what is wrong with a value of a property, at its place in the sweep. */
 void DatasetRun::checkAssignment(const std::string& path, const std::string& property, const Written& value) const {
     framework::Registry registry = deployer::coreTasks();
-    framework::DeploymentSpec spec = framework::DeploymentSpec::load(deployment_);
+    framework::DeploymentSpec spec = loaded();
     spec.set(property + "=" + value.yaml);
     types::Diagnostics diagnostics;
     const auto refuse = [&](const std::string& why) {
         diagnostics.push_back({path, why, sweep_.file, value.line, value.column});
     };
     for (const framework::TaskSpec& each : spec.tasks) {
-        const auto file = spec.origins.find(each.path() + ".properties.file");
-        if (each.type == scene_type && file != spec.origins.end() && file->second.file == framework::set_origin)
+        if (each.type == scene_type && property == each.name + ".file")
             refuse("names the file of " + each.name + ", which decides what objects there are; name it under scenes");
         if (budgetOf(each).IsDefined()) refuse(no_budget);
     }
-    const std::string task = splitPort(property).first;
+    const auto [task, name] = splitPort(property);
+    const std::string full = fmt::format("tasks.{}.properties.{}", task, name), block = full.substr(0, full.rfind('.'));
     if (spec.task(task)) spec = deployer::restrictedTo(std::move(spec), {task});
     try {
         const framework::Deployment deployment(std::move(spec), registry);
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
-            if (each.file == framework::set_origin) refuse(each.path + ": " + each.message);
+            if (each.file == framework::set_origin || each.path.starts_with(block))
+                refuse(each.path + ": " + each.message);
     }
     if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
 }
@@ -200,6 +237,7 @@ std::string DatasetRun::digestOfAll() const {
     std::string text = fmt::format("insonify {}\n{}\ndeployment {}\nsweep {}\n", INSONIFY_VERSION,
                                    types::EnumNames<Format>::names[static_cast<size_t>(format_)],
                                    command::sha256Of(spec_.text), command::sha256Of(sweep_.text));
+    text += fmt::format("seed {}\nset {}\n", sweep_.seed, command::Json(changes_.set).dump());
     for (const framework::TaskSpec& task : spec_.tasks) {
         if (decides(task)) addFiles(task.properties, folder, text);
         for (const std::string& file : task.property_files.files)
@@ -211,32 +249,32 @@ std::string DatasetRun::digestOfAll() const {
     return command::sha256Of(text);
 }
 
-std::vector<std::string> DatasetRun::overridesOf(size_t scene, size_t setting) const {
-    std::vector<std::string> all;
-    const SceneChoice& choice = sweep_.scenes[scene];
+std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
+    std::vector<std::string> all = changes_.set;
+    const SceneChoice& choice = sweep_.scenes[sample.scene];
     if (!choice.file.empty())
         for (const std::string& task : tasksOfType(scene_type))
             all.push_back(task + ".file=" + quoted(fs::absolute(choice.file).string()));
     std::ranges::copy(deployer::pinnedRays(spec_), std::back_inserter(all));
     for (const auto& [property, value] : choice.set) all.push_back(property + "=" + value.yaml);
-    for (const auto& [property, value] : samples_->settingsOf(setting)) all.push_back(property + "=" + value);
+    for (const auto& [property, value] : sample.settings) all.push_back(property + "=" + value);
     return all;
 }
 
-void DatasetRun::simulate(size_t scene, size_t setting) {
-    if (simulation_ && scene == scene_ && setting == setting_) return;
-    simulation_.reset();
+/** Keeps the simulation before until there is the next one, so that a scene that both have stays loaded. */
+void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
-    options.overrides = overridesOf(scene, setting);
+    options.overrides = overridesOf(sample);
     options.truth = true;
-    options.objects = samples_->objectsOf(scene);
-    simulation_ = std::make_unique<deployer::Simulation>(deployment_, std::move(options));
-    scene_ = scene, setting_ = setting;
+    options.objects = samples_->objectsOf(sample.scene);
+    if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
+    simulation_ = std::make_unique<deployer::Simulation>(deployment_, options);
+    overrides_ = options.overrides, scene_ = sample.scene;
 }
 
 void DatasetRun::make(uint64_t index, SampleFiles& files) {
     const Sample sample = samples_->at(index);
-    simulate(sample.scene, sample.setting);
+    simulate(sample);
     std::vector<std::string> vehicles = simulation_->poses();
     std::map<std::string, types::Pose> at;
     for (const PlacedObject& object : sample.objects) {
@@ -248,7 +286,10 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     simulation_->reset(sample.seed);
     const deployer::SteppedPing made = simulation_->step(std::move(at), simulation_->time() + sample.time).front();
     if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
-    files.write({sample, *made.ping, *made.truth, scenes_[sample.scene].name, samples_->settingsOf(sample.setting)});
+    std::vector<std::pair<std::string, Json>> settings;
+    for (const auto& [property, yaml] : sample.settings)
+        settings.emplace_back(property, deployer::toJson(framework::parseValue(yaml)));
+    files.write({sample, *made.ping, *made.truth, made.bin_width, scenes_[sample.scene].name, std::move(settings)});
 }
 
 }  // namespace insonify::dataset

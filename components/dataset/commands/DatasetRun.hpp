@@ -15,6 +15,12 @@
 
 namespace insonify::dataset {
 
+/** What the command line changes of the files. */
+struct Changes {
+    std::vector<std::string> set;  ///< "task.property.path=value", under what the sweep sets.
+    std::optional<uint64_t> seed;  ///< In place of the sweep's.
+};
+
 /** Makes the samples of a data set with a deployment: what `insonify dataset` does.
  *
  *  Each sample is rendered from the start, as if nothing had been before it, with noise of its own seed, so that its
@@ -23,7 +29,7 @@ namespace insonify::dataset {
 class DatasetRun {
 public:
     /** Throws types::ConfigError with what is wrong with the deployment, with the sweep, or between them. */
-    DatasetRun(const std::string& deployment, const std::string& sweep, Format format);
+    DatasetRun(const std::string& deployment, const std::string& sweep, Format format, Changes changes = {});
 
     const Sweep& sweep() const { return sweep_; }
     const Samples& samples() const { return *samples_; }
@@ -42,17 +48,20 @@ private:
         std::vector<std::string> objects;
         std::string digest;
     };
+    framework::DeploymentSpec loaded() const;
     void checkAssignments() const;
+    void checkDrawn() const;
     void checkAssignment(const std::string& path, const std::string& property, const Written& value) const;
     void refuseBudgets() const;
     void readScenes();
     SceneFile readScene(const std::string& file) const;
     std::string digestOfAll() const;
-    std::vector<std::string> overridesOf(size_t scene, size_t setting) const;
+    std::vector<std::string> overridesOf(const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
-    void simulate(size_t scene, size_t setting);
+    void simulate(const Sample& sample);
 
     const std::string deployment_;
+    const Changes changes_;
     const Sweep sweep_;
     const Format format_;
     framework::DeploymentSpec spec_;
@@ -61,8 +70,9 @@ private:
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;
     std::string digest_;
-    std::unique_ptr<deployer::Simulation> simulation_;  ///< Of one scene and one combination of settings.
-    size_t scene_ = 0, setting_ = 0;
+    std::unique_ptr<deployer::Simulation> simulation_;  ///< Of one scene and its settings.
+    std::vector<std::string> overrides_;                ///< Of the simulation.
+    size_t scene_ = 0;                                  ///< Of the simulation.
 };
 
 }  // namespace insonify::dataset

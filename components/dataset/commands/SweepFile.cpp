@@ -28,7 +28,7 @@ struct SweepKeys {
         visit(Field{"seed", "1", "of all that is drawn at random"}, self.seed);
         visit(Field{"scenes", "", "files, or blocks of file and set"}, self.scenes);
         visit(Field{"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
-        visit(Field{"settings", "", "lists of values by task.property"}, self.settings);
+        visit(Field{"settings", "", "by task.property: lists of values, or what they are drawn from"}, self.settings);
         visit(Field{"objects", "", "those that are placed"}, self.objects);
         visit(Field{"split", "", "shares of train, val and test"}, self.split);
         visit(Field{"classes", "", "names of objects by class"}, self.classes);
@@ -58,6 +58,24 @@ struct SceneKeys {
     static void describe(Self& self, V& visit) {
         visit(Field{"file", "", "scene, relative to the sweep; absent: that of the deployment"}, self.file);
         visit(Field{"set", "", "values by task.property"}, self.set);
+    }
+};
+
+struct DrawnKeys {
+    std::vector<double> uniform, normal;
+    YAML::Node choice = absent();
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(Field{"uniform", "", "drawn from between two values: [lowest, highest]", -1e12, 1e12}, self.uniform);
+        visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e12, 1e12}, self.normal);
+        visit(Field{"choice", "", "one of a list"}, self.choice);
+    }
+    void check(types::Diagnostics& diagnostics) const {
+        if (!uniform.empty() + !normal.empty() + choice.IsDefined() != 1)
+            return diagnostics.push_back({"", "must have one of uniform, normal and choice"});
+        Axis axis;
+        axis.uniform = uniform, axis.normal = normal;
+        if (!choice.IsDefined()) axis.check(diagnostics);
     }
 };
 
@@ -177,12 +195,30 @@ private:
         if (!settings.IsDefined() || !reader_.isMap(settings, "settings")) return;
         for (const auto& entry : settings) {
             const std::string name = entry.first.Scalar(), path = "settings." + name;
-            if (!reader_.isSequence(entry.second, path)) continue;
-            if (entry.second.size() == 0) reader_.report(entry.second, path, "is empty; give at least one value");
-            Setting& setting = sweep_.settings.emplace_back();
-            setting.property = name;
-            for (const YAML::Node& value : entry.second) setting.values.push_back(written(value));
+            if (entry.second.IsMap()) {
+                sweep_.drawn.emplace_back().property = name;
+                readDrawn(entry.second, path, sweep_.drawn.back());
+            } else if (!entry.second.IsSequence()) {
+                reader_.report(entry.second, path, "must be a list of values, or one of uniform, normal and choice");
+            } else {
+                sweep_.settings.emplace_back().property = name;
+                readList(entry.second, path, sweep_.settings.back().values);
+            }
         }
+    }
+
+    void readList(const YAML::Node& list, const std::string& path, std::vector<Written>& values) {
+        if (list.size() == 0) reader_.report(list, path, "is empty; give at least one value");
+        for (const YAML::Node& value : list) values.push_back(written(value));
+    }
+
+    void readDrawn(const YAML::Node& node, const std::string& path, DrawnSetting& drawn) {
+        DrawnKeys keys;
+        drawn.line = node.Mark().line + 1, drawn.column = node.Mark().column + 1;
+        if (!reader_.read(node, path, keys)) return;
+        drawn.law.uniform = keys.uniform, drawn.law.normal = keys.normal;
+        if (keys.choice.IsDefined() && reader_.isSequence(keys.choice, path + ".choice"))
+            readList(keys.choice, path + ".choice", drawn.choice);
     }
 
     void readObjects(const YAML::Node& objects) {

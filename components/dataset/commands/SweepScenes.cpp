@@ -13,7 +13,7 @@ namespace insonify::dataset {
 namespace {
 
 /** The node's objects in the axes of the world, about the node's origin, as the file turns them. */
-Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts) {
+Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts, bool tilts) {
     const types::Geometry& geometry = *scene.geometry;
     const scene::Part& first = parts.front();
     const glm::dmat4 world_from_body =
@@ -31,6 +31,7 @@ Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>&
             const glm::dvec3 turned = placeable.filed.orientation * in_body;
             placeable.radius = std::max(placeable.radius, std::hypot(turned.x, turned.y));
             placeable.low = any ? std::min(placeable.low, turned.z) : turned.z;
+            if (tilts) placeable.points.emplace_back(turned);
             any = true;
         }
     return placeable;
@@ -75,7 +76,9 @@ void addNode(const Sweep& sweep, const scene::Scene& scene, size_t node, ScenePa
     if (objects.empty()) return;
     for (const ObjectGroup& group : sweep.objects)
         if (anyMatches(group.avoid, name)) parts.boxes[name] = boxOf(scene, objects);
-    parts.placeables[name] = placeableOf(scene, objects);
+    const bool tilts = std::ranges::any_of(
+        sweep.objects, [&](const ObjectGroup& group) { return group.tilts() && anyMatches(group.names, name); });
+    parts.placeables[name] = placeableOf(scene, objects, tilts);
 }
 
 template <class T>
@@ -95,17 +98,16 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
     SceneParts parts;
     if (sweep.objects.empty()) return parts;
-    std::vector<std::string> known;
     for (size_t node = 0; node < scene.nodes.size(); ++node) {
         addNode(sweep, scene, node, parts);
-        known.push_back(scene.nodes[node].name);
+        parts.nodes.push_back(scene.nodes[node].name);
     }
     for (size_t i = 0; i < sweep.objects.size(); ++i) {
         const ObjectGroup& group = sweep.objects[i];
         const std::string path = fmt::format("objects[{}].", i);
-        resolve(sweep, group.avoid, known, path + "avoid", group.line, group.column);
-        if (!group.ground) continue;
-        resolve(sweep, {*group.ground}, known, path + "ground", group.line, group.column);
+        const auto isOfGroup = [&](const auto& each) { return anyMatches(group.names, each.first); };
+        if (!group.ground || std::ranges::none_of(parts.placeables, isOfGroup)) continue;
+        resolve(sweep, {*group.ground}, parts.nodes, path + "ground", group.line, group.column);
         auto& ground = parts.grounds[*group.ground] = groundOf(scene, *group.ground);
         if (ground.empty())
             throw types::ConfigError({{path + "ground", "is " + *group.ground + ", which has no surface to stand on",

@@ -9,7 +9,7 @@
 namespace insonify::dataset {
 
 /** What a sweep takes of a scene: the nodes that it places, where the file has them, what they keep off, and what they
- *  stand on. Throws types::ConfigError for a node that is kept off or stood on and is not there. */
+ *  stand on. Throws types::ConfigError where the node is absent on which its objects stand. */
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
 
 /** SHA-256 of all triangles of a scene, where its objects are, and of what material. */

@@ -37,6 +37,12 @@ void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::
         notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",
                                       longer > 0.01 ? "Warning: " : "", grid.range_max, 100 * longer, config.range,
                                       grid.bin_duration_us));
+    const double blanked = std::floor(grid.range_min / grid.bin_width + 1e-9), bins = config.bin_count;
+    if (blanked >= 0.1 * bins)
+        notices.push_back(
+            fmt::format("{:g} of {:g} bins are empty, because bin_count counts from range 0 and range_min is {:g} m; "
+                        "with bin_count: {:.0f} there are {:g} bins beyond it",
+                        blanked, bins, grid.range_min, std::ceil(bins / (1 - grid.range_min / grid.range_max)), bins));
     const float far = static_cast<float>(grid.range_max);
     const double ulp = static_cast<double>(std::nextafter(far, std::numeric_limits<float>::infinity()) - far);
     if (grid.bin_width < ulp)

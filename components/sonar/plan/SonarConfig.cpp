@@ -28,13 +28,22 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
 }
 
+/** Four digits of a range, rounded down: bins of as many whole microseconds reach what is left. */
+std::string roundedDown(double range) {
+    const double unit = std::pow(10, std::floor(std::log10(range)) - 3);
+    return fmt::format("{:.4g} m", std::floor(range / unit + 1e-9) * unit);
+}
+
 void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const BinGrid grid = makeBinGrid(config);
-    if (grid.range_max > 1.25 * config.range)
-        diagnostics.push_back(
-            {"range", fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
-                                  "more: lower bin_count, raise range, or set range_rounding: exact",
-                                  config.range, config.bin_count, grid.range_max)});
+    if (grid.range_max <= 1.25 * config.range) return;
+    const double shorter = grid.range_max - grid.range_max / static_cast<double>(grid.bin_duration_us);
+    diagnostics.push_back(
+        {"range",
+         fmt::format("is {} m; {} bins of whole microseconds reach {:.6g} m, which may be at most 25 % "
+                     "more: give {}{}, lower bin_count, or set range_rounding: exact",
+                     config.range, config.bin_count, grid.range_max,
+                     grid.bin_duration_us > 1 ? roundedDown(shorter) + " or " : "", roundedDown(grid.range_max))});
 }
 
 /** Of a property that only rays can follow. */
