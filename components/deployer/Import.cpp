@@ -7,7 +7,7 @@
 
 #include "components/deployer/RecordedLog.hpp"
 #include "components/loader/ComponentLibrary.hpp"
-#include "components/output/XtfFile.hpp"
+#include "components/output/SideScanFile.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
 #include "types/Angle.hpp"
@@ -18,35 +18,34 @@ namespace {
 
 namespace fs = std::filesystem;
 using framework::DeploymentSpec;
-using output::XtfFile;
-using output::XtfLine;
+using output::SideScanLine;
 
-/** What has to be known of an XTF file before its first ping is written. */
-struct XtfCodes {
+/** What has to be known of a side-scan's recording before its first ping is written. */
+struct SideScanCodes {
     bool whole = true;  ///< All samples are whole numbers of at most 16 bits.
     float largest = 0;
     size_t pings = 0;
     int bits() const { return std::max(1, static_cast<int>(std::ceil(std::log2(largest + 1)))); }
 };
 
-XtfCodes codesIn(const fs::path& recording) {
-    XtfCodes codes;
-    XtfFile file(recording);
-    for (auto line = file.next(); line; line = file.next(), ++codes.pings)
+SideScanCodes codesIn(const fs::path& recording) {
+    SideScanCodes codes;
+    const auto file = output::openSideScan(recording);
+    for (auto line = file->next(); line; line = file->next(), ++codes.pings)
         for (const float bin : line->ping.bins) {
             codes.whole &= bin >= 0 && bin <= 65535 && std::floor(bin) == bin;
             codes.largest = std::max(codes.largest, bin);
         }
     if (codes.pings == 0) {
         std::string why;
-        for (const std::string& notice : file.notices()) why += "; " + notice;
+        for (const std::string& notice : file->notices()) why += "; " + notice;
         throw types::ConfigError(recording.string(), "", "holds no ping of a side-scan" + why);
     }
     return codes;
 }
 
 /** What the file states of its tasks, for the metadata of a log without a deployment. */
-std::string sideScanText(const fs::path& recording, const XtfCodes& codes) {
+std::string sideScanText(const fs::path& recording, const SideScanCodes& codes) {
     return fmt::format(
         "# The side-scan that recorded {}, as the file states it.\n"
         "tasks:\n"
@@ -57,7 +56,7 @@ std::string sideScanText(const fs::path& recording, const XtfCodes& codes) {
         recording.filename().string(), codes.whole ? "{output: code, code: {bits: 16}}" : "{output: intensity}");
 }
 
-std::vector<std::string> propertiesOf(const std::string& sonar, const XtfLine& line) {
+std::vector<std::string> propertiesOf(const std::string& sonar, const SideScanLine& line) {
     std::vector<std::string> all;
     const auto set = [&](const char* property, const auto& value) {
         all.push_back(fmt::format("{}.{}={}", sonar, property, value));
@@ -81,8 +80,8 @@ std::vector<std::string> posesOf(const framework::Deployment& deployment) {
     return streams;
 }
 
-Imported importXtf(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
-    const XtfCodes codes = codesIn(recording);
+Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
+    const SideScanCodes codes = codesIn(recording);
     std::string sonar = "sonar", receiver = "receiver";
     std::vector<std::string> vehicles{"vehicle.pose"};
     if (spec) {
@@ -93,11 +92,11 @@ Imported importXtf(const fs::path& recording, std::optional<DeploymentSpec> spec
     }
     RecordedLog log(recording, std::move(spec), sideScanText(recording, codes), to);
     Imported imported{.stream = receiver + ".ping"};
-    XtfFile file(recording);
-    for (auto line = file.next(); line; line = file.next(), ++imported.pings) {
+    const auto file = output::openSideScan(recording);
+    for (auto line = file->next(); line; line = file->next(), ++imported.pings) {
         log.set(propertiesOf(sonar, *line), line->ping.time);
         if (const types::Pose& pose = line->record.sonar; isUsable(pose)) {
-            const log::Metadata origin{{"insonify_origin", file.origin()}};
+            const log::Metadata origin{{"insonify_origin", file->origin()}};
             for (const std::string& vehicle : vehicles) log.write(vehicle, pose, origin);
             log.write(sonar + ".pose", pose, origin);
         }
@@ -114,7 +113,7 @@ Imported importXtf(const fs::path& recording, std::optional<DeploymentSpec> spec
     log.close();
     imported.properties = log.properties();
     imported.changes = log.changes();
-    imported.notices = file.notices();
+    imported.notices = file->notices();
     return imported;
 }
 
@@ -128,7 +127,7 @@ Imported importOculus(const fs::path& recording, std::optional<DeploymentSpec> s
 }  // namespace
 
 Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
-    const auto import = XtfFile::isOne(recording) ? importXtf : importOculus;
+    const auto import = output::openSideScan(recording) ? importSideScan : importOculus;
     return import(recording, std::move(spec), to);
 }
 

@@ -207,8 +207,9 @@ int logImport(const Options& options) {
     for (const std::string& notice : made.notices) fmt::print(stderr, "notice: {}: {}\n", options.file, notice);
     for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", property);
     if (made.changes > 0)
-        fmt::print(stderr, "notice: settings change {} times; properties.0.log next to the log has them\n",
-                   made.changes);
+        fmt::print(stderr, "notice: settings change {} times; {}\n", made.changes,
+                   options.deployment.empty() ? "each ping has its own range and bins"
+                                              : "properties.0.log next to the log has them");
     fmt::print("{}: {} pings as {}\n", options.to, made.pings, made.stream);
     return 0;
 }
@@ -290,9 +291,9 @@ void addLogCommand(CLI::App& app, Action& action) {
 
     CLI::App* import =
         add(*log, action, options, "import",
-            "Makes a log of a recording: XTF of a side-scan, or an Oculus', to be exported, replayed and scored",
+            "Makes a log of a recording: XTF or JSF of a side-scan, or an Oculus', to be exported, replayed and scored",
             logImport);
-    import->add_option("FILE", options->file, "FILE.xtf, FILE.oculus, or messages of an Oculus as captured")
+    import->add_option("FILE", options->file, "FILE.xtf, FILE.jsf, FILE.oculus, or messages of an Oculus as captured")
         ->required();
     import->add_option("DEPLOYMENT", options->deployment,
                        "whose receiver's pings they become; an Oculus' gets the poses of its trajectories; none: the "

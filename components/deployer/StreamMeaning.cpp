@@ -116,6 +116,7 @@ void addRecorded(const log::Stream& stream, Json& meaning) {
     if (recording.empty()) return;
     meaning["bins"] = "samples of " + recording + ", as its device gave them out";
     meaning["model"] = meaning["reference"] = nullptr;
+    if (meaning["output"] != "code") meaning["output"] = "samples";
 }
 
 Json poseMeaning() {

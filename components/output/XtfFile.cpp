@@ -4,23 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <ctime>
-#include <limits>
 
 #include "components/output/XtfLayout.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {
-
-/** The number at a place that the caller knows to be there. */
-template <class T>
-T field(std::span<const char> bytes, size_t at) {
-    T value;
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    return value;
-}
 
 double floatAt(std::span<const char> bytes, size_t at) { return static_cast<double>(field<float>(bytes, at)); }
 
@@ -55,10 +45,6 @@ float sampleAt(std::span<const char> samples, size_t index, size_t bytes, bool i
     }
 }
 
-bool areAngles(std::initializer_list<double> degrees) {
-    return std::ranges::all_of(degrees, [](double deg) { return std::abs(deg) <= 360; });
-}
-
 }  // namespace
 
 bool XtfFile::isOne(const std::filesystem::path& path) {
@@ -66,25 +52,7 @@ bool XtfFile::isOne(const std::filesystem::path& path) {
     return file.get() == xtf::file_header::mark;
 }
 
-XtfFile::XtfFile(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
-    if (!file_ || std::filesystem::is_directory(path))
-        throw types::ConfigError(path.string(), "", "cannot be read; it must be an XTF file");
-    size_ = std::filesystem::file_size(path);
-    readChannels();
-}
-
-void XtfFile::fail(uint64_t byte, const std::string& why) const {
-    throw types::ConfigError(path_.string(), fmt::format("byte {}", byte), why);
-}
-
-std::vector<char> XtfFile::take(uint64_t at, size_t size) {
-    std::vector<char> bytes(static_cast<size_t>(std::min<uint64_t>(size, size_ - std::min(at, size_))));
-    file_.clear();
-    file_.seekg(static_cast<std::streamoff>(at));
-    file_.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!file_) fail(at, "can no longer be read");
-    return bytes;
-}
+XtfFile::XtfFile(const std::filesystem::path& path) : SideScanFile(path) { readChannels(); }
 
 void XtfFile::readChannels() {
     namespace header = xtf::file_header;
@@ -127,28 +95,19 @@ void XtfFile::readChannels() {
 }
 
 bool XtfFile::readPacket() {
-    at_ = next_;
-    if (at_ >= size_) return false;
-    const std::vector<char> head = take(at_, xtf::packet::size);
-    const bool is_whole = head.size() == xtf::packet::size;
-    if (is_whole && field<uint16_t>(head, xtf::packet::mark) != xtf::packet::magic)
-        fail(at_, fmt::format("is 0x{:04X}; a packet begins with 0x{:04X}", field<uint16_t>(head, xtf::packet::mark),
-                              xtf::packet::magic));
-    const uint32_t bytes = is_whole ? field<uint32_t>(head, xtf::packet::bytes) : 0;
-    if (is_whole && bytes < xtf::packet::size)
-        fail(at_ + xtf::packet::bytes,
-             fmt::format("the packet has {} bytes; it must have at least {}", bytes, xtf::packet::size));
-    if (!is_whole || bytes > size_ - at_) {
-        cut_off_ = fmt::format("the packet at byte {} is cut off by the end of the file", at_);
-        next_ = size_;
-        return false;
-    }
-    packet_ = take(at_, bytes);
-    next_ = at_ + bytes;
-    return true;
+    packet_ = takePacket(xtf::packet::size, [&](std::span<const char> head) -> uint64_t {
+        if (const auto mark = field<uint16_t>(head, xtf::packet::mark); mark != xtf::packet::magic)
+            fail(at_, fmt::format("is 0x{:04X}; a packet begins with 0x{:04X}", mark, xtf::packet::magic));
+        const auto bytes = field<uint32_t>(head, xtf::packet::bytes);
+        if (bytes < xtf::packet::size)
+            fail(at_ + xtf::packet::bytes,
+                 fmt::format("the packet has {} bytes; it must have at least {}", bytes, xtf::packet::size));
+        return bytes;
+    });
+    return !packet_.empty();
 }
 
-std::optional<XtfLine> XtfFile::next() {
+std::optional<SideScanLine> XtfFile::next() {
     while (readPacket()) {
         if (const auto type = field<uint8_t>(packet_, xtf::packet::type); type != xtf::packet::sonar)
             ++other_packets_[type];
@@ -246,73 +205,43 @@ types::Time XtfFile::time() const {
     return {seconds * 1'000'000 + int64_t{hundredths} * 10'000};
 }
 
-types::Pose XtfFile::pose(types::Time time) {
+std::optional<SideScanFile::Stated> XtfFile::stated() const {
     namespace fields = xtf::ping_header;
     const auto pairAt = [&](size_t at) {
         return glm::dvec2(field<double>(packet_, at), field<double>(packet_, at + sizeof(double)));
     };
-    types::Pose pose;
-    pose.time = time;
-    pose.source_frame = "sonar";
-    pose.target_frame = "world";
     const bool has_own = pairAt(fields::sonar) != glm::dvec2(0);
     const glm::dvec2 place = pairAt(has_own ? fields::sonar : fields::ship);
     double heading = floatAt(packet_, fields::heading);
     if (heading == 0) heading = floatAt(packet_, fields::ship_heading);
-    const double pitch = floatAt(packet_, fields::pitch), roll = floatAt(packet_, fields::roll),
-                 depth = floatAt(packet_, fields::depth);
-    const bool is_stated = place != glm::dvec2(0) || heading != 0 || depth != 0;
-    const bool is_on_earth = in_degrees_ ? std::abs(place.x) <= 90 && std::abs(place.y) <= 360
-                                         : std::abs(place.x) <= 1e8 && std::abs(place.y) <= 1e8;
-    if (!is_stated || !is_on_earth || !areAngles({heading, pitch, roll}) || !(std::abs(depth) <= 12000)) {
-        ++without_pose_;
-        pose.position.x = types::Pose::unknown;
-        return pose;
-    }
-    const glm::dvec2 north_east =
-        in_degrees_ ? origin_.fromDegrees(place.x, place.y) : origin_.fromMetres(place.x, place.y);
-    pose.position = {north_east.x, -north_east.y, -depth};
-    const auto turn = [](double deg, const glm::dvec3& axis) { return glm::angleAxis(types::radians(deg), axis); };
-    pose.orientation = turn(-std::remainder(heading, 360), {0, 0, 1}) * turn(-pitch, {0, 1, 0}) * turn(roll, {1, 0, 0});
-    return pose;
+    const double depth = floatAt(packet_, fields::depth);
+    if (place == glm::dvec2(0) && heading == 0 && depth == 0) return std::nullopt;
+    return Stated{
+        in_degrees_, place.x, place.y, depth, heading, floatAt(packet_, fields::pitch), floatAt(packet_, fields::roll)};
 }
 
-void XtfFile::appendBins(const Side& side, bool far_first, types::Sonar& ping) const {
-    const size_t begin = ping.bins.size();
+void XtfFile::append(const Side& side, bool is_port, types::Sonar& ping) {
     const int weight = field<int16_t>(side.header, xtf::channel_header::weight);
     const bool is_float = side.channel->format == xtf::channel_info::float32;
-    ping.bins.resize(begin + ping.bin_count);  // a shorter side has no echo beyond its end
-    for (uint32_t i = 0; i < side.count; ++i) {
-        const float sample =
-            sampleAt(side.samples, far_first ? side.count - 1 - i : i, side.channel->sample_bytes, is_float);
-        const float bin = weight == 0 ? sample : std::ldexp(sample, -weight);
-        ping.bins[begin + i] = std::isfinite(bin) ? bin : std::numeric_limits<float>::quiet_NaN();
-    }
-    ping.bearings.push_back(types::Angle::fromDeg(far_first ? 90 : -90));
-    ++ping.beam_count;
+    const auto sample = [&](uint32_t i) {
+        const uint32_t at = is_port ? side.count - 1 - i : i;  // port runs from the far end to the sonar
+        const float value = sampleAt(side.samples, at, side.channel->sample_bytes, is_float);
+        return weight == 0 ? value : std::ldexp(value, -weight);
+    };
+    appendBeam(is_port, 0, side.count, sample, ping);
 }
 
 void XtfFile::setBins(const Sides& sides, double speed_of_sound, types::Sonar& ping) {
     const Side& any = sides.starboard ? *sides.starboard : *sides.port;
-    const double resolution = any.resolution(), duration_us = resolution / speed_of_sound * 1e6;
-    constexpr double same = 1e-6;  // of ranges that are floats
-    ping.bin_duration = {std::max<int64_t>(1, std::llround(duration_us))};
-    const double whole_us = static_cast<double>(ping.bin_duration.microseconds);
-    const bool is_whole = std::abs(whole_us / duration_us - 1) < same;
-    ping.speed_of_sound = static_cast<float>(is_whole ? speed_of_sound : resolution / whole_us * 1e6);
-    if (!is_whole && rounding_.empty())
-        rounding_ = fmt::format(
-            "bins are {:.2f} us long, one way, and logs have whole microseconds: with {} us and a speed of sound of "
-            "{:.2f} m/s in place of {:g} m/s their ranges are right",
-            duration_us, ping.bin_duration.microseconds, ping.speed_of_sound, speed_of_sound);
+    setResolution(any.resolution(), speed_of_sound, ping);
     ping.beam_width = any.channel->beam_width;
     ping.beam_height = any.channel->beam_height;
     ping.bin_count = std::max(sides.port ? sides.port->count : 0, sides.starboard ? sides.starboard->count : 0);
-    if (sides.starboard) appendBins(*sides.starboard, false, ping);
-    if (sides.port) appendBins(*sides.port, true, ping);
+    if (sides.starboard) append(*sides.starboard, false, ping);
+    if (sides.port) append(*sides.port, true, ping);
 }
 
-std::optional<XtfLine> XtfFile::line() {
+std::optional<SideScanLine> XtfFile::line() {
     namespace fields = xtf::ping_header;
     if (packet_.size() < fields::size)
         fail(at_ + xtf::packet::bytes,
@@ -327,14 +256,14 @@ std::optional<XtfLine> XtfFile::line() {
             found.starboard->at,
             fmt::format("the samples are {:.6g} m long, and those to port {:.6g} m; both sides of a ping must be alike",
                         found.starboard->resolution(), found.port->resolution()));
-    XtfLine read;
+    SideScanLine read;
     read.ping.time = time();
     setBins(found, speed, read.ping);
     const Side& any = found.starboard ? *found.starboard : *found.port;
-    const double stated = field<uint16_t>(any.header, xtf::channel_header::frequency),
+    const double of_ping = field<uint16_t>(any.header, xtf::channel_header::frequency),
                  of_file = any.channel->frequency_khz;
-    read.frequency_khz = of_file > 0 && of_file <= 1e5 ? of_file : stated;
-    read.record.sonar = pose(read.ping.time);
+    read.frequency_khz = of_file > 0 && of_file <= 1e5 ? of_file : of_ping;
+    read.record.sonar = placed(read.ping.time, stated());
     if (const double altitude = floatAt(packet_, fields::altitude); altitude > 0 && altitude <= 12000)
         read.record.altitude = altitude;
     read.record.since_last = last_.isNull() ? 0 : (read.ping.time - last_).seconds();
@@ -344,10 +273,7 @@ std::optional<XtfLine> XtfFile::line() {
 }
 
 std::vector<std::string> XtfFile::notices() const {
-    std::vector<std::string> all;
-    for (const std::string& text : {cut_off_, rounding_})
-        if (!text.empty()) all.push_back(text);
-    if (!origin().empty()) all.push_back("x = y = 0 of the world is " + origin());
+    std::vector<std::string> all = SideScanFile::notices();
     for (const auto& [type, count] : other_packets_)
         all.push_back(
             fmt::format("{} packets of type {} are omitted: only side-scan pings (type 0) are read", count, type));
@@ -356,7 +282,6 @@ std::vector<std::string> XtfFile::notices() const {
                                   number, count));
     if (without_side_ > 0)
         all.push_back(fmt::format("{} pings have no channel to port or to starboard and are omitted", without_side_));
-    if (without_pose_ > 0) all.push_back(fmt::format("{} pings have no pose", without_pose_));
     return all;
 }
 

@@ -157,6 +157,20 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
     for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(again[i].bins, first[i].bins);
 }
 
+TEST_F(ImportCommandTest, AJsfFileBecomesALogThatIsCheckedAndExported) {
+    const std::string recording = test::sourceFile("tests/fuzz/corpus/jsf/two_pings");
+    const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "side.0.log: 2 pings as receiver.ping\n");
+    EXPECT_THAT(outcome.err, HasSubstr("settings change 1 times; each ping has its own range and bins"));
+    EXPECT_EQ(callInsonify(folder_, {"log", "check", "side.0.log"}).code, 0);
+    const auto to = [&](const std::string& file) {
+        return callInsonify(folder_, {"log", "export", "side.0.log", "--stream", "receiver.ping", "--to", file});
+    };
+    EXPECT_EQ(to("side.png").out, "side_000000.png\nside_000001.png\n") << "one for each range";
+    EXPECT_EQ(to("side.xtf").code, 0);
+}
+
 TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
     std::string bytes(1024 + 256, '\0');
     bytes[0] = '\x7B';

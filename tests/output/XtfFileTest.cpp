@@ -66,10 +66,10 @@ protected:
         return path;
     }
     /** All lines of a file; the notices in `notices_`. */
-    std::vector<XtfLine> read(const std::vector<char>& bytes) { return readFile(write(bytes)); }
-    std::vector<XtfLine> readFile(const std::filesystem::path& path) {
+    std::vector<SideScanLine> read(const std::vector<char>& bytes) { return readFile(write(bytes)); }
+    std::vector<SideScanLine> readFile(const std::filesystem::path& path) {
         XtfFile file(path);
-        std::vector<XtfLine> all;
+        std::vector<SideScanLine> all;
         for (auto line = file.next(); line; line = file.next()) all.push_back(*line);
         notices_ = file.notices();
         return all;
@@ -90,7 +90,7 @@ protected:
 TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
     for (const XtfSamples samples : {XtfSamples::Uint16, XtfSamples::Float32}) {
         const std::vector<types::Sonar> written{line(0), line(1), line(2)};
-        const std::vector<XtfLine> lines = read(fileOf(written, samples));
+        const std::vector<SideScanLine> lines = read(fileOf(written, samples));
         ASSERT_EQ(lines.size(), 3u);
         for (size_t i = 0; i < 3; ++i) {
             const types::Sonar& ping = lines[i].ping;
@@ -111,7 +111,7 @@ TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
 }
 
 TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
-    const XtfLine read_back = read(fileOf({line(0)})).front();
+    const SideScanLine read_back = read(fileOf({line(0)})).front();
     const types::Pose &pose = read_back.record.sonar, expected = poseAt(30);
     EXPECT_NEAR(glm::length(pose.position - expected.position), 0, 1e-6);
     EXPECT_NEAR(std::abs(glm::dot(pose.orientation, expected.orientation)), 1, 1e-12);
@@ -121,7 +121,7 @@ TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
 
 TEST_F(XtfFileTest, EveryPingIsKeptWhenSettingsChange) {
     const std::vector<types::Sonar> written{line(0), line(1, 7), line(2, 5, 1450), line(3)};
-    const std::vector<XtfLine> lines = read(fileOf(written));
+    const std::vector<SideScanLine> lines = read(fileOf(written));
     ASSERT_EQ(lines.size(), 4u);
     for (size_t i = 0; i < lines.size(); ++i) {
         EXPECT_EQ(lines[i].ping.bins, written[i].bins);
@@ -148,7 +148,7 @@ TEST_F(XtfFileTest, LatitudesAndLongitudesBecomeMetres) {
         put(bytes, first_ping + i * size + ping_header::sonar, 48.0 + 0.001 * static_cast<double>(i));
         put(bytes, first_ping + i * size + ping_header::sonar + 8, -69.0 - 0.001 * static_cast<double>(i));
     }
-    const std::vector<XtfLine> lines = read(bytes);
+    const std::vector<SideScanLine> lines = read(bytes);
     EXPECT_EQ(lines[0].record.sonar.position, glm::dvec3(0, 0, -4));
     EXPECT_NEAR(lines[1].record.sonar.position.x, 111.20, 0.02) << "a thousandth of a degree of a meridian at 48 N";
     EXPECT_NEAR(lines[1].record.sonar.position.y, 74.63, 0.02) << "to the west; of the parallel";
@@ -185,7 +185,7 @@ TEST_F(XtfFileTest, WhatIsUnknownOrOmittedIsNoticed) {
     put(bytes, first_ping + xtf::packet::type, uint8_t{42});
     put(bytes, first_ping + size + ping_header::roll, std::numeric_limits<float>::quiet_NaN());
     put(bytes, xtf::file_header::channel_infos, uint8_t{3});  // bathymetry in place of port
-    const std::vector<XtfLine> lines = read(bytes);
+    const std::vector<SideScanLine> lines = read(bytes);
     ASSERT_EQ(lines.size(), 2u);
     EXPECT_FALSE(isUsable(lines[0].record.sonar));
     EXPECT_TRUE(isUsable(lines[1].record.sonar));
@@ -246,7 +246,7 @@ TEST_F(XtfFileTest, EveryDamagedByteGivesPingsOrOneError) {
         for (const int flip : {0x01, 0x80, 0xFF}) {
             damage(at, static_cast<char>(good[at] ^ flip));
             try {
-                for (const XtfLine& line : readFile(path)) EXPECT_NO_THROW(line.ping.validate()) << at;
+                for (const SideScanLine& line : readFile(path)) EXPECT_NO_THROW(line.ping.validate()) << at;
             } catch (const types::ConfigError& error) {
                 ++refused;
                 EXPECT_EQ(error.diagnostics().size(), 1u);

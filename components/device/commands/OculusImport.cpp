@@ -97,7 +97,8 @@ deployer::Imported importOculus(const std::filesystem::path& recording, std::opt
     auto recorded = source.next();
     if (!recorded) {
         const std::string why = source.diagnostic().empty() ? "" : ": " + source.diagnostic();
-        throw types::ConfigError(recording.string(), "", "holds no ping of an Oculus" + why);
+        throw types::ConfigError(recording.string(), "",
+                                 "holds no ping of an Oculus, and is no XTF or JSF file of a side-scan" + why);
     }
     const OculusPing first = pingOf(recorded->ping);
     const int bits = first.bits > 8 ? 16 : 8;
