@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -13,11 +14,14 @@
 #include "components/output/ByteFile.hpp"
 #include "components/output/FanImage.hpp"
 #include "components/output/PictureFiles.hpp"
+#include "components/output/SideScanImage.hpp"
 #include "components/output/Xtf.hpp"
 #include "types/Image.hpp"
 #include "types/Mount.hpp"
+#include "types/Range.hpp"
 
 namespace insonify::deployer {
+namespace fs = std::filesystem;
 
 output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stream, const types::Sonar& ping) {
     output::DisplayConfig display;
@@ -67,12 +71,78 @@ private:
     types::Image picture_;
 };
 
+/** Whether a ping is a line of a side-scan: one beam to port and one to starboard. */
+bool isSideScan(const types::Sonar& ping) {
+    const auto to = [&](int side) {
+        return std::ranges::count_if(ping.bearings,
+                                     [&](const types::Angle& bearing) { return bearing.rad * side > 0; });
+    };
+    return ping.beam_count == 2 && to(1) == 1 && to(-1) == 1;
+}
+
+/** The first ping of a stream; without beams where it has none. */
+types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
+    types::Sonar ping;
+    if (log::holdsPings(stream) && stream.count > 0)
+        readPing(log, *std::ranges::find(log.samples(), log.indexOf(stream.name), &log::SampleRef::stream), ping);
+    return ping;
+}
+
+/** Lines of a side-scan as waterfalls: a picture when one is full, when the settings change, and of the last lines. */
+class Waterfalls {
+public:
+    Waterfalls(const output::DisplayConfig& display, fs::path path)
+        : image_(configOf(display)), path_(std::move(path)) {}
+
+    void add(const types::Sonar& ping) {
+        const bool is_other = ping.bin_count != last_.bin_count || ping.binStart(1) != last_.binStart(1);
+        if (lines_ > 0) put(is_other || lines_ == output::WaterfallImage::history);
+        last_ = ping;
+        ++lines_;
+    }
+    std::vector<fs::path> close() {
+        put(true);
+        return std::move(files_);
+    }
+
+private:
+    static output::SideScanPictureConfig configOf(const output::DisplayConfig& display) {
+        output::SideScanPictureConfig config;
+        static_cast<output::DisplayConfig&>(config) = display;
+        return config;
+    }
+    /** Adds the last line, whose picture is written when `ends`. */
+    void put(bool ends) {
+        if (!ends) return image_.skip(last_);
+        image_.paint(last_, picture_);
+        files_.push_back(path_.parent_path() / fmt::format("{}_{:06}.png", path_.stem().string(), files_.size()));
+        output::writePng(files_.back(), picture_);
+        lines_ = 0;
+    }
+
+    output::SideScanImage image_;
+    fs::path path_;
+    types::Sonar last_;
+    int lines_ = 0;  ///< Of this picture, with the last.
+    types::Image picture_;
+    std::vector<fs::path> files_;
+};
+
 }  // namespace
 
-std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
-                                                  const std::filesystem::path& path) {
-    Pictures pictures(log, log.streams()[log.indexOf(stream)]);
-    std::vector<std::filesystem::path> files;
+std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream, const fs::path& path) {
+    const log::Stream& exported = log.streams()[log.indexOf(stream)];
+    if (const types::Sonar first = firstPing(log, exported); isSideScan(first)) {
+        Waterfalls waterfalls(displayFor(log, exported, first), path);
+        types::Sonar ping;
+        log.forEachRef(stream, [&](const log::SampleRef& at) {
+            readPing(log, at, ping);
+            waterfalls.add(ping);
+        });
+        return waterfalls.close();
+    }
+    Pictures pictures(log, exported);
+    std::vector<fs::path> files;
     log.forEachRef(stream, [&](const log::SampleRef& at) {
         const types::Image& picture = pictures.of(at);
         files.push_back(path.parent_path() / fmt::format("{}_{:06}.png", path.stem().string(), files.size()));
@@ -82,8 +152,6 @@ std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::s
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 [[noreturn]] void refuse(const log::Reader& log, const std::string& stream, const std::string& why) {
     throw types::ConfigError(log.path(), stream, why);
@@ -149,12 +217,29 @@ private:
     std::vector<types::Pose> all_;
 };
 
+/** Heights above the bottom over time, of the only stream of ranges. */
+class Altitudes {
+public:
+    explicit Altitudes(log::Reader& log) {
+        const auto holds = [](const log::Stream& stream) { return stream.holds<types::Range>(); };
+        if (std::ranges::count_if(log.streams(), holds) != 1) return;
+        log.forEach<types::Range>(std::ranges::find_if(log.streams(), holds)->name,
+                                  [&](const types::Range& range, const log::SampleRef&) {
+                                      all_[range.time] = range.isKnown() ? range.range : 0;
+                                  });
+    }
+    /** At this time or the last before; 0: unknown. */
+    double at(types::Time time) const {
+        const auto after = all_.upper_bound(time);
+        return after == all_.begin() ? 0 : std::prev(after)->second;
+    }
+
+private:
+    std::map<types::Time, double> all_;
+};
+
 void refuseUnlessSideScan(const log::Reader& log, const std::string& stream, const types::Sonar& ping) {
-    const auto to = [&](int side) {
-        return std::ranges::count_if(ping.bearings,
-                                     [&](const types::Angle& bearing) { return bearing.rad * side > 0; });
-    };
-    if (ping.beam_count != 2 || to(1) != 1 || to(-1) != 1)
+    if (!isSideScan(ping))
         refuse(log, stream,
                fmt::format("holds pings of {} beams; an XTF file takes the lines of a side-scan, one beam to port and "
                            "one to starboard",
@@ -172,8 +257,8 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     const log::Stream* const placed = posesOf(log, poses);
     if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no places\n", log.path().string());
     const Track track(log, placed, mountOf(meaning));
-    types::Sonar ping;
-    readPing(log, *std::ranges::find(log.samples(), log.indexOf(stream), &log::SampleRef::stream), ping);
+    const Altitudes altitudes(log);
+    types::Sonar ping = firstPing(log, pings);
     refuseUnlessSideScan(log, pings.name, ping);
     output::ByteFile file(to);
     std::vector<char> bytes = output::xtfHeader(format, ping);
@@ -182,6 +267,7 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     log.forEachRef(stream, [&](const log::SampleRef& at) {
         readPing(log, at, ping);
         more.sonar = track.at(ping.time);
+        more.altitude = altitudes.at(ping.time);
         more.since_last = last.isNull() ? 0 : (ping.time - last).seconds();
         last = ping.time;
         output::appendXtfPing(format, ping, more, bytes);

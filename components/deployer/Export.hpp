@@ -14,9 +14,9 @@ namespace insonify::deployer {
  *  negative bins are taken for levels in dB. */
 output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stream, const types::Sonar& ping);
 
-/** Writes the pictures of a stream, x_000000.png and on for `x.png`, and returns the files: of pings, beams and scans
- *  their fans, as displayFor tells, of frames themselves. Throws types::ConfigError for a stream
- *  of anything else, std::runtime_error for a frame whose pixels no PNG can hold. */
+/** Writes the pictures of a stream, x_000000.png and on for `x.png`, and returns the files: fans of pings, beams and
+ *  scans, as displayFor decides; waterfalls of a side-scan, 480 lines each; frames as they are. Throws
+ * types::ConfigError for a stream of anything else, std::runtime_error for a frame whose pixels no PNG can hold. */
 std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
                                                   const std::filesystem::path& path);
 
@@ -24,7 +24,8 @@ std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::s
  * bins as codes, else the bins as they are. Each line has the pose at its time, or the last before it; that of the
  * vehicle is taken to the sonar by the mount that the log knows.
  *  @param poses stream of the sonar's poses or its vehicle's; empty: the only one of the log, or the only one that a
- *  sonar tells; where there is none the file has no places, which is told on stderr.
+ *  sonar tells; where there is none the file has no places, which is told on stderr. Altitudes are those of the
+ *  only stream of ranges.
  *  Throws types::ConfigError for a stream of anything but pings of one beam to port and one to starboard, for poses
  * that are none or have to be named, and for a file that cannot be made. */
 void exportXtf(log::Reader& log, const std::string& stream, const std::string& poses, const std::filesystem::path& to);

@@ -1,16 +1,134 @@
 #include "components/deployer/Import.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "components/deployer/RecordedLog.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/output/SideScanFile.hpp"
+#include "components/pose/TrajectoryTask.hpp"
+#include "components/sonar/SideScanTask.hpp"
+#include "types/Angle.hpp"
+#include "types/Range.hpp"
 
 namespace insonify::deployer {
+namespace {
 
-Imported importOculus(const std::filesystem::path& recording, framework::DeploymentSpec spec,
-                      const std::filesystem::path& to) {
-    using Import =
-        void(const std::filesystem::path&, framework::DeploymentSpec, const std::filesystem::path&, Imported&);
+namespace fs = std::filesystem;
+using framework::DeploymentSpec;
+using output::SideScanLine;
+
+/** What has to be known of a side-scan's recording before its first ping is written. */
+struct SideScanCodes {
+    bool whole = true;  ///< All samples are whole numbers of at most 16 bits.
+    float largest = 0;
+    size_t pings = 0;
+    int bits() const { return std::max(1, static_cast<int>(std::ceil(std::log2(largest + 1)))); }
+};
+
+SideScanCodes codesIn(const fs::path& recording) {
+    SideScanCodes codes;
+    const auto file = output::openSideScan(recording);
+    for (auto line = file->next(); line; line = file->next(), ++codes.pings)
+        for (const float bin : line->ping.bins) {
+            codes.whole &= bin >= 0 && bin <= 65535 && std::floor(bin) == bin;
+            codes.largest = std::max(codes.largest, bin);
+        }
+    if (codes.pings == 0) {
+        std::string why;
+        for (const std::string& notice : file->notices()) why += "; " + notice;
+        throw types::ConfigError(recording.string(), "", "holds no ping of a side-scan" + why);
+    }
+    return codes;
+}
+
+/** What the file states of its tasks, for the metadata of a log without a deployment. */
+std::string sideScanText(const fs::path& recording, const SideScanCodes& codes) {
+    return fmt::format(
+        "# The side-scan that recorded {}, as the file states it.\n"
+        "tasks:\n"
+        "  sonar: {{type: sonar::SideScanTask}}\n"
+        "  receiver: {{type: receiver::ReceiverTask, properties: {}}}\n"
+        "connections:\n"
+        "  - {{from: sonar.ping, to: receiver.intensity}}\n",
+        recording.filename().string(), codes.whole ? "{output: code, code: {bits: 16}}" : "{output: intensity}");
+}
+
+std::vector<std::string> propertiesOf(const std::string& sonar, const SideScanLine& line) {
+    std::vector<std::string> all;
+    const auto set = [&](const char* property, const auto& value) {
+        all.push_back(fmt::format("{}.{}={}", sonar, property, value));
+    };
+    const types::Sonar& ping = line.ping;
+    set("range", ping.binStart(ping.bin_count));
+    set("bin_count", ping.bin_count);
+    set("range_rounding", "exact");
+    set("speed_of_sound", ping.speed_of_sound);
+    if (line.frequency_khz > 0) set("frequency_khz", line.frequency_khz);
+    if (!ping.beam_width.isUnknown()) set("beam_width_deg", ping.beam_width.deg());
+    if (!ping.beam_height.isUnknown()) set("beam_height_deg", ping.beam_height.deg());
+    return all;
+}
+
+/** Streams of the vehicle's poses. */
+std::vector<std::string> posesOf(const framework::Deployment& deployment) {
+    std::vector<std::string> streams;
+    for (const auto& task : deployment.tasks())
+        if (dynamic_cast<const pose::TrajectoryTask*>(task.get())) streams.push_back(task->name() + ".pose");
+    return streams;
+}
+
+Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
+    const SideScanCodes codes = codesIn(recording);
+    std::string sonar = "sonar", receiver = "receiver";
+    std::vector<std::string> vehicles{"vehicle.pose"};
+    if (spec) {
+        framework::Registry registry = coreTasks();
+        const framework::Deployment deployment(*spec, registry);
+        std::tie(sonar, receiver) = recordedTasksOf<sonar::SideScanTask>(deployment, "sonar::SideScanTask");
+        vehicles = posesOf(deployment);
+    }
+    RecordedLog log(recording, std::move(spec), sideScanText(recording, codes), to);
+    Imported imported{.stream = receiver + ".ping"};
+    const auto file = output::openSideScan(recording);
+    for (auto line = file->next(); line; line = file->next(), ++imported.pings) {
+        log.set(propertiesOf(sonar, *line), line->ping.time);
+        if (const types::Pose& pose = line->record.sonar; isUsable(pose)) {
+            const log::Metadata origin{{"insonify_origin", file->origin()}};
+            for (const std::string& vehicle : vehicles) log.write(vehicle, pose, origin);
+            log.write(sonar + ".pose", pose, origin);
+        }
+        if (const double altitude = line->record.altitude; altitude > 0) {
+            types::Range range;
+            range.time = line->ping.time;
+            range.range = altitude;
+            log.write("altimeter.range", range);
+        }
+        log.write(imported.stream, line->ping,
+                  {{"insonify_frequency_khz", fmt::format("{}", line->frequency_khz)},
+                   {"insonify_code_bits", codes.whole ? std::to_string(codes.bits()) : ""}});
+    }
+    log.close();
+    imported.properties = log.properties();
+    imported.changes = log.changes();
+    imported.notices = file->notices();
+    return imported;
+}
+
+Imported importOculus(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
+    using Import = void(const fs::path&, std::optional<DeploymentSpec>, const fs::path&, Imported&);
     Imported imported;
     loader::load("device").entry<Import>("insonify_import_oculus")(recording, std::move(spec), to, imported);
     return imported;
+}
+
+}  // namespace
+
+Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
+    const auto import = output::openSideScan(recording) ? importSideScan : importOculus;
+    return import(recording, std::move(spec), to);
 }
 
 }  // namespace insonify::deployer

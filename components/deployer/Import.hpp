@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,18 +12,21 @@ namespace insonify::deployer {
 /** What became of a recording. */
 struct Imported {
     size_t pings = 0;
-    size_t other_shape = 0;               ///< Pings of other beams or bins than the first, which were left out.
-    std::string stream;                   ///< Of the pings.
-    std::vector<std::string> properties;  ///< That the recording tells, as `--set` takes them.
-    std::string diagnostic{};             ///< What of the recording was passed over; empty: nothing.
+    std::string stream;                     ///< Of the pings.
+    std::vector<std::string> properties{};  ///< That the recording states of its first ping, as `--set` takes them.
+    size_t changes = 0;                     ///< How often they changed after it.
+    std::vector<std::string> notices{};     ///< What was passed over or is unknown.
 };
 
-/** Makes a log of the recording of an Oculus as the deployment would have written it, had it been the sea: the pings as
- *  those of its receiver, with the poses of its trajectories when they were sent, and beside it properties.0.log with
- *  the properties of all tasks, those of sonar and receiver as the recording tells them. So it is replayed, rendered
- *  again and scored. A capture, which has no times, starts at 1 s.
- *  @throws types::ConfigError for what is no recording, and for a deployment without a fan, trajectory or codes. */
-Imported importOculus(const std::filesystem::path& recording, framework::DeploymentSpec spec,
-                      const std::filesystem::path& to);
+/** Makes a log of the recording of a device, which its content identifies: an XTF or JSF file of a side-scan, or an
+ * Oculus'. The log has every ping, and next to it properties.0.log has the settings of sonar and receiver, as they were
+ * at each ping. So it is exported, replayed, rendered again and scored like our own.
+ *
+ *  With a deployment, pings are those of its receiver that gives out codes, and poses go by its names. Without, tasks
+ *  are called sonar, receiver and vehicle. A side-scan's file has its own poses and altitudes; an Oculus' has none, and
+ * gets those of the deployment's trajectories. A capture, which has no times, starts at 1 s.
+ *  @throws types::ConfigError for what is no recording, and for a deployment that lacks such tasks */
+Imported importRecording(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
+                         const std::filesystem::path& to);
 
 }  // namespace insonify::deployer

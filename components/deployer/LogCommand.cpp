@@ -201,13 +201,15 @@ int logRepair(const Options& options) {
 
 int logImport(const Options& options) {
     refuseMissingFolder(options.to);
-    const Imported made =
-        importOculus(options.file, framework::DeploymentSpec::load(deploymentIn(options.deployment)), options.to);
-    if (!made.diagnostic.empty()) fmt::print(stderr, "notice: {}: {}\n", options.file, made.diagnostic);
-    if (made.other_shape > 0)
-        fmt::print(stderr, "notice: {}: {} pings of other beams or bins than the first are left out\n", options.file,
-                   made.other_shape);
+    std::optional<framework::DeploymentSpec> spec;
+    if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
+    const Imported made = importRecording(options.file, std::move(spec), options.to);
+    for (const std::string& notice : made.notices) fmt::print(stderr, "notice: {}: {}\n", options.file, notice);
     for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", property);
+    if (made.changes > 0)
+        fmt::print(stderr, "notice: settings change {} times; {}\n", made.changes,
+                   options.deployment.empty() ? "each ping has its own range and bins"
+                                              : "properties.0.log next to the log has them");
     fmt::print("{}: {} pings as {}\n", options.to, made.pings, made.stream);
     return 0;
 }
@@ -287,14 +289,15 @@ void addLogCommand(CLI::App& app, Action& action) {
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);
 
-    CLI::App* import = add(*log, action, options, "import",
-                           "Makes a log of an Oculus' recording, to be replayed, rendered again and scored", logImport);
-    import->add_option("FILE", options->file, "a file of the maker's viewer (.oculus), or captured messages")
+    CLI::App* import =
+        add(*log, action, options, "import",
+            "Makes a log of a recording: XTF or JSF of a side-scan, or an Oculus', to be exported, replayed and scored",
+            logImport);
+    import->add_option("FILE", options->file, "FILE.xtf, FILE.jsf, FILE.oculus, or messages of an Oculus as captured")
         ->required();
-    import
-        ->add_option("DEPLOYMENT", options->deployment,
-                     "whose receiver's pings they become; its trajectories tell the poses, from the first ping on")
-        ->required();
+    import->add_option("DEPLOYMENT", options->deployment,
+                       "whose receiver's pings they become; an Oculus' gets the poses of its trajectories; none: the "
+                       "log has what the file has");
     import->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
     CLI::App* repair = add(*log, action, options, "repair",

@@ -88,6 +88,20 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"quaternion_order", quaternion_order}};
 }
 
+/** Adds what the recording states from which a stream was imported, see RecordedLog. */
+void addRecorded(const log::Stream& stream, Json& meaning) {
+    const auto number = [&](const char* key) { return Json::parse(stream.metadatum(key), nullptr, false); };
+    if (const Json frequency = number("insonify_frequency_khz"); frequency.is_number() && frequency > 0)
+        meaning["frequency_khz"] = frequency;
+    if (const Json bits = number("insonify_code_bits"); bits.is_number() && meaning["code"].is_object())
+        meaning["code"]["bits"] = bits;
+    const std::string recording = stream.metadatum("insonify_recording");
+    if (recording.empty()) return;
+    meaning["bins"] = "samples of " + recording + ", as its device gave them out";
+    meaning["model"] = meaning["reference"] = nullptr;
+    if (meaning["output"] != "code") meaning["output"] = "samples";
+}
+
 Json poseMeaning() {
     return {{"position", "in the world, x north, y west, z up [m]"},
             {"orientation", "world_from_body, unit quaternion; body: x forward, y left, z up"},
@@ -127,6 +141,7 @@ Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     if (log::holdsPings(stream)) {
         const DeploymentSpec spec = deploymentOf(log);
         meaning.update(pingMeaning(spec, writerOf(spec, stream.name)));
+        addRecorded(stream, meaning);
     } else if (stream.holds<types::Pose>())
         meaning.update(poseMeaning());
     else if (stream.holds<types::SonarTruth>())

@@ -15,8 +15,9 @@ void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
     insonify::device::addCommand(app, action);
 }
 
-void insonify_import_oculus(const std::filesystem::path& recording, insonify::framework::DeploymentSpec spec,
-                            const std::filesystem::path& to, insonify::deployer::Imported& imported) {
+void insonify_import_oculus(const std::filesystem::path& recording,
+                            std::optional<insonify::framework::DeploymentSpec> spec, const std::filesystem::path& to,
+                            insonify::deployer::Imported& imported) {
     imported = insonify::device::importOculus(recording, std::move(spec), to);
 }
 

@@ -4,23 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <ctime>
 #include <stdexcept>
 
 #include "components/output/Sides.hpp"
+#include "components/output/XtfLayout.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::output {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "numbers are copied in host order, which must be little endian");
-
-constexpr size_t header_size = 1024, channel_info_at = 256, channel_info_size = 128, ping_header_size = 256,
-                 channel_header_size = 64, packet_unit = 64;
 
 /** Places in a block of zeros; offsets are those of the format's tables. */
 class Block {
@@ -43,19 +37,19 @@ private:
 size_t sizeOf(XtfSamples samples) { return samples == XtfSamples::Uint16 ? sizeof(uint16_t) : sizeof(float); }
 
 void putChannelInfo(Block& header, size_t channel, const XtfFormat& format, const types::Sonar& ping) {
-    const size_t at = channel_info_at + channel * channel_info_size;
-    constexpr uint8_t port = 1, starboard = 2;
+    namespace info = xtf::channel_info;
+    const size_t at = xtf::file_header::channel_infos + channel * info::size;
     constexpr uint16_t slant_range = 1, unipolar = 1;
-    header.put(at, channel == 0 ? port : starboard);
-    header.put(at + 2, slant_range);
-    header.put(at + 4, unipolar);
-    header.put(at + 6, static_cast<uint16_t>(sizeOf(format.samples)));
-    header.put(at + 8, uint32_t{1024});  // what programs of old expect there
-    header.putText(at + 12, channel == 0 ? "Port" : "Starboard", 16);
-    header.putFloat(at + 32, format.frequency_khz);
-    header.putFloat(at + 36, ping.beam_width.isUnknown() ? 0 : ping.beam_width.deg());
-    header.putFloat(at + 44, ping.beam_height.isUnknown() ? 0 : ping.beam_height.deg());
-    header.put(at + 74, static_cast<uint8_t>(format.samples == XtfSamples::Uint16 ? 3 : 5));
+    header.put(at + info::type, channel == 0 ? info::port : info::starboard);
+    header.put(at + info::correction, slant_range);
+    header.put(at + info::unipolar, unipolar);
+    header.put(at + info::sample_bytes, static_cast<uint16_t>(sizeOf(format.samples)));
+    header.put(at + info::sample_count, uint32_t{1024});  // what programs of old expect there
+    header.putText(at + info::name, channel == 0 ? "Port" : "Starboard", 16);
+    header.putFloat(at + info::frequency, format.frequency_khz);
+    header.putFloat(at + info::beam_width, ping.beam_width.isUnknown() ? 0 : ping.beam_width.deg());
+    header.putFloat(at + info::beam_height, ping.beam_height.isUnknown() ? 0 : ping.beam_height.deg());
+    header.put(at + info::sample_format, format.samples == XtfSamples::Uint16 ? info::int16 : info::float32);
 }
 
 std::tm dateOf(types::Time time) {
@@ -68,15 +62,14 @@ std::tm dateOf(types::Time time) {
 void putTime(Block& header, types::Time time) {
     const std::tm date = dateOf(time);
     const auto byte = [](int value) { return static_cast<uint8_t>(value); };
-    header.put(14, static_cast<uint16_t>(date.tm_year + 1900));
-    header.put(16, byte(date.tm_mon + 1));
-    header.put(17, byte(date.tm_mday));
+    header.put(xtf::ping_header::year, static_cast<uint16_t>(date.tm_year + 1900));
+    header.put(xtf::ping_header::month, byte(date.tm_mon + 1));
+    header.put(xtf::ping_header::day, byte(date.tm_mday));
     const std::array day_time{byte(date.tm_hour), byte(date.tm_min), byte(date.tm_sec),
                               byte(static_cast<int>(time.microseconds / 10'000 % 100))};
-    header.put(18, day_time);   // of the ping
-    header.put(148, day_time);  // of its fix
-    header.put(236, day_time);  // of the computer
-    header.put(22, static_cast<uint16_t>(date.tm_yday + 1));
+    for (const size_t at : {xtf::ping_header::day_time, xtf::ping_header::fix_time, xtf::ping_header::computer_time})
+        header.put(at, day_time);
+    header.put(xtf::ping_header::day_of_year, static_cast<uint16_t>(date.tm_yday + 1));
 }
 
 void putPose(Block& header, const types::Pose& sonar) {
@@ -87,19 +80,19 @@ void putPose(Block& header, const types::Pose& sonar) {
     const double roll = std::atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y));
     const double heading = std::fmod(360 - types::degrees(yaw), 360), north = sonar.position.x,
                  east = -sonar.position.y;
-    for (const size_t at : {128, 160}) {  // of the ship, of the sonar
+    for (const size_t at : {xtf::ping_header::ship, xtf::ping_header::sonar}) {
         header.put(at, north);
         header.put(at + sizeof(double), east);
     }
-    header.putFloat(124, heading);
-    header.putFloat(192, -sonar.position.z);
-    header.putFloat(204, -types::degrees(pitch));
-    header.putFloat(208, types::degrees(roll));
-    header.putFloat(212, heading);
+    header.putFloat(xtf::ping_header::ship_heading, heading);
+    header.putFloat(xtf::ping_header::depth, -sonar.position.z);
+    header.putFloat(xtf::ping_header::pitch, -types::degrees(pitch));
+    header.putFloat(xtf::ping_header::roll, types::degrees(roll));
+    header.putFloat(xtf::ping_header::heading, heading);
     if (const double speed = glm::length(sonar.velocity); std::isfinite(speed)) {
         constexpr double knots = 3600.0 / 1852;
-        header.putFloat(120, speed * knots);
-        header.putFloat(152, speed * knots);
+        header.putFloat(xtf::ping_header::ship_speed, speed * knots);
+        header.putFloat(xtf::ping_header::sonar_speed, speed * knots);
     }
 }
 
@@ -132,13 +125,14 @@ void putChannel(const XtfFormat& format, const types::Sonar& ping, const XtfPing
                 std::vector<char>& bytes) {
     const uint32_t beam = beamOf(ping, channel == 0 ? 1 : -1);
     const double range = ping.binStart(ping.bin_count);
-    Block header(bytes, channel_header_size);
-    header.put(0, channel);
-    header.putFloat(4, range);
-    header.putFloat(16, 2 * range / static_cast<double>(ping.speed_of_sound));
-    header.putFloat(20, more.since_last);
-    header.put(26, static_cast<uint16_t>(std::min(format.frequency_khz, 65535.0)));
-    header.put(42, ping.bin_count);
+    namespace fields = xtf::channel_header;
+    Block header(bytes, fields::size);
+    header.put(fields::channel, channel);
+    header.putFloat(fields::slant_range, range);
+    header.putFloat(fields::duration, 2 * range / static_cast<double>(ping.speed_of_sound));
+    header.putFloat(fields::since_last, more.since_last);
+    header.put(fields::frequency, static_cast<uint16_t>(std::min(format.frequency_khz, 65535.0)));
+    header.put(fields::sample_count, ping.bin_count);
     putSamples(ping.bins.data() + size_t{beam} * ping.bin_count, ping.bin_count, channel == 0, format.samples, bytes);
 }
 
@@ -146,16 +140,16 @@ void putChannel(const XtfFormat& format, const types::Sonar& ping, const XtfPing
 
 std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping) {
     std::vector<char> bytes;
-    Block header(bytes, header_size);
-    constexpr uint8_t file_format = 0x7B, system = 1;
-    header.put(0, file_format);
-    header.put(1, system);
-    header.putText(2, "Insonify", 8);
-    header.putText(10, "223", 8);  // programs of old ask for at least this
-    header.putText(18, "Insonify", 16);
-    header.putText(100, format.name, 63);
-    header.put(164, uint16_t{0});  // places are metres
-    header.put(166, uint16_t{2});  // channels
+    namespace fields = xtf::file_header;
+    Block header(bytes, fields::size);
+    header.put(fields::format, fields::mark);
+    header.put(fields::system, uint8_t{1});
+    header.putText(fields::program, "Insonify", 8);
+    header.putText(fields::program_version, "223", 8);  // programs of old ask for at least this
+    header.putText(fields::sonar, "Insonify", 16);
+    header.putText(fields::name, format.name, 63);
+    header.put(fields::nav_units, fields::metres);
+    header.put(fields::channel_count, uint16_t{2});
     putChannelInfo(header, 0, format, ping);
     putChannelInfo(header, 1, format, ping);
     return bytes;
@@ -163,17 +157,18 @@ std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping) {
 
 void appendXtfPing(const XtfFormat& format, const types::Sonar& ping, const XtfPing& more, std::vector<char>& bytes) {
     if (!ping.wellShaped()) throw std::invalid_argument("the lists of a ping are not as long as its counts say");
-    const size_t lines = 2 * (channel_header_size + ping.bin_count * sizeOf(format.samples));
-    const size_t size = (ping_header_size + lines + packet_unit - 1) / packet_unit * packet_unit;
+    const size_t lines = 2 * (xtf::channel_header::size + ping.bin_count * sizeOf(format.samples));
+    const size_t unit = xtf::packet::unit, size = (xtf::ping_header::size + lines + unit - 1) / unit * unit;
     const size_t begin = bytes.size();
-    Block header(bytes, ping_header_size);
-    header.put(0, uint16_t{0xFACE});
-    header.put(4, uint16_t{2});
-    header.put(10, static_cast<uint32_t>(size));
-    header.put(28, more.number);
-    header.putFloat(32, static_cast<double>(ping.speed_of_sound));
-    header.putFloat(72, static_cast<double>(ping.speed_of_sound));
-    header.putFloat(196, more.altitude);
+    namespace fields = xtf::ping_header;
+    Block header(bytes, fields::size);
+    header.put(xtf::packet::mark, xtf::packet::magic);
+    header.put(xtf::packet::channel_count, uint16_t{2});
+    header.put(xtf::packet::bytes, static_cast<uint32_t>(size));
+    header.put(fields::number, more.number);
+    header.putFloat(fields::sound_speed, static_cast<double>(ping.speed_of_sound));
+    header.putFloat(fields::computed_sound_speed, static_cast<double>(ping.speed_of_sound));
+    header.putFloat(fields::altitude, more.altitude);
     putTime(header, ping.time);
     putPose(header, more.sonar);
     for (const uint16_t channel : {uint16_t{0}, uint16_t{1}}) putChannel(format, ping, more, channel, bytes);

@@ -150,6 +150,50 @@ TEST_F(DeviceExportTest, BinsThatAreNoCodesStayAsTheyAre) {
     EXPECT_EQ(file["pings"][5]["stbd"].get<std::vector<float>>(), starboard);
 }
 
+TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
+    const Outcome outcome = callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "again.0.log: 6 pings as receiver.ping\n");
+    const auto pingsOf = [&](const char* log) {
+        std::vector<types::Sonar> pings;
+        log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
+            pings.push_back(ping);
+        });
+        return pings;
+    };
+    const auto posesOf = [&](const char* log) {
+        std::vector<types::Pose> poses;
+        log::openLog(folder_ / log)->forEach<types::Pose>("sonar.pose", [&](const auto& pose, const auto&) {
+            poses.push_back(pose);
+        });
+        return poses;
+    };
+    const std::vector<types::Sonar> before = pingsOf("out/lines.0.log"), after = pingsOf("again.0.log");
+    const std::vector<types::Pose> placed = posesOf("out/lines.0.log"), read = posesOf("again.0.log");
+    ASSERT_EQ(after.size(), 6u);
+    ASSERT_EQ(read.size(), 6u);
+    for (size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(after[i].bins, before[i].bins);
+        EXPECT_EQ(after[i].time, before[i].time);
+        EXPECT_EQ(after[i].bin_duration, before[i].bin_duration);
+        EXPECT_NEAR(after[i].binStart(200), before[i].binStart(200), 1e-4);
+        EXPECT_EQ(read[i].time, placed[i].time);
+        EXPECT_LT(glm::length(read[i].position - placed[i].position), 1e-6);
+        EXPECT_GT(std::abs(glm::dot(read[i].orientation, placed[i].orientation)), 1 - 1e-9);
+    }
+}
+
+TEST_F(DeviceExportTest, AnXtfFileIsRenderedAgainAndScored) {
+    ASSERT_EQ(callInsonify(folder_, {"log", "import", "out/lines.xtf", "wall.yml", "--to", "again.0.log"}).code, 0);
+    const Outcome outcome =
+        callInsonify(folder_, {"replay", "again.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json score = json::parse(readFile(folder_ / "scored/score.json"))["streams"][0];
+    EXPECT_EQ(score["stream"], "receiver.ping");
+    EXPECT_EQ(score["compared"], 6);
+    for (const json& ping : score["pings"]) EXPECT_LT(ping["rel_l2"], 0.01) << "poses of the file are floats";
+}
+
 TEST_F(DeviceExportTest, ALogWithoutPosesGivesLinesWithoutPlacesAndSaysSo) {
     ASSERT_EQ(
         callInsonify(folder_, {"log", "cut", "out/lines.0.log", "--to", "pings.0.log", "--stream", "receiver.ping"})

@@ -43,6 +43,17 @@ protected:
             recorder.write(ping.time.seconds(), bytesOf(result));  // speckle goes by the time
         });
     }
+    /** A recording of some pings of the wall at 20 m and, from the third on, at 15 m. */
+    void recordAChange() const {
+        record(2);
+        const std::string before = readFile(folder_ / "dive.oculus");
+        writeFile(folder_ / "wall.yml", replaced(codedWall(), "range: 20", "range: 15"));
+        record(4);
+        const std::string after = readFile(folder_ / "dive.oculus");
+        const size_t header = 48, ping = (after.size() - header) / 4;
+        writeFile(folder_ / "wall.yml", codedWall());
+        writeFile(folder_ / "dive.oculus", before + after.substr(header + 2 * ping));
+    }
     Outcome import(const std::string& recording, const std::string& deployment = "wall.yml") const {
         return callInsonify(folder_, {"log", "import", recording, deployment, "--to", "dive.0.log"});
     }
@@ -85,6 +96,92 @@ TEST_F(ImportCommandTest, TheLogHasThePingsTimesAndThePosesOfTheTrajectory) {
         EXPECT_NEAR(ping.bearings.front().deg(), -28.5, 1e-9) << "starboard first";
         EXPECT_EQ(ping.bin_duration.microseconds, 267);
     });
+}
+
+TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
+    recordAChange();
+    const Outcome outcome = import("dive.oculus");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("dive.0.log: 4 pings as receiver.ping"));
+    EXPECT_THAT(outcome.err, HasSubstr("notice: settings change 1 times; properties.0.log next to the log has them"));
+    std::vector<double> ranges;
+    log::openLog(folder_ / "dive.0.log")
+        ->forEach<types::Sonar>("receiver.ping", [&](const types::Sonar& ping, const log::SampleRef&) {
+            ranges.push_back(std::round(ping.binStart(ping.bin_count)));
+        });
+    EXPECT_THAT(ranges, testing::ElementsAre(20, 20, 15, 15));
+    const json scored = score();
+    EXPECT_EQ(scored["compared"], 4);
+    EXPECT_EQ(scored["other_shape"], 0);
+    for (const json& ping : scored["pings"]) EXPECT_LT(ping["rel_l2"], 1e-3) << ping["index"];
+}
+
+TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasWhatTheRecordingHas) {
+    record(3);
+    const Outcome outcome = callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_EQ(import("dive.oculus").code, 0);
+    const auto alone = log::openLog(folder_ / "alone.0.log"), with = log::openLog(folder_ / "dive.0.log");
+    ASSERT_EQ(alone->streams().size(), 1u);
+    std::vector<std::vector<float>> bins;
+    with->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) { bins.push_back(ping.bins); });
+    size_t i = 0;
+    alone->forEach<types::Sonar>("receiver.ping",
+                                 [&](const auto& ping, const auto&) { EXPECT_EQ(ping.bins, bins[i++]); });
+    EXPECT_EQ(i, 3u);
+}
+
+TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile) {
+    const fs::path recording = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
+    if (!fs::exists(recording)) GTEST_SKIP() << recording << " is not there: no real XTF file is tested";
+    const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "side.0.log: 461 pings as receiver.ping\n");
+    EXPECT_THAT(outcome.err, HasSubstr("x = y = 0 of the world is latitude 48.4454500, longitude -68.8279350"));
+    const auto log = log::openLog(folder_ / "side.0.log");
+    EXPECT_EQ(log->find("sonar.pose")->count, 460u);
+    EXPECT_EQ(log->find("altimeter.range")->count, 460u);
+    const auto to = [&](const std::string& file) {
+        return callInsonify(folder_, {"log", "export", "side.0.log", "--stream", "receiver.ping", "--to", file});
+    };
+    EXPECT_EQ(to("side.png").out, "side_000000.png\n") << "one waterfall of all lines";
+    EXPECT_EQ(to("side.npz").code, 0);
+    ASSERT_EQ(to("side.xtf").code, 0);
+    ASSERT_EQ(callInsonify(folder_, {"log", "import", "side.xtf", "--to", "again.0.log"}).code, 0);
+    std::vector<types::Sonar> first, again;
+    log->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) { first.push_back(ping); });
+    log::openLog(folder_ / "again.0.log")->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
+        again.push_back(ping);
+    });
+    ASSERT_EQ(again.size(), first.size());
+    for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(again[i].bins, first[i].bins);
+}
+
+TEST_F(ImportCommandTest, AJsfFileBecomesALogThatIsCheckedAndExported) {
+    const std::string recording = test::sourceFile("tests/fuzz/corpus/jsf/two_pings");
+    const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "side.0.log: 2 pings as receiver.ping\n");
+    EXPECT_THAT(outcome.err, HasSubstr("settings change 1 times; each ping has its own range and bins"));
+    EXPECT_EQ(callInsonify(folder_, {"log", "check", "side.0.log"}).code, 0);
+    const auto to = [&](const std::string& file) {
+        return callInsonify(folder_, {"log", "export", "side.0.log", "--stream", "receiver.ping", "--to", file});
+    };
+    EXPECT_EQ(to("side.png").out, "side_000000.png\nside_000001.png\n") << "one for each range";
+    EXPECT_EQ(to("side.xtf").code, 0);
+}
+
+TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
+    std::string bytes(1024 + 256, '\0');
+    bytes[0] = '\x7B';
+    writeFile(folder_ / "line.xtf", bytes);
+    const Outcome outcome = callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, "line.xtf: byte 1024: is 0x0000; a packet begins with 0xFACE\n");
+    writeFile(folder_ / "line.xtf", bytes.substr(0, 1030));
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"}).err,
+                HasSubstr("line.xtf: holds no ping of a side-scan; the packet at byte 1024 is cut off"));
+    EXPECT_FALSE(fs::exists(folder_ / "line.0.log"));
 }
 
 TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {

@@ -3,14 +3,12 @@
 
 #include <cmath>
 #include <optional>
+#include <tuple>
 
-#include "components/deployer/Pipeline.hpp"
-#include "components/deployer/Tasks.hpp"
+#include "components/deployer/RecordedLog.hpp"
 #include "components/device/OculusPing.hpp"
 #include "components/device/OculusRecording.hpp"
 #include "components/device/commands/OculusLog.hpp"
-#include "components/log/Writer.hpp"
-#include "components/logger/PropertyLog.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "types/Angle.hpp"
@@ -23,23 +21,44 @@ namespace {
 using framework::Deployment;
 using framework::DeploymentSpec;
 
-/** The tasks of the deployment that take part. */
+/** The tasks that take part: those of a deployment, or what the recording states without one. */
 struct Chain {
-    std::string sonar, receiver;
+    std::string sonar = "sonar", receiver = "receiver";
     double largest_code = 0;
     bool has_beam_width = false;
+    std::vector<std::pair<std::string, pose::Trajectory>> trajectories{};  ///< By the streams of their poses.
 };
 
 Chain chainOf(const DeploymentSpec& spec) {
     framework::Registry registry = deployer::coreTasks();
     const Deployment deployment(spec, registry);
+    Chain chain;
+    std::tie(chain.sonar, chain.receiver) = deployer::recordedTasksOf<sonar::SonarTask>(deployment, "sonar::SonarTask");
     const receiver::ReceiverTask& receiver = deployer::codingReceiverOf(deployment, spec.file);
-    const int bits = receiver.config->code.value_or(receiver::CodeConfig{}).bits;
-    for (const std::string& name : deployer::upstreamOf({receiver.name()}, deployment))
-        if (const auto* sonar = dynamic_cast<const sonar::SonarTask*>(deployment.task(name)))
-            return {name, receiver.name(), std::exp2(bits) - 1, sonar->sonarConfig().beam_width_deg.has_value()};
-    throw types::ConfigError(spec.file, "tasks." + receiver.name(),
-                             "hears no sonar::SonarTask, whose fans are recorded");
+    chain.largest_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
+    const auto* sonar = dynamic_cast<const sonar::SonarTask*>(deployment.task(chain.sonar));
+    chain.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
+    for (const auto& task : deployment.tasks())
+        if (const auto* source = dynamic_cast<const pose::TrajectoryTask*>(task.get()))
+            chain.trajectories.emplace_back(source->name() + ".pose", source->trajectory());
+    if (chain.trajectories.empty())
+        throw types::ConfigError(spec.file, "tasks",
+                                 "have no pose::TrajectoryTask, which states where the recording was made");
+    return chain;
+}
+
+/** What the recording states of its tasks, for the metadata of a log without a deployment. */
+std::string fanText(const std::filesystem::path& recording, int bits, double gamma) {
+    return fmt::format(
+        "# The sonar that recorded {}, as the recording states it.\n"
+        "tasks:\n"
+        "  sonar: {{type: sonar::SonarTask}}\n"
+        "  receiver:\n"
+        "    type: receiver::ReceiverTask\n"
+        "    properties: {{output: code, code: {{bits: {}, law: sqrt, gamma: {}}}}}\n"
+        "connections:\n"
+        "  - {{from: sonar.ping, to: receiver.intensity}}\n",
+        recording.filename().string(), bits, gamma);
 }
 
 /** Properties with which the deployment's pings have the shape and the law of this one. */
@@ -64,63 +83,6 @@ std::vector<std::string> propertiesOf(const Chain& chain, const OculusPing& ping
     return all;
 }
 
-bool sameShape(const OculusPing& a, const OculusPing& b) {
-    return a.bin_count == b.bin_count && a.bearings == b.bearings && a.range_resolution == b.range_resolution &&
-           a.speed_of_sound == b.speed_of_sound;
-}
-
-/** The trajectories of a deployment, by the streams of their poses. */
-std::vector<std::pair<std::string, pose::Trajectory>> trajectoriesOf(const Deployment& deployment) {
-    std::vector<std::pair<std::string, pose::Trajectory>> all;
-    for (const auto& task : deployment.tasks())
-        if (const auto* source = dynamic_cast<const pose::TrajectoryTask*>(task.get()))
-            all.emplace_back(source->name() + ".pose", source->trajectory());
-    if (all.empty())
-        throw types::ConfigError(deployment.spec().file, "tasks",
-                                 "have no pose::TrajectoryTask, which tells where the recording was made");
-    return all;
-}
-
-/** The log that is being made. */
-class ImportedLog {
-public:
-    ImportedLog(const Deployment& deployment, const log::Metadata& metadata, const std::filesystem::path& to,
-                const std::string& stream)
-        : trajectories_(trajectoriesOf(deployment)), log_(log::createLog(to)) {
-        for (const auto& [name, trajectory] : trajectories_)
-            poses_.push_back(log_->addStream<types::Pose>(name, metadata));
-        pings_ = log_->addStream<types::Sonar>(stream, metadata);
-    }
-    /** @param elapsed since the first ping [s] */
-    void add(const types::Sonar& ping, double elapsed) {
-        for (size_t i = 0; i < poses_.size(); ++i) {
-            types::Pose pose = trajectories_[i].second.at(elapsed);
-            pose.time = ping.time;
-            log_->write(poses_[i], ping.time, pose);
-        }
-        log_->write(pings_, ping.time, ping);
-    }
-    void close() { log_->close(); }
-
-private:
-    std::vector<std::pair<std::string, pose::Trajectory>> trajectories_;
-    std::unique_ptr<log::Writer> log_;
-    std::vector<size_t> poses_;
-    size_t pings_ = 0;
-};
-
-log::Metadata metadataOf(framework::Deployment& deployment) {
-    return {{"insonify_deployment", deployment.environment().deployment_text},
-            {"insonify_seed", std::to_string(deployment.environment().seed)}};
-}
-
-/** The properties of all tasks, as the logger writes them beside a log. */
-void writeProperties(Deployment& deployment, const std::filesystem::path& to, types::Time first) {
-    logger::PropertyLog properties(to.parent_path() / "properties.0.log");
-    properties.record(deployment.environment().records(), first, metadataOf(deployment));
-    properties.close();
-}
-
 /** Codes by the receiver's largest in place of the device's. */
 types::Sonar scaled(types::Sonar ping, double factor) {
     for (float& bin : ping.bins) bin = static_cast<float>(static_cast<double>(bin) * factor);
@@ -129,39 +91,41 @@ types::Sonar scaled(types::Sonar ping, double factor) {
 
 }  // namespace
 
-deployer::Imported importOculus(const std::filesystem::path& recording, DeploymentSpec spec,
+deployer::Imported importOculus(const std::filesystem::path& recording, std::optional<DeploymentSpec> spec,
                                 const std::filesystem::path& to) {
     OculusPings source(recording);
     auto recorded = source.next();
     if (!recorded) {
         const std::string why = source.diagnostic().empty() ? "" : ": " + source.diagnostic();
-        throw types::ConfigError(recording.string(), "", "holds no ping of an Oculus" + why);
+        throw types::ConfigError(recording.string(), "",
+                                 "holds no ping of an Oculus, and is no XTF or JSF file of a side-scan" + why);
     }
     const OculusPing first = pingOf(recorded->ping);
-    const Chain chain = chainOf(spec);
-    deployer::Imported imported{.stream = chain.receiver + ".ping", .properties = propertiesOf(chain, first)};
-    for (const std::string& property : imported.properties) spec.set(property);
-    framework::Registry registry = deployer::coreTasks();
-    Deployment deployment(std::move(spec), registry);
-    ImportedLog log(deployment, metadataOf(deployment), to, imported.stream);
+    const int bits = first.bits > 8 ? 16 : 8;
+    const Chain chain = spec ? chainOf(*spec) : Chain{.largest_code = std::exp2(bits) - 1};
+    deployer::RecordedLog log(recording, std::move(spec), fanText(recording, bits, first.gamma), to);
+    deployer::Imported imported;
+    imported.stream = chain.receiver + ".ping";
 
     constexpr double start_of_captures = 1;  // 0 is no time
     const double begin = recorded->time, start = begin > 0 ? begin : start_of_captures;
-    for (; recorded; recorded = source.next()) {
+    for (; recorded; recorded = source.next(), ++imported.pings) {
         const OculusPing ping = pingOf(recorded->ping);
-        if (!sameShape(ping, first)) {
-            ++imported.other_shape;
-            continue;
-        }
         const double elapsed = recorded->time - begin;
-        log.add(
-            scaled(sonarOf(ping, types::Time::fromSeconds(start + elapsed)), chain.largest_code / ping.largestCode()),
-            elapsed);
-        ++imported.pings;
+        const types::Time time = types::Time::fromSeconds(start + elapsed);
+        log.set(propertiesOf(chain, ping), time);
+        for (const auto& [stream, trajectory] : chain.trajectories) {
+            types::Pose pose = trajectory.at(elapsed);
+            pose.time = time;
+            log.write(stream, pose);
+        }
+        log.write(imported.stream, scaled(sonarOf(ping, time), chain.largest_code / ping.largestCode()),
+                  {{"insonify_frequency_khz", fmt::format("{}", ping.frequency_hz / 1e3)}});
     }
     log.close();
-    writeProperties(deployment, to, types::Time::fromSeconds(start));
-    imported.diagnostic = source.diagnostic();
+    imported.properties = log.properties();
+    imported.changes = log.changes();
+    if (!source.diagnostic().empty()) imported.notices.push_back(source.diagnostic());
     return imported;
 }
 

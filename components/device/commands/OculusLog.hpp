@@ -7,8 +7,8 @@
 
 namespace insonify::device {
 
-/** See deployer::importOculus and deployer::exportOculus. */
-deployer::Imported importOculus(const std::filesystem::path& recording, framework::DeploymentSpec spec,
+/** See deployer::importRecording and deployer::exportOculus. */
+deployer::Imported importOculus(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
                                 const std::filesystem::path& to);
 void exportOculus(log::Reader& log, const std::string& stream, const std::filesystem::path& to);
 

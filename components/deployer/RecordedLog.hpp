@@ -1,0 +1,72 @@
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/log/Writer.hpp"
+#include "components/logger/PropertyLog.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::deployer {
+
+/** The names of the sonar of a deployment whose pings were recorded, and of the receiver that hears it: the first that
+ *  gives out codes. Throws types::ConfigError where there is no such receiver, or it hears no Sonar. */
+template <class Sonar>
+std::pair<std::string, std::string> recordedTasksOf(const framework::Deployment& deployment, const char* sonar_type) {
+    const std::string& file = deployment.spec().file;
+    const std::string receiver = codingReceiverOf(deployment, file).name();
+    for (const std::string& name : upstreamOf({receiver}, deployment))
+        if (dynamic_cast<const Sonar*>(deployment.task(name))) return {name, receiver};
+    throw types::ConfigError(file, "tasks." + receiver,
+                             std::string("hears no ") + sonar_type + ", whose pings are recorded");
+}
+
+/** The log that becomes of a recording. With a deployment properties.0.log is next to it, as the logger of a run writes
+ *  it; without one nothing is known of its tasks but what the recording states. */
+class RecordedLog {
+public:
+    /** @param text a deployment for the metadata, where none is given */
+    RecordedLog(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
+                const std::string& text, std::filesystem::path to);
+
+    /** Sets properties that hold from the ping at `from` on, as `--set` takes them; before the first sample. Those that
+     *  change are written anew. Throws types::ConfigError for what the tasks do not take, and where a file cannot be
+     *  made. */
+    void set(const std::vector<std::string>& properties, types::Time from);
+    /** Adds a sample to "task.port". @param more metadata of the stream */
+    template <class T>
+    void write(const std::string& stream, const T& sample, const log::Metadata& more = {}) {
+        const auto [found, is_new] = streams_.try_emplace(stream);
+        if (is_new) found->second = log_->addStream<T>(stream, metadataOf(stream, more));
+        log_->write(found->second, sample.time, sample);
+    }
+    void close();
+
+    /** Properties of the first ping. */
+    const std::vector<std::string>& properties() const { return first_; }
+    /** How often they changed after it. */
+    size_t changes() const { return changes_; }
+
+private:
+    void record(const std::vector<std::string>& properties, types::Time from);
+    log::Metadata metadataOf(const std::string& stream, const log::Metadata& more) const;
+
+    const bool has_deployment_;
+    framework::DeploymentSpec spec_;
+    std::filesystem::path to_;
+    framework::Registry registry_ = coreTasks();
+    std::unique_ptr<log::Writer> log_;
+    std::optional<logger::PropertyLog> properties_;
+    log::Metadata run_;  ///< Of all streams.
+    std::map<std::string, size_t> streams_;
+    std::vector<std::string> first_, last_;
+    size_t changes_ = 0;
+};
+
+}  // namespace insonify::deployer

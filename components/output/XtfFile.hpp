@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/output/SideScanFile.hpp"
+
+namespace insonify::output {
+
+/** Reads the side-scan pings of an XTF file, those of others too: the first channel to port and the first to starboard.
+ *
+ *  Samples are the file's: whole numbers, or floats; times 2^-weight where a channel has a weight. A
+ *  ping without a position of the sonar has that of the ship. */
+class XtfFile final : public SideScanFile {
+public:
+    /** Whether a file begins as one. */
+    static bool isOne(const std::filesystem::path& path);
+    /** Throws types::ConfigError for a file that cannot be read or is none. */
+    explicit XtfFile(const std::filesystem::path& path);
+
+    std::optional<SideScanLine> next() override;
+    std::vector<std::string> notices() const override;
+
+private:
+    struct Channel {
+        uint8_t type = 0, format = 0;
+        size_t sample_bytes = 0;
+        uint32_t sample_count = 0;  ///< Where a ping states none.
+        types::Angle beam_width, beam_height;
+        double frequency_khz = 0;
+    };
+    /** A channel of a ping. */
+    struct Side {
+        const Channel* channel = nullptr;
+        std::span<const char> header, samples;
+        uint64_t at = 0;  ///< Of the header in the file [B].
+        uint32_t count = 0;
+        double range = 0;  ///< [m]
+        double resolution() const { return range / count; }
+    };
+    struct Sides {
+        std::optional<Side> port, starboard;
+    };
+
+    void readChannels();
+    bool readPacket();
+    std::optional<SideScanLine> line();
+    Sides sides();
+    Side side(size_t offset) const;
+    double rangeOf(const Side& side, double speed_of_sound) const;
+    double speedOfSound() const;
+    types::Time time() const;
+    std::optional<Stated> stated() const;
+    void setBins(const Sides& sides, double speed_of_sound, types::Sonar& ping);
+    static void append(const Side& side, bool is_port, types::Sonar& ping);
+
+    bool in_degrees_ = false;
+    std::vector<Channel> channels_;
+    std::vector<char> packet_;
+    types::Time last_;
+
+    std::map<int, size_t> other_packets_;      ///< By type.
+    std::map<size_t, size_t> other_channels_;  ///< By number.
+    size_t without_side_ = 0;
+};
+
+}  // namespace insonify::output
