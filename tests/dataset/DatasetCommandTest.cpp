@@ -544,7 +544,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
         BadSweep{"TiltWithoutBounds",
                  grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
-                 "sweep.yml:3:5: objects[0].roll_deg: must be two numbers, [least, most]"},
+                 "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [least, most]"},
         BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
                  "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
