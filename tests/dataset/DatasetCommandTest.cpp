@@ -483,6 +483,26 @@ TEST_F(DatasetCommandTest, ScenesHaveFilesAndPropertiesOfTheirOwn) {
     EXPECT_THAT(classes, testing::IsSupersetOf({json("pillar"), json("pile"), json("sea_floor")}));
 }
 
+TEST_F(DatasetCommandTest, APatternOfObjectsMayMatchInOneOfTheScenesAlone) {
+    const std::string scenes = "scenes: [" + (root / "deploy/scenes/harbour.glb").string() + ", " +
+                               (root / "deploy/scenes/tank.glb").string() + "]\nposes: {grid: {x: 5, z: -3}}\n";
+    writeFile(folder_ / "sweep.yml", scenes +
+                                         "objects: [{names: [rock_000, pillar*], x: [6, 20], y: [-8, 8], avoid: "
+                                         "[quay_wall]}]\n");
+    const Outcome outcome = make("out");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const json harbour = recordOf("out", "000000")["objects"], tank = recordOf("out", "000001")["objects"];
+    ASSERT_EQ(harbour.size(), 1u);
+    EXPECT_EQ(harbour[0]["name"], "rock_000");
+    for (const json& each : tank) EXPECT_THAT(each["name"].get<std::string>(), testing::StartsWith("pillar"));
+    EXPECT_FALSE(tank.empty());
+    writeFile(folder_ / "sweep.yml", scenes + "objects: [{names: [rock_000, pilar*], x: [6, 20], y: [-8, 8]}]\n");
+    const Outcome none = make("none");
+    EXPECT_EQ(none.code, 2);
+    EXPECT_THAT(none.err,
+                HasSubstr("sweep.yml:3:11: objects[0].names[1]: is pilar*, which is no name in any of the scenes"));
+}
+
 TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
     ASSERT_EQ(make("out", {"--format", "mcap", "--shard", "2/8"}).code, 0);
     const json record = recordOf("out", "000002");
@@ -544,7 +564,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
         BadSweep{"TiltWithoutBounds",
                  grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
-                 "sweep.yml:3:5: objects[0].roll_deg: must be two numbers, [least, most]"},
+                 "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [least, most]"},
         BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
                  "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
