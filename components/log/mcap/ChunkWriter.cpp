@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t chunk_size = 4 << 20;                                        // [B]
 constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // of one that is not compressed [B]
-constexpr size_t most_ids = std::numeric_limits<uint16_t>::max();
+constexpr size_t max_ids = std::numeric_limits<uint16_t>::max();
 
 uint32_t crcOf(const char* data, size_t size, uint32_t before = 0) {
     return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(data), size));
@@ -75,7 +75,7 @@ void ChunkWriter::putChannel(RecordWriter& out, size_t number) const {
 }
 
 uint16_t ChunkWriter::addSchema(Schema schema) {
-    if (schemas_.size() == most_ids) throw std::length_error("an MCAP file holds at most 65535 schemas");
+    if (schemas_.size() == max_ids) throw std::length_error("an MCAP file holds at most 65535 schemas");
     schemas_.push_back(std::move(schema));
     RecordWriter out(chunk_);
     putSchema(out, schemas_.size() - 1);
@@ -83,7 +83,7 @@ uint16_t ChunkWriter::addSchema(Schema schema) {
 }
 
 uint16_t ChunkWriter::addChannel(Channel channel) {
-    if (channels_.size() == most_ids) throw std::length_error("an MCAP file holds at most 65535 channels");
+    if (channels_.size() == max_ids) throw std::length_error("an MCAP file holds at most 65535 channels");
     channels_.push_back(std::move(channel));
     index_.resize(channels_.size());
     summary_.counts.resize(channels_.size());

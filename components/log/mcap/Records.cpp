@@ -7,7 +7,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-constexpr uint64_t most_bytes = uint64_t{1} << 30;  // of what is decompressed [B]
+constexpr uint64_t max_bytes = uint64_t{1} << 30;  // of what is decompressed [B]
 
 /** Bytes that were written; 0 for damaged ones. */
 size_t unzstd(std::span<const char> from, std::span<char> to) {
@@ -45,7 +45,7 @@ std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> st
         if (chunk.compression != "lz4" && chunk.compression != "zstd")
             throw FormatError(chunk.start,
                               "a chunk is compressed by '" + chunk.compression + "'; lz4 and zstd are read");
-        if (chunk.size > most_bytes)
+        if (chunk.size > max_bytes)
             throw FormatError(chunk.start, "a compressed chunk of more than 1 GiB is not read");
         room.resize(chunk.size);
         const size_t size = chunk.compression == "lz4" ? unlz4(stored, room) : unzstd(stored, room);
