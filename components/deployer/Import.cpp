@@ -45,15 +45,15 @@ SideScanCodes codesIn(const fs::path& recording) {
 }
 
 /** What the file states of its tasks, for the metadata of a log without a deployment. */
-std::string sideScanText(const fs::path& recording, const SideScanCodes& codes) {
+std::string sideScanText(const SideScanCodes& codes) {
     return fmt::format(
-        "# The side-scan that recorded {}, as the file states it.\n"
+        "# A side-scan as its recording states it.\n"
         "tasks:\n"
         "  sonar: {{type: sonar::SideScanTask}}\n"
         "  receiver: {{type: receiver::ReceiverTask, properties: {}}}\n"
         "connections:\n"
         "  - {{from: sonar.ping, to: receiver.intensity}}\n",
-        recording.filename().string(), codes.whole ? "{output: code, code: {bits: 16}}" : "{output: intensity}");
+        codes.whole ? "{output: code, code: {bits: 16}}" : "{output: intensity}");
 }
 
 std::vector<std::string> propertiesOf(const std::string& sonar, const SideScanLine& line) {
@@ -72,11 +72,11 @@ std::vector<std::string> propertiesOf(const std::string& sonar, const SideScanLi
     return all;
 }
 
-/** Streams of the vehicle's poses. */
-std::vector<std::string> posesOf(const framework::Deployment& deployment) {
+/** Streams of the poses of the vehicle that carries the sonar. */
+std::vector<std::string> vehiclePosesOf(const framework::Deployment& deployment, const std::string& sonar) {
     std::vector<std::string> streams;
-    for (const auto& task : deployment.tasks())
-        if (dynamic_cast<const pose::TrajectoryTask*>(task.get())) streams.push_back(task->name() + ".pose");
+    for (const std::string& task : upstreamOf({sonar}, deployment))
+        if (dynamic_cast<const pose::TrajectoryTask*>(deployment.task(task))) streams.push_back(task + ".pose");
     return streams;
 }
 
@@ -88,9 +88,9 @@ Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec>
         framework::Registry registry = coreTasks();
         const framework::Deployment deployment(*spec, registry);
         std::tie(sonar, receiver) = recordedTasksOf<sonar::SideScanTask>(deployment, "sonar::SideScanTask");
-        vehicles = posesOf(deployment);
+        vehicles = vehiclePosesOf(deployment, sonar);
     }
-    RecordedLog log(recording, std::move(spec), sideScanText(recording, codes), to);
+    RecordedLog log(recording, std::move(spec), sideScanText(codes), to);
     Imported imported{.stream = receiver + ".ping"};
     const auto file = output::openSideScan(recording);
     for (auto line = file->next(); line; line = file->next(), ++imported.pings) {
@@ -106,9 +106,9 @@ Imported importSideScan(const fs::path& recording, std::optional<DeploymentSpec>
             range.range = altitude;
             log.write("altimeter.range", range);
         }
-        log.write(imported.stream, line->ping,
-                  {{"insonify_frequency_khz", fmt::format("{}", line->frequency_khz)},
-                   {"insonify_code_bits", codes.whole ? std::to_string(codes.bits()) : ""}});
+        log::Metadata more{{"insonify_frequency_khz", fmt::format("{}", line->frequency_khz)}};
+        if (codes.whole) more["insonify_code_bits"] = std::to_string(codes.bits());
+        log.write(imported.stream, line->ping, more);
     }
     log.close();
     imported.properties = log.properties();

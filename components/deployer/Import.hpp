@@ -12,7 +12,7 @@ namespace insonify::deployer {
 /** What became of a recording. */
 struct Imported {
     size_t pings = 0;
-    std::string stream;                     ///< Of the pings.
+    std::string stream;                     ///< The pings'.
     std::vector<std::string> properties{};  ///< That the recording states of its first ping, as `--set` takes them.
     size_t changes = 0;                     ///< How often they changed after it.
     std::vector<std::string> notices{};     ///< What was passed over or is unknown.

@@ -63,7 +63,7 @@ private:
     framework::Registry registry_ = coreTasks();
     std::unique_ptr<log::Writer> log_;
     std::optional<logger::PropertyLog> properties_;
-    log::Metadata run_;  ///< Of all streams.
+    log::Metadata run_;  ///< All streams have these.
     std::map<std::string, size_t> streams_;
     std::vector<std::string> first_, last_;
     size_t changes_ = 0;

@@ -13,7 +13,7 @@ namespace {
 namespace jsf {
 constexpr size_t header = 16, version = 2, type = 4, subsystem = 7, channel = 8, size = 12;
 constexpr uint16_t magic = 0x1601, sonar_data = 80;
-// Of a message of type 80, whose own header of 240 bytes follows.
+// A message of type 80 has a second header, of 240 bytes.
 constexpr size_t samples = header + 240, seconds = header + 0, first_sample = header + 4, number = header + 8,
                  high_bits = header + 16, low_bits = header + 18, validity = header + 30, format = header + 34,
                  x = header + 80, y = header + 84, units = header + 88, count = header + 114, interval = header + 116,

@@ -29,9 +29,9 @@ private:
     /** A message of one side. */
     struct Side {
         std::vector<char> message;
-        uint64_t at = 0;  ///< Of the message in the file [B].
+        uint64_t at = 0;  ///< Where the message begins in the file [B].
         bool is_port = false, is_complex = false;
-        uint32_t number = 0, first = 0, count = 0;  ///< Of the ping; bins before the samples; samples.
+        uint32_t number = 0, first = 0, count = 0;  ///< The ping's; bins before the samples; samples.
         double resolution = 0;                      ///< Slant range of a sample [m].
     };
 
@@ -45,7 +45,7 @@ private:
     static void append(const Side& side, types::Sonar& ping);
 
     std::vector<char> packet_;
-    std::optional<Side> waiting_;  ///< Of the next ping.
+    std::optional<Side> waiting_;  ///< The first side of the next ping.
     std::optional<int> subsystem_;
     types::Time last_;
     std::map<int, size_t> other_messages_;    ///< By type.

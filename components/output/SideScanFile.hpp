@@ -44,7 +44,7 @@ public:
     /** The next ping; none: the file is at its end. Throws types::ConfigError with the byte at which it is damaged. A
      *  packet that the end of the file cuts off is no damage. */
     virtual std::optional<SideScanLine> next() = 0;
-    /** Of the poses: which place is x = y = 0; empty before the first pose. */
+    /** The place that is x = y = 0 of the poses; empty before the first pose. */
     const std::string& origin() const { return origin_.text(); }
     /** What was passed over or is unknown in the pings until now. */
     virtual std::vector<std::string> notices() const;
@@ -97,7 +97,7 @@ protected:
     types::Pose placed(types::Time time, const std::optional<Stated>& stated);
 
     uint64_t at_ = 0, next_ = 0;  ///< Where this packet and the next begin [B].
-    uint64_t size_ = 0;           ///< Of the file [B].
+    uint64_t size_ = 0;           ///< The file's [B].
 
 private:
     std::filesystem::path path_;

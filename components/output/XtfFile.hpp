@@ -37,7 +37,7 @@ private:
     struct Side {
         const Channel* channel = nullptr;
         std::span<const char> header, samples;
-        uint64_t at = 0;  ///< Of the header in the file [B].
+        uint64_t at = 0;  ///< Where the header begins in the file [B].
         uint32_t count = 0;
         double range = 0;  ///< [m]
         double resolution() const { return range / count; }

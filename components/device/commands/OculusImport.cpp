@@ -48,9 +48,9 @@ Chain chainOf(const DeploymentSpec& spec) {
 }
 
 /** What the recording states of its tasks, for the metadata of a log without a deployment. */
-std::string fanText(const std::filesystem::path& recording, int bits, double gamma) {
+std::string fanText(int bits, double gamma) {
     return fmt::format(
-        "# The sonar that recorded {}, as the recording states it.\n"
+        "# A sonar as its recording states it.\n"
         "tasks:\n"
         "  sonar: {{type: sonar::SonarTask}}\n"
         "  receiver:\n"
@@ -58,7 +58,7 @@ std::string fanText(const std::filesystem::path& recording, int bits, double gam
         "    properties: {{output: code, code: {{bits: {}, law: sqrt, gamma: {}}}}}\n"
         "connections:\n"
         "  - {{from: sonar.ping, to: receiver.intensity}}\n",
-        recording.filename().string(), bits, gamma);
+        bits, gamma);
 }
 
 /** Properties with which the deployment's pings have the shape and the law of this one. */
@@ -103,7 +103,7 @@ deployer::Imported importOculus(const std::filesystem::path& recording, std::opt
     const OculusPing first = pingOf(recorded->ping);
     const int bits = first.bits > 8 ? 16 : 8;
     const Chain chain = spec ? chainOf(*spec) : Chain{.largest_code = std::exp2(bits) - 1};
-    deployer::RecordedLog log(recording, std::move(spec), fanText(recording, bits, first.gamma), to);
+    deployer::RecordedLog log(recording, std::move(spec), fanText(bits, first.gamma), to);
     deployer::Imported imported;
     imported.stream = chain.receiver + ".ping";
 
