@@ -98,7 +98,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // without values yet; SonarConfig refuses them:
                                                "azimuth beam pattern", "elevation beam pattern", "range point-spread",
                                                // in MultipathTest.cpp:
-                                               "multipath"};
+                                               "multipath",
+                                               // in WallsTest.cpp:
+                                               "thin walls"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

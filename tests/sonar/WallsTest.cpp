@@ -229,7 +229,7 @@ TEST(WallsTest, WhyItIsLeftOutIsSaid) {
     const auto scene = sceneOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {
         const RenderPlan plan = makeRenderPlan(config, *geometry);
-        const LeftOut* what = plan.leftOut("walls");
+        const LeftOut* what = plan.leftOut("thin walls");
         return what ? what->words(*what, plan.grid) : "";
     };
     SonarConfig config = sonarOf(8, 2, 4);

@@ -20,7 +20,7 @@ const Effect& ringDown();
 const Effect& volume();
 const Effect& speckle();
 const Effect& multipath();
-const Effect& walls();
+const Effect& thinWalls();
 const Effect& slabs();
 const Effect& refraction();
 const Effect& motionInPing();
@@ -34,7 +34,7 @@ struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{&absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),
                                    &pulse(),        &ringDown(),    &volume(),         &speckle(),
-                                   &multipath(),    &walls(),       &slabs(),          &refraction(),
+                                   &multipath(),    &thinWalls(),   &slabs(),          &refraction(),
                                    &motionInPing(), &normalMaps(),  &pointTargets(),   &truth()};
 };
 

@@ -334,8 +334,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
                 "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
           self.elements);
     visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
-    visit(Field{"max_walls", "1", "thin walls (`shell` of a material) that sound is followed through", 0, 16},
-          self.max_walls);
+    visit(Field{"max_walls", "1", "walls (`shell` of a material) that sound goes through", 0, 16}, self.max_walls);
     visit(Field{"effects", "",
                 "numbers of effects of other libraries, by name (components/sonar/README.md, A new effect)"},
           self.effects);

@@ -16,12 +16,13 @@ std::string onBentWays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
 std::string withoutWalls(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
 
 /** Sound that goes through thin walls (ACOUSTICS.md 5.26). CastEchoes follows it. */
-class Walls final : public Effect {
+class ThinWalls final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
-        const bool has_shell = std::ranges::any_of(geometry.materials, [](const auto& one) { return one.shell.has_value(); });
+        const bool has_shell =
+            std::ranges::any_of(geometry.materials, [](const auto& one) { return one.shell.has_value(); });
         const auto omit = [&](Reason reason, LeftOut::Words words) {
-            return leaveOut(plan, {.effect = "walls", .reason = reason, .words = words});
+            return leaveOut(plan, {.effect = "thin walls", .reason = reason, .words = words});
         };
         if (!has_shell || plan.config.model != Model::Physical) return omit(Reason::NoneInScene, withoutShell);
         if (plan.config.max_walls == 0) return omit(Reason::Other, withoutWalls);
@@ -35,14 +36,14 @@ public:
     std::string takeOut(SonarConfig& config) const override {
         if (config.max_walls == 0) return {};
         config.max_walls = 0;
-        return "walls";
+        return "thin walls";
     }
 };
 
 }  // namespace
 
-const Effect& walls() {
-    static const Walls effect;
+const Effect& thinWalls() {
+    static const ThinWalls effect;
     return effect;
 }
 
