@@ -18,7 +18,7 @@ namespace insonify::types {
 struct Shell {
     double thickness = 0;    ///< [m]
     double density = 0;      ///< [kg/m^3]
-    double sound_speed = 0;  ///< Of longitudinal waves [m/s].
+    double sound_speed = 0;  ///< Speed of longitudinal waves [m/s].
     double shear_speed = 0;  ///< 0: as a fluid [m/s].
     double loss = 0;         ///< Imaginary over real part of the wave numbers [1].
     bool has_air = false;    ///< Air behind it, and not water.

@@ -10,13 +10,13 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double grazing_cosine = 1e-6;  ///< Nearer to grazing, a wave is taken as one of this angle [1].
-constexpr double min_loss = 1e-9;    ///< Keeps resonances finite [1].
-constexpr double max_decay = 300;    ///< Beyond exp(-this) nothing passes [Np].
+constexpr double min_loss = 1e-9;        ///< Keeps resonances finite [1].
+constexpr double max_decay = 300;        ///< Beyond exp(-this) nothing passes [Np].
 
 /** One kind of wave in the plate. */
 struct Wave {
     Complex impedance;     ///< Density times phase speed along the normal [Pa s/m].
-    Complex cot, inverse;  ///< Of the phase across the plate: cotangent, and 1 / sine [1].
+    Complex cot, inverse;  ///< Cotangent and 1 / sine of the phase across the plate [1].
 };
 
 /** @param slowness along the plate [s/m] */
@@ -48,7 +48,7 @@ PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid
     if (plate.shear_speed > 0) {
         const Wave shear = waveIn(plate, plate.shear_speed, frequency, slowness);
         const Complex sine = slowness * plate.shear_speed / Complex(1, std::max(plate.loss, min_loss));
-        const Complex square = 1.0 - 2.0 * sine * sine;  // cos^2 of twice the shear waves' angle, its root
+        const Complex square = 1.0 - 2.0 * sine * sine;  // cosine of twice the shear waves' angle
         const Complex of_pressure = square * square, of_shear = 1.0 - of_pressure;
         along = of_pressure * along + of_shear * shear.impedance * shear.cot;
         across = of_pressure * across + of_shear * shear.impedance * shear.inverse;

@@ -12,7 +12,7 @@ struct Fluid {
 struct Plate {
     double thickness;        ///< [m]
     double density;          ///< [kg/m^3]
-    double sound_speed;      ///< Of longitudinal waves [m/s].
+    double sound_speed;      ///< Speed of longitudinal waves [m/s].
     double shear_speed = 0;  ///< 0: a fluid [m/s].
     double loss = 0;         ///< Imaginary over real part of both wave numbers [1].
 };

@@ -197,9 +197,10 @@ private:
     const AnnotationConfig& config_;
     const bool decibel_;
     const double bin_width_;          ///< [m]
-    std::vector<uint32_t> class_of_;  ///< Of each object of the truth, then of each shadow.
-    std::vector<int32_t> object_of_;  ///< Of each cell; for a shadow the object's number and that of all objects.
-    std::vector<int32_t> shadow_of_;  ///< Of each bin of a beam, likewise.
+    std::vector<uint32_t> class_of_;  ///< Class of each object of the truth, then of each shadow.
+    std::vector<int32_t>
+        object_of_;  ///< Object of each cell; for a shadow, its object's number plus the number of objects.
+    std::vector<int32_t> shadow_of_;  ///< The same for each bin of a beam.
     std::map<int32_t, Annotation> found_;
 };
 

@@ -21,7 +21,7 @@ struct Annotation {
     int32_t object = 0;  ///< Index into the truth's objects.
     std::string name;
     uint32_t category = 0;                    ///< From 1.
-    bool is_shadow = false;                   ///< Of the object, instead of its echo.
+    bool is_shadow = false;                   ///< It is the object's shadow, not its echo.
     Box box;                                  ///< Holds its pixels and the middle of each of its cells.
     uint32_t area = 0;                        ///< [px]
     uint32_t bins = 0;                        ///< Of the ping, of which it is the strongest.

@@ -15,7 +15,7 @@ namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t tries = 1000, words_per_try = 4;
-constexpr uint64_t stream = 0x706c6163650000;       ///< Of the random words of places; groups and objects are added.
+constexpr uint64_t stream = 0x706c6163650000;  ///< Stream of the random words of places; groups and objects are added.
 constexpr uint64_t tilt_words = uint64_t{1} << 40;  ///< Where the words of roll and pitch begin, behind all others.
 constexpr double out_of_hearing = 1e5;              ///< How far below its place an object is that is not there [m].
 

@@ -15,7 +15,7 @@ namespace insonify::dataset {
 /** A node of a scene that can be put elsewhere. */
 struct Placeable {
     types::Pose filed;  ///< Where the file has it, as a pose of the node.
-    double radius = 0;  ///< Of an upright cylinder about the node's origin that holds it, whatever its yaw [m].
+    double radius = 0;  ///< Radius of an upright cylinder about the node's origin that holds it, whatever its yaw [m].
     double low = 0;     ///< Of its lowest point, above the node's origin [m].
     /** Its vertices from the origin in the world's axes, as the file turns them; empty where no group tilts it. */
     std::vector<glm::vec3> points;
@@ -47,7 +47,7 @@ struct Sample {
     types::Pose at;
     std::vector<PlacedObject> objects;
     std::vector<std::pair<std::string, std::string>> settings;  ///< "task.property" and YAML: listed ones, drawn ones.
-    uint64_t seed = 1;                                          ///< Of noise and the like; not 0.
+    uint64_t seed = 1;                                          ///< Seed of noise and the like; not 0.
     Part part = Part::Train;
 };
 

@@ -10,7 +10,7 @@ namespace insonify::dataset {
 namespace {
 
 constexpr size_t max_examples = 12;
-constexpr size_t max_values = 24;  ///< Of a setting that is shown; one that is drawn may have a value in each sample.
+constexpr size_t max_values = 24;  ///< Values of a setting that is shown; a drawn one may have a value in each sample.
 constexpr int range_step = 5;      ///< [m]
 
 std::string escaped(const std::string& text) {

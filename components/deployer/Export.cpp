@@ -123,7 +123,7 @@ private:
     output::SideScanImage image_;
     fs::path path_;
     types::Sonar last_;
-    int lines_ = 0;  ///< Of this picture, with the last.
+    int lines_ = 0;  ///< Lines of this picture, with the last.
     types::Image picture_;
     std::vector<fs::path> files_;
 };

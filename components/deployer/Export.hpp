@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::s
  * bins as codes, else the bins as they are. Each line has the pose at its time, or the last before it; that of the
  * vehicle is taken to the sonar by the mount that the log knows.
  *  @param poses stream of the sonar's poses or its vehicle's; empty: the only one of the log, or the only one that a
- *  sonar tells; where there is none the file has no places, which is told on stderr. Altitudes are those of the
+ *  sonar tells; where there is none the file has no places, which is reported on stderr. Altitudes are those of the
  *  only stream of ranges.
  *  Throws types::ConfigError for a stream of anything but pings of one beam to port and one to starboard, for poses
  * that are none or have to be named, and for a file that cannot be made. */

@@ -78,7 +78,7 @@ struct ShellAcoustics {
     std::optional<Fill> fill;
 
     void check(types::Diagnostics& diagnostics) const;
-    /** Of a shell that check() finds nothing wrong with. */
+    /** Returns the shell. check() must find nothing wrong. */
     types::Shell shell() const;
 
     template <class Self, class V>

@@ -13,8 +13,8 @@
 namespace insonify::scene {
 namespace {
 
-constexpr const char* floor_name = "bathymetry";  ///< Of the object and of its material.
-constexpr double max_posts = 4096;                ///< Of a window, along each side.
+constexpr const char* floor_name = "bathymetry";  ///< Name of the object and of its material.
+constexpr double max_posts = 4096;                ///< Posts of a window along each side [1].
 
 int wholeDown(double value) { return static_cast<int>(std::clamp(std::floor(value), -1e9, 1e9)); }
 

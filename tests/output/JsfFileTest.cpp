@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "components/output/JsfFile.hpp"
+#include "tests/output/SideScanFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
@@ -60,32 +61,9 @@ std::vector<char> joined(const std::vector<std::vector<char>>& messages) {
     return bytes;
 }
 
-class JsfFileTest : public testing::Test {
+class JsfFileTest : public SideScanFileTest {
 protected:
-    std::filesystem::path write(const std::vector<char>& bytes) const {
-        const auto path = folder_ / "line.jsf";
-        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        return path;
-    }
-    std::vector<SideScanLine> read(const std::vector<char>& bytes) { return readFile(write(bytes)); }
-    std::vector<SideScanLine> readFile(const std::filesystem::path& path) {
-        const auto file = openSideScan(path);
-        std::vector<SideScanLine> all;
-        for (auto line = file->next(); line; line = file->next()) all.push_back(*line);
-        notices_ = file->notices();
-        return all;
-    }
-    std::string refusal(const std::vector<char>& bytes) {
-        try {
-            read(bytes);
-        } catch (const types::ConfigError& error) {
-            return error.what();
-        }
-        return "";
-    }
-
-    Folder folder_;
-    std::vector<std::string> notices_;
+    JsfFileTest() : SideScanFileTest("line.jsf") {}
 };
 
 TEST_F(JsfFileTest, BothSidesOfAPingBecomeOne) {

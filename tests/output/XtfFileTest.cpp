@@ -6,6 +6,7 @@
 
 #include "components/output/XtfFile.hpp"
 #include "components/output/XtfLayout.hpp"
+#include "tests/output/SideScanFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
@@ -51,8 +52,9 @@ void put(std::vector<char>& bytes, size_t at, T value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-class XtfFileTest : public testing::Test {
+class XtfFileTest : public SideScanFileTest {
 protected:
+    XtfFileTest() : SideScanFileTest("line.xtf") {}
     /** A file of these lines, all at one place. */
     static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
@@ -60,31 +62,9 @@ protected:
         for (const types::Sonar& line : lines) appendXtfPing(format, line, {poseAt(30), 6.5, 0.5, 0}, bytes);
         return bytes;
     }
-    std::filesystem::path write(const std::vector<char>& bytes) const {
-        const auto path = folder_ / "line.xtf";
-        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        return path;
+    std::unique_ptr<SideScanFile> open(const std::filesystem::path& path) const override {
+        return std::make_unique<XtfFile>(path);
     }
-    /** All lines of a file; the notices in `notices_`. */
-    std::vector<SideScanLine> read(const std::vector<char>& bytes) { return readFile(write(bytes)); }
-    std::vector<SideScanLine> readFile(const std::filesystem::path& path) {
-        XtfFile file(path);
-        std::vector<SideScanLine> all;
-        for (auto line = file.next(); line; line = file.next()) all.push_back(*line);
-        notices_ = file.notices();
-        return all;
-    }
-    std::string refusal(const std::vector<char>& bytes) {
-        try {
-            read(bytes);
-        } catch (const types::ConfigError& error) {
-            return error.what();
-        }
-        return "";
-    }
-
-    Folder folder_;
-    std::vector<std::string> notices_;
 };
 
 TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {

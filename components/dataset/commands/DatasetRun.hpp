@@ -70,9 +70,9 @@ private:
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;
     std::string digest_;
-    std::unique_ptr<deployer::Simulation> simulation_;  ///< Of one scene and its settings.
-    std::vector<std::string> overrides_;                ///< Of the simulation.
-    size_t scene_ = 0;                                  ///< Of the simulation.
+    std::unique_ptr<deployer::Simulation> simulation_;  ///< One scene with its settings.
+    std::vector<std::string> overrides_;                ///< Overrides of the simulation.
+    size_t scene_ = 0;                                  ///< Scene of the simulation.
 };
 
 }  // namespace insonify::dataset

@@ -74,11 +74,8 @@ private:
     std::map<std::string, int> seabeds_;
 };
 
-/** The water on the outside of shells. */
-acoustics::Fluid waterOf(const SonarConfig& config) { return {water_density, config.speedOfSound()}; }
-
 acoustics::PlateResponse wallResponse(const types::Shell& shell, const SonarConfig& config, double cosine) {
-    const acoustics::Fluid water = waterOf(config);
+    const acoustics::Fluid water{water_density, config.speedOfSound()};
     return acoustics::plateResponse({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
                                     water, shell.has_air ? air : water, 1000 * *config.frequency_khz, cosine);
 }

@@ -64,8 +64,8 @@ private:
     /** What one thread works with. */
     struct Worker {
         std::vector<CastTile> tiles;
-        std::vector<TileHits> hits;                           ///< Of each tile.
-        std::vector<std::array<float, tile_samples>> passed;  ///< The same, where there are walls.
+        std::vector<TileHits> hits;                           ///< Hits of each tile.
+        std::vector<std::array<float, tile_samples>> passed;  ///< Shares of its samples, where there are walls.
         std::vector<uint64_t> sums;
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
