@@ -225,6 +225,22 @@ TEST(WallsTest, TheTruthNamesWhatIsBehind) {
     }
 }
 
+TEST(WallsTest, ASmoothShellIsNoMirror) {
+    const auto with = [](bool is_shell) {
+        const auto scene = std::make_shared<types::Geometry>(*sceneOf({test::wall(8), test::wall(-6)}, 1));
+        scene->materials[1].reflection = 1;
+        scene->materials[1].roughness_slope = 0.1f;
+        if (!is_shell) scene->materials[1].shell.reset();
+        SonarConfig plain = sonarOf(40, 10, 8), bouncing = plain;
+        bouncing.multipath.emplace().bounces = 2;
+        return std::pair(pingOf(plain, snapshotOf(scene)).bins, pingOf(bouncing, snapshotOf(scene)).bins);
+    };
+    const auto [shell, shell_bounced] = with(true);
+    EXPECT_EQ(shell, shell_bounced);
+    const auto [solid, solid_bounced] = with(false);
+    EXPECT_NE(solid, solid_bounced);
+}
+
 TEST(WallsTest, WhyItIsLeftOutIsSaid) {
     const auto scene = sceneOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {

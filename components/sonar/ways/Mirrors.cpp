@@ -30,7 +30,7 @@ double reflectedPower(const types::Material& material, int bounces) {
     const double reflection = std::abs(static_cast<double>(material.reflection));
     if (material.mirror && bounces > 0) return reflection > 0 ? reflection * reflection : 1;
     const bool smooth = material.roughness_slope && static_cast<double>(*material.roughness_slope) < steepest;
-    return bounces > 1 && smooth && reflection > min_reflection ? reflection * reflection : 0;
+    return bounces > 1 && smooth && !material.shell && reflection > min_reflection ? reflection * reflection : 0;
 }
 
 double slopeOfSea(double wind) {

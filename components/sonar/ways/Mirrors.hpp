@@ -22,7 +22,7 @@ struct MirrorPlane {
 };
 
 /** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
- *  [1]: one that is declared to, or from two on one that is smooth (ACOUSTICS.md 5.23); 0: it does not. */
+ *  [1]: one that is declared to, or from two on one that is smooth and no shell (ACOUSTICS.md 5.23); 0: it does not. */
 double reflectedPower(const types::Material& material, int bounces);
 
 /** Mean square slope of a sea surface in a wind [m/s], of both its directions together; 0 without wind [1].
