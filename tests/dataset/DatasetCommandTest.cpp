@@ -5,11 +5,13 @@
 #include <map>
 #include <set>
 
+#include "tests/dataset/HarbourDeployment.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
+using insonify::dataset::deployment;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -18,36 +20,6 @@ using testing::IsEmpty;
 namespace {
 
 const fs::path root = insonify::test::source_dir;
-
-const std::string deployment = R"(schedule: lockstep
-tasks:
-  vehicle:
-    type: pose::TrajectoryTask
-    activity: {period: 0.1}
-    properties: {waypoints: [{time: 0, position: [0, 0, -5.5]}]}
-  scene:
-    type: scene::SceneTask
-    properties:
-      file: )" + (root / "deploy/scenes/harbour.glb").string() +
-                               R"(
-      mount: {position: [0.4, 0, -0.2], roll_deg: 0, pitch_deg: 12, yaw_deg: 0}
-  sonar:
-    type: sonar::SonarTask
-    properties:
-      range: 30
-      beam_count: 128
-      bin_count: 200
-      field_of_view_deg: 120
-      beam_height_deg: 20
-      quality: {rows: 128, columns_per_beam: 1}
-  noise: {type: noise::NoiseTask, properties: {speckle: {law: rayleigh}}}
-  receiver: {type: receiver::ReceiverTask, properties: {tvg: {log_coefficient: 40}}}
-connections:
-  - {from: vehicle.pose, to: scene.pose}
-  - {from: scene.snapshot, to: sonar.snapshot}
-  - {from: sonar.ping, to: noise.clean}
-  - {from: noise.noisy, to: receiver.intensity}
-)";
 
 const std::string sweep = R"(seed: 3
 poses:
@@ -513,105 +485,6 @@ TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
     EXPECT_THAT(samples, ElementsAre(testing::Pair("sonar.ping", 1), testing::Pair("sonar.truth", 1),
                                      testing::Pair("vehicle.pose", 1)));
 }
-
-struct BadSweep {
-    std::string name, text, message;
-};
-
-class BadSweepTest : public testing::TestWithParam<BadSweep> {};
-
-TEST_P(BadSweepTest, IsRefusedAtItsPlace) {
-    const TestFolder folder;
-    writeFile(folder / "d.yml", deployment);
-    writeFile(folder / "sweep.yml", GetParam().text);
-    const Outcome outcome = callInsonify(folder, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr(GetParam().message));
-    EXPECT_FALSE(fs::exists(folder / "out/manifest.json"));
-}
-
-const std::string grid = "poses: {grid: {x: [0, 1]}}\n";
-
-INSTANTIATE_TEST_SUITE_P(
-    All, BadSweepTest,
-    testing::Values(
-        BadSweep{"UnknownKey", grid + "setings: {}\n",
-                 "sweep.yml:2:1: setings: is not a key here; did you mean settings?"},
-        BadSweep{"NoPoses", "seed: 1\n", "poses: is missing; give grid, random or trajectory"},
-        BadSweep{"TwoKindsOfPoses", "poses: {grid: {x: 1}, random: {count: 1}}\n",
-                 "sweep.yml:1:8: poses: must have one of grid, random and trajectory"},
-        BadSweep{"EmptyGrid", "poses:\n  grid: {x: []}\n", "sweep.yml:2:13: poses.grid.x: is empty"},
-        BadSweep{"DrawnGrid", "poses:\n  grid: {x: {uniform: [0, 1]}}\n",
-                 "sweep.yml:2:13: poses.grid.x: is drawn at random"},
-        BadSweep{"UnknownCoordinate", "poses:\n  grid: {yaw: 1}\n",
-                 "sweep.yml:2:10: poses.grid.yaw: is not a key here; did you mean yaw_deg?"},
-        BadSweep{"NoCount", "poses:\n  random: {x: 1}\n", "sweep.yml:2:11: poses.random: has no count"},
-        BadSweep{"ListOfDrawn", "poses:\n  random: {count: 2, x: [1, 2]}\n",
-                 "sweep.yml:2:25: poses.random.x: has several values"},
-        BadSweep{"Split", grid + "split: {train: 0.9, val: 0.2}\n",
-                 "sweep.yml:2:8: split: adds up to 1.1; train, val and test must add up to 1"},
-        BadSweep{"NoScene", grid + "scenes: [harbor.glb]\n",
-                 "sweep.yml:2:10: scenes[0]: is harbor.glb; there is no such file"},
-        BadSweep{"SettingOfNoTask", grid + "settings: {sonr.range: [1]}\n",
-                 "sweep.yml:2:25: settings.sonr.range[0]: sonr.range=1: there is no task sonr; did you mean sonar?"},
-        BadSweep{
-            "SettingOutOfBounds", grid + "settings:\n  sonar.range: [30, -5]\n",
-            "sweep.yml:3:21: settings.sonar.range[1]: tasks.sonar.properties.range: is -5 m; may be 0.001 to 100000 m"},
-        BadSweep{
-            "SettingWithOneValue", grid + "settings: {sonar.range: 30}\n",
-            "sweep.yml:2:25: settings.sonar.range: must be a list of values, or one of uniform, normal and choice"},
-        BadSweep{"ChoiceOfOne", grid + "settings: {sonar.range: {choice: 30}}\n",
-                 "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
-        BadSweep{"TiltWithoutBounds",
-                 grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
-                 "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [least, most]"},
-        BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
-                 "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
-        BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
-                 "sweep.yml:3:17: settings.sonar.range.unifrm: is not a key here; did you mean uniform?"},
-        BadSweep{"LawWithoutBounds", grid + "settings:\n  sonar.range: {uniform: [30, 20]}\n",
-                 "settings.sonar.range.uniform: must be two numbers, [least, most]"},
-        BadSweep{"EmptyChoice", grid + "settings:\n  sonar.range: {choice: []}\n",
-                 "sweep.yml:3:25: settings.sonar.range.choice: is empty; give at least one value"},
-        BadSweep{"ChoiceOutOfBounds", grid + "settings:\n  sonar.range: {choice: [30, -5]}\n",
-                 "sweep.yml:3:30: settings.sonar.range.choice[1]: tasks.sonar.properties.range: is -5 m; may be"},
-        BadSweep{"DrawnOutOfBounds", grid + "settings:\n  sonar.range: {uniform: [-9, -5]}\n",
-                 "sweep.yml:3:16: settings.sonar.range: tasks.sonar.properties.range: is -"},
-        BadSweep{"DrawnNumberThatIsNotWhole", grid + "settings:\n  sonar.bin_count: {uniform: [100, 200]}\n",
-                 "sweep.yml:3:20: settings.sonar.bin_count: tasks.sonar.properties.bin_count: is 1"},
-        BadSweep{"DrawnMaterialThatIsNotThere",
-                 grid + "settings:\n  scene.materials.snad.lambert_db: {uniform: [-30, -20]}\n",
-                 "sweep.yml:3:36: settings.scene.materials.snad.lambert_db: "},
-        BadSweep{"ChoiceThatLacksAValue", grid + "settings:\n  noise.speckle: {choice: [{law: k}]}\n",
-                 "sweep.yml:3:28: settings.noise.speckle.choice[0]: tasks.noise.properties.speckle.shape: is absent"},
-        BadSweep{"DrawnBudget", grid + "settings:\n  sonar.quality.budget_ms: {uniform: [5, 9]}\n",
-                 "sweep.yml:3:28: settings.sonar.quality.budget_ms: budget_ms lets the speed of the machine decide"},
-        BadSweep{"EmptySetting", grid + "settings: {sonar.range: []}\n", "settings.sonar.range: is empty"},
-        BadSweep{"Budget", grid + "settings: {sonar.quality.budget_ms: [5]}\n",
-                 "sweep.yml:2:38: settings.sonar.quality.budget_ms[0]: budget_ms lets the speed of the machine decide"},
-        BadSweep{"BudgetInABlock", grid + "settings:\n  sonar.quality: [{rows: 64}, {budget_ms: 5}]\n",
-                 "sweep.yml:3:31: settings.sonar.quality[1]: budget_ms lets the speed of the machine decide"},
-        BadSweep{"BudgetOfAScene", grid + "scenes: [{set: {sonar.quality.budget_ms: 5}}]\n",
-                 "sweep.yml:2:42: scenes[0].set.sonar.quality.budget_ms: budget_ms lets the speed of the machine"},
-        BadSweep{"SceneAsASetting", grid + "settings: {scene.file: [tank.glb]}\n",
-                 "sweep.yml:2:25: settings.scene.file[0]: names the file of scene, which decides what objects there "
-                 "are; name it under scenes"},
-        BadSweep{"SceneInASet", grid + "scenes: [{set: {scene.file: tank.glb}}]\n",
-                 "sweep.yml:2:29: scenes[0].set.scene.file: names the file of scene"},
-        BadSweep{
-            "NoObject", grid + "objects:\n  - {names: [rok_000], x: [0, 1], y: [0, 1]}\n",
-            "sweep.yml:3:5: objects[0].names[0]: is rok_000, which is no name in the scene; did you mean rock_000?"},
-        BadSweep{"NoGround", grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], ground: see_floor}\n",
-                 "objects[0].ground[0]: is see_floor, which is no name in the scene; did you mean sea_floor?"},
-        BadSweep{"NoRoom", grid + "objects:\n  - {names: [rock_*], x: [0, 2], y: [0, 2]}\n",
-                 "sweep.yml:3:5: objects[0]: has room for "},
-        BadSweep{"NoClass", grid + "classes:\n  wreck: hul\n",
-                 "sweep.yml:3:3: classes.wreck[0]: is hul, which is no name"},
-        BadSweep{"Picture", grid + "picture: {shape: disc}\n",
-                 "sweep.yml:2:18: picture.shape: is disc; may be fan, polar"},
-        BadSweep{"Trajectory", "poses: {trajectory: {file: no.csv, count: 2}}\n", "no.csv"},
-        BadSweep{"NoYaml", "poses: {", "sweep.yml:"}),
-    [](const auto& tested) { return tested.param.name; });
 
 TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
     EXPECT_THAT(make("out", {"--shard", "3/3"}).err, HasSubstr("of 3 shards i may be from 0 to 2"));
