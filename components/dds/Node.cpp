@@ -72,6 +72,14 @@ std::string ddsType(std::string_view ros_type) {
     return std::string(ros_type.substr(0, end)) + "::msg::dds_::" + std::string(ros_type.substr(begin)) + "_";
 }
 
+std::string rosType(const std::string& dds_type) {
+    constexpr std::string_view between = "::msg::dds_::";
+    const size_t found = dds_type.find(between);
+    if (found == dds_type.npos || !dds_type.ends_with('_')) return dds_type;
+    const size_t name = found + between.size();
+    return dds_type.substr(0, found) + "/" + dds_type.substr(name, dds_type.size() - name - 1);
+}
+
 std::string diagnosticOfTopic(const std::string& name) {
     if (ddsTopic(name).size() > longest_topic)
         return "has " + std::to_string(name.size()) + " characters; at most " + std::to_string(longest_topic - 3) +
@@ -101,6 +109,27 @@ Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type
     if (topic > 0) return Entity(topic);
     ddsi_sertype_unref(type);
     throw types::ConfigError("", "topics", "topic " + dds_topic + " cannot be made: " + dds_strretcode(topic));
+}
+
+std::vector<Published> Node::published() {
+    constexpr uint32_t max_writers = 1024;
+    if (publications_.handle() <= 0)
+        publications_ = Entity(dds_create_reader(participant(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+    std::vector<void*> samples(max_writers);
+    std::vector<dds_sample_info_t> infos(max_writers);
+    const int count = dds_read(publications_.handle(), samples.data(), infos.data(), samples.size(), max_writers);
+    std::vector<Published> found;
+    dds_guid_t own{};
+    dds_get_guid(participant(), &own);
+    for (int i = 0; i < count; ++i) {
+        const auto& writer = *static_cast<const dds_builtintopic_endpoint_t*>(samples[static_cast<size_t>(i)]);
+        const bool is_there = infos[static_cast<size_t>(i)].valid_data &&
+                              infos[static_cast<size_t>(i)].instance_state == DDS_IST_ALIVE;
+        if (is_there && std::memcmp(&writer.participant_key, &own, sizeof own) != 0)
+            found.push_back({writer.topic_name, writer.type_name});
+    }
+    if (count > 0) dds_return_loan(publications_.handle(), samples.data(), count);
+    return found;
 }
 
 void Node::addWriter(int32_t writer) { writers_.push_back(guidOf(writer)); }

@@ -1,9 +1,12 @@
 #include "components/dds/SubscriberTask.hpp"
 
+#include <utility>
+
 namespace insonify::dds {
 namespace {
 
-constexpr int max_at_once = 1000;  ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int max_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
+constexpr types::Time patience{3'000'000};  ///< For the first pose of a topic, before its absence is reported.
 
 }  // namespace
 
@@ -26,8 +29,10 @@ bool SubscriberTask::configureHook() {
 
 bool SubscriberTask::startHook() {
     types::Pose stale;
+    started_ = now();
     outputs_.forEach([&](auto& output) {
         for (int i = 0; i < max_at_once && output.kept.subscription->take(now(), stale);) ++i;
+        output.kept.came = output.kept.absence_reported = false;
     });
     return true;
 }
@@ -40,9 +45,20 @@ void SubscriberTask::updateHook() {
         for (; taken < max_at_once && subscription.take(now(), pose); ++taken)
             if (config->depth > 1) output.port.write(pose);
         if (taken > 0 && config->depth == 1) output.port.write(pose);
+        output.kept.came |= taken > 0;
         if (taken == max_at_once || subscription.more()) arrived_.raise();
     });
     if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+    reportAbsence();
+}
+
+void SubscriberTask::reportAbsence() {
+    if (now() - started_ < patience) return;
+    outputs_.forEach([&](auto& output) {
+        auto& kept = output.kept;
+        if (kept.came || std::exchange(kept.absence_reported, true)) return;
+        warn(output.port.path() + ": no pose yet: " + kept.subscription->absence(*node_));
+    });
 }
 
 void SubscriberTask::cleanupHook() {

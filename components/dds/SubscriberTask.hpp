@@ -14,6 +14,7 @@ namespace insonify::dds {
 template <class Sample>
 struct Topic {
     std::unique_ptr<Subscription> subscription;
+    bool came = false, absence_reported = false;
 };
 
 /** Reads poses that ROS 2 nodes send; for `schedule: realtime`.
@@ -23,7 +24,8 @@ struct Topic {
  *  With `depth: 1` the newest wins, else all are handed on in order as long as the task keeps up.
  *
  *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
- *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. Refused in lockstep,
+ *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. A topic without a pose
+ *  for three seconds after the start is reported once, with what the domain has in its place. Refused in lockstep,
  *  whose time does not wait for messages. */
 class SubscriberTask final : public pose::ListenerTask<SubscriberConfig, &SubscriberConfig::topics, Topic> {
 public:
@@ -31,6 +33,7 @@ public:
     ~SubscriberTask() override;  // the subscriptions end before their node
 
     std::vector<std::string> notices() const override;
+    double wakeAfter() const override { return 1; }
 
 private:
     bool configureHook() override;
@@ -38,7 +41,10 @@ private:
     void updateHook() override;
     void cleanupHook() override;
 
+    void reportAbsence();
+
     std::optional<Node> node_;
+    types::Time started_;
     types::ThrottledWarning drops_{"message", "dropped"};
 };
 

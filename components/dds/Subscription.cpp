@@ -1,6 +1,10 @@
 #include "components/dds/Subscription.hpp"
 
+#include <dds/dds.h>
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "components/ros/Cdr.hpp"
@@ -16,11 +20,32 @@ constexpr size_t largest = 64 << 10;  ///< Of a message: 712 bytes and two names
 constexpr types::Time max_ahead{1'000'000};    ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
 constexpr types::Time max_silence{1'000'000};  ///< After which a sender's clock may have been set back.
 
+const char* typeOf(PoseType type) {
+    return type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
+}
+
+/** "odometry" of "rt/auv/odometry". */
+std::string_view lastWord(std::string_view topic) { return topic.substr(topic.rfind('/') + 1); }
+
+/** At most five topics like the one that is read: of its type, or with its last word. */
+std::string similarTopics(const std::vector<Published>& all, const std::string& topic, const std::string& type) {
+    constexpr size_t max_named = 5;
+    constexpr std::string_view prefix = "rt";
+    std::set<std::string> similar;
+    for (const Published& published : all)
+        if (published.topic.starts_with("rt/") && (published.type == type || lastWord(published.topic) == lastWord(topic)))
+            similar.insert(fmt::format("{} ({})", published.topic.substr(prefix.size()), rosType(published.type)));
+    std::string text;
+    size_t named = 0;
+    for (const std::string& name : similar)
+        if (named++ < max_named) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
-    const char* type = topic.type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
     const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
-    return {node, ddsTopic(topic.topic), type, hash, quality, std::move(arrived), largest};
+    return {node, ddsTopic(topic.topic), typeOf(topic.type), hash, quality, std::move(arrived), largest};
 }
 
 }  // namespace
@@ -28,6 +53,8 @@ Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic
 Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic,
                            types::ThrottledWarning& drops, std::function<void()> arrived)
     : topic_(topic.topic),
+      domain_(domainId(config.node.domain)),
+      reliability_(config.reliability),
       type_(topic.type),
       world_frame_(config.node.world_frame),
       stamped_on_arrival_(topic.stamp == StampFrom::Arrival),
@@ -54,6 +81,27 @@ std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose)
     if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
     return sender_lives ? "the stamp lies before that of the pose before" : "";
+}
+
+std::string Subscription::absence(Node& node) const {
+    const std::string topic = ddsTopic(topic_), type = ddsType(typeOf(type_));
+    const std::vector<Published> all = node.published();
+    const auto writers = std::ranges::count(all, topic, &Published::topic);
+    const auto of_type = std::ranges::count_if(
+        all, [&](const Published& published) { return published.topic == topic && published.type == type; });
+    const std::string what = fmt::format("{} ({}, domain {})", topic_, rosType(type), domain_);
+    if (writers == 0) {
+        const std::string similar = similarTopics(all, topic, type);
+        return fmt::format("nobody publishes {}{}", what, similar.empty() ? "" : "; there are " + similar);
+    }
+    if (of_type == 0) {
+        const auto other = std::ranges::find(all, topic, &Published::topic);
+        return fmt::format("{} is published as {}; set `type`", what, rosType(other->type));
+    }
+    if (dds_get_matched_publications(reader_.handle(), nullptr, 0) == 0)
+        return fmt::format("{} has {} publishers, none of whose QoS fits `reliability: {}`", what, of_type,
+                           reliability_ == Reliability::Reliable ? "reliable" : "best_effort");
+    return fmt::format("{} has {} publishers, which send nothing that can be used", what, of_type);
 }
 
 bool Subscription::take(types::Time now, types::Pose& pose) {

@@ -26,6 +26,9 @@ public:
      *  simulator that was reset begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
+    /** Why no pose comes, by what the domain's discovery knows: no writer, one of another type or quality, or silent ones. */
+    std::string absence(Node& node) const;
+
     /** Whether take() gave up before it had looked at all. */
     bool more() const { return more_; }
 
@@ -35,6 +38,8 @@ private:
     std::string diagnosticOf(types::Time now, const types::Pose& pose);
 
     std::string topic_;
+    uint32_t domain_;
+    Reliability reliability_;
     PoseType type_;
     ros::WorldFrame world_frame_;
     Bytes bytes_;

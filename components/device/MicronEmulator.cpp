@@ -76,7 +76,16 @@ void MicronEmulator::reboot(types::Time now) {
     line_.reset();
 }
 
+types::Time MicronEmulator::centred() const {
+    return begun_ + seconds(device_.boot_time) + seconds(device_.centring_time);
+}
+
+void MicronEmulator::reverse() {
+    if (state_ == State::Ready) backwards_ = !backwards_;
+}
+
 void MicronEmulator::configure(Client client, const SeaNetMessage& message, types::Time now) {
+    if (SeaNetHeadCommand::isReversal(message)) return reverse();
     const auto command = SeaNetHeadCommand::in(message);
     const char* why = command ? refusal(*command) : "is too short";
     line_.reset();
@@ -87,7 +96,7 @@ void MicronEmulator::configure(Client client, const SeaNetMessage& message, type
         command_ = *command;
         state_ = State::Ready;
         backwards_ = false;
-        arrived_ = std::max(now, begun_ + seconds(device_.boot_time));
+        arrived_ = std::max(now, centred());
         if (!isWithinSector()) turnTo(command_.left);
     }
     outlet_.send(client, alive(now).message().packet());
@@ -178,7 +187,8 @@ void MicronEmulator::turnTo(int bearing) {
 
 void MicronEmulator::turn() {
     if (command_.has(SeaNetControl::motor_off)) return;
-    if (command_.has(SeaNetControl::continuous)) return turnTo(bearing_ + command_.step);
+    if (command_.has(SeaNetControl::continuous))
+        return turnTo(bearing_ + (backwards_ ? -command_.step : command_.step));
     const int width = wrapped(command_.right - command_.left);
     const int place = wrapped(bearing_ - command_.left) + (backwards_ ? -1 : 1) * command_.step;
     backwards_ = place >= width || (backwards_ && place > 0);
@@ -187,7 +197,9 @@ void MicronEmulator::turn() {
 
 SeaNetAlive MicronEmulator::alive(types::Time now) const {
     const bool ready = state_ == State::Ready;
-    return {.ready = state_ != State::Booting,
+    const bool recentring = now < centred();
+    return {.recentring = recentring,
+            .centred = !recentring,
             .motor_on = true,
             .scanning = line_.has_value(),
             .unconfigured = !ready,

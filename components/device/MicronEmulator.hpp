@@ -18,7 +18,8 @@ struct MicronDevice {
     int serial_number = 1;
     double frequency_khz = 700;    ///< Where a command names none.
     double speed_of_sound = 1500;  ///< By which sound's time becomes the sonar's range [m/s].
-    double boot_time = 0.5;        ///< Until a head that is switched on or rebooted is ready [s].
+    double boot_time = 0.5;        ///< Until a head that is switched on or rebooted sends its first mtAlive [s].
+    double centring_time = 3;      ///< Until its motor has found the middle after that [s].
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -29,6 +30,9 @@ struct MicronDevice {
               self.speed_of_sound);
         visit(Field{"boot_time", "s", "until a head that is switched on or rebooted tells that it lives", 0, 60},
               self.boot_time);
+        visit(Field{"centring_time", "s", "that the motor takes after that to find the middle; no line is scanned meanwhile", 0,
+                    60},
+              self.centring_time);
     }
 };
 
@@ -71,6 +75,8 @@ private:
 
     void take(Client client, const SeaNetMessage& message, types::Time now);
     void reboot(types::Time now);
+    void reverse();
+    types::Time centred() const;  ///< When the motor has found the middle.
     void configure(Client client, const SeaNetMessage& message, types::Time now);
     void requestLine(Client client, types::Time now);
     void askForPing(types::Time now);
@@ -91,7 +97,7 @@ private:
     bool tells_alive_ = true;
     SeaNetHeadCommand command_;
     int bearing_ = seanet_ahead;
-    bool backwards_ = false;  ///< In a sector.
+    bool backwards_ = false;  ///< Counter-clockwise.
     types::Time arrived_;     ///< When the motor has made its last step.
     std::optional<Line> line_;
     bool warned_ = false;

@@ -33,7 +33,7 @@ constexpr size_t software = 0, info = 1, serial = 2, length = 4, sum = 8, node =
 namespace user_at {
 constexpr size_t half_duplex = 133, size = 250, small_size = 161;
 }
-constexpr uint8_t plain_command = 1;
+constexpr uint8_t plain_command = 1, reversal = 0x0F;
 
 bool is(const SeaNetMessage& message, SeaNetType type, size_t size) {
     return message.type == type && message.payload.size() == size;
@@ -77,7 +77,7 @@ SeaNetMessage SeaNetHeadCommand::message() const {
     Bytes& payload = made.payload;
     payload[0] = plain_command;
     write(payload, command_at::control, control);
-    payload[command_at::head] = seanet_imaging_sonar;
+    payload[command_at::head] = head_type;
     for (size_t i = 0; i < 2; ++i) write(payload, command_at::transmit + 4 * i, transmit[i]);
     write(payload, command_at::range, range_decimetres);
     write(payload, command_at::left, left);
@@ -97,6 +97,7 @@ std::optional<SeaNetHeadCommand> SeaNetHeadCommand::in(const SeaNetMessage& mess
     if (message.type != SeaNetType::HeadCommand || payload.size() < command_at::min_size) return std::nullopt;
     SeaNetHeadCommand command;
     command.control = read<uint16_t>(payload, command_at::control);
+    command.head_type = payload[command_at::head];
     for (size_t i = 0; i < 2; ++i) command.transmit[i] = read<uint32_t>(payload, command_at::transmit + 4 * i);
     command.range_decimetres = read<uint16_t>(payload, command_at::range);
     command.left = read<uint16_t>(payload, command_at::left);
@@ -111,11 +112,15 @@ std::optional<SeaNetHeadCommand> SeaNetHeadCommand::in(const SeaNetMessage& mess
     return command;
 }
 
+bool SeaNetHeadCommand::isReversal(const SeaNetMessage& message) {
+    return message.type == SeaNetType::HeadCommand && message.payload == Bytes{reversal};
+}
+
 SeaNetMessage SeaNetHeadData::message() const {
     SeaNetMessage made = answer(SeaNetType::HeadData, data_at::data + data.size());
     Bytes& payload = made.payload;
     write(payload, data_at::size, static_cast<uint16_t>(payload.size()));
-    payload[data_at::head] = seanet_imaging_sonar;
+    payload[data_at::head] = command.head_type;
     payload[data_at::status] = status;
     payload[data_at::sweep] = sweep;
     write(payload, data_at::control, command.control);
@@ -141,6 +146,7 @@ std::optional<SeaNetHeadData> SeaNetHeadData::in(const SeaNetMessage& message) {
     if (payload.size() != data_at::data + count || read<uint16_t>(payload, data_at::size) != payload.size())
         return std::nullopt;
     SeaNetHeadData line;
+    line.command.head_type = payload[data_at::head];
     line.status = payload[data_at::status];
     line.sweep = payload[data_at::sweep];
     line.command.control = read<uint16_t>(payload, data_at::control);
@@ -164,7 +170,7 @@ SeaNetMessage SeaNetAlive::message() const {
     SeaNetMessage made = answer(SeaNetType::Alive, alive_at::size);
     write(made.payload, alive_at::time, milliseconds);
     write(made.payload, alive_at::bearing, bearing);
-    made.payload[alive_at::state] = static_cast<uint8_t>((ready ? 2 : 0) | (motor_on ? 8 : 0) | (scanning ? 32 : 0) |
+    made.payload[alive_at::state] = static_cast<uint8_t>((recentring ? 1 : 0) | (centred ? 2 : 0) | (motor_on ? 8 : 0) | (scanning ? 32 : 0) |
                                                          (unconfigured ? 64 : 0) | (configured ? 128 : 0));
     return made;
 }
@@ -173,7 +179,8 @@ std::optional<SeaNetAlive> SeaNetAlive::in(const SeaNetMessage& message) {
     if (!is(message, SeaNetType::Alive, alive_at::size)) return std::nullopt;
     const uint8_t state = message.payload[alive_at::state];
     SeaNetAlive alive;
-    alive.ready = (state & 2) != 0;
+    alive.recentring = (state & 1) != 0;
+    alive.centred = (state & 2) != 0;
     alive.motor_on = (state & 8) != 0;
     alive.scanning = (state & 32) != 0;
     alive.unconfigured = (state & 64) != 0;

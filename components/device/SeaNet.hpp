@@ -48,6 +48,7 @@ struct SeaNetControl {
 /** What a head is told to do, from the beginning of the payload as in mtHeadCommand. */
 struct SeaNetHeadCommand {
     uint16_t control = 0;
+    uint8_t head_type = seanet_imaging_sonar;  ///< Drivers of a Micron DST name 0x11, and want it back in scan lines.
     uint32_t transmit[2] = {0, 0};  ///< Of either channel: frequency * 2^32 / 32 MHz; 0: the head's own.
     uint16_t range_decimetres = 0;
     uint16_t left = 0, right = 0;     ///< Limits of the sector.
@@ -62,6 +63,8 @@ struct SeaNetHeadCommand {
     SeaNetMessage message() const;
     /** None where it is shorter than what is told here. */
     static std::optional<SeaNetHeadCommand> in(const SeaNetMessage& message);
+    /** True for the head command of one byte that turns a scanning head round at once. */
+    static bool isReversal(const SeaNetMessage& message);
 };
 
 /** One scan line. */
@@ -77,9 +80,9 @@ struct SeaNetHeadData {
     static std::optional<SeaNetHeadData> in(const SeaNetMessage& message);
 };
 
-/** How a head is. */
+/** The state of a head. */
 struct SeaNetAlive {
-    bool ready = false, motor_on = false, scanning = false, unconfigured = true, configured = false;
+    bool recentring = false, centred = false, motor_on = false, scanning = false, unconfigured = true, configured = false;
     uint32_t milliseconds = 0;  ///< Since it was switched on.
     uint16_t bearing = seanet_ahead;
 

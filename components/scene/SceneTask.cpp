@@ -126,10 +126,10 @@ void SceneTask::placeTargets(const Scene& scene, types::Diagnostics& diagnostics
 bool SceneTask::startHook() {
     for (Movable& movable : movables_) {
         movable.world_from_body.reset();
-        movable.newest = now();
+        movable.newest = movable.arrived = now();
         if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
     }
-    newest_ = now();
+    newest_ = arrived_ = now();
     newest_came_ = waiting_is_told_ = is_stale_ = false;
     if (bathymetry_) bathymetry_->forget();
     return true;
@@ -149,12 +149,19 @@ std::string SceneTask::staleness() const {
         const double age = (now() - newest).seconds();
         return age > poseTimeout() || -age > std::max(1.0, poseTimeout());
     };
-    const auto text = [this](const auto& port) {
-        return fmt::format("{}: no pose of the last {:g} s (pose_timeout)", port.path(), poseTimeout());
+    const auto text = [this](const auto& port, types::Time newest, types::Time arrived) {
+        const double behind = (arrived - newest).seconds();
+        const bool comes = (now() - arrived).seconds() <= poseTimeout();
+        return fmt::format("{}: no pose of the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
+                           comes ? fmt::format("; those that come have stamps {:.3g} s {} this clock; where they are of "
+                                               "another clock, set `stamp: arrival` in the task that reads them",
+                                               std::abs(behind), behind > 0 ? "behind" : "ahead of")
+                                 : "");
     };
-    if (stale(newest_)) return text(pose);
+    if (stale(newest_)) return text(pose, newest_, arrived_);
     for (const Movable& movable : movables_)
-        if (movable.port->connected() && stale(movable.newest)) return text(*movable.port);
+        if (movable.port->connected() && stale(movable.newest))
+            return text(*movable.port, movable.newest, movable.arrived);
     return {};
 }
 
@@ -170,7 +177,7 @@ void SceneTask::updateHook() try {
     types::Pose body;
     const bool is_new = pose.takeNext(body);
     if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
-    if (is_new) newest_ = body.time, newest_came_ = true;
+    if (is_new) newest_ = body.time, arrived_ = now(), newest_came_ = true;
     if (const std::string stale = staleness(); !stale.empty()) return lackPose(stale);
     is_stale_ = false;
     if (!is_new) return movables_good ? void() : error(name() + unusable);
@@ -201,7 +208,7 @@ bool SceneTask::readMovables() {
         if (movable.port->readNewest(sample, false) != framework::FlowStatus::NewData) continue;
         if (isUsable(sample)) {
             sample.orientation = glm::normalize(sample.orientation);
-            movable.newest = sample.time;
+            movable.newest = sample.time, movable.arrived = now();
             movable.world_from_body = sample.worldFromBody();
         } else {
             good = false;

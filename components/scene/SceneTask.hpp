@@ -70,6 +70,7 @@ private:
         std::vector<Part> parts;
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
         types::Time newest;                         ///< Stamp of that pose; the start before the first.
+        types::Time arrived;                        ///< When that pose came; the start before the first.
     };
 
     std::shared_ptr<const Scene> load() const;
@@ -94,6 +95,7 @@ private:
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;
     types::Time newest_;                  ///< Stamp of the newest usable pose; the start before the first.
+    types::Time arrived_;                 ///< When that pose came; the start before the first.
     bool newest_came_ = false;            ///< A pose of the body has come since the start.
     bool waiting_is_told_ = false;        ///< That none has.
     std::atomic<bool> is_stale_ = false;  ///< In error for want of poses, not for what is wrong with one.

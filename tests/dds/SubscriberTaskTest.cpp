@@ -117,3 +117,50 @@ TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
     ASSERT_FALSE(diagnostics.empty());
     EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("set schedule: realtime"));
 }
+
+/** The absence of each topic that has no pose, as reported by its subscription. */
+TEST_F(SubscriberTaskTest, ATopicWithoutAPoseIsReportedWithWhatTheDomainHas) {
+    const auto absence = [](const std::string& topic, PoseType type, Reliability reliability) {
+        Node node(domainId({}), "asking", 16);
+        SubscriberConfig config;
+        config.reliability = reliability;
+        TopicIn in;
+        in.topic = topic;
+        in.type = type;
+        types::ThrottledWarning drops{"message", "dropped"};
+        const Subscription subscription(node, config, in, drops, {});
+        std::string text;
+        comesTrue([&] {
+            text = subscription.absence(node);
+            return node.published().size() >= 2 && text.find("none of whose") == text.npos;
+        });
+        return text;
+    };
+    Publishing<types::Pose> publishing({topicOut("in", "/auv2/odometry", message_type<ros::Odometry>),
+                                        topicOut("in", "/auv2/depth", message_type<ros::PoseStamped>)});
+    EXPECT_THAT(absence("/auv/odometry", PoseType::Odometry, Reliability::BestEffort),
+                testing::AllOf(testing::HasSubstr("nobody publishes /auv/odometry (nav_msgs/Odometry, domain "),
+                               testing::HasSubstr("there are /auv2/odometry (nav_msgs/Odometry)"),
+                               testing::Not(testing::HasSubstr("depth"))));
+    EXPECT_THAT(absence("/auv2/depth", PoseType::Odometry, Reliability::BestEffort),
+                testing::HasSubstr("is published as geometry_msgs/PoseStamped; set `type`"));
+    EXPECT_THAT(absence("/auv2/odometry", PoseType::Odometry, Reliability::BestEffort),
+                testing::HasSubstr("has 1 publishers, which send nothing that can be used"));
+}
+
+TEST_F(SubscriberTaskTest, TheAbsenceOfAPoseIsAWarningOnce) {
+    std::vector<std::string> warnings;
+    Subscribing subscribing("/nowhere");
+    subscribing.task.activity().hold();
+    types::Time later = framework::wallClock();
+    subscribing.task.environment().now = [&] { return later; };
+    subscribing.task.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
+    ASSERT_TRUE(subscribing.task.stop());
+    ASSERT_TRUE(subscribing.task.start());
+    for (int second = 0; second < 8; ++second) {
+        subscribing.task.update();
+        later = later + types::Time::fromSeconds(1);
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_THAT(warnings[0], testing::HasSubstr("subscriber.pose: no pose yet: nobody publishes /nowhere"));
+}

@@ -28,7 +28,7 @@ tasks:
   receiver:
     type: receiver::ReceiverTask
     properties: {tvg: {log_coefficient: 40}, output: code, code: {bits: 16, law: log, full_scale_db: 20, dynamic_range_db: 80}}
-  device: {type: device::MicronTask, properties: {serial: line, boot_time: 0.05}}
+  device: {type: device::MicronTask, properties: {serial: line, boot_time: 0.05, centring_time: 0.1}}
 connections:
   - {from: vehicle.pose, to: scene.pose}
   - {from: scene.snapshot, to: sonar.snapshot}

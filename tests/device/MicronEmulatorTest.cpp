@@ -69,7 +69,7 @@ protected:
     bool answers_ = true;
     types::Sonar ping_ = pingOf(std::vector<float>(200, 65535));
     MicronEmulator emulator_{
-        {},
+        {.centring_time = 0},
         {[this](const types::SonarSettings& settings) {
              asked_.push_back(settings);
              all_asked_.push_back(settings);
@@ -276,6 +276,41 @@ TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
     driver_.configure({});
     driver_.request();
     EXPECT_NEAR(driver_.beam().bearing, 0, 1e-3) << "ahead again";
+}
+
+TEST_F(MicronEmulatorTest, McGillsDriverOpensAHeadThatRecentresAndScansLines) {
+    MicronEmulator recentring({}, {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
+                                   [this](Client to, Bytes bytes) {
+                                       sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end());
+                                   },
+                                   [this](const std::string& text) { warnings_.push_back(text); }});
+    std::swap(emulator_, recentring);
+    emulator_.opened(client);
+    emulator_.tick(now_);
+    ASSERT_TRUE(driver_.openLikeMcGill({}));
+    const types::Time opened = now_;
+    for (int i = 0; i < 3; ++i) {
+        driver_.request();
+        EXPECT_EQ(driver_.beam().bins.size(), 200u) << "of head type 0x11";
+    }
+    EXPECT_GT((now_ - opened).seconds(), 1) << "no line before the motor is centred";
+    EXPECT_THAT(warnings_, IsEmpty());
+}
+
+TEST_F(MicronEmulatorTest, AHeadReversesOnceForEachReversal) {
+    driver_.configure({.step = 2 * M_PI / 100});
+    const auto next = [&] {
+        driver_.request();
+        return driver_.beam().bearing;
+    };
+    next();
+    const double clockwise = next(), further = next();
+    EXPECT_LT(further, clockwise);
+    driver_.reverse();
+    next();  // its motor was under way
+    const double turned = next(), back = next();
+    EXPECT_GT(back, turned);
+    EXPECT_THAT(warnings_, IsEmpty());
 }
 
 /** A driver that takes an old mtAlive for the answer to its mtReBoot goes on at once. */

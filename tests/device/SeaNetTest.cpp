@@ -58,7 +58,7 @@ TEST(SeaNetTest, ARequestHasTheBytesThatDriversSend) {
 
 /** Sizes and places as an open driver's parser has them. */
 TEST(SeaNetTest, AnswersHaveTheSizesThatDriversDemand) {
-    const Bytes alive = SeaNetAlive{.ready = true, .unconfigured = false, .configured = true}.message().packet();
+    const Bytes alive = SeaNetAlive{.centred = true, .unconfigured = false, .configured = true}.message().packet();
     ASSERT_EQ(alive.size(), 22u);
     EXPECT_EQ(alive[20], 2 | 128);
     const Bytes version = SeaNetVersion{.software = 5, .serial = 0x1234}.message().packet();
@@ -103,7 +103,7 @@ TEST(SeaNetTest, EveryMessageComesBack) {
     const auto alive = SeaNetAlive::in(
         there(SeaNetAlive{.motor_on = true, .scanning = true, .milliseconds = 1234, .bearing = 77}.message()));
     ASSERT_TRUE(alive);
-    EXPECT_TRUE(alive->motor_on && alive->scanning && alive->unconfigured && !alive->ready && !alive->configured);
+    EXPECT_TRUE(alive->motor_on && alive->scanning && alive->unconfigured && !alive->centred && !alive->recentring && !alive->configured);
     EXPECT_EQ(alive->milliseconds, 1234u);
     EXPECT_EQ(alive->bearing, 77);
     const auto version = SeaNetVersion::in(there(SeaNetVersion{1, 2, 3, 4, 5}.message()));

@@ -14,6 +14,7 @@ namespace {
 
 using framework::TaskState;
 using testing::HasSubstr;
+using testing::Not;
 
 class PoseTimeoutTest : public SceneFiles {
 protected:
@@ -98,6 +99,16 @@ TEST_F(PoseTimeoutTest, APoseThatIsOldWhenItComesGivesNoSnapshot) {
     EXPECT_FALSE(cycle(11.1, 10.5));
     EXPECT_TRUE(cycle(11.2, 10.8));
     EXPECT_EQ(task_.state(), TaskState::Running);
+}
+
+TEST_F(PoseTimeoutTest, StampsOfAnotherClockAreReportedWithTheRemedy) {
+    start(0.5);
+    EXPECT_FALSE(cycle(110, 10));
+    EXPECT_THAT(task_.lastError(), HasSubstr("have stamps 100 s behind this clock"));
+    EXPECT_THAT(task_.lastError(), HasSubstr("`stamp: arrival`"));
+    EXPECT_TRUE(cycle(110.1, 110.1));
+    EXPECT_FALSE(cycle(111)) << "the sender is silent, its clock was right";
+    EXPECT_THAT(task_.lastError(), Not(HasSubstr("stamp:")));
 }
 
 TEST_F(PoseTimeoutTest, WithoutATimeoutThereIsNoneOutsideOfRealtime) {

@@ -21,6 +21,7 @@ public:
         double step = 2 * std::numbers::pi / 400;                           // [rad]
         double gain = 0.4;
         bool low_resolution = false, continuous = true;
+        uint8_t head_type = 2;
     };
     struct Beam {
         double bearing = 0, sampling_interval = 0;  // [rad], there and back [s]
@@ -54,6 +55,20 @@ public:
         }
         throw std::runtime_error("the configuration was not accepted");
     }
+    /** Opens a head as McGill's ros-tritech-micron does, which takes the bits of the state from the wrong end: it waits until
+     *  a head says that it is recentring and not centred. False: it would wait for ever. */
+    bool openLikeMcGill(Settings settings) {
+        settings.head_type = mcgill_head_type;
+        send(16);
+        uint8_t state = packetOf(4)[20];
+        command_ = commandOf(settings);
+        send(19, command_);
+        constexpr int patience = 10;  // packets
+        for (int i = 0; i < patience && !mcgillTakes(state); ++i) state = packetOf(4)[20];
+        return mcgillTakes(state) && mcgillTakes(packetOf(4)[20]);  // asked again before the first line
+    }
+    /** Turns the head round, with the head command of one byte. */
+    void reverse() { send(19, {0x0F}); }
     void request() { send(25, Bytes(4)); }
     Beam beam() {
         const Bytes packet = packetOf(2);
@@ -75,6 +90,8 @@ public:
     const Bytes& command() const { return command_; }
 
 private:
+    static constexpr uint8_t mcgill_head_type = 0x11;
+    static bool mcgillTakes(uint8_t state) { return (state & 1) != 0 && (state & 2) == 0; }
     static int number(const Bytes& packet, size_t at) { return packet[at] | packet[at + 1] << 8; }
     static void put(Bytes& payload, size_t at, int value) {
         payload[at] = static_cast<uint8_t>(value);
@@ -88,7 +105,7 @@ private:
         Bytes payload(68);  // with the parameters of either channel
         payload[0] = 0x1D;
         put(payload, 1, (settings.low_resolution ? 0 : 1) | (settings.continuous ? 2 : 0) | 128 | 256 | 512 | 8192);
-        payload[3] = 2;
+        payload[3] = settings.head_type;
         put(payload, 22, 40);
         put(payload, 24, limit(settings.right));  // the sonar counts clockwise
         put(payload, 26, limit(settings.left));
@@ -154,7 +171,7 @@ private:
         const auto differ = [&](size_t in_packet, size_t in_command) {
             return number(packet, in_packet) != number(command_, in_command);
         };
-        if (packet[7] != 2) throw std::runtime_error("wrong device type");
+        if (packet[7] != 2 || packet[15] != command_[3]) throw std::runtime_error("wrong device type");
         if (packet[16] & 2) throw std::runtime_error("motor error");
         if (differ(35, 24) || differ(37, 26) || packet[39] != command_[37] || packet[29] != command_[28] ||
             packet[30] != command_[29] || (packet[18] & (1 | 2 | 8)) != (command_[1] & (1 | 2 | 8)))
