@@ -82,9 +82,13 @@ int logInfo(const std::string& file, bool json, bool metadata) {
     return 0;
 }
 
-void refuseMissingFolder(const fs::path& to) {
-    const fs::path folder = to.has_parent_path() ? to.parent_path() : ".";
-    if (!fs::is_directory(folder)) throw types::ConfigError(folder, "--to", "is no folder");
+/** Makes the folder of a file that is to be written. */
+void makeFolderOf(const fs::path& to) {
+    if (!to.has_parent_path()) return;
+    std::error_code failed;
+    fs::create_directories(to.parent_path(), failed);
+    if (!fs::is_directory(to.parent_path()))
+        throw types::ConfigError(to.parent_path(), "--to", "is no folder and cannot be made: " + failed.message());
 }
 
 /** Pings as text are some ten times as large as they are in the log, and slow to read. */
@@ -111,7 +115,7 @@ std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const 
         fs::create_directories(to);
         return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
-    refuseMissingFolder(to);
+    makeFolderOf(to);
     if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
     if (to.extension() == ".png") return exportPictures(log, stream, to);
     if (to.extension() == ".xtf") return exportXtf(log, stream, poses, to), std::vector{to};
@@ -136,7 +140,7 @@ void tellLost(const log::Copied& copied) {
 }
 
 int exportMessages(const Options& options) {
-    refuseMissingFolder(options.to);
+    makeFolderOf(options.to);
     log::Selection selection;
     if (!options.stream.empty()) selection.streams.insert(options.stream);
     const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
@@ -170,18 +174,33 @@ void readRange(const std::string& text, log::Selection& selection) {
     number(std::string_view(text).substr(colon + 1), selection.last);
 }
 
+/** First and last stamp of the files of a log; none: they hold no sample. */
+std::optional<std::pair<types::Time, types::Time>> spanOf(const std::vector<std::string>& files) {
+    std::optional<std::pair<types::Time, types::Time>> span;
+    for (const std::string& file : files) {
+        const auto log = log::openLog(file);
+        if (log->samples().empty()) continue;
+        if (!span) span.emplace(log->samples().front().time, types::Time{});
+        span->second = log->samples().back().time;
+    }
+    return span;
+}
+
 log::Selection selectionOf(const Options& options) {
     log::Selection selection;
     selection.streams = {options.streams.begin(), options.streams.end()};
-    if (!options.from.empty()) selection.from = log::readTime(options.from, "--from");
-    if (!options.until.empty()) selection.until = log::readTime(options.until, "--until");
+    if (!options.from.empty() || !options.until.empty()) {
+        const types::Time start = spanOf(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
+        if (!options.from.empty()) selection.from = log::readTime(options.from, "--from", start);
+        if (!options.until.empty()) selection.until = log::readTime(options.until, "--until", start);
+    }
     if (!options.samples.empty()) readRange(options.samples, selection);
     return selection;
 }
 
-/** Copies into `--to`, and tells. */
+/** Copies into `--to`, and reports what was copied and lost. */
 int copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
-    refuseMissingFolder(to);
+    makeFolderOf(to);
     const log::Copied copied = log::copyLog(files, to, options);
     tellLost(copied);
     if (const std::string notice = log::copyProperties(files.front(), to); !notice.empty())
@@ -191,8 +210,23 @@ int copyTo(const std::string& to, const std::vector<fs::path>& files, const log:
     return 0;
 }
 
+/** A copy without a sample is an error, which leaves no file. */
+void refuseNothing(const Options& options) {
+    if (!log::openLog(options.to)->samples().empty()) return;
+    fs::remove(options.to);
+    fs::remove(fs::path(options.to).replace_extension(".idx"));
+    const auto span = spanOf(options.files);
+    throw types::ConfigError(options.files.front(), "",
+                             span ? fmt::format("none of its samples is in the part that is asked for; they go from {} to {}",
+                                                log::readable(span->first), log::readable(span->second))
+                                  : "holds no sample");
+}
+
 int logCut(const Options& options) {
-    return copyTo(options.to, {options.files.begin(), options.files.end()}, {.selection = selectionOf(options)});
+    const int code =
+        copyTo(options.to, {options.files.begin(), options.files.end()}, {.selection = selectionOf(options)});
+    refuseNothing(options);
+    return code;
 }
 
 int logRepair(const Options& options) {
@@ -200,7 +234,7 @@ int logRepair(const Options& options) {
 }
 
 int logImport(const Options& options) {
-    refuseMissingFolder(options.to);
+    makeFolderOf(options.to);
     std::optional<framework::DeploymentSpec> spec;
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     const Imported made = importRecording(options.file, std::move(spec), options.to);
@@ -283,8 +317,8 @@ void addLogCommand(CLI::App& app, Action& action) {
     cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();
     cut->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
     cut->add_option("--from", options->from,
-                    "earliest time: [s], as `log info` lists them, or a date, as in 2026-11-22T12:55:44Z");
-    cut->add_option("--until", options->until, "time at which the copy ends, not included");
+                    "earliest time: seconds after the log's first stamp, or a date, as in 2026-11-22T12:55:44Z");
+    cut->add_option("--until", options->until, "time at which the copy ends, not included; as for --from");
     cut->add_option("--samples", options->samples, "FIRST:LAST, numbers from 0 in the kept streams, LAST not included");
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);

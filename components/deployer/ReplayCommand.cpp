@@ -24,6 +24,7 @@ constexpr const char* rerendered_file = "rerendered.0.log";
 
 struct Asked : RunOptions {
     ReplayOptions replay;
+    std::string from;
     bool score = false, step = false;
     size_t worst = 10;
 };
@@ -117,6 +118,12 @@ void followLog(Asked& options, std::vector<RecordedProperty> changed) {
 int replay(Asked options) {
     const auto opened = log::openLog(options.replay.log);
     log::Reader& log = *opened;
+    if (!options.from.empty() && !log.samples().empty()) {
+        const types::Time start = log.samples().front().time;
+        options.replay.from = (log::readTime(options.from, "--from", start) - start).seconds();
+        if (options.replay.from < 0)
+            throw types::ConfigError("", "--from", "is " + options.from + "; the log begins at " + log::readable(start));
+    }
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
@@ -143,9 +150,8 @@ void addReplayCommand(CLI::App& app, Action& action) {
     auto* pace = command->add_option("--pace", options->limits.pace,
                                      "log seconds per second of the wall clock (default: as fast as it goes)");
     pace->type_name("P")->check(refuseUnlessPositive);
-    command->add_option("--from", options->replay.from, "start S seconds after the log's first stamp")
-        ->type_name("S")
-        ->check(CLI::NonNegativeNumber);
+    command->add_option("--from", options->from, "start: seconds after the log's first stamp, or a date in UTC")
+        ->type_name("TIME");
     auto* loop = command->add_flag("--loop", options->replay.loop, "on and on, until --pings, --duration or SIGINT");
     command
         ->add_flag("--step", options->step,

@@ -45,14 +45,14 @@ std::string readable(types::Time time) {
                        time.microseconds % 1'000'000);
 }
 
-types::Time readTime(const std::string& text, const std::string& what) {
+types::Time readTime(const std::string& text, const std::string& what, types::Time start) {
     double seconds = 0;
-    if (isNumber(text, seconds) && std::abs(seconds) < 9e12) return types::Time::fromSeconds(seconds);
+    if (isNumber(text, seconds) && std::abs(seconds) < 9e12) return start + types::Time::fromSeconds(seconds);
     types::Time time;
     if (isDate(text, time)) return time;
     throw types::ConfigError("", what,
                              "is " + text +
-                                 "; it may be a number [s] or a date and time in UTC, as in "
+                                 "; it may be the seconds after the log's first stamp, or a date and time in UTC, as in "
                                  "2026-11-22T12:55:44.5Z");
 }
 

@@ -80,7 +80,8 @@ struct FormatError : std::runtime_error {
 /** "2026-11-22 12:55:44.500000" (UTC) of a time of this century, "2.500000 s" of one that counts from a start. */
 std::string readable(types::Time time);
 
-/** The reverse: such a date, down to the second or finer, or a number [s]. Throws ConfigError that names `what`. */
-types::Time readTime(const std::string& text, const std::string& what);
+/** The reverse: such a date, down to the second or finer, or the seconds after `start`. Throws ConfigError that names
+ *  `what`. */
+types::Time readTime(const std::string& text, const std::string& what, types::Time start = {});
 
 }  // namespace insonify::log

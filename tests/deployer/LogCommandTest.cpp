@@ -82,18 +82,31 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
         words.insert(words.end(), more.begin(), more.end());
         return callInsonify(folder, words);
     };
-    EXPECT_EQ(cut({"--from", "1.05", "--until", "1.15"}).out, "cut.0.log: 3 samples, nothing was lost\n");
+    EXPECT_EQ(cut({"--from", "0.05", "--until", "0.15"}).out, "cut.0.log: 3 samples, nothing was lost\n");
     EXPECT_EQ(callInsonify(folder, {"log", "check", "cut.0.log"}).out, "cut.0.log: valid, 3 streams, 3 samples\n");
     EXPECT_TRUE(fs::exists(folder / "cut.0.idx"));
     EXPECT_EQ(cut({"--stream", "sonar.ping", "--samples", "1:"}).out, "cut.0.log: 2 samples, nothing was lost\n");
     EXPECT_EQ(cut({"out/properties.0.log", "--stream", "sonar.ping", "--stream", "noise.seed"}).out,
               "cut.0.log: 4 samples, nothing was lost\n")
         << "several files, several streams";
+    const Outcome nothing = cut({"--from", "7"});
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the part that is asked for; they go from "
+                                       "1.000000 s to 1.200000 s"));
+    EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
     EXPECT_EQ(cut({"--samples", "1"}).code, 2);
     EXPECT_THAT(cut({"--samples", "a:b"}).err, HasSubstr("may be FIRST:LAST"));
     EXPECT_EQ(cut({"--stream", "no.such"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", log}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"log", "check", log}).code, 0) << "the log is as it was";
+}
+
+TEST_F(LogCommandTest, TheFolderOfAFileThatIsWrittenIsMade) {
+    EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", "deep/er/cut.0.log"}).code, 0);
+    EXPECT_EQ(exportTo("sonar.ping", "deep/too/ping.npz").code, 0);
+    const Outcome outcome = exportTo("sonar.ping", "deep/er/cut.0.log/ping.npz");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--to: is no folder and cannot be made"));
 }
 
 TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {

@@ -55,6 +55,12 @@ TEST_F(ReplayPaceTest, ItStartsSoManySecondsAfterTheLogsFirstStamp) {
     EXPECT_THAT(stamps(), testing::ElementsAre(1100, 1200));
 }
 
+TEST_F(ReplayPaceTest, APartThatIsCutAndAReplayStartAtTheSameStamp) {
+    ASSERT_EQ(callInsonify(folder_, {"log", "cut", "out/wall.0.log", "--from", "0.1", "--to", "part.0.log"}).code, 0);
+    const auto part = log::openLog(folder_ / "part.0.log");
+    EXPECT_EQ(part->samples().front().time.microseconds, 1'100'000);
+}
+
 TEST_F(ReplayPaceTest, AStartBeyondTheLogsEndIsRefused) {
     const Outcome outcome = callInsonify(folder_, words({"--from", "3"}));
     EXPECT_EQ(outcome.code, 2);

@@ -19,6 +19,8 @@ TEST(StreamTest, AReadableTimeIsReadBackToTheMicrosecond) {
     EXPECT_EQ(readTime("2023-11-14T22:13:20Z", "--from").microseconds, 1'700'000'000'000'000);
     EXPECT_EQ(readTime("1700000000.5", "--from").microseconds, 1'700'000'000'500'000);
     EXPECT_EQ(readTime("-2", "--from").microseconds, -2'000'000);
+    EXPECT_EQ(readTime("0.25", "--from", time) - time, types::Time{250'000}) << "after the start";
+    EXPECT_EQ(readTime(readable(time), "--from", types::Time{7}), time) << "a date is a date";
 }
 
 TEST(StreamTest, WhatIsNoTimeIsRefusedByName) {
