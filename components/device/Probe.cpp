@@ -99,7 +99,7 @@ void addSeaNet(std::vector<Probe>& all) {
 
 void addSonar3d(std::vector<Probe>& all) {
     const std::string question = "GET /api/v1/integration/about HTTP/1.1\r\nHost: sonar\r\nConnection: close\r\n\r\n";
-    for (const uint16_t port : {80, 8080})
+    for (const uint16_t port : {80, 8080, 8015})  // the maker's, and that of deploy/hil_3d15.yml
         all.push_back({"HTTP (Sonar 3D-15)", Probe::Line::Tcp, port, bytesOf(question), sonar3dIn,
                        "what answers is no Sonar 3D-15, or firmware before 1.7.1"});
 }

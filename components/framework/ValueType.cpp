@@ -38,7 +38,13 @@ public:
         return std::floating_point<T> ? "double" : std::is_signed_v<T> ? "integer" : "integer >= 0";
     }
     std::string text(const void* value) const override { return fmt::format("{}", this->of(value)); }
-    void emit(YAML::Emitter& out, const void* value) const override { out << text(value); }
+    /** No number is `null`: "nan" would be no JSON. */
+    void emit(YAML::Emitter& out, const void* value) const override {
+        if (std::isfinite(static_cast<double>(this->of(value))))
+            out << text(value);
+        else
+            out << YAML::Null;
+    }
     types::PropertyValue logged(const void* value) const override {
         if constexpr (std::floating_point<T>)
             return static_cast<double>(this->of(value));
@@ -285,6 +291,7 @@ std::string flowYaml(const ValueType& type, const void* value) {
     YAML::Emitter out;
     out.SetMapFormat(YAML::Flow);
     out.SetSeqFormat(YAML::Flow);
+    out.SetNullFormat(YAML::LowerNull);
     type.emit(out, value);
     std::string text = out.c_str();
     std::ranges::replace(text, '\n', ' ');  // flow breaks long lines

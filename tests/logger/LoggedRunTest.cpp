@@ -36,8 +36,12 @@ struct PlannerTask : framework::TaskContext, framework::Planned {
     framework::OutputPort<double> depth{this, "depth", "never written"};
     const types::Plan* plan() const override { return plan_ ? &*plan_ : nullptr; }
     void updateHook() override {
-        plan_ = types::Plan{
-            .features = {"HAVE_\"TVG\""}, .passes = {}, .omitted = {{"volume", "absent"}}, .notices = {}, .device = {}};
+        plan_ = types::Plan{.features = {"HAVE_\"TVG\""},
+                            .passes = {},
+                            .omitted = {{"volume", "absent"}},
+                            .notices = {},
+                            .predicted_error = std::numeric_limits<double>::quiet_NaN(),
+                            .device = {}};
         refreshRecord();
         ping.write(std::make_shared<types::Sonar>());
     }
@@ -115,7 +119,7 @@ connections:
     EXPECT_EQ(log.find("sonar.ping")->count, 3u);
     EXPECT_EQ(log.find("sonar.ping")->metadata.at("insonify_plan"),
               R"({"sonar": {"features": ["HAVE_\"TVG\""], "passes": [], "omitted": [{"name": "volume", "reason": )"
-              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": 0, )"
+              R"("absent"}], "notices": [], "rows": 0, "columns_per_beam": 0, "slabs": 0, "predicted_error": null, )"
               R"("device": ""}})");
     EXPECT_NE(log.find("sonar.depth"), nullptr) << "declared, though never written";
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "components/command/Json.hpp"
 #include "components/device/DeviceTask.hpp"
@@ -61,11 +62,24 @@ Json jsonOf(const ProbeOutcome& outcome) {
             {"advice", outcome.advice}};
 }
 
-void printOutcome(const ProbeOutcome& outcome) {
-    if (!outcome.device.empty())
-        fmt::print("{}: {}\n", outcome.asked, outcome.device);
-    else
-        fmt::print("{}: {}: {}\n  {}\n", outcome.asked, outcome.protocol, outcome.failure, outcome.advice);
+void printDevices(const std::vector<ProbeOutcome>& outcomes) {
+    for (const ProbeOutcome& outcome : outcomes)
+        if (!outcome.device.empty()) fmt::print("{}: {}\n", outcome.asked, outcome.device);
+}
+
+/** Lines that failed for one reason stand together, before the reason and what to do. */
+void printFailures(std::vector<ProbeOutcome> outcomes) {
+    const auto reason = [](const ProbeOutcome& outcome) { return std::tie(outcome.failure, outcome.advice); };
+    while (!outcomes.empty()) {
+        const ProbeOutcome first = outcomes.front();
+        const auto others = std::stable_partition(outcomes.begin(), outcomes.end(), [&](const ProbeOutcome& outcome) {
+            return reason(outcome) == reason(first);
+        });
+        for (auto outcome = outcomes.begin(); outcome != others; ++outcome)
+            fmt::print("{}: {}\n", outcome->asked, outcome->protocol);
+        fmt::print("  {}: {}\n", first.failure, first.advice);
+        outcomes.erase(outcomes.begin(), others);
+    }
 }
 
 int probeDevice(const std::string& address, double timeout, bool json) {
@@ -73,12 +87,15 @@ int probeDevice(const std::string& address, double timeout, bool json) {
     const auto outcomes = probe(probeAddress(address), patience);
     const auto answers = [](const ProbeOutcome& outcome) { return !outcome.device.empty(); };
     const bool any = std::ranges::any_of(outcomes, answers);
-    Json all = Json::array();
-    for (const ProbeOutcome& outcome : outcomes) {
-        all.push_back(jsonOf(outcome));
-        if (!json && (!any || answers(outcome))) printOutcome(outcome);
+    if (json) {
+        Json all = Json::array();
+        for (const ProbeOutcome& outcome : outcomes) all.push_back(jsonOf(outcome));
+        print(all);
+    } else if (any) {
+        printDevices(outcomes);
+    } else {
+        printFailures(outcomes);
     }
-    if (json) print(all);
     if (!any) fmt::print(stderr, "insonify: nothing answers at {}\n", address);
     return any ? answered : silent;
 }
