@@ -145,10 +145,7 @@ void PublisherTask::updateHook() {
         for (typename Input::Carried sample{}; input.port.readNew(sample); start = Clock::now()) {
             send(input, sample, *this, drops_);
             for (const auto& publication : input.kept.publications)
-                if (publication->hasOutgrownBuffers())
-                    warn(publication->topic() +
-                         ": its messages are larger than Linux's receive buffers: Fast DDS loses " +
-                         "most of them; take dtype: uint8 for pings, or see components/dds/README.md");
+                if (const std::string warning = publication->takeSizeWarning(); !warning.empty()) warn(warning);
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
         }
     });

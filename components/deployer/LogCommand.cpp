@@ -14,6 +14,7 @@
 #include "components/deployer/Export.hpp"
 #include "components/deployer/Import.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/RecordedSettings.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
@@ -239,7 +240,7 @@ int logImport(const Options& options) {
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     const Imported made = importRecording(options.file, std::move(spec), options.to);
     for (const std::string& notice : made.notices) fmt::print(stderr, "notice: {}: {}\n", options.file, notice);
-    for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", property);
+    for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", withShortLists(property));
     if (made.changes > 0)
         fmt::print(stderr, "notice: settings change {} times; {}\n", made.changes,
                    options.deployment.empty() ? "each ping has its own range and bins"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -291,6 +292,25 @@ void LiveSettings::follow(Deployment& deployment) {
         first = static_cast<char>(std::toupper(static_cast<unsigned char>(first)));
         deployment.call(setter, {holding == 0 ? property.start : property.changes[holding - 1].value});
     }
+}
+
+std::string withShortLists(const std::string& text) {
+    constexpr size_t max_values = 8;
+    std::string shortened;
+    size_t at = 0;
+    for (size_t begin = text.find('['); begin != text.npos; begin = text.find('[', begin + 1)) {
+        const size_t end = text.find(']', begin);
+        if (end == text.npos) break;
+        std::istringstream list(text.substr(begin + 1, end - begin - 1));
+        std::vector<double> values;
+        for (double value = 0; list >> value; list.ignore(1)) values.push_back(value);
+        if (!list.eof() || values.size() <= max_values) continue;
+        const auto [lowest, highest] = std::ranges::minmax_element(values);
+        shortened += text.substr(at, begin - at) +
+                     fmt::format("[{} values, {:.4g} to {:.4g}]", values.size(), *lowest, *highest);
+        at = end + 1;
+    }
+    return shortened + text.substr(at);
 }
 
 }  // namespace insonify::deployer

@@ -39,6 +39,9 @@ struct RecordedSettings {
 RecordedSettings recordedSettings(const log::Reader& log, const framework::DeploymentSpec& spec,
                                   const std::vector<std::string>& set, std::optional<uint64_t> seed, double from);
 
+/** A value or an assignment for a notice: each list of more than eight numbers as "256 values, -30 to 30". */
+std::string withShortLists(const std::string& text);
+
 /** Sets properties, between two instants of a replay, to what they were for the next ping. */
 class LiveSettings {
 public:

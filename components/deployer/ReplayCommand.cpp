@@ -38,11 +38,11 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& option
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
     notice(options, recorded.notice);
-    for (const std::string& setting : recorded.assignments) notice(options, "as in the log: " + setting);
+    for (const std::string& setting : recorded.assignments) notice(options, "as in the log: " + withShortLists(setting));
     for (const RecordedProperty& property : recorded.changed)
         for (const RecordedProperty::Change& change : property.changes)
             notice(options, fmt::format("as in the log, from {} on: {}.{}={}", log::readable(change.from),
-                                        property.task, property.name, change.value));
+                                        property.task, property.name, withShortLists(change.value)));
     options.set.insert(options.set.begin(), recorded.assignments.begin(), recorded.assignments.end());
     if (!options.seed) options.seed = recordedSeed(log);
     return std::move(recorded.changed);

@@ -180,7 +180,20 @@ TEST_F(PublisherTaskTest, AMessageThatFastDdsWouldLoseIsWarnedOfOnce) {
     EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(256, 500)), !told.empty(); }));
     publishing.send(pingOf(256, 500));
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("/large: its messages are larger than Linux's receive buffers"));
+    EXPECT_THAT(told[0], HasSubstr("/large: its messages of 512 kB are larger than Linux's receive buffers (213 kB)"));
+    EXPECT_THAT(told[0], HasSubstr("take dtype: uint8, or raise"));
+}
+
+TEST_F(PublisherTaskTest, TheRemedyForALargeMessageIsNotWhatIsSetAlready) {
+    TopicOut small = topicOut("in", "/large", message_type<ros::ProjectedSonarImage>);
+    small.sonar.dtype = ros::ImageType::Uint8;
+    Publishing<types::SonarPtr> publishing({small});
+    std::vector<std::string> told;
+    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
+    EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(512, 500)), !told.empty(); }));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_THAT(told[0], testing::AllOf(HasSubstr("lose most of them; raise"), testing::Not(HasSubstr("dtype"))));
 }
 
 TEST_F(PublisherTaskTest, APictureBecomesAnImage) {

@@ -53,7 +53,9 @@ TEST(DeviceCommandTest, SilenceIsToldWithItsReasonsAndCode1) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"device", "probe", "/nowhere/line", "--timeout", "0.05"});
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_THAT(outcome.out, HasSubstr("serial line /nowhere/line: ping protocol (Ping360, Ping1D): No such file"));
+    EXPECT_THAT(outcome.out, HasSubstr("serial line /nowhere/line: ping protocol (Ping360, Ping1D)\nserial line "
+                                       "/nowhere/line: SeaNet (Micron)\n  No such file"))
+        << "the reason once for both";
     EXPECT_THAT(outcome.err, HasSubstr("nothing answers at /nowhere/line"));
     const json all =
         json::parse(callInsonify(folder, {"device", "probe", "/nowhere/line", "--timeout", "0.05", "--json"}).out);

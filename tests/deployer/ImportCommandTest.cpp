@@ -191,6 +191,7 @@ TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {
     const Outcome outcome = import(recording, deployment);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("as recorded: sonar.frequency_khz=2098.88"));
+    EXPECT_THAT(outcome.err, HasSubstr("[256 values, -30 to 30]"));
     const json scored = score(deployment);
     EXPECT_EQ(scored["compared"], 3);
     for (const json& ping : scored["pings"]) EXPECT_TRUE(ping["correlation"].is_number());
