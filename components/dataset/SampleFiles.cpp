@@ -85,9 +85,7 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
             npz.end();
         });
     npz.texts("objects", heard.truth.objects);
-    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
-    npz.append(meta.data(), meta.size());
-    npz.end();
+    npz.text("meta", meta);
     npz.close();
 }
 

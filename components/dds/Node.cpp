@@ -123,8 +123,8 @@ std::vector<Published> Node::published() {
     dds_get_guid(participant(), &own);
     for (int i = 0; i < count; ++i) {
         const auto& writer = *static_cast<const dds_builtintopic_endpoint_t*>(samples[static_cast<size_t>(i)]);
-        const bool is_there = infos[static_cast<size_t>(i)].valid_data &&
-                              infos[static_cast<size_t>(i)].instance_state == DDS_IST_ALIVE;
+        const bool is_there =
+            infos[static_cast<size_t>(i)].valid_data && infos[static_cast<size_t>(i)].instance_state == DDS_IST_ALIVE;
         if (is_there && std::memcmp(&writer.participant_key, &own, sizeof own) != 0)
             found.push_back({writer.topic_name, writer.type_name});
     }

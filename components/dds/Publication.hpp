@@ -130,17 +130,19 @@ public:
         if (!names_frequency_) options_.messages.frequency_khz = khz;
     }
 
-    /** What to do about a message that was larger than the receive buffers that Linux gives by default; once, else empty. */
+    /** What to do about a message that was larger than the receive buffers that Linux gives by default; once, else
+     * empty. */
     std::string takeSizeWarning() {
         constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
         if (largest_ <= usual_buffer || std::exchange(size_is_told_, true)) return "";
         const bool can_shrink =
             std::is_same_v<Sample, types::SonarPtr> && options_.messages.dtype == ros::ImageType::Float32;
-        return fmt::format("{}: its messages of {:.0f} kB are larger than Linux's receive buffers ({:.0f} kB), so that readers "
-                           "with Fast DDS lose most of them; {}raise net.core.rmem_default on their machine, see "
-                           "components/dds/README.md",
-                           topic_, static_cast<double>(largest_) / 1e3, static_cast<double>(usual_buffer) / 1e3,
-                           can_shrink ? "take dtype: uint8, or " : "");
+        return fmt::format(
+            "{}: its messages of {:.0f} kB are larger than Linux's receive buffers ({:.0f} kB), so that readers "
+            "with Fast DDS lose most of them; {}raise net.core.rmem_default on their machine, see "
+            "components/dds/README.md",
+            topic_, static_cast<double>(largest_) / 1e3, static_cast<double>(usual_buffer) / 1e3,
+            can_shrink ? "take dtype: uint8, or " : "");
     }
 
     /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/Samples.hpp) is

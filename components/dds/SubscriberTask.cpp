@@ -5,7 +5,7 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int max_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int max_at_once = 1000;           ///< Messages of a topic in one cycle: then others have their turn.
 constexpr types::Time patience{3'000'000};  ///< For the first pose of a topic, before its absence is reported.
 
 }  // namespace

@@ -33,7 +33,8 @@ std::string similarTopics(const std::vector<Published>& all, const std::string& 
     constexpr std::string_view prefix = "rt";
     std::set<std::string> similar;
     for (const Published& published : all)
-        if (published.topic.starts_with("rt/") && (published.type == type || lastWord(published.topic) == lastWord(topic)))
+        if (published.topic.starts_with("rt/") &&
+            (published.type == type || lastWord(published.topic) == lastWord(topic)))
             similar.insert(fmt::format("{} ({})", published.topic.substr(prefix.size()), rosType(published.type)));
     std::string text;
     size_t named = 0;

@@ -26,7 +26,8 @@ public:
      *  simulator that was reset begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
-    /** Why no pose comes, by what the domain's discovery knows: no writer, one of another type or quality, or silent ones. */
+    /** Why no pose comes, by what the domain's discovery knows: no writer, one of another type or quality, or silent
+     * ones. */
     std::string absence(Node& node) const;
 
     /** Whether take() gave up before it had looked at all. */

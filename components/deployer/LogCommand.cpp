@@ -217,10 +217,11 @@ void refuseNothing(const Options& options) {
     fs::remove(options.to);
     fs::remove(fs::path(options.to).replace_extension(".idx"));
     const auto span = spanOf(options.files);
-    throw types::ConfigError(options.files.front(), "",
-                             span ? fmt::format("none of its samples is in the part that is asked for; they go from {} to {}",
-                                                log::readable(span->first), log::readable(span->second))
-                                  : "holds no sample");
+    throw types::ConfigError(
+        options.files.front(), "",
+        span ? fmt::format("none of its samples is in the part that is asked for; they go from {} to {}",
+                           log::readable(span->first), log::readable(span->second))
+             : "holds no sample");
 }
 
 int logCut(const Options& options) {
@@ -240,7 +241,8 @@ int logImport(const Options& options) {
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     const Imported made = importRecording(options.file, std::move(spec), options.to);
     for (const std::string& notice : made.notices) fmt::print(stderr, "notice: {}: {}\n", options.file, notice);
-    for (const std::string& property : made.properties) fmt::print(stderr, "notice: as recorded: {}\n", withShortLists(property));
+    for (const std::string& property : made.properties)
+        fmt::print(stderr, "notice: as recorded: {}\n", withShortLists(property));
     if (made.changes > 0)
         fmt::print(stderr, "notice: settings change {} times; {}\n", made.changes,
                    options.deployment.empty() ? "each ping has its own range and bins"

@@ -38,7 +38,8 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& option
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
     notice(options, recorded.notice);
-    for (const std::string& setting : recorded.assignments) notice(options, "as in the log: " + withShortLists(setting));
+    for (const std::string& setting : recorded.assignments)
+        notice(options, "as in the log: " + withShortLists(setting));
     for (const RecordedProperty& property : recorded.changed)
         for (const RecordedProperty::Change& change : property.changes)
             notice(options, fmt::format("as in the log, from {} on: {}.{}={}", log::readable(change.from),
@@ -122,7 +123,8 @@ int replay(Asked options) {
         const types::Time start = log.samples().front().time;
         options.replay.from = (log::readTime(options.from, "--from", start) - start).seconds();
         if (options.replay.from < 0)
-            throw types::ConfigError("", "--from", "is " + options.from + "; the log begins at " + log::readable(start));
+            throw types::ConfigError("", "--from",
+                                     "is " + options.from + "; the log begins at " + log::readable(start));
     }
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = takeSettings(log, options);

@@ -30,8 +30,8 @@ struct MicronDevice {
               self.speed_of_sound);
         visit(Field{"boot_time", "s", "until a head that is switched on or rebooted tells that it lives", 0, 60},
               self.boot_time);
-        visit(Field{"centring_time", "s", "that the motor takes after that to find the middle; no line is scanned meanwhile", 0,
-                    60},
+        visit(Field{"centring_time", "s",
+                    "that the motor takes after that to find the middle; no line is scanned meanwhile", 0, 60},
               self.centring_time);
     }
 };

@@ -170,8 +170,9 @@ SeaNetMessage SeaNetAlive::message() const {
     SeaNetMessage made = answer(SeaNetType::Alive, alive_at::size);
     write(made.payload, alive_at::time, milliseconds);
     write(made.payload, alive_at::bearing, bearing);
-    made.payload[alive_at::state] = static_cast<uint8_t>((recentring ? 1 : 0) | (centred ? 2 : 0) | (motor_on ? 8 : 0) | (scanning ? 32 : 0) |
-                                                         (unconfigured ? 64 : 0) | (configured ? 128 : 0));
+    made.payload[alive_at::state] =
+        static_cast<uint8_t>((recentring ? 1 : 0) | (centred ? 2 : 0) | (motor_on ? 8 : 0) | (scanning ? 32 : 0) |
+                             (unconfigured ? 64 : 0) | (configured ? 128 : 0));
     return made;
 }
 

@@ -49,7 +49,7 @@ struct SeaNetControl {
 struct SeaNetHeadCommand {
     uint16_t control = 0;
     uint8_t head_type = seanet_imaging_sonar;  ///< Drivers of a Micron DST name 0x11, and want it back in scan lines.
-    uint32_t transmit[2] = {0, 0};  ///< Of either channel: frequency * 2^32 / 32 MHz; 0: the head's own.
+    uint32_t transmit[2] = {0, 0};             ///< Of either channel: frequency * 2^32 / 32 MHz; 0: the head's own.
     uint16_t range_decimetres = 0;
     uint16_t left = 0, right = 0;     ///< Limits of the sector.
     uint8_t ad_span = 0, ad_low = 0;  ///< Of 255 for 80 dB: what 4 bits show.
@@ -82,7 +82,8 @@ struct SeaNetHeadData {
 
 /** The state of a head. */
 struct SeaNetAlive {
-    bool recentring = false, centred = false, motor_on = false, scanning = false, unconfigured = true, configured = false;
+    bool recentring = false, centred = false, motor_on = false, scanning = false, unconfigured = true,
+         configured = false;
     uint32_t milliseconds = 0;  ///< Since it was switched on.
     uint16_t bearing = seanet_ahead;
 

@@ -205,10 +205,7 @@ void writePoints(Reader& log, const std::string& stream, NpzFile& npz) {
 
 /** One text; nothing when it is empty. */
 void writeMeta(NpzFile& npz, const std::string& meta) {
-    if (meta.empty()) return;
-    npz.begin("meta", "|S" + std::to_string(meta.size()), {});
-    npz.append(meta.data(), meta.size());
-    npz.end();
+    if (!meta.empty()) npz.text("meta", meta);
 }
 
 std::vector<Path> writeCloud(Reader& log, const std::string& stream, const Path& path, const std::string& meta) {

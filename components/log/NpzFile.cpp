@@ -76,6 +76,29 @@ std::string npyHeader(const std::string& type, const std::vector<size_t>& shape)
     return record.bytes();
 }
 
+/** The code points of a text in UTF-8; each byte that is none of a whole, shortest sequence is U+FFFD. */
+std::u32string codePointsOf(const std::string& text) {
+    constexpr char32_t replacement = 0xFFFD, first_surrogate = 0xD800, last_surrogate = 0xDFFF, last = 0x10FFFF;
+    constexpr char32_t shortest[] = {0, 0x80, 0x800, 0x10000};  // that takes so many bytes more
+    std::u32string points;
+    for (size_t at = 0; at < text.size();) {
+        const auto lead = static_cast<uint8_t>(text[at]);
+        const size_t more = lead < 0x80 ? 0 : lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : 1;
+        char32_t point = more == 0 ? lead : lead & (0x3F >> more);
+        bool whole = (lead < 0x80 || (lead >= 0xC2 && lead < 0xF5)) && at + more < text.size();
+        for (size_t k = 1; whole && k <= more; ++k) {
+            const auto next = static_cast<uint8_t>(text[at + k]);
+            whole = (next & 0xC0) == 0x80;
+            point = point << 6 | (next & 0x3F);
+        }
+        whole =
+            whole && point >= shortest[more] && point <= last && (point < first_surrogate || point > last_surrogate);
+        points += whole ? point : replacement;
+        at += whole ? more + 1 : 1;
+    }
+    return points;
+}
+
 }  // namespace
 
 NpzFile::NpzFile(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
@@ -105,13 +128,15 @@ void NpzFile::end() {
     file_.seekp(position);
 }
 
-void NpzFile::texts(const std::string& name, const std::vector<std::string>& values) {
+void NpzFile::texts(const std::string& name, const std::vector<size_t>& shape, const std::vector<std::string>& values) {
+    std::vector<std::u32string> wide;
+    for (const std::string& value : values) wide.push_back(codePointsOf(value));
     size_t longest = 1;
-    for (const std::string& value : values) longest = std::max(longest, value.size());
-    begin(name, "|S" + std::to_string(longest), {values.size()});
-    for (std::string value : values) {
-        value.resize(longest);
-        append(value.data(), longest);
+    for (const std::u32string& text : wide) longest = std::max(longest, text.size());
+    begin(name, "<U" + std::to_string(longest), shape);
+    for (std::u32string& text : wide) {
+        text.resize(longest);
+        append(text.data(), longest * sizeof(char32_t));
     }
     end();
 }

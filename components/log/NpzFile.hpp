@@ -33,11 +33,17 @@ public:
         append(values.data(), values.size() * sizeof(T));
         end();
     }
-    /** Texts, each padded with zeros to the length of the longest. */
-    void texts(const std::string& name, const std::vector<std::string>& values);
+    /** Texts in UTF-8 as numpy's unicode strings; bytes that are no UTF-8 become U+FFFD. */
+    void texts(const std::string& name, const std::vector<std::string>& values) {
+        texts(name, {values.size()}, values);
+    }
+    /** One text, an array of no dimension: `str(x[name])`. */
+    void text(const std::string& name, const std::string& value) { texts(name, {}, {value}); }
     void close();
 
 private:
+    void texts(const std::string& name, const std::vector<size_t>& shape, const std::vector<std::string>& values);
+
     struct Entry {
         std::string name;
         uint64_t position = 0;  ///< Of its local header in the file [B].

@@ -50,10 +50,11 @@ types::Time readTime(const std::string& text, const std::string& what, types::Ti
     if (isNumber(text, seconds) && std::abs(seconds) < 9e12) return start + types::Time::fromSeconds(seconds);
     types::Time time;
     if (isDate(text, time)) return time;
-    throw types::ConfigError("", what,
-                             "is " + text +
-                                 "; it may be the seconds after the log's first stamp, or a date and time in UTC, as in "
-                                 "2026-11-22T12:55:44.5Z");
+    throw types::ConfigError(
+        "", what,
+        "is " + text +
+            "; it may be the seconds after the log's first stamp, or a date and time in UTC, as in "
+            "2026-11-22T12:55:44.5Z");
 }
 
 }  // namespace insonify::log

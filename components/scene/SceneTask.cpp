@@ -153,10 +153,11 @@ std::string SceneTask::staleness() const {
         const double behind = (arrived - newest).seconds();
         const bool comes = (now() - arrived).seconds() <= poseTimeout();
         return fmt::format("{}: no pose of the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
-                           comes ? fmt::format("; those that come have stamps {:.3g} s {} this clock; where they are of "
-                                               "another clock, set `stamp: arrival` in the task that reads them",
-                                               std::abs(behind), behind > 0 ? "behind" : "ahead of")
-                                 : "");
+                           comes
+                               ? fmt::format("; those that come have stamps {:.3g} s {} this clock; where they are of "
+                                             "another clock, set `stamp: arrival` in the task that reads them",
+                                             std::abs(behind), behind > 0 ? "behind" : "ahead of")
+                               : "");
     };
     if (stale(newest_)) return text(pose, newest_, arrived_);
     for (const Movable& movable : movables_)

@@ -30,7 +30,7 @@ protected:
             callInsonify(folder_, {"log", "export", "out/wall.0.log", "--stream", stream, "--to", "x.npz"});
         EXPECT_EQ(written.code, 0) << written.err;
         const Outcome said = python(
-            folder_, "import json, numpy\nd = numpy.load('x.npz')\nmeta = json.loads(d['meta'].item())\n" + program);
+            folder_, "import json, numpy\nd = numpy.load('x.npz')\nmeta = json.loads(str(d['meta']))\n" + program);
         EXPECT_EQ(said.code, 0) << said.err;
         return said.out;
     }

@@ -57,7 +57,7 @@ heard = x['object'] >= 0
 print(x['object'].shape, heard.any(), (x['share'][heard] > 0).all(), np.isnan(x['elevation'][~heard]).all())
 print((x['hits'][heard] > 0).all(), (x['hits'][~heard] == 0).all(), np.unique(x['path']).tolist())
 print((x['shadow'] & heard).any(), x['shadow'].any(), x['object'].max() < len(meta['objects']))
-print([n.decode() for n in x['objects']] == meta['objects']))"),
+print([str(n) for n in x['objects']] == meta['objects']))"),
               "(2, 64, 200) True True True\nTrue True [0]\nFalse True True\nTrue\n");
     exportTo("returns.npz", "out/truth.0.log", "sonar.returns");
     EXPECT_EQ(arraysSay("returns.npz", R"(

@@ -279,11 +279,10 @@ TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
 }
 
 TEST_F(MicronEmulatorTest, McGillsDriverOpensAHeadThatRecentresAndScansLines) {
-    MicronEmulator recentring({}, {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
-                                   [this](Client to, Bytes bytes) {
-                                       sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end());
-                                   },
-                                   [this](const std::string& text) { warnings_.push_back(text); }});
+    MicronEmulator recentring(
+        {}, {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
+             [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
+             [this](const std::string& text) { warnings_.push_back(text); }});
     std::swap(emulator_, recentring);
     emulator_.opened(client);
     emulator_.tick(now_);

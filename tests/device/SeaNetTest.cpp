@@ -103,7 +103,8 @@ TEST(SeaNetTest, EveryMessageComesBack) {
     const auto alive = SeaNetAlive::in(
         there(SeaNetAlive{.motor_on = true, .scanning = true, .milliseconds = 1234, .bearing = 77}.message()));
     ASSERT_TRUE(alive);
-    EXPECT_TRUE(alive->motor_on && alive->scanning && alive->unconfigured && !alive->centred && !alive->recentring && !alive->configured);
+    EXPECT_TRUE(alive->motor_on && alive->scanning && alive->unconfigured && !alive->centred && !alive->recentring &&
+                !alive->configured);
     EXPECT_EQ(alive->milliseconds, 1234u);
     EXPECT_EQ(alive->bearing, 77);
     const auto version = SeaNetVersion::in(there(SeaNetVersion{1, 2, 3, 4, 5}.message()));

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/log/Export.hpp"
+#include "components/log/NpzFile.hpp"
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
@@ -122,7 +123,24 @@ TEST(ExportTest, NumpyReadsTheTruthOfPings) {
     EXPECT_EQ(numpySays(folder / "x.npz", "x['shadow'].dtype, x['shadow'][0, 0], x['path'][0, 0], x['hits'][0, 0]"),
               "bool [False  True] [3 0] [7 0]\n");
     EXPECT_EQ(numpySays(folder / "x.npz", "x['objects'], x['share'][1, 0], x['time'], x['range_m'].shape"),
-              "[b'bottom' b'ball'] [0.75 0.  ] [1.  1.5] (2, 2)\n");
+              "['bottom' 'ball'] [0.75 0.  ] [1.  1.5] (2, 2)\n");
+}
+
+TEST(ExportTest, TextsAreNumpysUnicodeStrings) {
+    if (!numpyIsThere()) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
+    const Folder folder;
+    NpzFile npz(folder / "x.npz");
+    npz.text("meta", "{\"unit\": \"\xc2\xb5Pa\"}");
+    npz.texts("names", {"boje \xc3\xa4", "\xe9\xad\x9a\xf0\x9d\x84\x9e", "a\xff\xc0\xaf\xed\xa0\x80", ""});
+    npz.texts("none", {});
+    npz.close();
+    EXPECT_EQ(numpySays(folder / "x.npz", "[ord(c) for c in __import__('json').loads(str(x['meta']))['unit']]"),
+              "[181, 80, 97]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "[[ord(c) for c in name] for name in x['names'][:2]]"),
+              "[[98, 111, 106, 101, 32, 228], [39770, 119070]]\n");
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['names'][2] == 'a' + 6 * chr(0xfffd), x['names'][3] == ''"), "True True\n")
+        << "no lead byte, an overlong sequence and half a surrogate pair";
+    EXPECT_EQ(numpySays(folder / "x.npz", "x['none'].shape"), "(0,)\n");
 }
 
 types::SonarElements elements(int64_t time) {

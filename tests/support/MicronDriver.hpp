@@ -55,8 +55,8 @@ public:
         }
         throw std::runtime_error("the configuration was not accepted");
     }
-    /** Opens a head as McGill's ros-tritech-micron does, which takes the bits of the state from the wrong end: it waits until
-     *  a head says that it is recentring and not centred. False: it would wait for ever. */
+    /** Opens a head as McGill's ros-tritech-micron does, which takes the bits of the state from the wrong end: it waits
+     * until a head says that it is recentring and not centred. False: it would wait for ever. */
     bool openLikeMcGill(Settings settings) {
         settings.head_type = mcgill_head_type;
         send(16);
