@@ -12,15 +12,20 @@ constexpr types::Time patience{3'000'000};  ///< For the first pose of a topic, 
 
 SubscriberTask::~SubscriberTask() { cleanupHook(); }
 
-std::vector<std::string> SubscriberTask::notices() const { return drops_.summary(); }
+std::vector<std::string> SubscriberTask::notices() const {
+    std::vector<std::string> all = drops_.summary();
+    for (std::string& line : odd_.summary()) all.push_back(std::move(line));
+    return all;
+}
 
 bool SubscriberTask::configureHook() {
     drops_.reset();
+    odd_.reset();
     outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // of a configure that failed
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
     outputs_.forEach([this](auto& output) {
-        output.kept.subscription = std::make_unique<Subscription>(*node_, *config, *entryOf(output.port.name()), drops_,
+        output.kept.subscription = std::make_unique<Subscription>(*node_, *config, *entryOf(output.port.name()), drops_, odd_,
                                                                   [this] { arrived_.raise(); });
     });
     node_->announce();
@@ -48,7 +53,8 @@ void SubscriberTask::updateHook() {
         output.kept.came |= taken > 0;
         if (taken == max_at_once || subscription.more()) arrived_.raise();
     });
-    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+    for (types::ThrottledWarning* counted : {&drops_, &odd_})
+        if (const std::string warning = counted->takeWarning(); !warning.empty()) warn(warning);
     reportAbsence();
 }
 

@@ -45,7 +45,7 @@ private:
 
     std::optional<Node> node_;
     types::Time started_;
-    types::ThrottledWarning drops_{"message", "dropped"};
+    types::ThrottledWarning drops_{"message", "dropped"}, odd_{"pose", "made of unit length"};
 };
 
 }  // namespace insonify::dds

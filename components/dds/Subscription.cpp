@@ -52,7 +52,7 @@ Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic
 }  // namespace
 
 Subscription::Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic,
-                           types::ThrottledWarning& drops, std::function<void()> arrived)
+                           types::ThrottledWarning& drops, types::ThrottledWarning& odd, std::function<void()> arrived)
     : topic_(topic.topic),
       domain_(domainId(config.node.domain)),
       reliability_(config.reliability),
@@ -60,6 +60,7 @@ Subscription::Subscription(Node& node, const SubscriberConfig& config, const Top
       world_frame_(config.node.world_frame),
       stamped_on_arrival_(topic.stamp == StampFrom::Arrival),
       drops_(drops),
+      odd_(odd),
       reader_(readerOf(node, config, topic, std::move(arrived))) {
     node.addReader(reader_.handle());
 }
@@ -123,6 +124,9 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             newest_ = read_.time;
             newest_came_ = now;
             newest_sender_ = sender_;
+            if (types::isOddlyLong(read_))
+                odd_.add(topic_ + ": the quaternion's length is not 1: are its parts degrees, or of another order",
+                         fmt::format("; its length is {:.4g}", glm::length(read_.orientation)));
             read_.orientation = glm::normalize(read_.orientation);
             std::swap(pose, read_);
             return true;

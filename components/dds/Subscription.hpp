@@ -14,9 +14,10 @@ namespace insonify::dds {
 /** The poses of one topic, those that can be used. */
 class Subscription {
 public:
-    /** `arrived` as in Reader; what is dropped is counted in `drops`, which outlives this. */
+    /** `arrived` as in Reader. Messages that are dropped are counted in `drops`, poses whose quaternion is not near unit
+     *  length in `odd`; both outlive this. */
     Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, types::ThrottledWarning& drops,
-                 std::function<void()> arrived);
+                 types::ThrottledWarning& odd, std::function<void()> arrived);
 
     /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
      *  stamp, or by the topic's choice. False, and `pose` as it was: there is none, or 64 before it had to be dropped:
@@ -51,7 +52,7 @@ private:
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
     bool stamped_on_arrival_, more_ = false;
-    types::ThrottledWarning& drops_;
+    types::ThrottledWarning &drops_, &odd_;
     Reader reader_;
 };
 

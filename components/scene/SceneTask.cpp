@@ -179,6 +179,10 @@ void SceneTask::updateHook() try {
     const bool is_new = pose.takeNext(body);
     if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
     if (is_new) newest_ = body.time, arrived_ = now(), newest_came_ = true;
+    if (is_new && odd_lengths_.isDue(types::isOddlyLong(body)))
+        warn(fmt::format("{}: the orientation is a quaternion of length {:.4g}, which is made 1: are its parts degrees, or "
+                         "in another order?",
+                         pose.path(), glm::length(body.orientation)));
     if (const std::string stale = staleness(); !stale.empty()) return lackPose(stale);
     is_stale_ = false;
     if (!is_new) return movables_good ? void() : error(name() + unusable);

@@ -15,6 +15,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Targets.hpp"
+#include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
 
 namespace insonify::scene {
@@ -96,6 +97,7 @@ private:
     framework::SamplePool<types::Snapshot> pool_;
     types::Time newest_;                  ///< Stamp of the newest usable pose; the start before the first.
     types::Time arrived_;                 ///< When that pose came; the start before the first.
+    types::RecurringDiagnostic odd_lengths_;  ///< Of the body's quaternions.
     bool newest_came_ = false;            ///< A pose of the body has come since the start.
     bool waiting_is_told_ = false;        ///< That none has.
     std::atomic<bool> is_stale_ = false;  ///< In error for want of poses, not for what is wrong with one.

@@ -127,8 +127,8 @@ TEST_F(SubscriberTaskTest, ATopicWithoutAPoseIsReportedWithWhatTheDomainHas) {
         TopicIn in;
         in.topic = topic;
         in.type = type;
-        types::ThrottledWarning drops{"message", "dropped"};
-        const Subscription subscription(node, config, in, drops, {});
+        types::ThrottledWarning drops{"message", "dropped"}, odd{"pose", "made of unit length"};
+        const Subscription subscription(node, config, in, drops, odd, {});
         std::string text;
         comesTrue([&] {
             text = subscription.absence(node);

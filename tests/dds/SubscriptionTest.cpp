@@ -29,8 +29,8 @@ struct SubscriptionTest : Loopback {
         made.topic = "/judged";
         return made;
     }();
-    types::ThrottledWarning dropped{"message", "dropped"};
-    Subscription subscription{node, config, topic, dropped, {}};
+    types::ThrottledWarning dropped{"message", "dropped"}, odd{"pose", "made of unit length"};
+    Subscription subscription{node, config, topic, dropped, odd, {}};
     std::optional<Writer> writer = newWriter();
     types::Pose pose;
 
@@ -182,7 +182,7 @@ TEST_F(SubscriptionTest, AfterAFloodOfNonsenseItTellsThatThereIsMore) {
 TEST_F(SubscriptionTest, APoseMayBearTheTimeOfItsArrival) {
     TopicIn strange = topic;
     strange.stamp = StampFrom::Arrival;
-    Subscription other(node, config, strange, dropped, {});
+    Subscription other(node, config, strange, dropped, odd, {});
     send(at(1, 1));
     ASSERT_TRUE(comesTrue([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
     EXPECT_EQ(pose.time, arrival);

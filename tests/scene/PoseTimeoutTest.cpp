@@ -101,6 +101,24 @@ TEST_F(PoseTimeoutTest, APoseThatIsOldWhenItComesGivesNoSnapshot) {
     EXPECT_EQ(task_.state(), TaskState::Running);
 }
 
+TEST_F(PoseTimeoutTest, AQuaternionThatIsNotOfUnitLengthIsReportedOnce) {
+    std::vector<std::string> warnings;
+    task_.environment().warn = [&](const std::string& text) { warnings.push_back(text); };
+    start(0.5);
+    types::Pose body;
+    for (int i = 0; i < 3; ++i) {
+        body.time = now_ = types::Time::fromSeconds(10.1 + i / 10.0);
+        body.orientation = glm::dquat(1, 0, 0, i == 0 ? 0.1 : 90);
+        vehicle_.port.write(body);
+        task_.update();
+        types::SnapshotPtr snapshot;
+        ASSERT_TRUE(out_.port.readNew(snapshot)) << "it is taken all the same";
+        EXPECT_NEAR(glm::length(snapshot->sonar.orientation), 1, 1e-12);
+        EXPECT_EQ(warnings.size(), i == 0 ? 0u : 1u) << "0.5 % off are those of a sender in single precision";
+    }
+    EXPECT_THAT(warnings[0], HasSubstr("the orientation is a quaternion of length 90.01"));
+}
+
 TEST_F(PoseTimeoutTest, StampsOfAnotherClockAreReportedWithTheRemedy) {
     start(0.5);
     EXPECT_FALSE(cycle(110, 10));
