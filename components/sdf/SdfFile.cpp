@@ -273,6 +273,21 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
     throw types::ConfigError(std::move(diagnostics));
 }
 
+/** The diagnostics of a world that is read all the same. Gazebo's `model://sun` is a light, and missed by no sonar. */
+void noteDiagnostics(const types::Diagnostics& diagnostics, std::vector<std::string>& notices) {
+    bool looked_for_models = false;
+    for (const types::Diagnostic& diagnostic : diagnostics) {
+        const std::string text = diagnostic.text();
+        if (text.find("Unable to find uri[model://sun]") != text.npos) continue;
+        notices.push_back(text + (diagnostic.path.ends_with("/uri") ? "; left out" : ""));
+        looked_for_models |= text.find("Unable to find uri[model://") != text.npos;
+    }
+    if (looked_for_models)
+        notices.push_back(
+            "models are looked for next to the world, and in the folders of INSONIFY_MODEL_PATH, which names those "
+            "that hold the folders of the models");
+}
+
 }  // namespace
 
 std::mutex CerrCapture::mutex_;
@@ -304,8 +319,7 @@ std::string CerrCapture::take() {
         add(console.take(), errors, diagnostics);
         findUnreadable(diagnostics, unreadable);
         if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
-            for (const types::Diagnostic& diagnostic : diagnostics)
-                notices.push_back(diagnostic.text() + (diagnostic.path.ends_with("/uri") ? "; left out" : ""));
+            noteDiagnostics(diagnostics, notices);
             if (!renamed.empty()) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
             return root;
         }

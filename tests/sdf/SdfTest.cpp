@@ -164,12 +164,19 @@ TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
 }
 
 TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
-    const Scene scene = world("<include><uri>model://sun</uri></include>\n" + model("m", box_) +
+    const Scene scene = world("<include><uri>model://crate</uri></include>\n" + model("m", box_) +
                               "\n<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>\n");
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://sun]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; left out"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "in the folders of INSONIFY_MODEL_PATH"));
+}
+
+TEST_F(SdfTest, AMissingSunIsNoNotice) {
+    const Scene scene = world("<include><uri>model://sun</uri></include>\n" + model("m", box_));
+    EXPECT_FALSE(hasNotice(*scene.geometry, "sun"));
+    EXPECT_FALSE(hasNotice(*scene.geometry, "INSONIFY_MODEL_PATH"));
 }
 
 TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
