@@ -1,5 +1,7 @@
 #include "components/device/DeviceTask.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -23,11 +25,15 @@ std::vector<std::string> DeviceTask::notices() const {
     std::vector<std::string> all;
     for (const std::string& end : network_->names()) all.push_back("listens on " + end);
     if (const uint64_t lost = network_->dropped(); lost > 0)
-        all.push_back(std::to_string(lost) + " messages not sent, for newer ones or for want of a way");
+        all.push_back(std::to_string(lost) + " messages dropped: replaced by newer ones, or no route to the receiver");
+    if (const uint64_t failed = network_->failures(); failed > 0)
+        all.push_back(std::to_string(failed) + " failures of the network's thread, which went on");
+    for (std::string& line : displaced_.summary()) all.push_back(std::move(line));
     return all;
 }
 
 bool DeviceTask::configureHook() {
+    displaced_.reset();
     network_ = std::make_unique<Network>([this] { happened_.raise(); });
     try {
         listen(*network_);
@@ -43,12 +49,21 @@ void DeviceTask::updateHook() {
             case NetworkEvent::Kind::Received: received(event.client, event.bytes); break;
             case NetworkEvent::Kind::Closed: closed(event.client); break;
         }
+    warnOfDisplaced();
     takePings();
     if (const auto next = tick(now())) {
         const double wait = std::max(0.0, (*next - now()).seconds());
         network_->wakeAt(std::chrono::steady_clock::now() +
                          std::chrono::microseconds(static_cast<int64_t>(1e6 * wait)));
     }
+}
+
+void DeviceTask::warnOfDisplaced() {
+    const uint64_t displaced = network_->displaced();
+    if (displaced > displaced_.count())
+        displaced_.add(fmt::format("the longest silent of {} on one port, for a newer one", Network::max_clients), "",
+                       displaced - displaced_.count());
+    if (const std::string warning = displaced_.takeWarning(); !warning.empty()) warn(warning);
 }
 
 void registerTasks(framework::Registry& registry) {

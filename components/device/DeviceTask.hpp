@@ -12,6 +12,7 @@
 #include "components/framework/TaskContext.hpp"
 #include "types/Describe.hpp"
 #include "types/SonarSettings.hpp"
+#include "types/ThrottledWarning.hpp"
 #include "types/Time.hpp"
 
 namespace insonify::device {
@@ -58,6 +59,9 @@ protected:
     void cleanupHook() override { network_.reset(); }
 
 private:
+    void warnOfDisplaced();
+
+    types::ThrottledWarning displaced_{"connection", "closed"};
     framework::Event happened_{this};  ///< On the network; outlives it.
     std::unique_ptr<Network> network_;
 };

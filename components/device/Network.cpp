@@ -66,7 +66,7 @@ void keepAlive(int socket) {
 /** Its events and counters are for any thread, the rest for the network's. */
 class Network::Core {
 public:
-    explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { io.run(); }) {}
+    explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
     ~Core() {
         asio::post(io, [this] { shut(); });
         thread_.join();
@@ -152,9 +152,22 @@ public:
 
     asio::io_context io{1};
     std::vector<std::shared_ptr<EndBase>> ends;
-    std::atomic<uint64_t> dropped{0};
+    std::atomic<uint64_t> dropped{0}, displaced{0}, failures{0};
+    uint64_t heard = 0;  ///< Messages from connections so far, for the network's thread.
 
 private:
+    /** Serves until the end: a failure in one place, as for want of memory, is counted, and ends go on. */
+    void run() {
+        while (true) try {
+                io.run();
+                return;
+            } catch (const std::exception&) {
+                ++failures;
+                asio::post(io, [this] {
+                    for (const auto& end : ends) end->resume();
+                });
+            }
+    }
     void shut() {
         for (const auto& end : ends) end->shut();
         timer_.cancel();
@@ -195,6 +208,7 @@ public:
                                     self->reading_ = false;
                                     if (self->closed_) return;
                                     if (error) return self->end();
+                                    self->heard_ = ++self->core_.heard;
                                     const auto begin = self->buffer_.begin();
                                     const Bytes bytes(begin, begin + static_cast<std::ptrdiff_t>(count));
                                     if (self->core_.tell({NetworkEvent::Kind::Received, self->client_, bytes, ""}))
@@ -217,6 +231,15 @@ public:
     void close() {
         closing_ = true;
         write();
+    }
+    /** The number of its last message, of all; 0: it has sent none. */
+    uint64_t heard() const { return heard_; }
+    /** Ends it at once, with what waits for it. */
+    void end() {
+        if (closed_ || !ended_) return;
+        shut();
+        ended_();
+        core_.tell({NetworkEvent::Kind::Closed, client_, {}, ""});
     }
     /** Without an event. */
     void shut() {
@@ -255,12 +278,6 @@ private:
             ++core_.dropped;
         }
     }
-    void end() {
-        if (closed_ || !ended_) return;
-        shut();
-        core_.tell({NetworkEvent::Kind::Closed, client_, {}, ""});
-        ended_();
-    }
 
     Network::Core& core_;
     Stream stream_;
@@ -272,6 +289,7 @@ private:
     std::optional<Bytes> newest_;  ///< Of what is streamed.
     Bytes sending_;
     size_t waiting_ = 0;  ///< In `replies_` [bytes].
+    uint64_t heard_ = 0;
     bool reading_ = false, writing_ = false, closing_ = false, closed_ = false;
 };
 
@@ -295,7 +313,7 @@ public:
     }
     void resume() override {
         for (const auto& [number, session] : sessions_) session->read();
-        if (std::exchange(full_, false)) accept();
+        accept();
     }
     void shut() override {
         error_code ignored;
@@ -311,15 +329,19 @@ private:
         const auto found = sessions_.find(client);
         return found == sessions_.end() ? nullptr : found->second;
     }
+    /** Waits for the next client, unless it does so, or too much waits for the task. */
     void accept() {
-        full_ = !core_.hasRoom();
-        if (full_) return;
+        if (accepting_ || !core_.hasRoom()) return;
+        accepting_ = true;
         acceptor_.async_accept([this](error_code error, Tcp::socket socket) {
             if (!acceptor_.is_open()) return;
+            accepting_ = false;
             if (!error) open(std::move(socket));
             if (!error) return accept();
+            accepting_ = true;
             retry_.expires_after(std::chrono::milliseconds(100));  // as when the process has no more files
             retry_.async_wait([this](error_code cancelled) {
+                accepting_ = false;
                 if (!cancelled) accept();
             });
         });
@@ -327,7 +349,8 @@ private:
     void open(Tcp::socket socket) {
         error_code error;
         const Tcp::endpoint peer = socket.remote_endpoint(error);
-        if (error || sessions_.size() >= Network::max_clients) return;
+        if (error) return;
+        if (sessions_.size() >= Network::max_clients) displace();
         socket.set_option(Tcp::no_delay(true), error);
         keepAlive(socket.native_handle());
         fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
@@ -340,11 +363,19 @@ private:
         session->read();
     }
 
+    /** Makes room for a newer client: who has been silent longest goes. */
+    void displace() {
+        const auto silent =
+            std::ranges::min_element(sessions_, {}, [](const auto& each) { return each.second->heard(); })->second;
+        ++core_.displaced;
+        silent->end();
+    }
+
     Network::Core& core_;
     End end_;
     Tcp::acceptor acceptor_;
     asio::steady_timer retry_{core_.io};
-    bool full_ = false;  ///< Nobody is accepted before there is room for what happens.
+    bool accepting_ = false;
     std::map<uint64_t, std::shared_ptr<TcpSession>> sessions_;
     uint64_t next_ = 1;
 };
@@ -369,6 +400,7 @@ public:
     void close(uint64_t client) override {
         if (clients_.erase(client) > 0) core_.tell({NetworkEvent::Kind::Closed, {end_, client}, {}, ""});
     }
+    void resume() override { read(); }
     void shut() override {
         error_code ignored;
         socket_.close(ignored);
@@ -381,8 +413,10 @@ private:
     };
 
     void read() {
+        if (std::exchange(reading_, true)) return;
         socket_.async_receive_from(asio::buffer(buffer_), from_, [this](error_code error, size_t count) {
             if (!socket_.is_open() || error == asio::error::operation_aborted) return;
+            reading_ = false;
             if (!error) take(count);
             read();
         });
@@ -416,6 +450,7 @@ private:
     std::array<uint8_t, 65536> buffer_{};
     std::map<uint64_t, Known> clients_;
     uint64_t next_ = 1, heard_ = 0;
+    bool reading_ = false;
 };
 
 /** The two sides of a pseudo terminal, raw; drivers open `slave`. */
@@ -528,5 +563,7 @@ void Network::close(Client client) {
 void Network::wakeAt(std::chrono::steady_clock::time_point when) { core_->wakeAt(when); }
 
 uint64_t Network::dropped() const { return core_->dropped; }
+uint64_t Network::displaced() const { return core_->displaced; }
+uint64_t Network::failures() const { return core_->failures; }
 
 }  // namespace insonify::device

@@ -46,7 +46,7 @@ struct NetworkError : std::runtime_error {
  * and one that does not read what must arrive is closed. All functions are for one thread, that of the task. */
 class Network {
 public:
-    static constexpr size_t max_clients = 64;        ///< Of an end; of datagrams the longest silent goes.
+    static constexpr size_t max_clients = 64;        ///< Of an end; for one more, the longest silent goes.
     static constexpr size_t max_received = 1 << 20;  ///< With their events, before clients are read no more [bytes].
     static constexpr size_t max_replies = size_t{8} << 20;  ///< That wait for one client, before it is closed [bytes].
     static constexpr size_t max_line = 4096;  ///< Replies that wait for a serial line, before the oldest go [bytes].
@@ -85,6 +85,10 @@ public:
     void wakeAt(std::chrono::steady_clock::time_point when);
     /** Messages that were not sent: newer ones took their place, or there was no way [1]. */
     uint64_t dropped() const;
+    /** Connections that were closed for newer ones, max_clients being there [1]. */
+    uint64_t displaced() const;
+    /** Failures on the network's thread, after each of which it has gone on: no memory, an exception of `wake` [1]. */
+    uint64_t failures() const;
 
     class Core;
 

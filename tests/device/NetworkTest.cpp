@@ -199,13 +199,49 @@ TEST_F(NetworkTest, AClosedClientHearsWhatWasSentBefore) {
     EXPECT_EQ(await(Kind::Closed).back().client, client);
 }
 
-TEST_F(NetworkTest, MoreClientsThanAreServedAreClosedAtOnce) {
+/** Silent clients lock nobody out. */
+TEST_F(NetworkTest, OfConnectionsWhoIsLongestSilentGoesForANewOne) {
     const End end = network_.listenTcp("127.0.0.1", 0);
     std::vector<std::unique_ptr<Peer>> peers;
-    for (size_t i = 0; i < Network::max_clients; ++i)
+    std::vector<Client> clients;
+    for (size_t i = 0; i < Network::max_clients; ++i) {
         peers.push_back(std::make_unique<Peer>(SOCK_STREAM, network_.portOf(end)));
-    await(Kind::Opened, Network::max_clients);
-    EXPECT_TRUE(Peer(SOCK_STREAM, network_.portOf(end)).hear(1).empty());
+        clients.push_back(await(Kind::Opened).back().client);
+        if (i == 5) continue;
+        peers.back()->say({1});
+        await(Kind::Received);
+    }
+    const Peer newer(SOCK_STREAM, network_.portOf(end));
+    const auto events = await(Kind::Opened);
+    ASSERT_GE(events.size(), 2u);
+    EXPECT_EQ(events.front().kind, Kind::Closed);
+    EXPECT_EQ(events.front().client, clients[5]) << "it has never said anything";
+    EXPECT_TRUE(peers[5]->hear(1).empty());
+    network_.send(events.back().client, {7});
+    EXPECT_THAT(newer.hear(1), testing::ElementsAre(7));
+    network_.send(clients[0], {8});
+    EXPECT_THAT(peers[0]->hear(1), testing::ElementsAre(8));
+    EXPECT_EQ(network_.displaced(), 1u);
+}
+
+TEST_F(NetworkTest, AFailureOnTheNetworksThreadIsCountedAndEndsGoOn) {
+    std::atomic<bool> fails{false};
+    Network network([&] {
+        if (fails.exchange(false)) throw std::bad_alloc();
+    });
+    const End streams = network.listenTcp("127.0.0.1", 0), datagrams = network.listenUdp("127.0.0.1", 0);
+    const Peer stream(SOCK_STREAM, network.portOf(streams)), datagram(SOCK_DGRAM, network.portOf(datagrams));
+    await(network, Kind::Opened);
+    for (const Peer* peer : {&stream, &datagram})
+        for (int i = 0; i < 3; ++i) {
+            fails = i == 1;
+            peer->say({static_cast<uint8_t>(i)});
+            EXPECT_FALSE(await(network, Kind::Received).empty());
+        }
+    fails = true;
+    const Peer second(SOCK_STREAM, network.portOf(streams)), third(SOCK_STREAM, network.portOf(streams));
+    EXPECT_EQ(await(network, Kind::Opened, 2).size(), 2u);
+    EXPECT_EQ(network.failures(), 3u);
 }
 
 TEST_F(NetworkTest, DatagramsGoToWhomeverTheyAreFor) {
