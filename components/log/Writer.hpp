@@ -17,9 +17,9 @@ namespace insonify::log {
  *      const size_t ping = log->addStream<types::Sonar>("sonar.ping");
  *      log->write(ping, received, sample);
  *
- *  Samples gather in memory and go to the file with flush(), close(), or when some megabytes have come together. A
- *  write that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole; after
- *  it the writer takes nothing more, and kept() tells how much that is. For one thread. */
+ *  Samples gather in memory and go to the file with flush(), close(), or when a megabyte has come together. A write
+ *  that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole. After it
+ * the writer takes nothing more until next(), and kept() is the number of samples that are in files. For one thread. */
 class Writer {
 public:
     virtual ~Writer() = default;
@@ -48,8 +48,10 @@ public:
 
     virtual void flush() = 0;  ///< Hands all samples to the system: they survive the end of this process.
     virtual void close() = 0;  ///< Flushes, ends the file. Nothing may be written after it.
-    /** Closes and goes on in another file, with the same streams. Throws as createLog and close(). */
+    /** Closes and goes on in another file, with the same streams; after a write that failed without what had not been
+     *  flushed, and again where next() itself has failed. Throws as createLog and close(). */
     virtual void next(std::filesystem::path path) = 0;
+    virtual bool isOpen() const = 0;  ///< Not after a write that failed.
     virtual const std::filesystem::path& path() const = 0;
     virtual uint64_t size() const = 0;  ///< Of the file, with what is not flushed [B].
     virtual uint64_t kept() const = 0;  ///< Samples that were flushed, in all files [1].

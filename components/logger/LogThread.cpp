@@ -1,14 +1,26 @@
 #include "components/logger/LogThread.hpp"
 
-#include <chrono>
+#include <utility>
 
 namespace insonify::logger {
+namespace {
 
-LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period)
+constexpr std::chrono::seconds retry_period{1};
+
+/** x.1.log of x.0.log, and of x.log. */
+std::filesystem::path sequelOf(const std::filesystem::path& log) {
+    if (sequenceNumber(log)) return nextInSequence(log);
+    return log.parent_path() / (log.stem().string() + ".1" + log.extension().string());
+}
+
+}  // namespace
+
+LogThread::LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period, AtFailure at_failure)
     : log_(log),
       rotation_(rotation),
       kept_before_(log.kept()),
       flush_period_(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(flush_period))),
+      at_failure_(at_failure),
       ring_(capacity),
       thread_(&LogThread::run, this) {}
 
@@ -55,9 +67,17 @@ void LogThread::tellFailure() {
                                          : why + "; " + std::to_string(lost) + " samples did not reach it");
 }
 
+LogHealth LogThread::health() const {
+    std::lock_guard lock(mutex_);
+    return health_;
+}
+
 void LogThread::run() {
     try {
         writeAll();
+        next_try_ = {};
+        if (health_.fails) tryAgain();
+        if (health_.fails) throw std::runtime_error(health_.failure);
         log_.flush();
     } catch (const std::exception& error) {
         std::lock_guard lock(mutex_);
@@ -70,17 +90,13 @@ void LogThread::run() {
 
 void LogThread::writeAll() {
     std::unique_lock lock(mutex_);
-    Clock::time_point next_flush = Clock::now() + flush_period_;
+    next_flush_ = Clock::now() + flush_period_;
     while (true) {
-        work_.wait_until(lock, next_flush, [&] { return count_ > 0 || ending_; });
+        work_.wait_until(lock, next_flush_, [&] { return count_ > 0 || ending_; });
         if (count_ == 0 && ending_) return;
         const bool has_entry = count_ > 0;
         lock.unlock();
-        if (has_entry) write(ring_[first_]);
-        if (Clock::now() >= next_flush) {
-            log_.flush();
-            next_flush = Clock::now() + flush_period_;
-        }
+        work(has_entry ? &ring_[first_] : nullptr);
         lock.lock();
         if (!has_entry) continue;
         first_ = (first_ + 1) % ring_.size();
@@ -89,9 +105,26 @@ void LogThread::writeAll() {
     }
 }
 
+void LogThread::work(Entry* entry) {
+    if (health_.fails) tryAgain();
+    try {
+        if (entry) health_.fails ? pass(*entry) : write(*entry);
+        entry = nullptr;  // a flush that fails is not of this entry
+        if (Clock::now() < next_flush_) return;
+        next_flush_ = Clock::now() + flush_period_;
+        if (!health_.fails) log_.flush();
+    } catch (const std::exception& error) {
+        const bool is_refused = log_.isOpen();  // the file is there, and cannot hold this
+        if (at_failure_ == AtFailure::Throw || (is_refused && (!entry || entry->declaration))) throw;
+        is_refused ? refuse(*entry, error.what()) : beginOutage(error.what());
+        if (entry && !is_refused) pass(*entry);
+    }
+}
+
 void LogThread::write(Entry& entry) {
-    if (const Declare declare = std::exchange(entry.declaration, nullptr)) {
-        declare(log_);
+    if (entry.declaration) {
+        entry.declaration(log_);
+        entry.declaration = nullptr;
         return;
     }
     rotation_.before(entry.received);
@@ -99,7 +132,52 @@ void LogThread::write(Entry& entry) {
         log_.write(entry.stream, entry.received, *types::carriedSample(sample));
     };
     std::visit(write, entry.sample);
+    pass(entry);
+}
+
+void LogThread::pass(Entry& entry) {
+    if (entry.declaration) return pending_.push_back(std::exchange(entry.declaration, nullptr));
+    ++handed_;
     entry.sample = types::AnySample{};  // a large sample goes back to its writer's pool
+}
+
+void LogThread::refuse(Entry& entry, const std::string& why) {
+    entry.sample = types::AnySample{};
+    std::lock_guard lock(mutex_);
+    ++health_.refused;
+    health_.failure = why;
+}
+
+void LogThread::beginOutage(const std::string& why) {
+    const bool is_empty = kept_at_opening_ == log_.kept();  // goes on in the same file, which holds nothing
+    sequel_ = is_empty ? log_.path() : sequelOf(log_.path());
+    next_try_ = Clock::now() + retry_period;
+    std::lock_guard lock(mutex_);
+    ++health_.outages;
+    health_.fails = true;
+    health_.failure = why;
+}
+
+void LogThread::tryAgain() {
+    if (Clock::now() < next_try_) return;
+    next_try_ = Clock::now() + retry_period;
+    std::string failure;
+    try {
+        log_.next(sequel_);
+        for (; !pending_.empty(); pending_.erase(pending_.begin())) pending_.front()(log_);
+        log_.flush();
+    } catch (const std::exception& error) {
+        failure = error.what();
+    }
+    kept_at_opening_ = log_.kept();
+    std::lock_guard lock(mutex_);
+    health_.fails = !failure.empty();
+    if (health_.fails) {
+        health_.failure = failure;
+    } else {
+        health_.lost = handed_ - (log_.kept() - kept_before_);
+        health_.file = log_.path();
+    }
 }
 
 }  // namespace insonify::logger

@@ -1,5 +1,7 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -11,6 +13,20 @@
 
 namespace insonify::logger {
 
+/** What a log does when its file cannot be written: it throws, or loses samples, and goes on in another file as soon as
+ *  that can be written. */
+enum class AtFailure { Throw, Heal };
+
+/** How a log that heals is. */
+struct LogHealth {
+    uint64_t outages = 0;        ///< Times that the file could not be written.
+    uint64_t lost = 0;           ///< Samples of outages that are over.
+    uint64_t refused = 0;        ///< Samples that the format cannot hold.
+    bool fails = false;          ///< There is an outage.
+    std::string failure;         ///< The reason of the last.
+    std::filesystem::path file;  ///< In which the log has gone on after the last.
+};
+
 /** Declares a stream. */
 using Declare = std::function<size_t(log::Writer&)>;
 
@@ -18,12 +34,14 @@ using Declare = std::function<size_t(log::Writer&)>;
  *
  *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
  *  waits for room. What fails with the file is thrown once, by the next push() or by finish(), with the number of
- *  samples that were pushed and are not in the file. */
+ *  samples that were pushed and are not in the file. Where it is to heal instead, samples are lost until the log can go
+ *  on in its next file, x.0.log in x.1.log, which is tried each second; finish() throws when it cannot to the end. */
 class LogThread {
 public:
     /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
      *  above 0. */
-    LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period);
+    LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period,
+              AtFailure at_failure = AtFailure::Throw);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
@@ -43,6 +61,7 @@ public:
     /** Writes and flushes what waits, and ends the thread. Throws std::runtime_error if the file has failed and push()
      *  has not told it. */
     void finish();
+    LogHealth health() const;
 
 private:
     struct Entry {
@@ -58,6 +77,11 @@ private:
     void run();
     void writeAll();
     void write(Entry& entry);
+    void work(Entry* entry);  ///< One turn of the thread: an entry, where there is one, and what is due.
+    void pass(Entry& entry);  ///< Lets a sample go, written or lost; a stream waits for the next file.
+    void refuse(Entry& entry, const std::string& why);
+    void beginOutage(const std::string& why);
+    void tryAgain();
     [[noreturn]] void tellFailure();
 
     log::Writer& log_;
@@ -65,7 +89,14 @@ private:
     const uint64_t kept_before_;  ///< Samples that were in the log when the thread began.
     uint64_t pushed_ = 0;
     std::chrono::nanoseconds flush_period_;
-    std::mutex mutex_;
+    const AtFailure at_failure_;
+    uint64_t handed_ = 0;           ///< Samples for the file so far, lost ones too.
+    uint64_t kept_at_opening_ = 0;  ///< Samples in files when the present file was opened.
+    std::vector<Declare> pending_;  ///< Streams that came in an outage.
+    std::filesystem::path sequel_;  ///< Where the log is to go on.
+    Clock::time_point next_try_, next_flush_;
+    LogHealth health_;  ///< Changed by the thread, with the mutex.
+    mutable std::mutex mutex_;
     std::condition_variable work_, room_;
     std::vector<Entry> ring_;
     size_t first_ = 0, count_ = 0;  ///< The thread owns ring_[first_] while count_ > 0; push() the entries after them.

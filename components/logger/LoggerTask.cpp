@@ -86,8 +86,30 @@ framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framewo
 }
 
 std::vector<std::string> LoggerTask::notices() const {
-    if (!inputs_.empty()) return {};
-    return {"nothing is connected to it: the log will be empty"};
+    std::vector<std::string> all;
+    if (inputs_.empty()) all.emplace_back("nothing is connected to it: the log will be empty");
+    if (health_.lost > 0)
+        all.push_back(fmt::format("{} samples are in no file, of {} times that it could not be written; the last: {}",
+                                  health_.lost, health_.outages, health_.failure));
+    if (health_.refused > 0)
+        all.push_back(fmt::format("{} samples are in no file, which cannot hold them; the last: {}", health_.refused,
+                                  health_.failure));
+    return all;
+}
+
+bool LoggerTask::heals() const { return activity().realtime() && environment().wall_clock; }
+
+void LoggerTask::followHealth() {
+    const LogHealth before = std::exchange(health_, thread_->health());
+    if (health_.refused > before.refused && before.refused == 0) warn("a sample is passed over: " + health_.failure);
+    if (health_.fails) {
+        if (state() != framework::TaskState::RunTimeError)
+            error(health_.failure + "; samples are lost until a file can be written");
+    } else if (before.fails || health_.outages > before.outages) {
+        warn(fmt::format("records again, in {}; {} samples are lost", health_.file.string(),
+                         health_.lost - before.lost));
+        if (state() == framework::TaskState::RunTimeError) recover();
+    }
 }
 
 void LoggerTask::checkInputs() const {
@@ -164,8 +186,10 @@ bool LoggerTask::startHook() {
     recorded_changes_ = 0;
     recordProperties();
     constexpr double never = 1e9;  // [s]
+    health_ = {};
     thread_.emplace(*log_, *rotation_, static_cast<size_t>(config->queue),
-                    environment().is_shard ? never : config->flush_period);
+                    environment().is_shard ? never : config->flush_period,
+                    heals() ? AtFailure::Heal : AtFailure::Throw);
     return true;
 }
 
@@ -174,7 +198,13 @@ void LoggerTask::recordProperties() {
     if (!properties_ || changes == recorded_changes_) return;
     recorded_changes_ = changes;
     const std::vector<types::TaskRecord> records = environment().records();
-    properties_->record(records, now(), runMetadata(), aliasesOf(*this, records), framework::taskModels(*this));
+    try {
+        properties_->record(records, now(), runMetadata(), aliasesOf(*this, records), framework::taskModels(*this));
+    } catch (const std::exception& failure) {
+        if (!heals()) throw;
+        warn(fmt::format("{} ends here: {}", config->property_file, failure.what()));
+        properties_.reset();
+    }
 }
 
 void LoggerTask::updateHook() {
@@ -192,6 +222,7 @@ void LoggerTask::updateHook() {
             thread_->push(*input.kept.number, received, std::move(sample));
         }
     });
+    followHealth();
 }
 
 void LoggerTask::stopHook() {
@@ -199,7 +230,10 @@ void LoggerTask::stopHook() {
         std::optional<LogThread>& thread;
         ~End() { thread.reset(); }
     } end{thread_};
-    if (thread_) thread_->finish();
+    if (thread_) {
+        thread_->finish();
+        health_ = thread_->health();
+    }
     recordProperties();
 }
 

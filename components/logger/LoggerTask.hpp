@@ -36,8 +36,10 @@ namespace insonify::logger {
  *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
  *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its
  *  index by cleanup. A file slower than the samples makes this task wait, and then its ports' buffers count what they
- *  lose. A disk that is full or broken ends in Exception, which tells how many samples are lost; what was flushed
- *  stays. */
+ *  lose. In realtime a disk that is full or broken is RunTimeError, in which samples are lost and counted, until the
+ * log goes on in its next file, which is tried each second; a sample that the format cannot hold is passed over.
+ * Outside of realtime, where nothing else may be lost, both end in Exception, which states how many samples are lost.
+ * What was flushed stays. */
 class LoggerTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -60,6 +62,7 @@ private:
     bool propertiesHook() override;
     bool startHook() override;
     void updateHook() override;
+    void errorHook() override { updateHook(); }
     void stopHook() override;
     void cleanupHook() override;
     void checkInputs() const;
@@ -68,6 +71,8 @@ private:
     std::filesystem::path makePath(const std::string& file) const;
     /** Whether no other logger of the deployment writes the same property file and comes first. */
     bool logsProperties();
+    bool heals() const;
+    void followHealth();
     void recordProperties();            ///< What of all tasks' properties has changed since the last time.
     log::Metadata runMetadata() const;  ///< What all streams of the run carry.
     /** Of the log's next stream, with the plans of the moment; `frequency` is its sonar's [kHz]. */
@@ -79,6 +84,7 @@ private:
     std::optional<PropertyLog> properties_;
     uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
     std::optional<LogThread> thread_;
+    LogHealth health_;                                        ///< As reported.
     std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
     size_t declared_ = 0;                                     ///< Streams in the log.
 };

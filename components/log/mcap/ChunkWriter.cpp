@@ -9,7 +9,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-constexpr size_t chunk_size = 4 << 20;                                        // [B]
+constexpr size_t chunk_size = 1 << 20;                                        // [B]
 constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // of one that is not compressed [B]
 constexpr size_t max_ids = std::numeric_limits<uint16_t>::max();
 
@@ -278,6 +278,11 @@ void ChunkWriter::close() {
     append(end);
     append(summaryBytes());
     file_->close();
+}
+
+void ChunkWriter::discard() {
+    for (size_t channel = 0; channel < index_.size(); ++channel) summary_.counts[channel] -= index_[channel].size();
+    openChunk();
 }
 
 void ChunkWriter::next(std::filesystem::path path) {

@@ -33,9 +33,10 @@ struct FileSummary {
 
 /** Writes an MCAP file of the profile "ros2": chunks that are not compressed, with checksums and indices.
  *
- *  Messages gather in memory and go to the file in chunks of four megabytes, or with flush(). A file that is cut off
+ *  Messages gather in memory and go to the file in chunks of a megabyte, or with flush(). A file that is cut off
  *  anywhere keeps its whole chunks readable. A write that fails throws std::runtime_error with the system's reason and
- *  leaves what was written before; after it the writer takes nothing more. For one thread. */
+ *  leaves what was written before; after it the writer takes nothing more until next(). For one
+ *  thread. */
 class ChunkWriter {
 public:
     /** Throws ConfigError as OutputFile. */
@@ -52,9 +53,12 @@ public:
 
     void flush();  ///< Ends the chunk: its messages survive the end of this process.
     void close();  ///< Flushes, writes the summary. Nothing may be written after it.
+    /** Forgets the messages that are not in the file, after a write that failed. */
+    void discard();
     /** Closes and goes on in another file, with the same schemas, channels and metadata. */
     void next(std::filesystem::path path);
 
+    bool isOpen() const { return file_ && file_->isOpen(); }  ///< Not after a write that failed.
     const std::filesystem::path& path() const { return summary_.path; }
     uint64_t size() const { return file_->size() + chunk_.size(); }  ///< With what is not flushed [B].
     uint64_t kept() const { return kept_; }                          ///< Messages in all files [1].
@@ -76,7 +80,6 @@ private:
         std::string name;
     };
 
-    bool isOpen() const { return file_ && file_->isOpen(); }
     void open();
     void openChunk();
     void closeChunk(ChunkIndex& index);

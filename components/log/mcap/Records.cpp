@@ -45,8 +45,7 @@ std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> st
         if (chunk.compression != "lz4" && chunk.compression != "zstd")
             throw FormatError(chunk.start,
                               "a chunk is compressed by '" + chunk.compression + "'; lz4 and zstd are read");
-        if (chunk.size > max_bytes)
-            throw FormatError(chunk.start, "a compressed chunk of more than 1 GiB is not read");
+        if (chunk.size > max_bytes) throw FormatError(chunk.start, "a compressed chunk of more than 1 GiB is not read");
         room.resize(chunk.size);
         const size_t size = chunk.compression == "lz4" ? unlz4(stored, room) : unzstd(stored, room);
         if (size != chunk.size)

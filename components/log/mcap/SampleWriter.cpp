@@ -197,7 +197,8 @@ void SampleWriter::close() {
 
 void SampleWriter::next(std::filesystem::path path) {
     out_.close();
-    bag_.add(out_.summary());
+    out_.discard();
+    if (out_.path() != path) bag_.add(out_.summary());  // else next() has failed before
     out_.next(std::move(path));
     bag_.write(out_);
 }

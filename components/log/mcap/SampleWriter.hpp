@@ -37,6 +37,7 @@ public:
     void close() override;
     void next(std::filesystem::path path) override;
 
+    bool isOpen() const override { return out_.isOpen(); }
     const std::filesystem::path& path() const override { return out_.path(); }
     uint64_t size() const override { return out_.size(); }
     uint64_t kept() const override { return out_.kept(); }

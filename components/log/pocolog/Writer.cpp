@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "components/log/TypeNames.hpp"
 #include "components/log/pocolog/Metadata.hpp"
@@ -187,6 +188,8 @@ void Writer::close() {
 
 void Writer::next(std::filesystem::path path) {
     close();
+    taken_ -= std::exchange(unflushed_, 0);
+    buffer_.clear();
     path_ = std::move(path);
     open();
 }

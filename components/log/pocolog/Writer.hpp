@@ -45,6 +45,7 @@ public:
     void close() override;  ///< Writes the index, too.
     void next(std::filesystem::path path) override;
 
+    bool isOpen() const override { return file_ && file_->isOpen(); }
     const std::filesystem::path& path() const override { return path_; }
     uint64_t size() const override { return flushed_ + buffer_.size(); }
     uint64_t kept() const override { return taken_ - unflushed_; }
@@ -58,7 +59,6 @@ private:
 
     static Metadata standardMetadata(const std::string& name, const std::string& cxx_type);
     void open();
-    bool isOpen() const { return file_ && file_->isOpen(); }  ///< Not after a failure.
     size_t beginSample();
     void endSample(size_t stream, size_t start, types::Time received, types::Time time);
     void append(const void* data, size_t size);
