@@ -58,6 +58,7 @@ public:
     }
     void close() override { log_->close(); }
     void next(std::filesystem::path path) override { log_->next(std::move(path)); }
+    bool isOpen() const override { return log_->isOpen(); }
     const std::filesystem::path& path() const override { return log_->path(); }
     uint64_t size() const override { return log_->size(); }
     uint64_t kept() const override { return log_->kept(); }

@@ -109,8 +109,6 @@ public:
         : log_(log::createLog(file)), config_(configFor(file.filename())) {
         declare("a.texts");
     }
-    ~Pushing() { close(); }
-
     void declare(const char* name) {
         thread_.declare([this, name](log::Writer& file) { return file.add(text_.index(), name, {}); });
     }
@@ -181,7 +179,11 @@ TEST(LogFailureTest, ADiskThatStaysFullIsAnErrorAtTheEndAndHoldsUpNobody) {
     Pushing pushing(folder / ("x.0" + extension));
     const bool healed_twice = pushing.until(0, [&] { return pushing.health().outages == 3; });
     pushing.finish();
-    pushing.close();
+    try {
+        pushing.close();
+    } catch (const std::exception&) {
+        // The index may not fit; what was flushed stays.
+    }
     size_t kept = 0, files = 0;
     for (; std::filesystem::exists(folder / ("x." + std::to_string(files) + extension)); ++files)
         kept += textsIn(folder / ("x." + std::to_string(files) + extension));
