@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/Placement.hpp"
 #include "types/Mount.hpp"
 
 namespace insonify::scene {
@@ -67,6 +68,7 @@ struct BathymetryConfig {
 struct SceneConfig {
     std::string file;
     std::optional<BathymetryConfig> bathymetry;
+    std::optional<Placement> placement;
     Mount mount;
     std::optional<double> water_surface, pose_timeout, extrapolate;
     std::map<std::string, Acoustics> materials;
@@ -82,6 +84,8 @@ struct SceneConfig {
                     "the sea floor of a survey, of which the part around the vehicle is there; absent: "
                     "what file has"},
               self.bathymetry);
+        visit(Field{"placement", "", "where the file's scene lies in the world; absent: as the file has it"},
+              self.placement);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"pose_timeout", "s",

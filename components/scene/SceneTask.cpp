@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "components/framework/Activity.hpp"
+#include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
 
 namespace insonify::scene {
@@ -28,11 +31,13 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
 std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     const bool has_survey = config->bathymetry.has_value();
-    if (!scene_ || scene_file_ != file || scene_has_survey_ != has_survey) {
+    if (!scene_ || scene_file_ != file || scene_has_survey_ != has_survey || scene_placement_ != config->placement) {
         if (config->file.empty() && !has_survey)
             throw types::ConfigError("", name() + ".file",
                                      "is missing; give the path of a .gltf, .glb, .world or .sdf file, or bathymetry");
         if (!config->file.empty()) scene_ = sharedScene(file);
+        if (!config->file.empty() && config->placement)
+            scene_ = std::make_shared<const Scene>(placed(*scene_, *config->placement));
         if (has_survey) {
             Scene scene;
             scene.geometry = std::make_shared<const types::Geometry>();
@@ -42,6 +47,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
         }
         scene_file_ = file;
         scene_has_survey_ = has_survey;
+        scene_placement_ = config->placement;
     }
     return scene_;
 }
@@ -92,7 +98,20 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
 }
 
 std::vector<std::string> SceneTask::notices() const {
-    return geometry_ ? geometry_->notices : std::vector<std::string>{};
+    std::vector<std::string> all = geometry_ ? geometry_->notices : std::vector<std::string>{};
+    if (!lay_.empty()) all.push_back(lay_);
+    return all;
+}
+
+/** How the scene lies, for poses of others, whose frame may be another, and for a scene that is placed. */
+std::string SceneTask::layText(const Scene& scene) const {
+    const auto given = framework::upstreamValue(pose, {"world_frame"});
+    const std::string* const name = given ? std::get_if<std::string>(&*given) : nullptr;
+    if (config->file.empty() || (!name && !config->placement)) return "";
+    auto frame = types::WorldFrame::AsIs;
+    for (size_t i = 0; name && i < std::size(types::EnumNames<types::WorldFrame>::names); ++i)
+        if (types::EnumNames<types::WorldFrame>::names[i] == *name) frame = static_cast<types::WorldFrame>(i);
+    return layOf(scene, config->placement.value_or(Placement{}), frame);
 }
 
 bool SceneTask::configureHook() {
@@ -107,6 +126,7 @@ bool SceneTask::configureHook() {
     placeTargets(*scene, diagnostics);
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
+    lay_ = layText(*scene);
     part_count_ = 0;
     for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     std::ranges::sort(movables_, {}, &Movable::node);
@@ -180,9 +200,10 @@ void SceneTask::updateHook() try {
     if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
     if (is_new) newest_ = body.time, arrived_ = now(), newest_came_ = true;
     if (is_new && odd_lengths_.isDue(types::isOddlyLong(body)))
-        warn(fmt::format("{}: the orientation is a quaternion of length {:.4g}, which is made 1: are its parts degrees, or "
-                         "in another order?",
-                         pose.path(), glm::length(body.orientation)));
+        warn(fmt::format(
+            "{}: the orientation is a quaternion of length {:.4g}, which is made 1: are its parts degrees, or "
+            "in another order?",
+            pose.path(), glm::length(body.orientation)));
     if (const std::string stale = staleness(); !stale.empty()) return lackPose(stale);
     is_stale_ = false;
     if (!is_new) return movables_good ? void() : error(name() + unusable);

@@ -75,6 +75,7 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
+    std::string layText(const Scene& scene) const;
     std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
     /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
@@ -86,6 +87,8 @@ private:
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
+    mutable std::optional<Placement> scene_placement_;
+    std::string lay_;                        ///< How the scene lies; empty: as everywhere.
     mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
     types::GeometryPtr geometry_;            ///< Of the scene's file, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
@@ -95,12 +98,12 @@ private:
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;
-    types::Time newest_;                  ///< Stamp of the newest usable pose; the start before the first.
-    types::Time arrived_;                 ///< When that pose came; the start before the first.
+    types::Time newest_;                      ///< Stamp of the newest usable pose; the start before the first.
+    types::Time arrived_;                     ///< When that pose came; the start before the first.
     types::RecurringDiagnostic odd_lengths_;  ///< Of the body's quaternions.
-    bool newest_came_ = false;            ///< A pose of the body has come since the start.
-    bool waiting_is_told_ = false;        ///< That none has.
-    std::atomic<bool> is_stale_ = false;  ///< In error for want of poses, not for what is wrong with one.
+    bool newest_came_ = false;                ///< A pose of the body has come since the start.
+    bool waiting_is_told_ = false;            ///< That none has.
+    std::atomic<bool> is_stale_ = false;      ///< In error for want of poses, not for what is wrong with one.
 };
 
 /** Makes the tasks of this folder known to deployments. */

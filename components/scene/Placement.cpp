@@ -1,0 +1,71 @@
+#include "components/scene/Placement.hpp"
+
+#include <fmt/format.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <utility>
+
+#include "components/scene/Gltf.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::scene {
+namespace {
+
+/** The turn that takes an axis of the file to z. */
+glm::dmat4 turnTo(UpAxis up) {
+    switch (up) {
+        case UpAxis::X: return {0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+        case UpAxis::Y: return z_up_from_y_up;
+        default: return glm::dmat4(1);
+    }
+}
+
+glm::dmat4 zUpFromFile(const Scene& scene, const Placement& placement) {
+    return placement.up ? turnTo(*placement.up) : scene.z_up_from_file;
+}
+
+glm::dmat4 worldFromZUp(const Placement& placement) {
+    const types::Axes axes{placement.frame};
+    const glm::dmat3 frame(axes.rockFromWorld({1, 0, 0}), axes.rockFromWorld({0, 1, 0}), axes.rockFromWorld({0, 0, 1}));
+    const glm::dmat4 moved = glm::translate(glm::dmat4(1), placement.position);
+    return glm::rotate(moved, types::radians(placement.yaw_deg), {0, 0, 1}) * glm::dmat4(frame);
+}
+
+/** "x", "-z", or the direction's numbers where it is along no axis. */
+std::string nameOf(const glm::dvec3& direction) {
+    constexpr double near = 1 - 1e-9;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(direction[axis]) > near)
+            return std::string(direction[axis] < 0 ? "-" : "") + static_cast<char>('x' + axis);
+    return fmt::format("({:.3g}, {:.3g}, {:.3g})", direction.x, direction.y, direction.z);
+}
+
+}  // namespace
+
+Scene placed(const Scene& scene, const Placement& placement) {
+    const glm::dmat4 z_up_from_file = zUpFromFile(scene, placement);
+    const glm::dmat4 placed_from_scene = worldFromZUp(placement) * z_up_from_file * glm::inverse(scene.z_up_from_file);
+    Scene result = scene;
+    auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+    for (types::Object& object : geometry->objects)
+        object.world_from_object = placed_from_scene * object.world_from_object;
+    for (Node& node : result.nodes)
+        if (node.parent < 0) node.parent_from_node = placed_from_scene * node.parent_from_node;
+    result.geometry = std::move(geometry);
+    result.z_up_from_file = z_up_from_file;
+    return result;
+}
+
+std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses) {
+    const glm::dmat3 file_from_world(glm::inverse(worldFromZUp(placement) * zUpFromFile(scene, placement)));
+    const auto name = [&](const glm::dvec3& world) { return nameOf(file_from_world * world); };
+    std::string text = fmt::format("the file's {} is north, its {} west, its {} up", name({1, 0, 0}), name({0, 1, 0}),
+                                   name({0, 0, 1}));
+    if (poses == types::WorldFrame::AsIs) return text;
+    return text + fmt::format("; x of the poses, in {}, is along its {}, y along its {}",
+                              types::EnumNames<types::WorldFrame>::names[static_cast<size_t>(poses)],
+                              name(types::Axes{poses}.rockFromWorld({1, 0, 0})),
+                              name(types::Axes{poses}.rockFromWorld({0, 1, 0})));
+}
+
+}  // namespace insonify::scene

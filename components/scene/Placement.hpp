@@ -1,0 +1,52 @@
+#pragma once
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+#include "components/scene/Scene.hpp"
+#include "types/Describe.hpp"
+#include "types/WorldFrame.hpp"
+
+namespace insonify::scene {
+
+/** The axis of a file that points up. */
+enum class UpAxis { X, Y, Z };
+
+/** Where a scene lies in the world of the poses: x north, y west, z up. */
+struct Placement {
+    glm::dvec3 position{0};
+    double yaw_deg = 0;
+    types::WorldFrame frame = types::WorldFrame::AsIs;
+    std::optional<UpAxis> up;
+
+    bool operator==(const Placement&) const = default;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"position", "m", "of the file's origin in the world: north, west, up", -1e7, 1e7}, self.position);
+        visit(Field{"yaw_deg", "deg", "turn of the scene about the vertical at its origin, positive from north to west",
+                    -360, 360},
+              self.yaw_deg);
+        visit(Field{"frame", "",
+                    "axes in which the scene was made, its z being up: as_is: x north, y west; enu, as ROS has it: x "
+                    "east, y "
+                    "north; ned: x north, y east, z down"},
+              self.frame);
+        visit(Field{"up", "", "axis of the file that points up; absent: y of glTF, z of SDF"}, self.up);
+    }
+};
+
+/** The scene at another place. Meshes are shared; nodes that poses move are affected by `up` alone. */
+Scene placed(const Scene& scene, const Placement& placement);
+
+/** How a scene lies, in words: "the file's x is north, its -z west, its y up". `poses`: the axes of the poses as they
+ * are sent, of which x is named where they are not the world's. */
+std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses);
+
+}  // namespace insonify::scene
+
+template <>
+struct insonify::types::EnumNames<insonify::scene::UpAxis> {
+    static constexpr std::string_view names[] = {"x", "y", "z"};
+};
