@@ -67,9 +67,6 @@ inline bool isUsable(const Pose& pose) {
            std::isfinite(length) && length > 1e-6;
 }
 
-/** True where the orientation's length is more than 1 % off 1: its parts may be degrees, or in another order. */
-inline bool isOddlyLong(const Pose& pose) { return std::abs(glm::length(pose.orientation) - 1) > 0.01; }
-
 /** Sets position and orientation to what they are between two poses, or whatever has both: position linear,
  *  orientation by slerp the shorter way. Share 0 is `from`, 1 is `to` [1]. */
 template <class Placed>

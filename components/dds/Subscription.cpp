@@ -10,6 +10,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -124,7 +125,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             newest_ = read_.time;
             newest_came_ = now;
             newest_sender_ = sender_;
-            if (types::isOddlyLong(read_))
+            if (types::isOddlyLong(read_.orientation))
                 odd_.add(topic_ + ": the quaternion's length is not 1: are its parts degrees, or of another order",
                          fmt::format("; its length is {:.4g}", glm::length(read_.orientation)));
             read_.orientation = glm::normalize(read_.orientation);

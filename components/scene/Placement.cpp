@@ -35,7 +35,7 @@ glm::dmat4 worldFromZUp(const Placement& placement) {
 std::string nameOf(const glm::dvec3& direction) {
     constexpr double near = 1 - 1e-9;
     for (int axis = 0; axis < 3; ++axis)
-        if (std::abs(direction[axis]) > near)
+        if (glm::abs(direction[axis]) > near)
             return std::string(direction[axis] < 0 ? "-" : "") + static_cast<char>('x' + axis);
     return fmt::format("({:.3g}, {:.3g}, {:.3g})", direction.x, direction.y, direction.z);
 }

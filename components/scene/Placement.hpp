@@ -17,7 +17,7 @@ struct Placement {
     glm::dvec3 position{0};
     double yaw_deg = 0;
     types::WorldFrame frame = types::WorldFrame::AsIs;
-    std::optional<UpAxis> up;
+    std::optional<UpAxis> up = {};
 
     bool operator==(const Placement&) const = default;
 

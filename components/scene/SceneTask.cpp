@@ -12,6 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -76,7 +77,7 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     }
     const std::string doc = "place of " + node + " in the world";
     auto made = std::make_unique<framework::InputPort<types::Pose>>(this, port, doc, framework::Need::Optional);
-    return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}}).port.get();
+    return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}, {}}).port.get();
 }
 
 std::unique_ptr<Bathymetry> SceneTask::openSurvey() const {
@@ -199,7 +200,7 @@ void SceneTask::updateHook() try {
     const bool is_new = pose.takeNext(body);
     if (is_new && !isUsable(body)) return is_stale_ = false, error(pose.path() + unusable);
     if (is_new) newest_ = body.time, arrived_ = now(), newest_came_ = true;
-    if (is_new && odd_lengths_.isDue(types::isOddlyLong(body)))
+    if (is_new && odd_lengths_.isDue(types::isOddlyLong(body.orientation)))
         warn(fmt::format(
             "{}: the orientation is a quaternion of length {:.4g}, which is made 1: are its parts degrees, or "
             "in another order?",
