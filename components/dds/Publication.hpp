@@ -136,7 +136,7 @@ public:
         constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
         if (largest_ <= usual_buffer || std::exchange(size_is_told_, true)) return "";
         const bool can_shrink =
-            std::is_same_v<Sample, types::SonarPtr> && options_.messages.dtype == ros::ImageType::Float32;
+            std::is_same_v<Sample, types::Sonar> && options_.messages.dtype == ros::ImageType::Float32;
         return fmt::format(
             "{}: its messages of {:.0f} kB are larger than Linux's receive buffers ({:.0f} kB), so that readers "
             "with Fast DDS lose most of them; {}raise net.core.rmem_default on their machine, see "

@@ -180,7 +180,7 @@ TEST_F(PublisherTaskTest, AMessageThatFastDdsWouldLoseIsWarnedOfOnce) {
     EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(256, 500)), !told.empty(); }));
     publishing.send(pingOf(256, 500));
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("/large: its messages of 512 kB are larger than Linux's receive buffers (213 kB)"));
+    EXPECT_THAT(told[0], HasSubstr("/large: its messages of 520 kB are larger than Linux's receive buffers (213 kB)"));
     EXPECT_THAT(told[0], HasSubstr("take dtype: uint8, or raise"));
 }
 
