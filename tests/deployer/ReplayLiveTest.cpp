@@ -43,7 +43,7 @@ protected:
                        const std::function<void(log::Writer&, size_t)>& tell) const {
         ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4", "--set", first}).code, 0);
         ASSERT_EQ(call({"run", "wall.yml", "--out", "other", "--pings", "4", "--set", second}).code, 0);
-        ASSERT_EQ(call({"log", "cut", "out/wall.0.log", "--until", "1.15", "--to", "a.0.log"}).code, 0);
+        ASSERT_EQ(call({"log", "cut", "out/wall.0.log", "--until", "0.15", "--to", "a.0.log"}).code, 0);
         ASSERT_EQ(call({"log", "cut", "other/wall.0.log", "--from", "0.15", "--to", "b.0.log"}).code, 0);
         fs::create_directory(folder_ / "changed");
         log::copyLog({folder_ / "a.0.log", folder_ / "b.0.log"}, folder_ / "changed/wall.0.log");

@@ -63,8 +63,8 @@ public:
         uint8_t state = packetOf(4)[20];
         command_ = commandOf(settings);
         send(19, command_);
-        constexpr int patience = 10;  // packets
-        for (int i = 0; i < patience && !mcgillTakes(state); ++i) state = packetOf(4)[20];
+        constexpr int max_packets = 10;
+        for (int i = 0; i < max_packets && !mcgillTakes(state); ++i) state = packetOf(4)[20];
         return mcgillTakes(state) && mcgillTakes(packetOf(4)[20]);  // asked again before the first line
     }
     /** Turns the head round, with the head command of one byte. */
