@@ -141,7 +141,7 @@ std::optional<FanFrame> ArisFile::read() {
     found.ping.time = timeOf(header);
     setResolution(shape.period * shape.speed / 2, shape.speed, found.ping);
     std::vector<double> bearings;
-    for (const float bearing : shape.bearings) bearings.push_back(types::radians(static_cast<double>(bearing)));
+    for (const double bearing : shape.bearings) bearings.push_back(types::radians(bearing));
     setBins(bearings, shape.first, std::span(frame).subspan(aris::header), found.ping);
     found.window_start = found.ping.binStart(shape.first);
     found.frequency_khz = shape.frequency_khz;

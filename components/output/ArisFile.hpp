@@ -25,9 +25,9 @@ public:
 private:
     /** What a frame's header states of its samples. */
     struct Shape {
-        std::span<const float> bearings;  ///< [deg]
-        uint32_t first = 0;               ///< Bins before the window.
-        double period = 0, speed = 0;     ///< Of a sample, two-way [s]; of sound [m/s].
+        std::span<const double> bearings;  ///< [deg]
+        uint32_t first = 0;                ///< Bins before the window.
+        double period = 0, speed = 0;      ///< Of a sample, two-way [s]; of sound [m/s].
         double frequency_khz = 0;
     };
 

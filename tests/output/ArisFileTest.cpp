@@ -43,8 +43,8 @@ TEST_F(ArisFileTest, EveryModelHasItsPublishedBearingsFromStarboard) {
         const FanFrame read = this->read(arisFile({frame})).at(0);
         const auto& bearings = read.ping.bearings;
         ASSERT_EQ(bearings.size(), frame.beams());
-        EXPECT_NEAR(bearings.front().deg(), the.starboard_deg, 1e-5);
-        EXPECT_NEAR(bearings.back().deg(), the.port_deg, 1e-5);
+        EXPECT_NEAR(bearings.front().deg(), the.starboard_deg, 1e-12);
+        EXPECT_NEAR(bearings.back().deg(), the.port_deg, 1e-12);
         EXPECT_TRUE(std::ranges::is_sorted(bearings, {}, &types::Angle::rad));
         EXPECT_EQ(read.frequency_khz, the.frequency_khz);
     }
