@@ -6,6 +6,7 @@
 
 #include "components/output/SideScanImage.hpp"
 #include "components/output/Xtf.hpp"
+#include "components/output/XtfFile.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Folder.hpp"
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double ground_range = 12;  ///< Of a wire along the track [m].
 constexpr int lines = output::WaterfallImage::history;
+
+double altitudeOf(int line) { return 7 + 3 * std::sin(line / 40.0); }
 
 /** A vehicle that rises and sinks by 3 m above a wire. Lines begin with the outgoing pulse, the loudest of all. */
 std::vector<char> wireXtf() {
@@ -30,7 +33,7 @@ std::vector<char> wireXtf() {
     std::vector<char> bytes = output::xtfHeader(format, ping);
     for (int i = 0; i < lines; ++i) {
         output::XtfPing record;
-        record.altitude = 7 + 3 * std::sin(i / 40.0);
+        record.altitude = altitudeOf(i);
         record.number = static_cast<uint32_t>(i);
         record.sonar.position = {0.1 * i, 0, -2};  // so that the log has the sonar's poses
         ping.time = {1'700'000'000'000'000 + i * 100'000};
@@ -50,8 +53,11 @@ tasks:
     type: output::SideScanImageTask
     properties: {file: ground_%06d.png, every: 479, scale: code, code_bits: 16, ground_range: {}}
   other: {type: output::SideScanImageTask, properties: {file: fixed_%06d.png, every: 479, scale: code, code_bits: 16, ground_range: {altitude: 7}}}
+  xtf: {type: output::XtfTask, properties: {file: again.xtf}}
 connections:
   - {from: sonar.ping, to: receiver.intensity}
+  - {from: receiver.ping, to: xtf.ping, policy: {type: buffer, size: 64}}
+  - {from: sonar.pose, to: xtf.pose, policy: {type: buffer, size: 64}}
   - {from: receiver.ping, to: ground.ping, policy: {type: buffer, size: 8}}
   - {from: receiver.ping, to: other.ping, policy: {type: buffer, size: 8}}
 )";
@@ -98,6 +104,15 @@ TEST_F(AltitudeRunTest, AReplayHasTheAltitudesOfTheRecording) {
     expectStraight("out/ground_000001.png");
     const auto [least, greatest] = brightestColumns(folder_ / "out/fixed_000001.png", {});
     EXPECT_GT(greatest - least, 30) << "a fixed altitude bends the wire";
+}
+
+TEST_F(AltitudeRunTest, AnXtfFileThatIsWrittenInAReplayHasTheAltitudesOfTheRecording) {
+    ASSERT_EQ(callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"}).code, 0);
+    output::XtfFile file(folder_ / "out/again.xtf");
+    int count = 0;
+    for (auto line = file.next(); line; line = file.next(), ++count)
+        EXPECT_NEAR(line->record.altitude, altitudeOf(count), 1e-6) << count;
+    EXPECT_EQ(count, lines);
 }
 
 TEST_F(AltitudeRunTest, AnExportAlongTheGroundHasTheAltitudesOfTheRecording) {
