@@ -36,7 +36,7 @@ struct Captioned {
 };
 
 /** Two BGR pictures beside each other, with the time of the left one. Fans whose bearings differ by rounding differ in
- *  height: the lower one ends on the background. */
+ *  height: the background fills the rest. */
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture);
 
 }  // namespace insonify::output
