@@ -88,11 +88,39 @@ types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
     return ping;
 }
 
+/** Heights above the bottom over time, of the only stream of ranges. */
+class Altitudes {
+public:
+    explicit Altitudes(log::Reader& log) {
+        const auto holds = [](const log::Stream& stream) { return stream.holds<types::Range>(); };
+        if (std::ranges::count_if(log.streams(), holds) != 1) return;
+        log.forEach<types::Range>(std::ranges::find_if(log.streams(), holds)->name,
+                                  [&](const types::Range& range, const log::SampleRef&) {
+                                      all_[range.time] = range.isKnown() ? range.range : 0;
+                                  });
+    }
+    bool areKnown() const { return !all_.empty(); }
+    /** At this time, the last before, or before all of them the first; not finite: unknown. */
+    double nearestTo(types::Time time) const {
+        const double known = time < all_.begin()->first ? all_.begin()->second : at(time);
+        return known > 0 ? known : types::Range::none;
+    }
+    /** At this time or the last before; 0: unknown. */
+    double at(types::Time time) const {
+        const auto after = all_.upper_bound(time);
+        return after == all_.begin() ? 0 : std::prev(after)->second;
+    }
+
+private:
+    std::map<types::Time, double> all_;
+};
+
 /** Lines of a side-scan as waterfalls: a picture when one is full, when the settings change, and of the last lines. */
 class Waterfalls {
 public:
-    Waterfalls(const output::DisplayConfig& display, fs::path path)
-        : image_(configOf(display)), path_(std::move(path)) {}
+    /** @param altitudes of the lines, which are then along the ground; null: they are in slant range */
+    Waterfalls(const output::DisplayConfig& display, const Altitudes* altitudes, fs::path path)
+        : image_(configOf(display, altitudes != nullptr)), altitudes_(altitudes), path_(std::move(path)) {}
 
     void add(const types::Sonar& ping) {
         const bool is_other = ping.bin_count != last_.bin_count || ping.binStart(1) != last_.binStart(1);
@@ -106,13 +134,15 @@ public:
     }
 
 private:
-    static output::SideScanPictureConfig configOf(const output::DisplayConfig& display) {
+    static output::SideScanPictureConfig configOf(const output::DisplayConfig& display, bool along_ground) {
         output::SideScanPictureConfig config;
         static_cast<output::DisplayConfig&>(config) = display;
+        if (along_ground) config.ground_range.emplace();
         return config;
     }
     /** Adds the last line, whose picture is written when `ends`. */
     void put(bool ends) {
+        if (altitudes_) image_.setAltitude(altitudes_->nearestTo(last_.time));
         if (!ends) return image_.skip(last_);
         image_.paint(last_, picture_);
         files_.push_back(path_.parent_path() / fmt::format("{}_{:06}.png", path_.stem().string(), files_.size()));
@@ -121,6 +151,7 @@ private:
     }
 
     output::SideScanImage image_;
+    const Altitudes* const altitudes_;
     fs::path path_;
     types::Sonar last_;
     int lines_ = 0;  ///< Lines of this picture, with the last.
@@ -130,10 +161,18 @@ private:
 
 }  // namespace
 
-std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream, const fs::path& path) {
+std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream, const fs::path& path,
+                                     bool along_ground) {
     const log::Stream& exported = log.streams()[log.indexOf(stream)];
-    if (const types::Sonar first = firstPing(log, exported); isSideScan(first)) {
-        Waterfalls waterfalls(displayFor(log, exported, first), path);
+    const types::Sonar first = firstPing(log, exported);
+    if (along_ground && !isSideScan(first))
+        throw types::ConfigError("", "--ground", "is for the lines of a side-scan; " + stream + " has none");
+    if (isSideScan(first)) {
+        const Altitudes altitudes(log);
+        if (along_ground && !altitudes.areKnown())
+            throw types::ConfigError(log.path(), "--ground",
+                                     "takes altitudes; the log has no stream of ranges, or several");
+        Waterfalls waterfalls(displayFor(log, exported, first), along_ground ? &altitudes : nullptr, path);
         types::Sonar ping;
         log.forEachRef(stream, [&](const log::SampleRef& at) {
             readPing(log, at, ping);
@@ -215,27 +254,6 @@ public:
 
 private:
     std::vector<types::Pose> all_;
-};
-
-/** Heights above the bottom over time, of the only stream of ranges. */
-class Altitudes {
-public:
-    explicit Altitudes(log::Reader& log) {
-        const auto holds = [](const log::Stream& stream) { return stream.holds<types::Range>(); };
-        if (std::ranges::count_if(log.streams(), holds) != 1) return;
-        log.forEach<types::Range>(std::ranges::find_if(log.streams(), holds)->name,
-                                  [&](const types::Range& range, const log::SampleRef&) {
-                                      all_[range.time] = range.isKnown() ? range.range : 0;
-                                  });
-    }
-    /** At this time or the last before; 0: unknown. */
-    double at(types::Time time) const {
-        const auto after = all_.upper_bound(time);
-        return after == all_.begin() ? 0 : std::prev(after)->second;
-    }
-
-private:
-    std::map<types::Time, double> all_;
 };
 
 void refuseUnlessSideScan(const log::Reader& log, const std::string& stream, const types::Sonar& ping) {

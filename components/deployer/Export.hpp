@@ -15,10 +15,14 @@ namespace insonify::deployer {
 output::DisplayConfig displayFor(const log::Reader& log, const log::Stream& stream, const types::Sonar& ping);
 
 /** Writes the pictures of a stream, x_000000.png and on for `x.png`, and returns the files: fans of pings, beams and
- *  scans, as displayFor decides; waterfalls of a side-scan, 480 lines each; frames as they are. Throws
- * types::ConfigError for a stream of anything else, std::runtime_error for a frame whose pixels no PNG can hold. */
+ *  scans, as displayFor decides; waterfalls of a side-scan, 480 lines each; frames as they are.
+ *  @param along_ground lines of a side-scan in range along a flat bottom, each by the altitude at its time, of the only
+ *  stream of ranges
+ *  Throws types::ConfigError for a stream of anything else, std::runtime_error for a frame whose pixels no PNG can
+ * hold.
+ */
 std::vector<std::filesystem::path> exportPictures(log::Reader& log, const std::string& stream,
-                                                  const std::filesystem::path& path);
+                                                  const std::filesystem::path& path, bool along_ground = false);
 
 /** Writes the lines of a side-scan as an XTF file (output/Xtf.hpp): whole numbers of 16 bits where the log knows the
  * bins as codes, else the bins as they are. Each line has the pose at its time, or the last before it; that of the

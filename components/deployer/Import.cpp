@@ -5,8 +5,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "components/deployer/FanImport.hpp"
 #include "components/deployer/RecordedLog.hpp"
 #include "components/loader/ComponentLibrary.hpp"
+#include "components/output/FanFile.hpp"
 #include "components/output/SideScanFile.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "components/sonar/SideScanTask.hpp"
@@ -127,7 +129,9 @@ Imported importOculus(const fs::path& recording, std::optional<DeploymentSpec> s
 }  // namespace
 
 Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
-    const auto import = output::openSideScan(recording) ? importSideScan : importOculus;
+    const auto import = output::openSideScan(recording) ? importSideScan
+                        : output::openFan(recording)    ? importFan
+                                                        : importOculus;
     return import(recording, std::move(spec), to);
 }
 

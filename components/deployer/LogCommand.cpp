@@ -108,17 +108,19 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
 }
 
 /** The files that were written. */
-std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses,
-                               const fs::path& to) {
+std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses, const fs::path& to,
+                               bool along_ground) {
     const log::Stream& exported = log.streams()[log.indexOf(name)];
     const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
     if (!to.has_extension() || fs::is_directory(to)) {
         fs::create_directories(to);
         return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
+    if (along_ground && to.extension() != ".png")
+        throw types::ConfigError("", "--ground", "is for pictures: --to FILE.png");
     makeFolderOf(to);
     if (to.extension() == ".npz") return log::exportNpz(log, stream, to, meta);
-    if (to.extension() == ".png") return exportPictures(log, stream, to);
+    if (to.extension() == ".png") return exportPictures(log, stream, to, along_ground);
     if (to.extension() == ".xtf") return exportXtf(log, stream, poses, to), std::vector{to};
     if (to.extension() == ".oculus") return exportOculus(log, stream, to), std::vector{to};
     if (to.extension() != ".csv")
@@ -133,7 +135,7 @@ struct Options {
     std::vector<std::string> files, streams;
     std::string from, until;
     log::McapConfig mcap;
-    bool json = false, metadata = false;
+    bool json = false, metadata = false, ground = false;
 };
 
 void tellLost(const log::Copied& copied) {
@@ -155,7 +157,7 @@ int logExport(const Options& options) {
     const auto log = opened(options.file);
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
-    for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to))
+    for (const fs::path& written : exportTo(*log, options.stream, options.poses, options.to, options.ground))
         fmt::print("{}\n", written.string());
     return 0;
 }
@@ -314,6 +316,8 @@ void addLogCommand(CLI::App& app, Action& action) {
                     "FILE.npz, FILE.csv, FILE.png, FILE.mcap, FILE.xtf (side-scan), FILE.oculus, or a folder for "
                     "FILE.npz")
         ->required();
+    out->add_flag("--ground", options->ground,
+                  "a side-scan's pictures along a flat bottom, each line by the log's altitude at its time");
     addMcapOptions(*out, options->mcap);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
@@ -326,15 +330,19 @@ void addLogCommand(CLI::App& app, Action& action) {
     cut->add_option("--stream", options->streams, "task.port to keep; may be given again; none: all")
         ->allow_extra_args(false);
 
-    CLI::App* import =
-        add(*log, action, options, "import",
-            "Makes a log of a recording: XTF or JSF of a side-scan, or an Oculus', to be exported, replayed and scored",
-            logImport);
-    import->add_option("FILE", options->file, "FILE.xtf, FILE.jsf, FILE.oculus, or messages of an Oculus as captured")
+    CLI::App* import = add(
+        *log, action, options, "import",
+        "Makes a log of a recording: XTF or JSF of a side-scan, an ARIS', a Gemini's or an Oculus', to be exported, "
+        "replayed and scored",
+        logImport);
+    import
+        ->add_option("FILE", options->file,
+                     "FILE.xtf, FILE.jsf, FILE.aris, FILE.glf, FILE.oculus, or messages of an Oculus as captured")
         ->required();
-    import->add_option("DEPLOYMENT", options->deployment,
-                       "whose receiver's pings they become; an Oculus' gets the poses of its trajectories; none: the "
-                       "log has what the file has");
+    import->add_option(
+        "DEPLOYMENT", options->deployment,
+        "whose receiver's pings they become; one without poses gets those of its trajectories; none: the "
+        "log has what the file has");
     import->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
     CLI::App* repair = add(*log, action, options, "repair",

@@ -6,6 +6,7 @@
 
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/Tasks.hpp"
+#include "types/Range.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::deployer {
@@ -119,6 +120,26 @@ void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::s
     }
 }
 
+/** Pictures and files of a side-scan that read no altimeter get the altitudes of a recording that was imported. */
+void connectAltitudes(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
+    const auto isRecorded = [](const log::Stream& stream) {
+        return stream.holds<types::Range>() && !stream.metadatum("insonify_recording").empty();
+    };
+    const auto altitudes = std::ranges::find_if(log.streams(), isRecorded);
+    if (altitudes == log.streams().end()) return;
+    for (const TaskSpec& task : spec.tasks) {
+        const std::string port = task.name + ".altitude";
+        const bool is_read = std::ranges::count(spec.connections, port, &ConnectionSpec::to) > 0;
+        const bool reads_altitudes = task.type == "output::SideScanImageTask" || task.type == "output::XtfTask";
+        if (!reads_altitudes || is_read) continue;
+        ConnectionSpec connection;
+        connection.from = replay + "." + altitudes->name;
+        connection.to = port;
+        connection.policy = framework::ConnPolicy::buffer(256);
+        spec.connections.push_back(connection);
+    }
+}
+
 /** A head does not tell where it stood when a log's middle was recorded. */
 void refuseScansFrom(const DeploymentSpec& spec, double from) {
     for (const TaskSpec& task : spec.tasks)
@@ -144,6 +165,7 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     spec.tasks.swap(tasks);
     spec.connections.swap(connections);
     if (options.rerender) drivePings(spec, log, name);
+    connectAltitudes(spec, log, name);
     spec.lockstep = true;
     return spec;
 }

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <opencv2/imgproc.hpp>
 
@@ -74,8 +75,10 @@ void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar) {
 }
 
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture) {
-    const types::ImageSize size = left.picture.size;
-    cv::Mat canvas = openCanvas(picture, {size.width + right.picture.size.width, size.height}, left.picture.time);
+    const types::ImageSize size = left.picture.size, other = right.picture.size;
+    cv::Mat canvas =
+        openCanvas(picture, {size.width + other.width, std::max(size.height, other.height)}, left.picture.time);
+    if (size.height != other.height) canvas.setTo(background);
     int column = 0;
     for (const Captioned& half : {left, right}) {
         const cv::Mat pixels(half.picture.size.height, half.picture.size.width, CV_8UC3,

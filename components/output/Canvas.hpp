@@ -35,7 +35,8 @@ struct Captioned {
     const std::string& caption;
 };
 
-/** Two BGR pictures of the same height beside each other, with the time of the left one. */
+/** Two BGR pictures beside each other, with the time of the left one. Fans whose bearings differ by rounding differ in
+ *  height: the background fills the rest. */
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture);
 
 }  // namespace insonify::output

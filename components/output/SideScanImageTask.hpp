@@ -1,10 +1,13 @@
 #pragma once
+#include <deque>
+
 #include "components/output/PictureTask.hpp"
 #include "components/output/SideScanImage.hpp"
 
 namespace insonify::output {
 
-/** Shows the pings of a side-scan sonar: see SideScanImage. In beside the ping: `altitude`, of an altimeter. */
+/** Shows the pings of a side-scan sonar: see SideScanImage. In beside the ping: `altitude`, of an altimeter. Each ping
+ *  has the last altitude that is not later than itself, or else the first that came. */
 class SideScanImageTask final : public PictureTask {
 public:
     using PictureTask::PictureTask;
@@ -18,16 +21,29 @@ private:
     std::unique_ptr<Painter> makePainter() override {
         auto painter = std::make_unique<SideScanImage>(*config);
         painter_ = painter.get();
+        altitudes_.clear();
         return painter;
     }
     void updateHook() override {
-        types::Range measured;
-        if (altitude.connected() && altitude.readNewest(measured) == framework::FlowStatus::NewData)
-            painter_->setAltitude(measured.range);
-        PictureTask::updateHook();
+        keepAltitudes();
+        types::SonarPtr sample;
+        if (!ping.readNew(sample)) return;
+        while (altitudes_.size() > 1 && altitudes_[1].time <= sample->time) altitudes_.pop_front();
+        if (!altitudes_.empty()) painter_->setAltitude(altitudes_.front().range);
+        take(*sample);
+    }
+    void keepAltitudes() {
+        constexpr size_t max_kept = 1024;
+        for (types::Range measured; altitude.connected() && altitude.readNew(measured);) {
+            const bool is_back = !altitudes_.empty() && measured.time < altitudes_.back().time;  // of a log, again
+            if (is_back) altitudes_.clear();
+            if (altitudes_.size() == max_kept) altitudes_.pop_front();
+            altitudes_.push_back(measured);
+        }
     }
 
     SideScanImage* painter_ = nullptr;
+    std::deque<types::Range> altitudes_;  ///< The one that holds, and later ones.
 };
 
 }  // namespace insonify::output

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "components/output/SideScanImageTask.hpp"
@@ -95,6 +96,40 @@ TEST(SideScanImageTest, ThePortAltitudeTakesThePlaceOfTheFirstReturn) {
     ASSERT_TRUE(pictures.port.readNew(picture));
     const SideScanImage layout(config);
     EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - 144))), 200);
+}
+
+TEST(SideScanImageTest, EachPingHasTheAltitudeAtItsTimeHoweverManyHaveCome) {
+    SideScanImageTask task("side_scan");
+    SideScanPictureConfig config = display();
+    config.ground_range.emplace();
+    task.config.set(config);
+    test::Writer<types::SonarPtr> pings;
+    test::Writer<types::Range> altitudes;
+    test::Reader<types::ImagePtr> pictures;
+    pings.port.connectTo(task.ping, framework::ConnPolicy::buffer(8));
+    altitudes.port.connectTo(task.altitude, framework::ConnPolicy::buffer(8));
+    task.image.connectTo(pictures.port, framework::ConnPolicy::buffer(8));
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    const auto altitudeAt = [](int second) { return 4.0 + 3 * second; };
+    for (int second = 1; second <= 4; ++second) {
+        types::Range measured;
+        measured.time = types::Time::fromSeconds(second);
+        measured.range = altitudeAt(second);
+        altitudes.port.write(measured);
+    }
+    const SideScanImage layout(config);
+    for (const double time : {0.5, 1.0, 2.9, 3.0, 7.0}) {  // the first is before any altitude
+        types::Sonar ping = lineWith(40, 60);
+        ping.time = types::Time::fromSeconds(time);
+        pings.port.write(test::shared(ping));
+        task.update();
+        types::ImagePtr picture;
+        ASSERT_TRUE(pictures.port.readNew(picture));
+        const double altitude = altitudeAt(std::clamp(static_cast<int>(time), 1, 4));
+        EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - altitude * altitude))),
+                  200)
+            << time;
+    }
 }
 
 TEST(SideScanImageTest, APingWithoutASideLeavesItBlank) {

@@ -256,5 +256,40 @@ TEST_F(XtfFileTest, ARealFileHasAllItsPings) {
     EXPECT_EQ(file.origin(), "latitude 48.4454500, longitude -68.8279350 (WGS 84)");
 }
 
+/** Mean of the bins between two slant ranges, of both sides [m]. */
+double meanBetween(const types::Sonar& ping, double from, double to) {
+    double sum = 0, count = 0;
+    for (uint32_t beam = 0; beam < 2; ++beam)
+        for (uint32_t bin = 0; bin < ping.bin_count; ++bin)
+            if (ping.binStart(bin) >= from && ping.binStart(bin) < to) {
+                sum += static_cast<double>(ping.bins[beam * ping.bin_count + bin]);
+                ++count;
+            }
+    return sum / count;
+}
+
+TEST_F(XtfFileTest, TheWaterColumnOfARealFileIsDarkAndEndsBehindTheAltitude) {
+    const std::filesystem::path real = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
+    if (!std::filesystem::exists(real)) GTEST_SKIP() << real << " is not there: no real XTF file is tested";
+    XtfFile file(real);
+    constexpr double pulse_end = 1;  // [m]
+    size_t checked = 0;
+    for (auto line = file.next(); line; line = file.next()) {
+        const double altitude = line->record.altitude;
+        if (altitude == 0) continue;
+        const types::Sonar& ping = line->ping;
+        const double water = meanBetween(ping, pulse_end, altitude);
+        EXPECT_GT(meanBetween(ping, 1.3 * altitude, 1.8 * altitude), 10 * water) << "the bottom at " << altitude;
+        double first = pulse_end;
+        while (meanBetween(ping, first, first + 0.15) < 4 * water) first += 0.1;
+        const glm::dvec3 ahead = line->record.sonar.orientation * glm::dvec3(1, 0, 0);
+        const double to_floor = altitude / std::hypot(ahead.x, ahead.y);  // in the plane of the beams, which pitches
+        EXPECT_GT(first, 0.95 * to_floor);
+        EXPECT_LT(first, 1.25 * to_floor);
+        ++checked;
+    }
+    EXPECT_EQ(checked, 460u);
+}
+
 }  // namespace
 }  // namespace insonify::output

@@ -1,0 +1,249 @@
+#include "components/output/GlfFile.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace insonify::output {
+namespace {
+
+namespace glf {
+// Each record: a header, its data.
+constexpr char mark = '*';
+constexpr size_t stamp = 6, type = 14, device = 15, header = 21, head = header + 4;
+constexpr int image_type = 0;
+constexpr uint16_t end_mark = 0xDEDE, image_mark = 0xEFEF;
+// An image, from the begin of its record: numbers, samples, a bearing of 8 bytes for each beam, the tail.
+constexpr size_t version = header + 4, start_range = header + 6, end_range = header + 10, start_bearing = header + 16,
+                 end_bearing = header + 20, numbers = header + 28, compression = header + 24;
+constexpr uint16_t max_version = 3, compression_since = 3;
+constexpr int zlib = 0, none = 1, h264 = 2;
+// The tail, from its begin.
+constexpr size_t state = 0, modulation = 4, transmit_time = 12, ping_flags = 20, sound_speed = 22, platform = 30,
+                 is_zoomed = 31, tail_mark = 32, tail_size = 34;
+constexpr uint32_t inverted = 0xE000;
+constexpr uint16_t high_frequency = 0x0101;  // the maker's header has bit 0, its example bit 8
+constexpr uint32_t max_beams = 4096, max_ranges = 65536;
+constexpr size_t max_samples = size_t{1} << 25;
+constexpr double epoch_s = 315532800;  // 1980 since 1970
+}  // namespace glf
+
+bool isKnownType(int type) { return type <= 5 || type == 98 || type == 99; }
+
+/** Whether the bytes are the begin of a record. */
+bool beginsRecord(std::span<const char> head) {
+    if (head.size() < glf::head || head[0] != glf::mark) return false;
+    const double stamp = field<double>(head, glf::stamp);
+    const int type = field<uint8_t>(head, glf::type);
+    const bool is_image =
+        field<uint16_t>(head, glf::header) == 1 && field<uint16_t>(head, glf::header + 2) == glf::image_mark;
+    return isKnownType(type) && stamp >= 0 && stamp < 1e10 && (type != glf::image_type || is_image);
+}
+
+/** By the maker's name of the model; 0: unknown [kHz]. */
+double geminiFrequency(int platform, uint16_t flags) {
+    switch (platform) {
+        case 1:  // 720is, ik, im, and the ik's three sectors of 360 degrees
+        case 2:
+        case 3:
+        case 5:
+        case 6:
+        case 7: return 720;
+        case 4:  // 1200ik, its NBI, 1200id, Micron 1200d
+        case 8:
+        case 9:
+        case 10: return flags & glf::high_frequency ? 1200 : 720;
+        default: return 0;
+    }
+}
+
+}  // namespace
+
+void GlfFile::failAt(size_t offset, const std::string& why) const {
+    fail(fmt::format("{}, byte {}", entry_.name(), entry_.at() + offset), why);
+}
+
+bool GlfFile::endsHere(std::span<const char> head) {
+    const bool has_end_mark = head.size() >= 2 && field<uint16_t>(head, 0) == glf::end_mark;
+    if (head.size() >= glf::head && !has_end_mark) return false;
+    if (!has_end_mark && !head.empty()) cut_off_record_ = entry_.at();
+    return true;
+}
+
+GlfFile::Image GlfFile::imageOf(std::span<const char> head) const {
+    const auto version = field<uint16_t>(head, glf::version);
+    if (version > glf::max_version)
+        failAt(glf::version,
+               fmt::format("the image is of version {}; only those up to {} are known", version, glf::max_version));
+    Image image;
+    image.start_range = field<uint32_t>(head, glf::start_range);
+    image.end_range = field<uint32_t>(head, glf::end_range);
+    if (image.start_range >= image.end_range || image.end_range > glf::max_ranges)
+        failAt(glf::start_range, fmt::format("the ranges are {} to {}; they must ascend and be at most {}",
+                                             image.start_range, image.end_range, glf::max_ranges));
+    const auto first = field<uint32_t>(head, glf::start_bearing), last = field<uint32_t>(head, glf::end_bearing);
+    if (first >= last || last - first > glf::max_beams)
+        failAt(glf::start_bearing, fmt::format("the bearings are {} to {}; they must ascend and be at most {}", first,
+                                               last, glf::max_beams));
+    image.beams = last - first;
+    if (image.allSamples() > glf::max_samples)
+        failAt(glf::end_range, fmt::format("the image has {} beams of {} ranges; at most {} samples are read",
+                                           image.beams, image.end_range, glf::max_samples));
+    const bool has_compression = version >= glf::compression_since;
+    const size_t size_at = glf::compression + (has_compression ? 2 : 0);
+    image.packed_size = field<uint32_t>(head, size_at);
+    image.compression = has_compression                        ? field<uint16_t>(head, glf::compression)
+                        : image.packed_size == image.samples() ? glf::none
+                                                               : glf::zlib;
+    if (image.compression > glf::h264)
+        failAt(glf::compression, fmt::format("the compression is {}; it may be 0 to 2", image.compression));
+    if (image.packed_size > compressBound(image.allSamples()))
+        failAt(size_at, fmt::format("the samples take {} bytes; {} beams of {} ranges take fewer", image.packed_size,
+                                    image.beams, image.end_range));
+    image.packed = size_at + 4;
+    image.bearings = image.packed + image.packed_size;
+    image.tail = image.bearings + size_t{image.beams} * sizeof(double);
+    image.size = image.tail + glf::tail_size;
+    return image;
+}
+
+std::vector<char> GlfFile::samplesOf(std::span<const char> record, const Image& image) const {
+    const std::span<const char> packed = record.subspan(image.packed, image.packed_size);
+    std::vector<char> samples(packed.begin(), packed.end());
+    if (image.compression == glf::zlib) {
+        constexpr size_t max_ratio = 1032;  // of deflate
+        if (image.packed_size < image.samples() / max_ratio)
+            failAt(image.packed,
+                   fmt::format("{} bytes cannot hold the {} samples of {} beams and {} ranges", image.packed_size,
+                               image.samples(), image.beams, image.end_range - image.start_range));
+        samples.resize(image.allSamples());
+        uLongf size = samples.size();
+        const int result = uncompress(reinterpret_cast<Bytef*>(samples.data()), &size,
+                                      reinterpret_cast<const Bytef*>(packed.data()), packed.size());
+        if (result != Z_OK) failAt(image.packed, "the samples cannot be unpacked");
+        samples.resize(size);
+    }
+    if (samples.size() != image.samples() && samples.size() != image.allSamples())
+        failAt(image.packed, fmt::format("the image has {} samples; {} beams and {} ranges have {}", samples.size(),
+                                         image.beams, image.end_range - image.start_range, image.samples()));
+    return samples;
+}
+
+std::vector<double> GlfFile::bearingsOf(std::span<const char> record, const Image& image) const {
+    std::vector<double> bearings;
+    for (uint32_t beam = 0; beam < image.beams; ++beam) {
+        const size_t at = image.bearings + beam * sizeof(double);
+        bearings.push_back(field<double>(record, at));
+        if (!(std::abs(bearings.back()) <= std::numbers::pi))
+            failAt(at, fmt::format("the bearing of beam {} is {:g} rad; it must be -pi to pi", beam, bearings.back()));
+    }
+    return bearings;
+}
+
+void GlfFile::setRanges(std::span<const char> tail, const Image& image, types::Sonar& ping) {
+    const auto rate = field<uint32_t>(tail, glf::modulation);
+    if (rate < 100 || rate > 1'000'000)
+        failAt(image.tail + glf::modulation,
+               fmt::format("the modulation frequency is {} Hz; it must be 100 to 1000000", rate));
+    double speed = static_cast<double>(field<float>(tail, glf::sound_speed));
+    if (speed == 0) speed = 1500;
+    if (!(speed >= 1000 && speed <= 2000))
+        failAt(image.tail + glf::sound_speed,
+               fmt::format("the speed of sound is {:g} m/s; it may be 1000 to 2000, or 0 for unknown", speed));
+    setResolution(speed / 2 / rate, speed, ping);
+}
+
+std::optional<FanFrame> GlfFile::frameOf(std::span<const char> record, const Image& image) {
+    if (image.compression == glf::h264) return ++videos_, std::nullopt;
+    const std::span<const char> tail = record.subspan(image.tail);
+    const double transmitted = field<double>(tail, glf::transmit_time);
+    const bool has_time = transmitted != 0;
+    const double time_us = std::round(((has_time ? transmitted : stamp_) + glf::epoch_s) * 1e6);
+    if (const std::string wrong = diagnosticOf(time_us); !wrong.empty())
+        failAt(has_time ? image.tail + glf::transmit_time : glf::stamp, wrong);
+    FanFrame found;
+    found.ping.time = {static_cast<int64_t>(time_us)};
+    setRanges(tail, image, found.ping);
+    const std::vector<char> samples = samplesOf(record, image);
+    const bool has_all = samples.size() == image.allSamples();
+    setBins(bearingsOf(record, image), has_all ? 0 : image.start_range, samples, found.ping);
+    found.window_start = found.ping.binStart(image.start_range);
+    found.frequency_khz = geminiFrequency(field<uint8_t>(tail, glf::platform), field<uint16_t>(tail, glf::ping_flags));
+    found.sonar.position.x = types::Pose::unknown;
+    inverted_ += (field<uint32_t>(tail, glf::state) & glf::inverted) != 0;
+    return found;
+}
+
+void GlfFile::skipToRecord(size_t size) {
+    constexpr size_t block = 4096;
+    constexpr double near_s = 7 * 24 * 3600;
+    entry_.skip(size);
+    for (std::span<const char> bytes = entry_.peek(block); bytes.size() >= glf::head; bytes = entry_.peek(block)) {
+        for (size_t i = 0; i + glf::head <= bytes.size(); ++i)
+            if (beginsRecord(bytes.subspan(i)) && std::abs(field<double>(bytes, i + glf::stamp) - stamp_) < near_s)
+                return entry_.skip(i);
+        entry_.skip(bytes.size() - glf::head + 1);
+    }
+    entry_.skip(glf::head);  // what is left is no record
+}
+
+std::optional<FanFrame> GlfFile::read() {
+    for (;;) {
+        std::span<const char> record = entry_.peek(glf::numbers + 2);
+        if (endsHere(record)) return std::nullopt;
+        if (!beginsRecord(record))
+            failAt(0, fmt::format("is 0x{:02X}{:02X}; a record begins with 0x2A, a known type and a time",
+                                  field<uint8_t>(record, 0), field<uint8_t>(record, 1)));
+        stamp_ = field<double>(record, glf::stamp);
+        if (const int type = field<uint8_t>(record, glf::type); type != glf::image_type) {
+            ++other_types_[type];
+            skipToRecord(glf::header);
+            continue;
+        }
+        const bool has_numbers = record.size() == glf::numbers + 2;
+        const Image image = has_numbers ? imageOf(record) : Image{};
+        record = entry_.peek(image.size);
+        if (!has_numbers || record.size() < image.size) {
+            cut_off_record_ = entry_.at();
+            return std::nullopt;
+        }
+        const bool is_zoomed = field<uint8_t>(record, image.tail + glf::is_zoomed) != 0;
+        const auto mark = field<uint16_t>(record, image.tail + glf::tail_mark);
+        if (!is_zoomed && mark != glf::end_mark)
+            failAt(image.tail + glf::tail_mark,
+                   fmt::format("is 0x{:04X}; an image ends with 0x{:04X}", mark, glf::end_mark));
+        const auto device = field<uint16_t>(record, glf::device);
+        if (!device_) device_ = device;
+        std::optional<FanFrame> found;
+        if (device == *device_)
+            found = frameOf(record, image);
+        else
+            ++other_devices_[device];
+        zooms_ += is_zoomed;
+        is_zoomed ? skipToRecord(image.tail + glf::tail_mark) : entry_.skip(image.size);
+        if (found) return found;
+    }
+}
+
+std::vector<std::string> GlfFile::notices() const {
+    std::vector<std::string> all = FanFile::notices();
+    if (!entry_.diagnostic().empty()) all.push_back(fmt::format("{}: {}", entry_.name(), entry_.diagnostic()));
+    if (cut_off_record_)
+        all.push_back(fmt::format("the record at byte {} of {} is cut off", *cut_off_record_, entry_.name()));
+    for (const auto& [type, count] : other_types_)
+        all.push_back(fmt::format("{} records of type {} are omitted: only images (type 0) are read", count, type));
+    for (const auto& [device, count] : other_devices_)
+        all.push_back(fmt::format("{} images of sonar {} are omitted: only those of the first, {}, are read", count,
+                                  device, *device_));
+    if (zooms_ > 0) all.push_back(fmt::format("{} acoustic zooms next to their images are omitted", zooms_));
+    if (videos_ > 0) all.push_back(fmt::format("{} images are packed as H.264 and are omitted", videos_));
+    if (inverted_ > 0)
+        all.push_back(
+            fmt::format("{} images state that the sonar hung upside down; their bearings are the file's", inverted_));
+    return all;
+}
+
+}  // namespace insonify::output

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/output/FanFile.hpp"
+#include "components/output/ZipEntry.hpp"
+
+namespace insonify::output {
+
+/** Reads the images of a .glf file (Tritech Gemini) of the sonar that comes first: records in the .dat file of an
+ *  archive.
+ *
+ *  Samples are the file's, unpacked; what their values mean is not published. Bearings are those of each image's table.
+ *  A range line is one period of the modulation frequency, two-way. The file has no poses. Times, which count from
+ * 1980, are taken as UTC. */
+class GlfFile final : public FanFile {
+public:
+    /** Whether a file begins as one: as an archive. */
+    static bool isOne(const std::filesystem::path& path) { return ZipEntry::isArchive(path); }
+    /** Throws types::ConfigError for a file that cannot be read or has no records. */
+    explicit GlfFile(const std::filesystem::path& path) : FanFile(path), entry_(path, ".dat") {}
+
+    std::optional<double> dynamicRange() const override { return std::nullopt; }
+    std::vector<std::string> notices() const override;
+
+private:
+    /** Where the parts of an image's record are, from its begin [B], and their numbers. */
+    struct Image {
+        uint32_t start_range = 0, end_range = 0, beams = 0;
+        int compression = 0;
+        size_t packed = 0, packed_size = 0, bearings = 0, tail = 0, size = 0;
+        /** Samples of the lines that are stated; what is before the first may be there, too. */
+        size_t samples() const { return size_t{beams} * (end_range - start_range); }
+        size_t allSamples() const { return size_t{beams} * end_range; }
+    };
+
+    std::optional<FanFrame> read() override;
+    bool endsHere(std::span<const char> head);
+    Image imageOf(std::span<const char> head) const;
+    std::optional<FanFrame> frameOf(std::span<const char> record, const Image& image);
+    std::vector<char> samplesOf(std::span<const char> record, const Image& image) const;
+    std::vector<double> bearingsOf(std::span<const char> record, const Image& image) const;
+    void setRanges(std::span<const char> tail, const Image& image, types::Sonar& ping);
+    /** Passes over a part of this record and all that does not look like the next one. */
+    void skipToRecord(size_t size);
+    [[noreturn]] void failAt(size_t offset, const std::string& why) const;
+
+    ZipEntry entry_;
+    std::optional<uint16_t> device_;  ///< Whose images are read.
+    double stamp_ = 0;                ///< Of the last record, since 1980 [s].
+    std::optional<uint64_t> cut_off_record_;
+    std::map<int, size_t> other_types_;    ///< Records by type.
+    std::map<int, size_t> other_devices_;  ///< Images by device.
+    size_t zooms_ = 0, videos_ = 0, inverted_ = 0;
+};
+
+}  // namespace insonify::output
