@@ -19,6 +19,9 @@ std::complex<double> waveNumberRatio(const HalfSpace& half_space);
 /** Rayleigh's coefficient of the sound pressure at a grazing angle [rad], with loss: total reflection below the
  *  critical angle arccos(1 / nu) of a fast half-space. ACOUSTICS.md 3.7. */
 std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
+/** Returns Y at a grazing angle [rad]: a slightly rough surface of spectrum W [m^4] scatters
+ *  4 k^4 sin^4 |Y|^2 W(2 k cos) back (Kuo 1964; ACOUSTICS.md 3.5). */
+std::complex<double> roughnessAmplitude(const HalfSpace& half_space, double grazing);
 
 /** Backscattering cross section of a seabed after APL-UW TR 9407 (1994), section IV.C: its rough interface (Kirchhoff's
  *  approximation near the vertical, composite roughness below, or an empirical law where it is very rough) and its

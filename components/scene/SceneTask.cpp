@@ -9,6 +9,7 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/MaterialNames.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -99,6 +100,7 @@ bool SceneTask::configureHook() {
     const auto scene = load();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
+    if (config->materials_by_name) geometry_ = takeNames(geometry_);
     bathymetry_ = openSurvey();
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);

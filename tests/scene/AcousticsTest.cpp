@@ -123,6 +123,22 @@ TEST(AcousticsTest, NoSurfaceOfTheTablesCreatesEnergy) {
     }
 }
 
+TEST(AcousticsTest, NumbersFromOutsideReplaceTheLawOfMatter) {
+    Acoustics steel, slope, mirror;
+    steel.material = Matter::Steel;
+    slope.roughness_slope = 0.05;
+    mirror.mirror = true;
+    types::Material material;
+    steel.applyTo(material);
+    mirror.applyTo(material);
+    EXPECT_EQ(material.matter, "steel");
+    slope.applyTo(material);
+    EXPECT_EQ(material.matter, "");
+    EXPECT_FLOAT_EQ(material.reflection, 0.936f);
+    steel.applyTo(material);
+    EXPECT_EQ(material.matter, "steel");
+}
+
 TEST(AcousticsTest, WhatIsAbsentStaysAsItWas) {
     types::Material material;
     material.reflection = 0.3f;
