@@ -5,8 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "components/acoustics/Backscatter.hpp"
-
 namespace insonify::acoustics {
 namespace {
 
@@ -14,8 +12,6 @@ using std::numbers::pi;
 
 constexpr double cut_over_wave_number = 1.0 / 3;  ///< Between longer and shorter relief: decided here [1].
 const double lowest_grazing = 0.001 * pi / 180;   ///< Below it, the value there [rad].
-constexpr double narrowest = 1e-12;               ///< Mean square slope that a lobe has at least, to be finite [1].
-constexpr double no_diffuse_db = -3000;
 
 }  // namespace
 
@@ -58,11 +54,6 @@ double RoughSurface::perturbation(double grazing) const {
 double RoughSurface::diffuse(double grazing) const {
     const double angle = std::max(grazing, lowest_grazing), sine = std::sin(angle);
     return std::min(perturbation(angle), max_lambert_ * sine * sine);
-}
-
-double RoughSurface::crossSection(double grazing) const {
-    return diffuse(grazing) + objectSection(no_diffuse_db, reflection_ * std::sqrt(lobe_share_),
-                                            std::max(square_slope_, narrowest), std::sin(grazing));
 }
 
 RoughSurface roughSurfaceOf(const MatterProperties& matter, double frequency_khz, double water_density,

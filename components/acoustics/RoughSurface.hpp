@@ -1,6 +1,6 @@
 #pragma once
+#include "components/acoustics/HalfSpace.hpp"
 #include "components/acoustics/Matter.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 
 namespace insonify::acoustics {
 
@@ -41,8 +41,6 @@ public:
     double diffuse(double grazing) const;
     /** Returns the first of the two: small perturbations, unbounded. */
     double perturbation(double grazing) const;
-    /** Returns diffuse() and the lobe of a flat surface together. */
-    double crossSection(double grazing) const;
 
 private:
     HalfSpace solid_;

@@ -138,7 +138,7 @@ Scatterer ofMaterial(const BackscatterOptions& options) {
         scatterer.parameters["reflection"] = surface.reflection();
         scatterer.parameters["lobe_share"] = surface.lobeShare();
         scatterer.parameters["lobe_slope"] = std::sqrt(surface.squareSlope());
-        scatterer.section = [surface](double grazing) { return surface.crossSection(grazing); };
+        scatterer.section = [surface](double grazing) { return acoustics::solidSection(surface, grazing); };
         scatterer.diffuse = [surface](double grazing) { return surface.diffuse(grazing); };
     }
     scatterer.sources = {{"density_and_speeds", std::string(matter.source)},

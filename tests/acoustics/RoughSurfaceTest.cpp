@@ -80,7 +80,7 @@ TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
     EXPECT_EQ(mirror.lobeShare(), 1);
     EXPECT_EQ(mirror.squareSlope(), 0);
     EXPECT_EQ(mirror.diffuse(1), 0);
-    EXPECT_TRUE(std::isfinite(mirror.crossSection(pi / 2)));
+    EXPECT_TRUE(std::isfinite(solidSection(mirror, pi / 2)));
 }
 
 TEST(RoughSurfaceTest, GreatHeightsFollowLambertsLawOfAllThatIsReflected) {
@@ -89,7 +89,7 @@ TEST(RoughSurfaceTest, GreatHeightsFollowLambertsLawOfAllThatIsReflected) {
     const double mu = std::pow(surface.reflection(), 2) / pi;
     for (const double grazing_deg : {20.0, 45.0, 70.0, 90.0}) {
         const double sine = std::sin(grazing_deg * pi / 180);
-        EXPECT_NEAR(surface.crossSection(grazing_deg * pi / 180), mu * sine * sine, 1e-9) << grazing_deg;
+        EXPECT_NEAR(solidSection(surface, grazing_deg * pi / 180), mu * sine * sine, 1e-9) << grazing_deg;
     }
 }
 
@@ -134,7 +134,7 @@ TEST(RoughSurfaceTest, AllMatterIsFiniteFrom10KilohertzTo3Megahertz) {
             const RoughSurface surface = roughSurfaceOf(matter, khz, 1025, 1500);
             EXPECT_NEAR(surface.reflection(), matter.reflection, 0.06) << nameOf(matter.matter);
             for (const double grazing_deg : {0.0, 1e-9, 1.0, 45.0, 89.999, 90.0}) {
-                const double section = surface.crossSection(grazing_deg * pi / 180);
+                const double section = solidSection(surface, grazing_deg * pi / 180);
                 EXPECT_TRUE(std::isfinite(section) && section >= 0) << nameOf(matter.matter) << " " << khz;
             }
             EXPECT_LE(energyBack(surface, 0), 1) << nameOf(matter.matter) << " " << khz;

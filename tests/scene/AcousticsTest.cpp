@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "components/scene/Acoustics.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -120,6 +121,17 @@ TEST(AcousticsTest, NoSurfaceOfTheTablesCreatesEnergy) {
     for (size_t i = 0; i < std::size(types::EnumNames<Sediment>::names); ++i) {
         if (Sediment(i) == Sediment::Rock) continue;  // -3.7 dB in the table: its Lambert fit is not physical
         EXPECT_LT(lambertDb(Sediment(i)), most);
+    }
+}
+
+TEST(AcousticsTest, TheHarbourKeepsTheLevelsOfItsMaterials) {
+    const auto geometry = loadScene(std::filesystem::path(test::source_dir) / "deploy/scenes/harbour.glb");
+    const std::pair<size_t, Matter> cases[] = {
+        {1, Matter::Granite}, {2, Matter::Concrete}, {3, Matter::CarbonSteel}, {4, Matter::Neoprene}};
+    for (const auto& [index, matter] : cases) {
+        EXPECT_EQ(geometry->materials.at(index).lambert_db, static_cast<float>(lambertDb(matter)));
+        EXPECT_EQ(geometry->materials[index].reflection, static_cast<float>(reflection(matter)));
+        EXPECT_EQ(geometry->materials[index].matter, "") << "weathered: Lambert's law at every frequency";
     }
 }
 
