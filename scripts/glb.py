@@ -193,7 +193,9 @@ class Glb:
 
     def material(self, name, acoustics, colour, normal_map=None, normal_scale=1.0):
         look = {"baseColorFactor": [*colour, 1], "metallicFactor": 0, "roughnessFactor": 1}
-        item = {"name": name, "pbrMetallicRoughness": look, "extras": {"acoustics": acoustics}}
+        item = {"name": name, "pbrMetallicRoughness": look}
+        if acoustics is not None:
+            item["extras"] = {"acoustics": acoustics}
         if normal_map is not None:
             item["normalTexture"] = {"index": normal_map, "scale": normal_scale}
         return self.add("materials", item)

@@ -8,6 +8,7 @@ tile is printed beside the floor's.
 The spectral slope is that of the radial power spectrum: power per unit area of the wave-number plane, averaged over
 direction, falls as |k|^slope. The floor is a Gaussian surface whose slope is -2.7, as measured on a real survey.
 """
+import math
 import sys
 from pathlib import Path
 
@@ -239,14 +240,19 @@ def add_quay(glb, rng, floor, steel, concrete, rubber):
         glb.node(f"fender_{n:02d}", fender, (x, QUAY - 0.45, 0))
 
 
+def weathered(material, reflection):
+    """Long in the water, rough and overgrown: Lambert's law at every frequency, by its reflection (ACOUSTICS.md 3.3)."""
+    return {"material": material, "lambert_db": -9.23 + 20 * math.log10(reflection)}
+
+
 def make_scene(rng, floor):
     glb = Glb()
     stony = glb.normal_map(pitted_stone(rng))
     sand = glb.material("sand", {"sediment": "medium_sand"}, (0.76, 0.7, 0.5), glb.normal_map(ripples(rng)))
-    stone = glb.material("stone", {"material": "granite"}, (0.45, 0.43, 0.4), stony)
-    concrete = glb.material("concrete", {"material": "concrete"}, (0.6, 0.6, 0.58), stony, 0.4)
-    steel = glb.material("steel", {"material": "carbon_steel"}, (0.35, 0.22, 0.15))
-    rubber = glb.material("rubber", {"material": "neoprene"}, (0.08, 0.08, 0.08))
+    stone = glb.material("stone", weathered("granite", 0.81), (0.45, 0.43, 0.4), stony)
+    concrete = glb.material("concrete", weathered("concrete", 0.69), (0.6, 0.6, 0.58), stony, 0.4)
+    steel = glb.material("steel", weathered("carbon_steel", 0.936), (0.35, 0.22, 0.15))
+    rubber = glb.material("rubber", weathered("neoprene", 0.15), (0.08, 0.08, 0.08))
     glb.node("sea_floor", glb.mesh("sea_floor", list(floor.parts()), sand))
     add_quay(glb, rng, floor, steel, concrete, rubber)
     x, y = 39.0, -15.0

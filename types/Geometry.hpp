@@ -29,8 +29,9 @@ struct Shell {
 /** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
 struct Material {
     std::string name;
-    float lambert_db = -16.7f;              ///< Lambert parameter mu, backscatter at normal incidence [dB].
-    std::string seabed = {};                ///< By APL-UW TR 9407, for Lambert's law where a sonar has a frequency.
+    float lambert_db = -16.7f;  ///< Lambert parameter mu, backscatter at normal incidence [dB].
+    std::string seabed = {};    ///< By APL-UW TR 9407, for Lambert's law where a sonar has a frequency.
+    std::string matter = {};    ///< By name: a rough solid, for Lambert's law where a sonar has a frequency.
     std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
     float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
     std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
@@ -38,6 +39,7 @@ struct Material {
     bool mirror = false;                        ///< Reflects sound as a flat mirror does, beside what it scatters.
     float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
     bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.
+    bool is_named = false;                      ///< Its acoustic values follow from its name.
     bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
     int normal_map = -1;                        ///< Index into Geometry::normal_maps, -1 for none [1].
     float normal_scale = 1;                     ///< Scale of the map's x and y [1].

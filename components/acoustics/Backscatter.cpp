@@ -28,6 +28,13 @@ double objectSection(double lambert_db, double reflection, double mean_square_sl
     return lambertSection(lambert_db, cos_incidence) + reflection * reflection * lobe / (4 * pi * mean_square_slope);
 }
 
+double solidSection(const RoughSurface& surface, double grazing) {
+    constexpr double nothing_db = -3000, min_square_slope = 1e-12;  // to be finite
+    const double reflection = surface.reflection() * std::sqrt(surface.lobeShare());
+    return surface.diffuse(grazing) +
+           objectSection(nothing_db, reflection, std::max(surface.squareSlope(), min_square_slope), std::sin(grazing));
+}
+
 BackscatterTable::BackscatterTable(const std::function<double(double)>& section) {
     for (int i = 0; i < entries; ++i) {
         const double cosine = std::max(min_cosine, static_cast<double>(i) / (entries - 1));

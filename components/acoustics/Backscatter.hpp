@@ -4,6 +4,7 @@
 #include <string>
 
 #include "components/acoustics/Curve.hpp"
+#include "components/acoustics/RoughSurface.hpp"
 
 namespace insonify::acoustics {
 
@@ -23,6 +24,10 @@ struct Slopes {
 /** Two terms for objects: Lambert's law, and the lobe of geometric optics about the normal [m^2 at 1 m for each m^2]:
  *  mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
 double objectSection(double lambert_db, double reflection, double mean_square_slope, double cos_incidence);
+
+/** Returns what a flat rough solid gives back at a grazing angle [rad]: its lobe and what it scatters
+ *  [m^2 at 1 m for each m^2]. ACOUSTICS.md 3.11. */
+double solidSection(const RoughSurface& surface, double grazing);
 
 /** A law of backscatter as what an echo needs of it: sigma_b / cos(theta) over cos(theta), with straight lines between
  *  256 entries; nearer than 0.001 deg to grazing that of 0.001 deg. ACOUSTICS.md 3.8. */

@@ -49,21 +49,6 @@ double kirchhoffLevel(double alpha) { return std::pow(2, 2 * (1 - alpha) / alpha
 
 }  // namespace
 
-HalfSpace halfSpaceOf(const Seabed& seabed) { return {seabed.density_ratio, seabed.speed_ratio, seabed.loss}; }
-
-std::complex<double> waveNumberRatio(const HalfSpace& half_space) {
-    return std::complex<double>(1, half_space.loss) / half_space.speed_ratio;
-}
-
-std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing) {
-    const std::complex<double> kappa = waveNumberRatio(half_space);
-    const double cosine = std::cos(grazing);
-    const std::complex<double> below =
-        std::sqrt(kappa * kappa - cosine * cosine);  // sine in the half-space, times kappa
-    const std::complex<double> above = half_space.density_ratio * std::sin(grazing);
-    return (above - below) / (above + below);
-}
-
 SeabedBackscatter::SeabedBackscatter(const Seabed& seabed, double frequency_khz, double speed_of_sound)
     : seabed_(seabed),
       wave_number_(2 * pi * 1e3 * frequency_khz / (100 * speed_of_sound)),
@@ -104,11 +89,8 @@ double SeabedBackscatter::compositeRoughness(double grazing) const {
 
 /** First order of small perturbations: equations 7 and 50 to 52. */
 double SeabedBackscatter::perturbation(double grazing) const {
-    const double rho = seabed_.density_ratio, k = wave_number_, sine = std::sin(grazing), cosine = std::cos(grazing);
-    const std::complex<double> kappa = waveNumberRatio(halfSpaceOf(seabed_));
-    const std::complex<double> p = std::sqrt(kappa * kappa - cosine * cosine);
-    const std::complex<double> y =
-        ((rho - 1) * (rho - 1) * cosine * cosine + rho * rho - kappa * kappa) / ((rho * sine + p) * (rho * sine + p));
+    const double k = wave_number_, sine = std::sin(grazing), cosine = std::cos(grazing);
+    const std::complex<double> y = roughnessAmplitude(halfSpaceOf(seabed_), grazing);
     const double scatterers = std::sqrt(4 * k * k * cosine * cosine + k * k / 100);
     const double spectrum = seabed_.roughness * std::pow(scatterers, -seabed_.roughness_slope);
     return 4 * std::pow(k * sine, 4) * std::norm(y) * spectrum;

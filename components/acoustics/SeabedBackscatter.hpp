@@ -1,24 +1,11 @@
 #pragma once
-#include <complex>
 #include <functional>
 #include <string>
 
+#include "components/acoustics/HalfSpace.hpp"
 #include "components/acoustics/Seabed.hpp"
 
 namespace insonify::acoustics {
-
-/** A fluid that fills all below a plane; ratios are to the water above [1]. */
-struct HalfSpace {
-    double density_ratio = 1, speed_ratio = 1;
-    double loss = 0;  ///< delta: imaginary over real part of the wave number [1].
-};
-HalfSpace halfSpaceOf(const Seabed& seabed);
-
-/** kappa = (1 + i delta) / nu: wave number in the half-space over that in the water [1]. */
-std::complex<double> waveNumberRatio(const HalfSpace& half_space);
-/** Rayleigh's coefficient of the sound pressure at a grazing angle [rad], with loss: total reflection below the
- *  critical angle arccos(1 / nu) of a fast half-space. ACOUSTICS.md 3.7. */
-std::complex<double> halfSpaceReflection(const HalfSpace& half_space, double grazing);
 
 /** Backscattering cross section of a seabed after APL-UW TR 9407 (1994), section IV.C: its rough interface (Kirchhoff's
  *  approximation near the vertical, composite roughness below, or an empirical law where it is very rough) and its

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
 
 #include "components/acoustics/Backscatter.hpp"
+#include "components/acoustics/Matter.hpp"
+#include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
@@ -19,7 +22,9 @@
 namespace insonify::deployer {
 namespace {
 
-constexpr double mackenzie_db = -27;  // ACOUSTICS.md 3.2
+constexpr double mackenzie_db = -27;      // ACOUSTICS.md 3.2
+constexpr double water_density = 1025;    ///< [kg/m^3]
+constexpr double min_strength_db = -300;  ///< That is printed of what scatters nothing.
 
 struct BackscatterOptions {
     std::string sediment, material;
@@ -34,7 +39,9 @@ struct Scatterer {
     std::string name, law;
     Json parameters;
     std::function<double(double)> section;
-    std::vector<std::string> outside = {};  ///< What lies outside of the law's validity.
+    std::vector<std::string> outside = {};            ///< What lies outside of the law's validity.
+    std::function<double(double)> diffuse = {};       ///< Its section without the lobe, where it has one.
+    std::map<std::string, std::string> sources = {};  ///< Author and year of the parameters.
 };
 
 void require(const char* option, double value, double min, double max) {
@@ -106,50 +113,84 @@ Scatterer ofGrainSize(const BackscatterOptions& options) {
     return scatterer;
 }
 
-Scatterer ofMaterial(const std::string& name) {
-    const auto& names = types::EnumNames<scene::Matter>::names;
-    for (size_t i = 0; i < std::size(names); ++i)
-        if (names[i] == name) {
-            const auto matter = static_cast<scene::Matter>(i);
-            return lambert(name, scene::lambertDb(matter), {{"reflection", scene::reflection(matter)}});
-        }
-    refuseName("--material", name, {std::begin(names), std::end(names)});
+Json parametersOf(const acoustics::MatterProperties& matter) {
+    return {{"reflection", matter.reflection},
+            {"density_kg_m3", matter.density},
+            {"sound_speed_m_s", matter.sound_speed},
+            {"shear_speed_m_s", matter.shear_speed},
+            {"loss_parameter", matter.loss},
+            {"roughness_um", 1e6 * matter.roughness},
+            {"correlation_length_um", 1e6 * matter.length}};
+}
+
+/** A rough solid, or Lambert's law where the relief is not known. */
+Scatterer ofMaterial(const BackscatterOptions& options) {
+    const auto& names = types::EnumNames<acoustics::Matter>::names;
+    const std::string& name = options.material;
+    const std::optional<acoustics::Matter> known = acoustics::matterNamed(name);
+    if (!known) refuseName("--material", name, {std::begin(names), std::end(names)});
+    const acoustics::MatterProperties& matter = acoustics::propertiesOf(*known);
+    Scatterer scatterer = lambert(name, scene::lambertDb(*known), parametersOf(matter));
+    if (matter.hasRoughness()) {
+        const acoustics::RoughSurface surface =
+            acoustics::roughSurfaceOf(matter, options.frequency_khz, water_density, options.sound_speed);
+        scatterer.law = "rough_solid";
+        scatterer.parameters["reflection"] = surface.reflection();
+        scatterer.parameters["lobe_share"] = surface.lobeShare();
+        scatterer.parameters["lobe_slope"] = std::sqrt(surface.squareSlope());
+        scatterer.section = [surface](double grazing) { return acoustics::solidSection(surface, grazing); };
+        scatterer.diffuse = [surface](double grazing) { return surface.diffuse(grazing); };
+    }
+    scatterer.sources = {{"density_and_speeds", std::string(matter.source)},
+                         {"roughness", std::string(matter.roughness_source)}};
+    return scatterer;
 }
 
 Scatterer scattererOf(const BackscatterOptions& options) {
     if (!options.sediment.empty()) return ofSediment(options);
     if (options.grain_size_phi) return ofGrainSize(options);
     if (options.lambert_db) return lambert("lambert", *options.lambert_db, Json::object());
-    return ofMaterial(options.material);
+    return ofMaterial(options);
 }
 
 /** 10 log10 of sigma_b; below 0.001 deg that of 0.001 deg, so that Lambert's law is no level of nothing. */
-double strengthDb(const Scatterer& scatterer, double grazing_deg) {
-    return 10 * std::log10(scatterer.section(std::max(grazing_deg, 0.001) * std::numbers::pi / 180));
+double strengthDb(const std::function<double(double)>& section, double grazing_deg) {
+    const double strength = section(std::max(grazing_deg, 0.001) * std::numbers::pi / 180);
+    return std::max(min_strength_db, 10 * std::log10(strength));
 }
 
 Json backscatterReport(const BackscatterOptions& options) {
     const Scatterer scatterer = scattererOf(options);
     Json strengths = Json::array(), warnings = Json::array();
-    for (const double angle : options.grazing_deg) strengths.push_back(strengthDb(scatterer, angle));
+    for (const double angle : options.grazing_deg) strengths.push_back(strengthDb(scatterer.section, angle));
     for (const std::string& outside : scatterer.outside)
         warnings.push_back(fmt::format("{} is extrapolated: {}", scatterer.law, outside));
-    return {{"name", scatterer.name},
-            {"law", scatterer.law},
-            {"parameters", scatterer.parameters},
-            {"grazing_deg", options.grazing_deg},
-            {"strength_db", strengths},
-            {"warnings", warnings}};
+    Json report = {{"name", scatterer.name},
+                   {"law", scatterer.law},
+                   {"parameters", scatterer.parameters},
+                   {"grazing_deg", options.grazing_deg},
+                   {"strength_db", strengths},
+                   {"warnings", warnings}};
+    if (scatterer.diffuse)
+        for (const double angle : options.grazing_deg)
+            report["diffuse_db"].push_back(strengthDb(scatterer.diffuse, angle));
+    if (!scatterer.sources.empty()) report["sources"] = scatterer.sources;
+    return report;
 }
 
 void printBackscatter(const Json& report) {
+    const bool has_lobe = report.contains("diffuse_db");
     fmt::print("{}, by law {}\n", report["name"].get<std::string>(), report["law"].get<std::string>());
     for (const auto& [key, value] : report["parameters"].items())
         fmt::print("  {:22} {:.5g}\n", key, value.get<double>());
-    fmt::print("grazing [deg]   strength [dB]\n");
+    if (report.contains("sources"))
+        for (const auto& [key, source] : report["sources"].items())
+            fmt::print("  source of {:12} {}\n", key, source.get<std::string>());
+    fmt::print("grazing [deg]   strength [dB]{}\n", has_lobe ? "   without the lobe [dB]" : "");
     for (size_t i = 0; i < report["grazing_deg"].size(); ++i)
-        fmt::print("  {:11g}   {:13.2f}\n", report["grazing_deg"][i].get<double>(),
-                   report["strength_db"][i].get<double>());
+        fmt::print("  {:11g}   {:13.2f}{}\n", report["grazing_deg"][i].get<double>(),
+                   report["strength_db"][i].get<double>(),
+                   has_lobe ? fmt::format("   {:21.2f}", report["diffuse_db"][i].get<double>()) : "");
     for (const Json& line : report["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
 }
 

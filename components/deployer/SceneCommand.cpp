@@ -2,6 +2,7 @@
 #include "components/deployer/SceneCommand.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/scene/MaterialNames.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/Extent.hpp"
 
@@ -62,9 +64,15 @@ struct Surfaces {
     }
 };
 
+const char* sourceOf(const types::Material& material) {
+    if (material.is_named) return "name";
+    return material.has_acoustics ? "file" : "default";
+}
+
 Json jsonOf(const types::Material& material, size_t triangles, double area) {
     return {{"name", material.name},
-            {"source", material.has_acoustics ? "file" : "default"},
+            {"source", sourceOf(material)},
+            {"matter", material.matter.empty() ? Json() : Json(material.matter)},
             {"lambert_db", material.lambert_db},
             {"reflection", material.reflection},
             {"roughness_slope", material.roughness_slope ? Json(*material.roughness_slope) : Json()},
@@ -80,7 +88,13 @@ Json objectsOf(const types::Geometry& geometry) {
     Json objects = Json::array();
     for (const types::Object& object : geometry.objects) {
         const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+        Json materials = Json::array();
+        for (const types::Cluster& cluster : mesh.clusters) {
+            const std::string& name = geometry.materials[static_cast<size_t>(cluster.material)].name;
+            if (std::ranges::find(materials, Json(name)) == materials.end()) materials.push_back(name);
+        }
         objects.push_back({{"name", object.name},
+                           {"materials", materials},
                            {"triangles", mesh.indices.size() / 3},
                            {"bounds", jsonOf(types::extentOf(mesh, object.world_from_object))}});
     }
@@ -127,13 +141,14 @@ std::string axesOf(const std::string& file) {
 }
 
 /** A scene file as a sonar will meet it, in the world's axes: {file, axes, bounds: {min, max, size, centre} [m] or
- *  null, triangles, materials: [{name, source: file or default, lambert_db [dB], reflection, roughness_slope or null,
- *  sediment or null, measured_angles, reflectivity, normal_map, triangles, area_m2}], objects: [{name, triangles,
- *  bounds}], nodes: [names that a connection may move], not_understood: [], warnings: []}. Throws types::ConfigError
- *  for a file that cannot be read. */
+ *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
+ *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, triangles, area_m2}], objects:
+ *  [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move], not_understood: [],
+ * warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
     const scene::Scene scene = scene::readScene(file);
-    const types::Geometry& geometry = *scene.geometry;
+    const types::GeometryPtr named = scene::takeNames(scene.geometry);
+    const types::Geometry& geometry = *named;
     const types::Extent extent = types::extentOf(geometry);
     const Surfaces surfaces(geometry);
     Json materials = Json::array(), nodes = Json::array();
@@ -163,6 +178,17 @@ void printExtent(const Json& bounds) {
                text(bounds["size"]));
 }
 
+/** What a material's law is, and where it comes from, where numbers do not say it. */
+std::string lawText(const Json& material) {
+    if (material["source"] == "default") return "; no acoustics in the file: medium sand";
+    std::string text;
+    if (!material["matter"].is_null())
+        text = fmt::format("; {} at the sonar's frequency", material["matter"].get<std::string>());
+    if (!material["sediment"].is_null())
+        text = fmt::format("; {} at the sonar's frequency", material["sediment"].get<std::string>());
+    return text + (material["source"] == "name" ? ", by its name" : "");
+}
+
 void printMaterial(const Json& material) {
     fmt::print(
         "  {:20} {:7.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
@@ -171,15 +197,15 @@ void printMaterial(const Json& material) {
         material["roughness_slope"].is_null() ? "none"
                                               : fmt::format("{:.2g}", material["roughness_slope"].get<double>()),
         material["reflectivity"].get<double>(), material["triangles"].get<size_t>(), material["area_m2"].get<double>(),
-        material["normal_map"].get<bool>() ? ", normal map" : "",
-        material["source"] == "default" ? "; no acoustics in the file: medium sand" : "");
+        material["normal_map"].get<bool>() ? ", normal map" : "", lawText(material));
 }
 
 void printObjects(const Json& objects) {
     constexpr size_t shown = 40;
     fmt::print("objects, {}\n", objects.size());
     for (size_t i = 0; i < objects.size() && i < shown; ++i)
-        fmt::print("  {:20} {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
+        fmt::print("  {:20} {}, {} triangles, size {} m at [{}]\n", objects[i]["name"].get<std::string>(),
+                   fmt::join(objects[i]["materials"].get<std::vector<std::string>>(), " and "),
                    objects[i]["triangles"].get<size_t>(), text(objects[i]["bounds"]["size"]),
                    text(objects[i]["bounds"]["centre"]));
     if (objects.size() > shown) fmt::print("  and {} more, which --json names\n", objects.size() - shown);

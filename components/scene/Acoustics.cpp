@@ -44,43 +44,6 @@ constexpr SeabedRow seabeds[] = {
     {Sediment::Mackenzie, -27.0},
 };
 
-/** Matter of ACOUSTICS.md 3.3. */
-struct MatterRow {
-    Matter matter;
-    double reflection;  ///< R of the sound pressure at normal incidence, from typical impedances; signed [1].
-};
-constexpr MatterRow matters[] = {
-    {Matter::Steel, 0.936},   {Matter::CarbonSteel, 0.936},    {Matter::Aluminium, 0.835},
-    {Matter::CastIron, 0.91}, {Matter::Bronze, 0.93},          {Matter::Granite, 0.81},
-    {Matter::Basalt, 0.81},   {Matter::Concrete, 0.69},        {Matter::Limestone, 0.65},
-    {Matter::Gravel, 0.40},   {Matter::Sand, 0.355},           {Matter::Mud, 0.06},
-    {Matter::Pvc, 0.37},      {Matter::Acrylic, 0.35},         {Matter::Hdpe, 0.21},
-    {Matter::Neoprene, 0.15}, {Matter::NaturalRubber, -0.02},  {Matter::WaterloggedWood, -0.07},
-    {Matter::DryWood, -0.5},  {Matter::ClosedCellFoam, -0.94}, {Matter::Ice, 0.39},
-    {Matter::Air, -0.9995},   {Matter::Glass, 0.80},           {Matter::Fibreglass, 0.57},
-};
-
-/** What walls may be of: typical values (ACOUSTICS.md 3.10). */
-struct WallRow {
-    Matter matter;
-    double density, sound_speed, shear_speed, loss;  ///< [kg/m^3], [m/s], [m/s], [1]
-};
-constexpr WallRow walls[] = {
-    {Matter::Steel, 7850, 5900, 3230, 1e-4},      {Matter::CarbonSteel, 7850, 5900, 3230, 1e-4},
-    {Matter::Aluminium, 2700, 6320, 3130, 1e-4},  {Matter::CastIron, 7200, 4600, 2650, 1e-3},
-    {Matter::Bronze, 8860, 4500, 2230, 1e-3},     {Matter::Granite, 2650, 5500, 3000, 2e-3},
-    {Matter::Basalt, 2700, 5400, 3000, 2e-3},     {Matter::Concrete, 2300, 3700, 2200, 1e-2},
-    {Matter::Limestone, 2400, 3000, 1700, 1e-2},  {Matter::Pvc, 1380, 2400, 1060, 1e-2},
-    {Matter::Acrylic, 1190, 2700, 1340, 5e-3},    {Matter::Hdpe, 960, 2430, 950, 1e-2},
-    {Matter::Neoprene, 1310, 1600, 0, 5e-2},      {Matter::NaturalRubber, 950, 1550, 0, 2e-2},
-    {Matter::Ice, 917, 3800, 1900, 5e-3},         {Matter::Glass, 2500, 5660, 3420, 5e-4},
-    {Matter::Fibreglass, 1800, 3100, 1700, 1e-2},
-};
-const WallRow* wallOf(Matter matter) {
-    const auto* found = std::ranges::find(walls, matter, &WallRow::matter);
-    return found == std::end(walls) ? nullptr : found;
-}
-
 /** Whether there is a row for each name of an enum, in its order. */
 template <class E, class Rows>
 constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
@@ -90,7 +53,6 @@ constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
     return next == std::size(types::EnumNames<E>::names);
 }
 static_assert(isInOrder(seabeds, &SeabedRow::sediment));
-static_assert(isInOrder(matters, &MatterRow::matter));
 
 /** Lambert parameter with which a rigid sphere of radius a has its target strength of a^2 / 4: 3 / (8 pi) [dB]. */
 constexpr double convex_body_db = -9.23;
@@ -220,7 +182,7 @@ types::Diagnostic unknown(const Scene& scene, const std::string& name) {
 
 double lambertDb(Sediment sediment) { return seabeds[static_cast<size_t>(sediment)].lambert_db; }
 
-double reflection(Matter matter) { return matters[static_cast<size_t>(matter)].reflection; }
+double reflection(Matter matter) { return acoustics::propertiesOf(matter).reflection; }
 
 double lambertDb(Matter matter) { return convex_body_db + 20 * std::log10(std::abs(reflection(matter))); }
 
@@ -241,6 +203,7 @@ void Acoustics::applyTo(types::Material& target) const {
         target.seabed.clear();
         target.measured = measured;
     }
+    if (sediment || material || lambert_db || table || shell || reflection || roughness_slope) target.matter.clear();
     if (sediment) {
         const std::string name(types::EnumNames<Sediment>::names[static_cast<size_t>(*sediment)]);
         if (!lambert_db && acoustics::seabedNamed(name)) target.seabed = name;
@@ -249,6 +212,9 @@ void Acoustics::applyTo(types::Material& target) const {
     if (material) {
         target.lambert_db = static_cast<float>(lambertDb(*material));
         target.reflection = static_cast<float>(scene::reflection(*material));
+        const bool has_law = acoustics::propertiesOf(*material).hasRoughness();
+        if (has_law && !lambert_db && !reflection && !roughness_slope && !table)
+            target.matter = acoustics::nameOf(*material);
     }
     if (shell) {
         target.shell = shell->shell();
@@ -265,28 +231,30 @@ void Acoustics::applyTo(types::Material& target) const {
 
 void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
     if (!thickness_mm) diagnostics.push_back({"thickness_mm", "is missing"});
-    if (material && !wallOf(*material)) {
+    const bool is_wall = material && acoustics::propertiesOf(*material).is_wall;
+    if (material && !is_wall) {
         std::vector<std::string_view> names;
-        for (const WallRow& row : walls)
-            names.push_back(types::EnumNames<Matter>::names[static_cast<size_t>(row.matter)]);
-        diagnostics.push_back({"material", fmt::format("has no speeds of its own; give density and sound_speed, or one "
-                                                       "of {}",
+        for (size_t i = 0; i < acoustics::matterCount(); ++i)
+            if (const auto matter = static_cast<Matter>(i); acoustics::propertiesOf(matter).is_wall)
+                names.push_back(acoustics::nameOf(matter));
+        diagnostics.push_back({"material", fmt::format("is no matter of walls; give density and sound_speed, or one of "
+                                                       "{}",
                                                        fmt::join(names, ", "))});
     }
     if (!material && !(density && sound_speed))
         diagnostics.push_back({"material", "is missing; or give density and sound_speed"});
-    const double speed =
-        sound_speed.value_or(material && wallOf(*material) ? wallOf(*material)->sound_speed : INFINITY);
+    const double speed = sound_speed.value_or(is_wall ? acoustics::propertiesOf(*material).sound_speed : INFINITY);
     if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
         diagnostics.push_back(
             {"shear_speed", fmt::format("is {}; must be below 0.87 times the sound_speed of {}", *shear_speed, speed)});
 }
 
 types::Shell ShellAcoustics::shell() const {
-    static constexpr WallRow fluid{Matter::Air, 0, 0, 0, 0};
-    const WallRow& row = material && wallOf(*material) ? *wallOf(*material) : fluid;
-    return {thickness_mm.value_or(0) / 1000,       density.value_or(row.density), sound_speed.value_or(row.sound_speed),
-            shear_speed.value_or(row.shear_speed), loss.value_or(row.loss),       fill == Fill::Air};
+    const acoustics::MatterProperties wall =
+        material ? acoustics::propertiesOf(*material) : acoustics::MatterProperties{};
+    return {
+        thickness_mm.value_or(0) / 1000,        density.value_or(wall.density), sound_speed.value_or(wall.sound_speed),
+        shear_speed.value_or(wall.shear_speed), loss.value_or(wall.loss),       fill == Fill::Air};
 }
 
 void Acoustics::check(types::Diagnostics& diagnostics) const {

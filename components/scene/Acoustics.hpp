@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "components/acoustics/Matter.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/Describe.hpp"
 #include "types/Geometry.hpp"
@@ -33,33 +34,7 @@ enum class Sediment {
     Mackenzie
 };
 
-/** Matter with a typical pressure reflection coefficient at normal incidence (ACOUSTICS.md 3.3). */
-enum class Matter {
-    Steel,
-    CarbonSteel,
-    Aluminium,
-    CastIron,
-    Bronze,
-    Granite,
-    Basalt,
-    Concrete,
-    Limestone,
-    Gravel,
-    Sand,
-    Mud,
-    Pvc,
-    Acrylic,
-    Hdpe,
-    Neoprene,
-    NaturalRubber,
-    WaterloggedWood,
-    DryWood,
-    ClosedCellFoam,
-    Ice,
-    Air,
-    Glass,
-    Fibreglass
-};
+using acoustics::Matter;
 
 double lambertDb(Sediment sediment);  ///< [dB]
 double reflection(Matter matter);     ///< Signed pressure reflection coefficient [1].
@@ -98,8 +73,9 @@ struct ShellAcoustics {
 /** The acoustic values that a file or a property gives to a material. What is absent stays as it was.
  *
  *  A `shell` makes the surface a thin wall, whose echo is that of a rigid body times the reflection of the wall.
- *  A `sediment` sets the seabed and lambert_db; a `material` sets reflection and lambert_db; numbers beside them
- *  refine, a `lambert_db` by Lambert's law, a `table` by what was measured. */
+ *  A `sediment` sets the seabed and lambert_db; a `material` sets the matter, reflection and lambert_db; numbers with
+ *  them refine, a `lambert_db` by Lambert's law, a `table` by what was measured. A `lambert_db`, `reflection` or
+ *  `roughness_slope` replaces the law of the matter. */
 struct Acoustics {
     std::optional<Sediment> sediment;
     std::optional<Matter> material;
@@ -119,7 +95,10 @@ struct Acoustics {
         using types::Field;
         visit(Field{"sediment", "", "a seabed of the table: its law at the sonar's frequency, else its lambert_db"},
               self.sediment);
-        visit(Field{"material", "", "matter of the table, sets reflection and lambert_db"}, self.material);
+        visit(Field{"material", "",
+                    "matter of the table: its law at the sonar's frequency, else its reflection and "
+                    "lambert_db"},
+              self.material);
         visit(Field{"lambert_db", "dB", "Lambert parameter, backscatter at normal incidence", -200, 20},
               self.lambert_db);
         visit(Field{"reflection", "1", "signed pressure reflection coefficient at normal incidence", -1, 1},
@@ -157,14 +136,6 @@ struct insonify::types::EnumNames<insonify::scene::Sediment> {
                                                  "coarse_sand",    "medium_sand",    "fine_sand",  "muddy_sand",
                                                  "very_fine_sand", "coarse_silt",    "sandy_silt", "medium_silt",
                                                  "fine_silt",      "very_fine_silt", "clay",       "mackenzie"};
-};
-template <>
-struct insonify::types::EnumNames<insonify::scene::Matter> {
-    static constexpr std::string_view names[] = {
-        "steel",    "carbon_steel",     "aluminium", "cast_iron", "bronze",         "granite",
-        "basalt",   "concrete",         "limestone", "gravel",    "sand",           "mud",
-        "pvc",      "acrylic",          "hdpe",      "neoprene",  "natural_rubber", "waterlogged_wood",
-        "dry_wood", "closed_cell_foam", "ice",       "air",       "glass",          "fibreglass"};
 };
 template <>
 struct insonify::types::EnumNames<insonify::scene::Fill> {

@@ -72,6 +72,7 @@ struct SceneConfig {
     Mount mount;
     std::optional<double> water_surface, pose_timeout, extrapolate;
     std::map<std::string, Acoustics> materials;
+    bool materials_by_name = true;
     std::vector<TargetConfig> targets;
 
     template <class Self, class V>
@@ -101,6 +102,10 @@ struct SceneConfig {
             self.extrapolate);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
               self.materials);
+        visit(Field{"materials_by_name", "",
+                    "materials without acoustic values are of the matter or sediment that their names contain, such as "
+                    "Steel.001; false: they are medium sand"},
+              self.materials_by_name);
         visit(Field{"targets", "", "point targets, heard by the active sonar equation; absent: none"}, self.targets);
     }
     void check(types::Diagnostics& diagnostics) const;

@@ -12,6 +12,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/MaterialNames.hpp"
 #include "types/Quaternion.hpp"
 
 namespace insonify::scene {
@@ -119,6 +120,7 @@ bool SceneTask::configureHook() {
     const auto scene = load();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
+    if (config->materials_by_name) geometry_ = takeNames(geometry_);
     bathymetry_ = openSurvey();
     for (Movable& movable : movables_) {
         movable.node = findNode(*scene, movable.node_name);

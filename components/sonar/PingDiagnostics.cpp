@@ -81,7 +81,8 @@ std::string materialText(const SonarConfig& config, const types::Geometry& geome
     std::string name;
     for (const types::Cluster& run : geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)].clusters) {
         const types::Material& material = geometry.materials[static_cast<size_t>(run.material)];
-        const bool has_law = !material.seabed.empty() || !material.measured.empty() || material.roughness_slope;
+        const bool has_law = !material.seabed.empty() || !material.matter.empty() || !material.measured.empty() ||
+                             material.roughness_slope;
         if (means ? material.reflectivity > 0 : has_law || material.lambert_db > nothing_db) return "";
         name = material.name;
         if (!means) name += fmt::format("', of lambert_db {:g}", material.lambert_db);

@@ -240,11 +240,14 @@ private:
             keep("point targets", without);
         }
         without = planned_;
-        without.snapshot.geometry =
-            changed(*planned_.snapshot.geometry, [](types::Material& material) { material.roughness_slope.reset(); });
+        without.snapshot.geometry = changed(*planned_.snapshot.geometry, [](types::Material& material) {
+            material.roughness_slope.reset();
+            material.matter.clear();
+        });
         if (sonar::makeMaterialLaws(config, *planned_.snapshot.geometry).hasLobes()) keep("specular lobe", without);
         without.snapshot.geometry = changed(*planned_.snapshot.geometry, [](types::Material& material) {
             material.seabed.clear();
+            material.matter.clear();
             material.measured.clear();
         });
         if (!sonar::makeMaterialLaws(config, *planned_.snapshot.geometry).tables.empty())

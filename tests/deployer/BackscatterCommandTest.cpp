@@ -50,8 +50,43 @@ TEST(BackscatterCommandTest, LambertAndMaterialsFollowTheCosine) {
     EXPECT_NEAR(lambert["strength_db"][0], -26.02, 0.01);
     const json steel = backscatterOf({"--material", "steel", "--frequency-khz", "700", "--grazing-deg", "90"});
     EXPECT_EQ(steel["name"], "steel");
-    EXPECT_NEAR(steel["parameters"]["reflection"], 0.936, 1e-9);
-    EXPECT_NEAR(steel["strength_db"][0], -9.23 + 20 * std::log10(0.936), 1e-6);
+    const json sand = backscatterOf({"--material", "sand", "--frequency-khz", "700", "--grazing-deg", "90"});
+    EXPECT_EQ(sand["law"], "lambert") << "its relief is not known";
+    EXPECT_NEAR(sand["parameters"]["reflection"], 0.355, 1e-9);
+    EXPECT_NEAR(sand["strength_db"][0], -9.23 + 20 * std::log10(0.355), 1e-6);
+}
+
+TEST(BackscatterCommandTest, AMaterialIsARoughSolidWithItsSources) {
+    const auto of = [](const char* name, const char* khz) {
+        return backscatterOf(
+            {"--material", name, "--frequency-khz", khz, "--grazing-deg", "45", "--grazing-deg", "90"});
+    };
+    const json steel = of("steel", "900"), rock = of("rock", "900");
+    EXPECT_EQ(steel["law"], "rough_solid");
+    EXPECT_NEAR(steel["parameters"]["reflection"], 0.936, 1e-3);
+    EXPECT_EQ(steel["parameters"]["density_kg_m3"], 7850);
+    EXPECT_EQ(steel["parameters"]["shear_speed_m_s"], 3230);
+    EXPECT_NEAR(steel["parameters"]["roughness_um"], 14.8, 0.1);
+    EXPECT_EQ(steel["sources"]["density_and_speeds"], "Selfridge 1985");
+    EXPECT_THAT(steel["sources"]["roughness"].get<std::string>(), HasSubstr("Moody 1944"));
+    EXPECT_LT(steel["strength_db"][0], -25) << "a mirror beside its highlight";
+    EXPECT_GT(steel["strength_db"][1], 20) << "its highlight";
+    EXPECT_LT(steel["diffuse_db"][1], -20);
+    EXPECT_NEAR(rock["strength_db"][1], 20 * std::log10(0.724 / std::sqrt(M_PI)), 0.05) << "Lambert's law";
+    EXPECT_NEAR(rock["strength_db"][1].get<double>() - rock["strength_db"][0].get<double>(), 3.01, 0.05);
+    EXPECT_GT(of("steel", "3000")["diffuse_db"][0], steel["diffuse_db"][0].get<double>() + 3);
+    const TestFolder folder;
+    EXPECT_THAT(callInsonify(folder, {"backscatter", "--material", "human_body", "--frequency-khz", "3000"}).out,
+                AllOf(HasSubstr("human_body, by law rough_solid"), HasSubstr("correlation_length_um"),
+                      HasSubstr("source of roughness"), HasSubstr("without the lobe [dB]")));
+}
+
+TEST(BackscatterCommandTest, EveryMaterialIsFiniteAtEveryFrequency) {
+    for (const char* name : {"steel", "glass", "acrylic", "pvc", "rubber", "wood", "concrete", "rock", "rope", "net",
+                             "fouling", "human_body", "air", "closed_cell_foam", "natural_rubber"})
+        for (const char* khz : {"10", "3000"})
+            for (const json& strength : backscatterOf({"--material", name, "--frequency-khz", khz})["strength_db"])
+                EXPECT_TRUE(strength.is_number() && std::isfinite(strength.get<double>())) << name << " " << khz;
 }
 
 TEST(BackscatterCommandTest, AboveAHundredKilohertzAWarningNamesTheRange) {
@@ -76,6 +111,8 @@ TEST(BackscatterCommandTest, RefusesUnknownNamesAndWhatIsNoAngle) {
     for (const Case& c :
          {Case{{"--sediment", "medium_snad", "--frequency-khz", "50"}, "did you mean medium_sand?"},
           Case{{"--material", "stel", "--frequency-khz", "50"}, "did you mean steel?"},
+          Case{{"--material", "", "--frequency-khz", "50"}, "names 0 scatterers"},
+          Case{{"--material", "Aluminum", "--frequency-khz", "50"}, "did you mean aluminium?"},
           Case{{"--frequency-khz", "50"}, "names 0 scatterers"},
           Case{{"--sediment", "clay", "--lambert-db", "-20", "--frequency-khz", "50"}, "names 2 scatterers"},
           Case{{"--sediment", "clay"}, "--frequency-khz"},

@@ -76,6 +76,22 @@ TEST(SceneCommandTest, AMaterialWithoutAcousticsIsToldWithTheValueThatItGets) {
     EXPECT_THAT(callInsonify(folder, {"describe", "wall.gltf"}).out, HasSubstr("medium sand"));
 }
 
+TEST(SceneCommandTest, AMaterialIsTakenByItsNameAndEachObjectHasItsMaterials) {
+    const WallFolder folder;
+    json gltf = json::parse(readFile(folder / "wall.gltf"));
+    gltf["materials"] = json::array({{{"name", "Steel.001"}}});
+    gltf["meshes"][0]["primitives"][0]["material"] = 0;
+    writeFile(folder / "steel.gltf", gltf.dump());
+    const json scene = sceneOf(folder, "steel.gltf");
+    EXPECT_EQ(scene["materials"].at(0)["source"], "name");
+    EXPECT_EQ(scene["materials"].at(0)["matter"], "steel");
+    EXPECT_THAT(scene["objects"].at(0)["materials"], ElementsAre("Steel.001"));
+    const std::string words = callInsonify(folder, {"scene", "steel.gltf"}).out;
+    EXPECT_THAT(words, HasSubstr("; steel at the sonar's frequency, by its name"));
+    EXPECT_THAT(words, HasSubstr("are taken by their names: \"Steel.001\" as steel; `materials` of"));
+    EXPECT_THAT(scene["warnings"], IsEmpty());
+}
+
 TEST(SceneCommandTest, WhatIsLeftOutIsListed) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;

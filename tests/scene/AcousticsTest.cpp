@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "components/scene/Acoustics.hpp"
+#include "tests/support/Paths.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -121,6 +122,33 @@ TEST(AcousticsTest, NoSurfaceOfTheTablesCreatesEnergy) {
         if (Sediment(i) == Sediment::Rock) continue;  // -3.7 dB in the table: its Lambert fit is not physical
         EXPECT_LT(lambertDb(Sediment(i)), most);
     }
+}
+
+TEST(AcousticsTest, TheHarbourKeepsTheLevelsOfItsMaterials) {
+    const auto geometry = loadScene(std::filesystem::path(test::source_dir) / "deploy/scenes/harbour.glb");
+    const std::pair<size_t, Matter> cases[] = {
+        {1, Matter::Granite}, {2, Matter::Concrete}, {3, Matter::CarbonSteel}, {4, Matter::Neoprene}};
+    for (const auto& [index, matter] : cases) {
+        EXPECT_EQ(geometry->materials.at(index).lambert_db, static_cast<float>(lambertDb(matter)));
+        EXPECT_EQ(geometry->materials[index].reflection, static_cast<float>(reflection(matter)));
+        EXPECT_EQ(geometry->materials[index].matter, "") << "weathered: Lambert's law at every frequency";
+    }
+}
+
+TEST(AcousticsTest, NumbersFromOutsideReplaceTheLawOfMatter) {
+    Acoustics steel, slope, mirror;
+    steel.material = Matter::Steel;
+    slope.roughness_slope = 0.05;
+    mirror.mirror = true;
+    types::Material material;
+    steel.applyTo(material);
+    mirror.applyTo(material);
+    EXPECT_EQ(material.matter, "steel");
+    slope.applyTo(material);
+    EXPECT_EQ(material.matter, "");
+    EXPECT_FLOAT_EQ(material.reflection, 0.936f);
+    steel.applyTo(material);
+    EXPECT_EQ(material.matter, "steel");
 }
 
 TEST(AcousticsTest, WhatIsAbsentStaysAsItWas) {

@@ -75,7 +75,7 @@ TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
          "shell.thickness_mm: is 0; must be a number from 0.001 to 1000"},
         {R"({"shell":{"thickness_mm":2}})", "shell.material: is missing; or give density and sound_speed"},
         {R"({"shell":{"thickness_mm":2,"material":"mud"}})",
-         "shell.material: has no speeds of its own; give density and "},
+         "shell.material: is no matter of walls; give density and "},
         {R"({"shell":{"thickness_mm":2,"material":"stel"}})", "shell.material: is \"stel\"; did you mean steel?"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","shear_speed":2400}})",
          "shell.shear_speed: is 2400; must be below 0.87 times the sound_speed of 2400"},
@@ -106,6 +106,17 @@ TEST_F(GltfMaterialsTest, ASedimentKeepsItsNameWhereTheReportHasItAndNothingRepl
     EXPECT_EQ(acoustics(R"({"material":"steel"})").seabed, "");
 }
 
+TEST_F(GltfMaterialsTest, MatterFollowsItsLawUnlessNumbersReplaceIt) {
+    EXPECT_EQ(acoustics(R"({"material":"steel"})").matter, "steel");
+    EXPECT_EQ(acoustics(R"({"material":"human_body"})").matter, "human_body");
+    EXPECT_EQ(acoustics(R"({"material":"steel","reflectivity":0.5,"mirror":true})").matter, "steel");
+    for (const char* number : {R"("lambert_db":-20)", R"("reflection":0.5)", R"("roughness_slope":0.1)"})
+        EXPECT_EQ(acoustics(std::string(R"({"material":"steel",)") + number + "}").matter, "") << number;
+    EXPECT_FLOAT_EQ(acoustics(R"({"material":"steel","reflection":0.5})").reflection, 0.5);
+    EXPECT_EQ(acoustics(R"({"material":"sand"})").matter, "") << "its relief is not known: Lambert's law";
+    EXPECT_EQ(acoustics(R"({"shell":{"thickness_mm":3,"material":"pvc"}})").matter, "");
+}
+
 TEST_F(GltfMaterialsTest, ATableIsReadFromBesideTheFile) {
     write("floor.csv", "grazing_deg,strength_db\n10,-40\n90,-10\n");
     const types::Material m = acoustics(R"({"table":"floor.csv","reflection":0.5})");
@@ -134,6 +145,10 @@ TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
     };
     expect(R"({"sediment":"sandd"})", "materials[1].extras.acoustics.sediment: is \"sandd\"; may be rough_rock, rock");
     expect(R"({"material":7})", "material: is 7; may be steel");
+    expect(R"({"material":true})", "material: is true; may be steel");
+    expect(R"({"material":""})", "material: is \"\"; may be steel");
+    expect(R"({"material":"Steel"})", "materials[1].extras.acoustics.material: is \"Steel\"; did you mean steel?");
+    expect(R"({"material":"unobtainium"})", "fouling, human_body");
     expect(R"({"lambert_db":"loud"})", "lambert_db: is \"loud\"; must be a number from -200 to 20");
     expect(R"({"reflection":1.5})", "reflection: is 1.5; must be a number from -1 to 1");
     expect(R"({"reflectivity":-0.1})", "reflectivity");

@@ -189,6 +189,25 @@ TEST_F(SceneTaskTest, MaterialsOfThePropertiesGoBeforeThoseOfTheFile) {
     EXPECT_FLOAT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).lambert_db, -5);
 }
 
+TEST_F(SceneTaskTest, AMaterialWithoutAcousticsIsOfTheMatterOfItsNameUnlessThatIsOff) {
+    start();
+    EXPECT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).matter, "wood");
+    ASSERT_EQ(task_.notices().size(), 1u);
+    EXPECT_NE(task_.notices()[0].find("taken by their names: \"wood\" as wood"), std::string::npos);
+    task_.stop();
+    task_.cleanup();
+    config_.materials_by_name = false;
+    start();
+    EXPECT_FALSE(ping(at(2, {0, 0, 0}))->geometry->materials.at(0).has_acoustics);
+    EXPECT_TRUE(task_.notices().empty());
+    task_.stop();
+    task_.cleanup();
+    config_.materials_by_name = true;
+    config_.materials["wood"].reflectivity = 0.5;
+    start();
+    EXPECT_EQ(ping(at(3, {0, 0, 0}))->geometry->materials.at(0).matter, "") << "it has acoustic values";
+}
+
 TEST_F(SceneTaskTest, AFileThatIsMissingIsSeenWithoutConfiguring) {
     config_.file = (folder_ / "nowhere.glb").string();
     config_.materials["wood"];

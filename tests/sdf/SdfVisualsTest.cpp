@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/MaterialNames.hpp"
 #include "components/sdf/SdfMeshes.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -91,6 +92,7 @@ TEST_F(SdfVisualsTest, TheAcousticTagHasTheKeysOfGltf) {
     EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).lambert_db, -5);
     EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 0).roughness_slope.value(), 0.2f);
     EXPECT_FLOAT_EQ(materialOf(*scene.geometry, 1).reflection, 0.936f);
+    EXPECT_EQ(materialOf(*scene.geometry, 1).matter, "steel");
     EXPECT_TRUE(materialOf(*scene.geometry, 1).has_acoustics);
     EXPECT_FALSE(materialOf(*scene.geometry, 2).has_acoustics);
 }
@@ -131,6 +133,15 @@ TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {
     EXPECT_FLOAT_EQ(materialOf(*geometry, 0).lambert_db, -30);
     EXPECT_FLOAT_EQ(materialOf(*geometry, 1).reflection, 0.936f);
     EXPECT_FALSE(materialOf(*geometry, 2).has_acoustics);
+}
+
+TEST_F(SdfVisualsTest, AScriptNameStandsForItsMatter) {
+    const std::string script = "<material><script><name>Gazebo/Wood</name></script></material>";
+    const Scene scene = world("<model name='pier'><link name='l'>" + visual("v", box_, script) + "</link></model>" +
+                              model("rov", box_));
+    const auto geometry = takeNames(scene.geometry);
+    EXPECT_EQ(materialOf(*geometry, 0).matter, "wood");
+    EXPECT_FALSE(materialOf(*geometry, 1).has_acoustics);
 }
 
 TEST_F(SdfVisualsTest, AHeightmapIsAGridOfItsPixels) {

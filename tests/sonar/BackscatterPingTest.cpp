@@ -117,6 +117,25 @@ TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWhateverTheRows) {
     EXPECT_GT(std::abs(targetStrength(pingOf(sonarOf(2, 2, 1, 60), lambert), 50) - right), 3) << "the form sees a law";
 }
 
+TEST(BackscatterPingTest, ASphereOfSmoothMatterHasTheTargetStrengthOfItsReflection) {
+    SonarConfig config = sonarOf(2, 2, 1, 60);
+    config.frequency_khz = 900;
+    const auto strength = [&](const SonarConfig& way, const char* matter) {
+        return targetStrength(pingOf(way, changed(test::sceneOf({test::sphere(0.5, 128)}, 0, {{50.5, 0, 0}}),
+                                                  [&](types::Material& m) { m.matter = matter; })),
+                              50);
+    };
+    const double steel = (46.315 - 1.5375) / (46.315 + 1.5375),
+                 rock = (2562 * 3.75e-3 - 1.5375) / (2562 * 3.75e-3 + 1.5375);
+    for (const SonarConfig& way : everyWay(config)) {
+        EXPECT_NEAR(strength(way, "steel"), 10 * std::log10(steel * steel * 0.25 / 4), 0.5);
+        EXPECT_NEAR(strength(way, "rock"), 10 * std::log10(rock * rock * 0.25 * 2 / 3), 0.5) << "by Lambert's law";
+    }
+    config.frequency_khz.reset();
+    EXPECT_NEAR(strength(config, "steel"), 10 * std::log10(std::pow(10, -1.67) * 2 * pi * 0.25 / 3), 0.5)
+        << "by its lambert_db without a frequency";
+}
+
 TEST(BackscatterPingTest, AnEllipsoidHasTheTargetStrengthOfItsRadiiOfCurvature) {
     const double a = 0.6, b = 0.3, c = 0.4;  // semi-axes; seen along a
     auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(1, 256)}));

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "components/acoustics/Matter.hpp"
+#include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
 #include "components/sonar/echo/MaterialLaws.hpp"
@@ -11,9 +13,9 @@
 namespace insonify::sonar {
 namespace {
 
-MaterialLaws lawsOf(types::Material material) {
+MaterialLaws lawsOf(types::Material material, std::optional<double> frequency_khz = 100) {
     SonarConfig config;
-    config.frequency_khz = 100;
+    config.frequency_khz = frequency_khz;
     types::Geometry geometry;
     geometry.materials = {std::move(material)};
     return makeMaterialLaws(config, geometry);
@@ -38,6 +40,45 @@ TEST(MaterialLawsTest, LambertsLawIsThatOfNeitherTableNorLobe) {
     EXPECT_FALSE(lawsOf({.name = "floor", .seabed = "silt"}).followsLambert(0));
     EXPECT_FALSE(lawsOf({.name = "measured", .measured = {{10, -30}, {90, -10}}}).followsLambert(0));
     EXPECT_FALSE(lawsOf({.name = "steel", .reflection = 0.9f, .roughness_slope = 0.1f}).followsLambert(0));
+}
+
+TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
+    for (const double frequency_khz : {100.0, 900.0, 3000.0})
+        for (const acoustics::Matter matter : {acoustics::Matter::Steel, acoustics::Matter::Concrete}) {
+            const MaterialLaws laws = lawsOf({.matter = std::string(acoustics::nameOf(matter))}, frequency_khz);
+            const acoustics::RoughSurface surface =
+                acoustics::roughSurfaceOf(acoustics::propertiesOf(matter), frequency_khz, 1025, 1500);
+            EXPECT_TRUE(laws.has_matter && laws.hasLobes());
+            const double power = std::pow(surface.reflection(), 2) * surface.lobeShare() / (4 * M_PI);
+            EXPECT_NEAR(double{laws.records[0].law.y} / power, 1, 1e-6);
+            EXPECT_NEAR(double{laws.records[0].law.z} / surface.squareSlope(), 1, 1e-6);
+            // Beyond the lobe: small perturbations, between two entries of the table to 0.5 dB.
+            const LobeSlopes far{1, 0, 1e-6, 1e-6, 0, 0};
+            for (double grazing_deg = 20; grazing_deg < 75; grazing_deg += 1.7) {
+                const double cosine = std::sin(types::radians(grazing_deg));
+                const double exact = surface.diffuse(types::radians(grazing_deg)) / cosine;
+                EXPECT_NEAR(10 * std::log10(laws.overCosine(0, cosine, far) / exact), 0, 0.5) << grazing_deg;
+            }
+        }
+}
+
+TEST(MaterialLawsTest, MatterWithoutALobeIsATableAlone) {
+    const MaterialLaws rock = lawsOf({.matter = "rock"}, 900);
+    EXPECT_FALSE(rock.hasLobes());
+    EXPECT_FALSE(rock.followsLambert(0));
+    const double r =
+        acoustics::roughSurfaceOf(acoustics::propertiesOf(acoustics::Matter::Rock), 900, 1025, 1500).reflection();
+    EXPECT_NEAR(rock.overCosine(0, 0.6), r * r / M_PI * 0.6, 1e-4) << "Lambert's law of all that is reflected";
+}
+
+TEST(MaterialLawsTest, WithoutAFrequencyMatterFollowsLambertsLaw) {
+    const types::Material steel{.lambert_db = -9.8f, .matter = "steel", .reflection = 0.936f};
+    types::Material plain = steel;
+    plain.matter.clear();
+    const MaterialLaws laws = lawsOf(steel, {}), as_before = lawsOf(plain, {});
+    EXPECT_TRUE(laws.followsLambert(0));
+    EXPECT_FALSE(laws.has_matter || laws.hasLobes());
+    for (const double cosine : {0.1, 0.5, 1.0}) EXPECT_EQ(laws.overCosine(0, cosine), as_before.overCosine(0, cosine));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // where fields are summed, in tests/study/SpecklePingTest.cpp:
                                                "coherent speckle",
                                                // in BackscatterPingTest.cpp:
-                                               "seabeds by TR 9407", "measured backscatter",
+                                               "seabeds by TR 9407", "measured backscatter", "rough solids",
                                                // in VolumePingTest.cpp:
                                                "volume reverberation",
                                                // of `published`, in PublishedTest.cpp:

@@ -90,6 +90,7 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
     hash.add(fmt::format("{} {} {} {} {} {} {} {} {} {}\n", material.name, material.lambert_db, material.seabed,
                          material.reflection, material.roughness_slope.value_or(-1), material.mirror,
                          material.reflectivity, material.has_acoustics, material.normal_map, material.normal_scale));
+    if (!material.matter.empty()) hash.add(fmt::format("matter {}\n", material.matter));
     addBytes(hash, material.measured);
 }
 

@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "components/acoustics/Backscatter.hpp"
+#include "components/acoustics/Matter.hpp"
 #include "components/acoustics/Plate.hpp"
+#include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
 
@@ -17,6 +19,7 @@ static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
 
 constexpr double water_density = 1025;      ///< [kg/m^3]
 constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
+constexpr double min_lobe_share = 1e-4;     ///< A rough solid whose lobe keeps less energy has none [1].
 
 /** What shaders/backscatter.glsl reads and computes. */
 struct Shared {
@@ -30,7 +33,15 @@ struct Shared {
 #include "shaders/backscatter.glsl"
 };
 
-/** Adds tables, that of a seabed once. */
+/** Returns the surface of a material that follows the law of its matter at the sonar's frequency; none of others. */
+std::optional<acoustics::RoughSurface> roughSurface(const types::Material& material, const SonarConfig& config) {
+    if (material.matter.empty() || !config.frequency_khz) return {};
+    const acoustics::Matter matter = acoustics::matterNamed(material.matter).value();
+    return acoustics::roughSurfaceOf(acoustics::propertiesOf(matter), *config.frequency_khz, water_density,
+                                     config.speedOfSound());
+}
+
+/** Adds tables, that of a seabed or a matter once. */
 class TableList {
 public:
     TableList(const SonarConfig& config, MaterialLaws& laws) : config_(config), laws_(laws) {}
@@ -38,6 +49,7 @@ public:
     /** Number of the table that a material follows; -1: it follows Lambert's law. */
     int of(const types::Material& material) {
         if (!material.measured.empty()) return addMeasured(material);
+        if (!material.matter.empty()) return ofMatter(material);
         if (material.seabed.empty()) return -1;
         laws_.lacks_frequency = !config_.frequency_khz;
         if (!config_.frequency_khz) return -1;
@@ -50,6 +62,15 @@ private:
     int add(const acoustics::BackscatterTable& table) {
         laws_.tables.insert(laws_.tables.end(), table.values().begin(), table.values().end());
         return static_cast<int>(laws_.tables.size() / BACKSCATTER_ENTRIES) - 1;
+    }
+    int ofMatter(const types::Material& material) {
+        const auto surface = roughSurface(material, config_);
+        if (!surface) return -1;
+        laws_.has_matter = true;
+        const auto [known, is_new] = matters_.try_emplace(material.matter, -1);
+        if (is_new)
+            known->second = add(acoustics::BackscatterTable([&](double grazing) { return surface->diffuse(grazing); }));
+        return known->second;
     }
     int addMeasured(const types::Material& material) {
         acoustics::Curve curve;
@@ -71,7 +92,7 @@ private:
 
     const SonarConfig& config_;
     MaterialLaws& laws_;
-    std::map<std::string, int> seabeds_;
+    std::map<std::string, int> seabeds_, matters_;
 };
 
 acoustics::PlateResponse wallResponse(const types::Shell& shell, const SonarConfig& config, double cosine) {
@@ -102,8 +123,14 @@ std::vector<float> wallTable(const types::Material& material, const SonarConfig&
     return table;
 }
 
-vec4 lawOf(const types::Material& material, float reflected, TableList& tables) {
+vec4 lawOf(const types::Material& material, const SonarConfig& config, float reflected, TableList& tables) {
     vec4 law(static_cast<float>(tables.of(material)), 0, 0, 0);
+    if (const auto surface = roughSurface(material, config)) {
+        if (surface->lobeShare() < min_lobe_share) return law;
+        law.y = static_cast<float>(std::pow(surface->reflection(), 2) * surface->lobeShare() / (4 * std::numbers::pi));
+        law.z = static_cast<float>(surface->squareSlope());
+        return law;
+    }
     if (!material.roughness_slope) return law;
     law.y = reflected * material.reflection * material.reflection / (4 * std::numbers::pi_v<float>);
     law.z = *material.roughness_slope * *material.roughness_slope;
@@ -192,7 +219,8 @@ MaterialLaws makeMaterialLaws(const SonarConfig& config, const types::Geometry& 
         const float reflected = wallReflection(material, config);
         const vec4 values(reflected * std::pow(10.0f, material.lambert_db / 10), material.reflectivity,
                           material.normal_scale, 0);
-        const vec4 law = config.model == Model::Physical ? lawOf(material, reflected, tables) : vec4(-1, 0, 0, 0);
+        const vec4 law =
+            config.model == Model::Physical ? lawOf(material, config, reflected, tables) : vec4(-1, 0, 0, 0);
         laws.records.push_back({values, law});
         laws.walls.push_back(config.model == Model::Physical ? wallTable(material, config) : std::vector<float>());
     }

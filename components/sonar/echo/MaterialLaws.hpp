@@ -33,6 +33,7 @@ struct MaterialLaws {
     std::optional<double> wavelength;       ///< None without a frequency [m].
     bool has_measured = false;              ///< A table is measured.
     bool has_seabeds = false;               ///< A table is that of APL-UW TR 9407.
+    bool has_matter = false;                ///< A table is that of a rough solid.
     bool lacks_frequency = false;           ///< There are seabeds, which follow Lambert's law for want of a frequency.
     std::string outside_validity;           ///< What lies outside of what TR 9407 covers; empty: nothing.
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "components/sonar/effects/Effect.hpp"
@@ -10,6 +11,10 @@ namespace {
 std::string noMaterial(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
 std::string noLobe(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "no material has a reflection and a roughness_slope";
+}
+std::string noMatter(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material names its matter alone"; }
+std::string noFrequencyOfMatter(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no frequency_khz; matter follows Lambert's law by its lambert_db";
 }
 std::string noFrequency(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; sediments follow Lambert's law by their lambert_db";
@@ -25,7 +30,7 @@ std::string listed(const std::vector<std::string>& names) {
 /** What materials give back other than by Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
 class Backscatter final : public Effect {
 public:
-    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+    bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
         const MaterialLaws& laws = plan.laws;
         if (!laws.tables.empty() || laws.hasLobes()) plan.features.add(Feature::BackscatterLaws);
         if (plan.config.model != Model::Physical) return plan.features.has(Feature::BackscatterLaws);
@@ -34,6 +39,9 @@ public:
         };
         omitUnless(laws.hasLobes(), "specular lobe", noLobe);
         omitUnless(laws.has_seabeds, "seabeds by TR 9407", laws.lacks_frequency ? noFrequency : noMaterial);
+        const bool names_matter =
+            std::ranges::any_of(geometry.materials, [](const auto& material) { return !material.matter.empty(); });
+        omitUnless(laws.has_matter, "rough solids", names_matter ? noFrequencyOfMatter : noMatter);
         omitUnless(laws.has_measured, "measured backscatter", noMaterial);
         return plan.features.has(Feature::BackscatterLaws);
     }
