@@ -21,13 +21,6 @@ using Variates = std::array<float, chunk_bins>;
 /** Independent sets of variates for one bin: bits of the counter's beam word. */
 enum class Stream : uint32_t { Speckle = 0, Additive = 0x80000000, Ambient = 0x40000000, Texture = 0xC0000000 };
 
-/** What, with bin and stream, makes the counter and the key. */
-struct BeamKey {
-    Key seed;
-    uint32_t beam;
-    uint32_t ping_low, ping_high;
-};
-
 inline void drawWords(const BeamKey& key, Stream stream, size_t chunk, Words& words) {
     for (size_t i = 0; i < lanes; ++i) {
         const Counter block = philox({static_cast<uint32_t>(chunk * lanes + i),
@@ -90,6 +83,7 @@ struct Noise::Run {
     const float* clean;
     float* noisy;
     size_t size;
+    size_t offset;  ///< Of its first bin in the ping.
 
     void multiplyBy(const Variates& factor, float mean) const {
         for (size_t i = 0; i < size; ++i) noisy[i] = (clean[i] + mean) * factor[i];
@@ -106,9 +100,14 @@ struct Noise::Run {
         }
         return clamped;
     }
-    void addExponentials(Stream stream, float level) const {
+    /** Variates of unit mean: those of the filter, or exponential ones. */
+    void draw(Stream stream, const std::vector<float>& filtered, Variates& variates) const {
+        if (filtered.empty()) return drawExponentials(key, stream, chunk, variates);
+        std::copy_n(filtered.data() + offset, size, variates.data());
+    }
+    void addVariates(Stream stream, const std::vector<float>& filtered, float level) const {
         Variates noise;
-        drawExponentials(key, stream, chunk, noise);
+        draw(stream, filtered, noise);
         for (size_t i = 0; i < size; ++i) noisy[i] += level * noise[i];
     }
 };
@@ -116,6 +115,7 @@ struct Noise::Run {
 Noise::Noise(const NoiseConfig& config) : config_(config) {
     if (config.speckle && config.speckle->law == SpeckleLaw::Gamma) gamma_.emplace(config.speckle->looks.value_or(1));
     if (config.speckle && config.speckle->law == SpeckleLaw::K) gamma_.emplace(config.speckle->shape.value_or(1));
+    if (config.filter) filter_.emplace(*config.filter);
     if (config.ambient) ambient_ = static_cast<float>(std::min(ambientIntensity(*config.ambient), 1e30));
     if (config.additive) additive_ = static_cast<float>(std::pow(10.0, config.additive->level_db / 10));
 }
@@ -123,7 +123,7 @@ Noise::Noise(const NoiseConfig& config) : config_(config) {
 uint64_t Noise::multiply(const Run& run) const {
     if (config_.speckle->law == SpeckleLaw::Gaussian) return run.multiplyByNormals(*config_.speckle);
     Variates factor, texture;
-    drawExponentials(run.key, Stream::Speckle, run.chunk, factor);
+    run.draw(Stream::Speckle, filtered_.speckle, factor);
     if (config_.speckle->law == SpeckleLaw::K) {
         drawExponentials(run.key, Stream::Texture, run.chunk, texture);
         turnToGamma(gamma_->values(), texture);
@@ -143,23 +143,40 @@ uint64_t Noise::addTo(const Run& run) const {
         clamped = multiply(run);
     else
         std::copy_n(run.clean, run.size, run.noisy);
-    const bool has_ambient =
-        config_.speckle && (config_.speckle->law == SpeckleLaw::Rayleigh || config_.speckle->law == SpeckleLaw::K);
-    if (config_.ambient && !has_ambient) run.addExponentials(Stream::Ambient, ambient_);
-    if (config_.additive) run.addExponentials(Stream::Additive, additive_);
+    if (addsAmbient()) run.addVariates(Stream::Ambient, filtered_.ambient, ambient_);
+    if (config_.additive) run.addVariates(Stream::Additive, filtered_.additive, additive_);
     return clamped;
 }
 
-uint64_t Noise::add(const types::Sonar& clean, types::Sonar& noisy) const {
+/** Whether the noise of the sea is an intensity of its own, and not in the mean of the speckle. */
+bool Noise::addsAmbient() const {
+    const bool has_ambient =
+        config_.speckle && (config_.speckle->law == SpeckleLaw::Rayleigh || config_.speckle->law == SpeckleLaw::K);
+    return config_.ambient && !has_ambient;
+}
+
+void Noise::drawFiltered(const types::Sonar& ping, uint64_t seed) {
+    const uint64_t time = static_cast<uint64_t>(ping.time.microseconds);
+    const auto draw = [&](Stream stream, bool wanted, std::vector<float>& variates) {
+        const BeamKey key{{low(seed), high(seed)}, static_cast<uint32_t>(stream), low(time), high(time)};
+        if (wanted) filter_->draw(key, ping.beam_count, ping.bin_count, variates);
+    };
+    draw(Stream::Speckle, config_.speckle.has_value(), filtered_.speckle);
+    draw(Stream::Ambient, addsAmbient(), filtered_.ambient);
+    draw(Stream::Additive, config_.additive.has_value(), filtered_.additive);
+}
+
+uint64_t Noise::add(const types::Sonar& clean, types::Sonar& noisy) {
     noisy.copyHeader(clean);
     const uint64_t ping = static_cast<uint64_t>(clean.time.microseconds), seed = config_.seed.value_or(1);
+    if (filter_) drawFiltered(clean, seed);
     uint64_t clamped = 0;
     for (uint32_t beam = 0; beam < clean.beam_count; ++beam) {
         const BeamKey key{{low(seed), high(seed)}, beam, low(ping), high(ping)};
         for (size_t bin = 0; bin < clean.bin_count; bin += chunk_bins) {
             const size_t offset = size_t{beam} * clean.bin_count + bin;
             const size_t size = std::min<size_t>(chunk_bins, clean.bin_count - bin);
-            clamped += addTo({key, bin / chunk_bins, &clean.bins[offset], &noisy.bins[offset], size});
+            clamped += addTo({key, bin / chunk_bins, &clean.bins[offset], &noisy.bins[offset], size, offset});
         }
     }
     return clamped;

@@ -66,12 +66,32 @@ struct AdditiveConfig {
     }
 };
 
+/** The receiver's filter and its averaging, as speckle and noise have passed them (ACOUSTICS.md 6.8). */
+struct FilterConfig {
+    int looks = 1;
+    std::optional<double> correlation_bins = {}, correlation_beams = {};
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"looks", "1", "independent intensities that are averaged in each bin", 1, 256}, self.looks);
+        visit(Field{"correlation_bins", "1",
+                    "bins in range over which the correlation of intensities falls to 1/e; absent: bins are "
+                    "independent",
+                    0.1, 16},
+              self.correlation_bins);
+        visit(Field{"correlation_beams", "1", "the same across beams; absent: beams are independent", 0.1, 16},
+              self.correlation_beams);
+    }
+};
+
 /** What noise a ping gets: a block that is absent is not computed. */
 struct NoiseConfig {
     std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task one of its own.
     std::optional<SpeckleConfig> speckle;
     std::optional<AmbientConfig> ambient;
     std::optional<AdditiveConfig> additive;
+    std::optional<FilterConfig> filter = {};
 
     bool isNone() const { return !speckle && !ambient && !additive; }
 
@@ -88,7 +108,12 @@ struct NoiseConfig {
               self.ambient);
         visit(Field{"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
               self.additive);
+        visit(Field{"filter", "",
+                    "the receiver's filter and averaging of looks, which speckle (rayleigh, k) and noise have passed; "
+                    "absent: one look, independent in each bin"},
+              self.filter);
     }
+    void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10) [1]. */

@@ -13,6 +13,13 @@ namespace insonify::noise {
 using Counter = std::array<uint32_t, 4>;
 using Key = std::array<uint32_t, 2>;
 
+/** What, with bin and stream, makes the counter and the key of a beam's numbers. */
+struct BeamKey {
+    Key seed;
+    uint32_t beam;
+    uint32_t ping_low, ping_high;
+};
+
 /** Philox4x32-10: four words of 32 random bits for each counter and key.
  *  J. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011. */
 inline Counter philox(Counter counter, Key key) {

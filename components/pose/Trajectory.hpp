@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "components/pose/SeaMotion.hpp"
 #include "types/Pose.hpp"
 
 namespace insonify::pose {
@@ -41,6 +42,7 @@ struct TrajectoryConfig {
     std::vector<Waypoint> waypoints;
     bool loop = false;
     bool smooth = false;
+    std::optional<SeaMotionConfig> motion = {};
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -53,6 +55,9 @@ struct TrajectoryConfig {
                     "a natural cubic spline through the stamps, so that accelerations are those of a body; else "
                     "straight lines, whose corners are none"},
               self.smooth);
+        visit(
+            Field{"motion", "", "heave, roll and pitch of a carrier on waves, on top of the trajectory; absent: none"},
+            self.motion);
     }
     /** Exactly one source; the waypoints' times increase. */
     void check(types::Diagnostics& diagnostics) const;

@@ -21,6 +21,8 @@ Trajectory TrajectoryTask::trajectory() const {
 
 bool TrajectoryTask::configureHook() {
     trajectory_ = trajectory();
+    motion_.reset();
+    if (config->motion) motion_.emplace(*config->motion);
     return true;
 }
 
@@ -34,6 +36,7 @@ void TrajectoryTask::updateHook() {
     const types::Time elapsed = time - environment().start_time();
     const double seconds = elapsed.seconds();
     types::Pose sample = trajectory_->at(config->loop ? trajectory_->inLoop(seconds) : seconds);
+    if (motion_) motion_->move(seconds, sample);
     sample.time = time;
     pose.write(sample);
     finished_ = !config->loop && (finished_ || isLast(elapsed));

@@ -15,8 +15,9 @@ namespace insonify::pose {
  *
  *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. It has finished once
  *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
- *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. A
- * file that is not right refuses configure. */
+ *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. With
+ * `motion` waves move the body about the trajectory, by the time of the run, and at its ends too. A file that is not
+ * right refuses configure. */
 class TrajectoryTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -40,6 +41,7 @@ private:
     bool isLast(types::Time elapsed);
 
     std::optional<Trajectory> trajectory_;
+    std::optional<SeaMotion> motion_;
     std::atomic<bool> finished_{false};
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "components/receiver/AutomaticGain.hpp"
 #include "types/Geometry.hpp"
 #include "types/VectorMath.hpp"
 
@@ -37,6 +38,11 @@ void takeLevels(const float* __restrict in, const float* __restrict offset_db, f
         const float heard = level < floor_db ? floor_db : level;
         out[i] = in[i] > 0 ? heard : in[i] == 0 ? floor_db : in[i];
     }
+}
+
+INSONIFY_VECTOR_CLONES
+void clip(float* values, float ceiling, size_t count) {
+    for (size_t i = 0; i < count; ++i) values[i] = values[i] > ceiling ? ceiling : values[i];
 }
 
 /** Values to the power of gamma. */
@@ -74,6 +80,11 @@ void CodeConfig::check(types::Diagnostics& diagnostics) const {
 }
 
 void ReceiverConfig::check(types::Diagnostics& diagnostics) const {
+    if (brightness && automatic_gain)
+        diagnostics.push_back(
+            {"automatic_gain", "is given with brightness, which scales for a display; give one of the two"});
+    if (brightness && saturation_db)
+        diagnostics.push_back({"saturation_db", "is given with brightness, which ends at 1; give one of the two"});
     if (!brightness) return;
     if (tvg) diagnostics.push_back({"brightness", "is given with tvg; it makes up for spreading itself"});
     if (output != Output::Intensity)
@@ -105,7 +116,7 @@ bool Receiver::isLevel() const {
 
 bool Receiver::isNeutral() const {
     return config_.output == Output::Intensity && config_.gain_db == 0 && !config_.tvg && !config_.blanking &&
-           !config_.brightness;
+           !config_.brightness && !config_.automatic_gain && !config_.saturation_db;
 }
 
 double Receiver::gainDb(const types::Sonar& ping, double r) const {
@@ -136,6 +147,36 @@ void Receiver::makeTables(const types::Sonar& ping) {
     }
 }
 
+double Receiver::scaleDb() const {
+    if (config_.output == Output::ReceivedLevelDb) return config_.source_level_db;
+    return config_.output == Output::Code ? -code_.full_scale_db : 0;
+}
+
+double Receiver::saturation() const {
+    constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
+    return config_.saturation_db ? std::min(largest, powerOf(*config_.saturation_db + scaleDb())) : largest;
+}
+
+void Receiver::followLevel(const types::Sonar& ping) {
+    const size_t count = axis_.bin_count;
+    fixed_db_.resize(count);
+    means_.assign(count, 0);
+    automatic_db_.resize(count);
+    for (size_t k = 0; k < count; ++k)
+        fixed_db_[k] = gainDb(ping, std::max(nearest, ping.binStart(static_cast<double>(k) + 0.5)));
+    for (size_t i = 0; i < ping.bins.size(); ++i)
+        if (ping.bins[i] >= 0) means_[i % count] += static_cast<double>(ping.bins[i]);
+    for (size_t k = 0; k < count; ++k)
+        means_[k] *= std::min(powerOf(fixed_db_[k]), 1e200) / std::max(1u, ping.beam_count);
+    receiver::followLevel(*config_.automatic_gain, means_, silent_, config_.automatic_gain->target_db + scaleDb(),
+                          1e-3 * static_cast<double>(ping.bin_duration.microseconds), automatic_db_);
+    for (size_t k = 0; k < count; ++k) {
+        const double gain = fixed_db_[k] + automatic_db_[k];
+        factor_[k] = std::min(powerOf(gain), 1e300);
+        offset_db_[k] = static_cast<float>(gain);
+    }
+}
+
 void Receiver::encode(float* received) const {
     const float most = largestCode();
     const auto range_db = static_cast<float>(code_.dynamic_range_db);
@@ -145,12 +186,13 @@ void Receiver::encode(float* received) const {
 }
 
 void Receiver::receiveBeam(const float* intensities, float* received) const {
-    constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
     const size_t count = axis_.bin_count;
     if (isLevel())
         takeLevels(intensities, offset_db_.data(), received, count);
     else
-        amplify(intensities, factor_.data(), config_.brightness ? 1 : largest, received, count);
+        amplify(intensities, factor_.data(), config_.brightness ? 1 : saturation(), received, count);
+    if (isLevel() && config_.saturation_db)
+        clip(received, static_cast<float>(*config_.saturation_db + scaleDb()), count);
     std::fill_n(received, silent_, isLevel() ? floor_db : 0.0f);
     const bool is_root =
         config_.output == Output::Code ? code_.law == CodeLaw::Sqrt : config_.output == Output::Amplitude;
@@ -160,6 +202,7 @@ void Receiver::receiveBeam(const float* intensities, float* received) const {
 
 void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) {
     makeTables(intensities);
+    if (config_.automatic_gain) followLevel(intensities);
     received.copyHeader(intensities);
     const size_t count = axis_.bin_count;
     for (size_t beam = 0; beam < intensities.beam_count; ++beam)

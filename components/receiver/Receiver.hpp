@@ -57,6 +57,11 @@ private:
         bool operator==(const Axis&) const = default;
     };
     void makeTables(const types::Sonar& ping);
+    /** Puts the automatic gain of a ping on top of the tables. */
+    void followLevel(const types::Sonar& ping);
+    /** What the tables add to a level with all gain included: the outputs' own scales [dB]. */
+    double scaleDb() const;
+    double saturation() const;  ///< On the scale of the tables [1].
     double gainDb(const types::Sonar& ping, double r) const;
     bool isLevel() const;
     void receiveBeam(const float* intensities, float* received) const;
@@ -70,10 +75,11 @@ private:
     ReceiverConfig config_;
     CodeConfig code_;
     Axis axis_;
-    size_t silent_ = 0;             ///< Bins of a beam, from the first on.
-    double range_max_ = 0;          ///< Of the last ping [m].
-    std::vector<double> factor_;    ///< Of each bin [1],
-    std::vector<float> offset_db_;  ///< or for levels [dB].
+    size_t silent_ = 0;                                    ///< Bins of a beam, from the first on.
+    double range_max_ = 0;                                 ///< Of the last ping [m].
+    std::vector<double> factor_;                           ///< Of each bin [1],
+    std::vector<float> offset_db_;                         ///< or for levels [dB].
+    std::vector<double> fixed_db_, means_, automatic_db_;  ///< With automatic gain: gain and levels of each bin.
 };
 
 }  // namespace insonify::receiver

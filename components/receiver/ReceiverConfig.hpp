@@ -81,6 +81,24 @@ struct BrightnessConfig {
     }
 };
 
+/** Gain that follows the level along a ping. */
+struct AutomaticGainConfig {
+    double target_db = -20;
+    double attack_ms = 0.5, release_ms = 5;
+    double max_db = 40;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"target_db", "dB", "mean level over the beams, all gain included, that it aims at", -1000, 1000},
+              self.target_db);
+        visit(Field{"attack_ms", "ms", "time in which it follows a level that rises, to 1 - 1/e", 0, 1e6},
+              self.attack_ms);
+        visit(Field{"release_ms", "ms", "the same of a level that falls", 0, 1e6}, self.release_ms);
+        visit(Field{"max_db", "dB", "its gain is this at most, up or down", 0, 1000}, self.max_db);
+    }
+};
+
 /** What a receiver does: a block that is absent is not done. */
 struct ReceiverConfig {
     std::optional<TvgConfig> tvg;
@@ -90,6 +108,8 @@ struct ReceiverConfig {
     double source_level_db = 0;
     std::optional<CodeConfig> code;
     std::optional<BrightnessConfig> brightness;
+    std::optional<AutomaticGainConfig> automatic_gain;
+    std::optional<double> saturation_db;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -105,6 +125,10 @@ struct ReceiverConfig {
         visit(Field{"source_level_db", "dB re 1 uPa m", "used by output received_level_db", -300, 400},
               self.source_level_db);
         visit(Field{"code", "", "used by output code"}, self.code);
+        visit(Field{"automatic_gain", "", "gain that follows the level along each ping; absent: none"},
+              self.automatic_gain);
+        visit(Field{"saturation_db", "dB", "level, all gain included, that nothing exceeds; absent: none", -1000, 1000},
+              self.saturation_db);
         visit(Field{"brightness", "", "in place of tvg, bins for a display; absent: none"}, self.brightness);
     }
     void check(types::Diagnostics& diagnostics) const;

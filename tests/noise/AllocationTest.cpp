@@ -11,6 +11,9 @@ TEST(AllocationTest, NoiseAllocatesNothingAfterTheFirstPings) {
         config.additive.emplace();
         config.ambient.emplace().level_db = -60;
         test::expectNoAllocation(config, &NoiseTask::clean, &NoiseTask::noisy);
+        if (law != SpeckleLaw::Rayleigh && law != SpeckleLaw::K) continue;
+        config.filter = FilterConfig{2, 1.5, 2};
+        test::expectNoAllocation(config, &NoiseTask::clean, &NoiseTask::noisy);
     }
 }
 

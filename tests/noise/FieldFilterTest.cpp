@@ -1,0 +1,163 @@
+// Noise that has passed a receiver's filter and its averaging of looks, against closed forms.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "components/noise/FieldFilter.hpp"
+#include "tests/noise/Distributions.hpp"
+
+namespace insonify::noise {
+namespace {
+
+constexpr uint32_t beams = 256, bins = 1000;
+
+NoiseConfig filtered(const FilterConfig& filter, std::optional<SpeckleConfig> speckle = SpeckleConfig{}) {
+    NoiseConfig config;
+    config.speckle = speckle;
+    config.filter = filter;
+    return config;
+}
+
+types::Sonar drawn(const FilterConfig& filter) { return noisyOf(filtered(filter), pingOf(beams, bins)); }
+
+/** Correlation of intensities so many beams and bins apart. */
+double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
+    double sum = 0;
+    const size_t count = ping.bin_count - along;
+    for (size_t beam = 0; beam + across < ping.beam_count; ++beam)
+        for (size_t bin = 0; bin < count; ++bin)
+            sum += (static_cast<double>(ping.bins[beam * ping.bin_count + bin]) - 1) *
+                   (static_cast<double>(ping.bins[(beam + across) * ping.bin_count + bin + along]) - 1);
+    return sum / static_cast<double>(count * (ping.beam_count - across)) / varianceOf(ping.bins);
+}
+
+/** Of the logarithm of gamma variates of `looks`: psi''(L) / psi'(L)^1.5. */
+double logSkewOf(int looks) {
+    double trigamma = 0, tetragamma = 0;
+    for (int k = looks; k < 100000; ++k) trigamma += 1 / std::pow(k, 2), tetragamma -= 2 / std::pow(k, 3);
+    return tetragamma / std::pow(trigamma, 1.5);
+}
+
+double logSkew(const std::vector<float>& values) {
+    double mean = 0, second = 0, third = 0;
+    const auto count = static_cast<double>(values.size());
+    for (const float value : values) mean += std::log(static_cast<double>(value)) / count;
+    for (const float value : values) {
+        const double off = std::log(static_cast<double>(value)) - mean;
+        second += off * off / count, third += off * off * off / count;
+    }
+    return third / std::pow(second, 1.5);
+}
+
+TEST(FieldFilterTest, TapsHaveTheCorrelationOfTheClosedFormAtEveryLag) {
+    for (const double width : {0.1, 0.4, 0.7, 1.0, 1.346, 3.0, 7.5, 16.0}) {
+        const std::vector<float> half = gaussianFilter(width);
+        const int reach = static_cast<int>(half.size()) - 1;
+        EXPECT_LE(reach, 64);
+        const auto tap = [&](int t) {
+            return std::abs(t) > reach ? 0.0 : static_cast<double>(half[static_cast<size_t>(std::abs(t))]);
+        };
+        for (int lag = 0; lag < 40; ++lag) {
+            double sum = 0;
+            for (int t = -reach; t <= reach + lag; ++t) sum += tap(t) * tap(t - lag);
+            EXPECT_NEAR(sum, std::exp(-0.5 * std::pow(lag / width, 2)), 2e-4) << width << " at " << lag;
+        }
+    }
+}
+
+TEST(FieldFilterTest, IntensitiesCorrelateByTheClosedFormInRangeAndAcrossBeams) {
+    struct Case {
+        int looks;
+        double along, across;
+    };
+    for (const auto& [looks, along, across] : {Case{1, 1.346, 0.3}, Case{4, 2.5, 1.5}, Case{2, 0.5, 3}}) {
+        const types::Sonar ping = drawn({looks, along, across});
+        EXPECT_NEAR(meanOf(ping.bins), 1, 0.02);
+        EXPECT_NEAR(varianceOf(ping.bins), 1.0 / looks, 0.05 / looks);
+        for (const size_t lag : {1u, 2u, 3u}) {
+            const double x = static_cast<double>(lag);
+            EXPECT_NEAR(correlationAt(ping, 0, lag), std::exp(-std::pow(x / along, 2)), 0.02) << along << ' ' << lag;
+            EXPECT_NEAR(correlationAt(ping, lag, 0), std::exp(-std::pow(x / across, 2)), 0.02) << across << ' ' << lag;
+        }
+        EXPECT_NEAR(correlationAt(ping, 1, 1), std::exp(-1 / (along * along) - 1 / (across * across)), 0.02);
+    }
+}
+
+TEST(FieldFilterTest, LooksAreGammaDistributedWithTheSkewOfItsLogarithm) {
+    for (const int looks : {1, 2, 4, 16, 64}) {
+        const types::Sonar ping = drawn({looks, {}, {}});
+        const auto all = shares(ping.bins, [&](double x) { return gammaCdf(x, looks); });
+        EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent) << looks;
+        EXPECT_NEAR(logSkew(ping.bins), logSkewOf(looks), 0.03) << looks;
+        const types::Sonar correlated = drawn({looks, 1.3, {}});
+        EXPECT_NEAR(logSkew(correlated.bins), logSkewOf(looks), 0.06) << looks << ": a filter keeps the law";
+    }
+    EXPECT_NEAR(logSkewOf(1), -1.1395, 1e-3) << "of the exponential law (Gumbel's)";
+}
+
+TEST(FieldFilterTest, KSpeckleTheSeaAndAdditiveNoisePassTheFilterToo) {
+    const FilterConfig filter{4, 1.346, {}};
+    const auto lagOf = [](const types::Sonar& ping) {
+        return correlation(ping.bins.data(), ping.bins.data() + 1, ping.bins.size() - 1);
+    };
+    NoiseConfig sea = withSea(filtered(filter, {}), 0), added = background(0);
+    added.filter = filter;
+    const types::Sonar empty = pingOf(beams, bins, 0);
+    for (const NoiseConfig& config : {sea, added}) {
+        const types::Sonar ping = noisyOf(config, empty);
+        EXPECT_NEAR(meanOf(ping.bins), 1, 0.02);
+        EXPECT_NEAR(varianceOf(ping.bins), 0.25, 0.02);
+        EXPECT_NEAR(lagOf(ping), std::exp(-std::pow(1 / 1.346, 2)), 0.02);
+    }
+    EXPECT_NE(noisyOf(sea, empty).bins, noisyOf(added, empty).bins) << "streams of their own";
+    const types::Sonar k =
+        noisyOf(filtered(filter, SpeckleConfig{.law = SpeckleLaw::K, .shape = 2}), pingOf(beams, bins));
+    EXPECT_NEAR(varianceOf(k.bins), 1.5 * 1.25 - 1, 0.05) << "(1 + 1/nu) (1 + 1/L) - 1";
+    const types::Sonar rayleigh_in_sea = noisyOf(withSea(filtered(filter), 0), pingOf(beams, bins));
+    EXPECT_NEAR(meanOf(rayleigh_in_sea.bins), 2, 0.04);
+    EXPECT_NEAR(varianceOf(rayleigh_in_sea.bins), 1, 0.08) << "fields that add: (I0 + a)^2 / L";
+}
+
+TEST(FieldFilterTest, ABinsNoiseDependsOnSeedPingBeamAndBinAlone) {
+    const NoiseConfig config = filtered({3, 2, 2});
+    const types::Sonar small = noisyOf(config, pingOf(3, 70)), large = noisyOf(config, pingOf(9, 1000));
+    for (size_t beam = 0; beam < 3; ++beam)
+        for (size_t bin = 0; bin < 70; ++bin) EXPECT_EQ(small.bins[beam * 70 + bin], large.bins[beam * 1000 + bin]);
+    Noise noise(config);
+    types::Sonar first, between, again;
+    noise.add(pingOf(4, 300), first);
+    noise.add(pingOf(7, 100, 1, 99), between);
+    noise.add(pingOf(4, 300), again);
+    EXPECT_EQ(first.bins, again.bins);
+    NoiseConfig other = config;
+    other.seed = 2;
+    EXPECT_LT(std::abs(correlation(first.bins.data(), noisyOf(other, pingOf(4, 300)).bins.data(), 1200)), 0.2);
+    EXPECT_LT(std::abs(correlation(first.bins.data(), noisyOf(config, pingOf(4, 300, 1, 99)).bins.data(), 1200)), 0.2);
+}
+
+TEST(FieldFilterTest, NaNStaysAndNothingBecomesNegative) {
+    types::Sonar clean = pingOf(5, 300);
+    clean.bins[7] = std::numeric_limits<float>::quiet_NaN();
+    const types::Sonar ping = noisyOf(filtered({1, 16, 16}), clean);
+    for (size_t i = 0; i < ping.bins.size(); ++i)
+        EXPECT_TRUE(i == 7 ? std::isnan(ping.bins[i]) : ping.bins[i] >= 0) << i;
+}
+
+std::string complaintOf(const NoiseConfig& config) {
+    types::Diagnostics diagnostics;
+    config.check(diagnostics);
+    return diagnostics.empty() ? "" : diagnostics[0].path + " " + diagnostics[0].message;
+}
+
+TEST(FieldFilterTest, AFilterOfNothingOrOfNoFieldIsRefused) {
+    EXPECT_EQ(complaintOf(filtered({4, 1, {}})), "");
+    EXPECT_EQ(complaintOf({}), "");
+    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, {})), "filter has nothing to filter; give speckle, ambient or additive");
+    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
+              "filter is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages");
+    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gaussian})),
+              "filter is given with speckle.law: gaussian, which is no field; give rayleigh or k");
+}
+
+}  // namespace
+}  // namespace insonify::noise
