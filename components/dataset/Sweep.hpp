@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "components/output/PlainPicture.hpp"
+#include "components/pose/SeaMotion.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::dataset {
@@ -68,6 +69,7 @@ struct TrajectoryPoses {
     std::optional<uint32_t> count;
     std::optional<double> period;
     std::optional<double> from, to;
+    std::optional<pose::SeaMotionConfig> motion = {};
     int line = 0, column = 0;  ///< Where it stands in the sweep.
 
     template <class Self, class V>
@@ -78,6 +80,7 @@ struct TrajectoryPoses {
         visit(Field{"period", "s", "instead: time between two poses", 1e-3, 1e6}, self.period);
         visit(Field{"from", "s", "time of the first; absent: the start of the trajectory", 0, 1e10}, self.from);
         visit(Field{"to", "s", "time of the last; absent: the end of the trajectory", 0, 1e10}, self.to);
+        visit(Field{"motion", "", "of the carrier on waves, on top of the trajectory; absent: none"}, self.motion);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "components/pose/SeaMotion.hpp"
 #include "tests/dataset/HarbourDeployment.hpp"
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Paths.hpp"
@@ -306,6 +307,25 @@ TEST_F(DatasetCommandTest, PosesOfATrajectoryGiveTracks) {
     EXPECT_TRUE(std::ranges::any_of(frames, [](const auto& of) { return of.second.size() > 1; }));
     EXPECT_EQ(recordOf("out", "000003")["time_s"], 6);
     EXPECT_EQ(recordOf("out", "000003")["picture"]["width"], 128);
+}
+
+TEST_F(DatasetCommandTest, PosesOfATrajectoryMoveOnWavesAsTheTaskMovesThem) {
+    writeFile(folder_ / "path.csv", "time,x,y,z,qw,qx,qy,qz\n0,4,-4,-5.5,1,0,0,0\n4,8,-4,-5.5,1,0,0,0\n");
+    writeFile(folder_ / "sweep.yml",
+              "poses:\n  trajectory: {file: path.csv, count: 3, motion: {heave_m: 0.3, roll_deg: 5, seed: 3}}\n");
+    ASSERT_EQ(make("out").code, 0);
+    const insonify::pose::SeaMotion motion({.heave_m = 0.3, .roll_deg = 5, .seed = 3});
+    for (int i = 0; i < 3; ++i) {
+        insonify::types::Pose pose;
+        pose.position = {4 + 2 * i, -4, -5.5};
+        motion.move(2 * i, pose);
+        const json position = recordOf("out", "00000" + std::to_string(i))["pose"]["position"];
+        EXPECT_NEAR(position[2].get<double>(), pose.position.z, 1e-6) << i;
+    }
+    writeFile(folder_ / "sweep.yml", "poses:\n  trajectory: {file: path.csv, count: 3, motion: {seed: 3}}\n");
+    const Outcome nothing = make("out");
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_THAT(nothing.err, HasSubstr("moves nothing; give heave_m, roll_deg or pitch_deg"));
 }
 
 TEST_F(DatasetCommandTest, PosesOfATrajectoryAreFromItsFirstStampToItsLast) {

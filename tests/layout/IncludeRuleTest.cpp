@@ -27,7 +27,7 @@ std::vector<Include> includesOf(const Source& source) {
 
 /** Folders from which those of a folder may include. */
 const std::map<std::string, std::set<std::string>> neighbours = {
-    {"dataset", {"command", "log", "output"}},
+    {"dataset", {"command", "log", "output", "pose"}},
     {"dds", {"ros"}},
     {"framework", {"loader"}},
     {"log", {"ros"}},

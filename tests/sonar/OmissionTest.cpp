@@ -100,7 +100,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // in MultipathTest.cpp:
                                                "multipath",
                                                // in WallsTest.cpp:
-                                               "thin walls"};
+                                               "thin walls",
+                                               // in ImperfectionsTest.cpp:
+                                               "imperfections"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

@@ -57,10 +57,12 @@ std::vector<TimedPose> posesOf(const Sweep& sweep) {
     if (count > max_poses)
         throw types::ConfigError(sweep.file, "poses.trajectory.period",
                                  fmt::format("makes {} poses; at most {}", count, max_poses));
+    const auto motion = asked.motion ? std::optional<pose::SeaMotion>(*asked.motion) : std::nullopt;
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
         const double time = from + step * static_cast<double>(i);
         poses.push_back({time, trajectory.at(time)});
+        if (motion) motion->move(time, poses.back().at);
     }
     return poses;
 }

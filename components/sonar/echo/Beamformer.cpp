@@ -43,25 +43,30 @@ void trim(Run& run, double floor) {
     run.weights.erase(run.weights.begin(), first);
 }
 
-/** bins[j] += sum of weights[i] rows[i * count + j]. */
-INSONIFY_VECTOR_CLONES void addRows(const float* rows, std::span<const float> weights, float* __restrict bins,
-                                    size_t count) {
+/** bins[j] += sum of weights[i] rows[i * stride + j]. */
+INSONIFY_VECTOR_CLONES void addRows(const float* rows, size_t stride, std::span<const float> weights,
+                                    float* __restrict bins, size_t count) {
     size_t i = 0;
     for (; i + 4 <= weights.size(); i += 4) {
-        const float* row = rows + i * count;
+        const float* row = rows + i * stride;
         const float a = weights[i], b = weights[i + 1], c = weights[i + 2], d = weights[i + 3];
         for (size_t j = 0; j < count; ++j)
-            bins[j] += (a * row[j] + b * row[count + j]) + (c * row[2 * count + j] + d * row[3 * count + j]);
+            bins[j] += (a * row[j] + b * row[stride + j]) + (c * row[2 * stride + j] + d * row[3 * stride + j]);
     }
     for (; i < weights.size(); ++i)
-        for (size_t j = 0; j < count; ++j) bins[j] += weights[i] * rows[i * count + j];
+        for (size_t j = 0; j < count; ++j) bins[j] += weights[i] * rows[i * stride + j];
 }
 
 }  // namespace
 
 Beamformer::Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules)
     : groups_(groupsOf(cells)), bin_count_(bin_count), grouped_(groupCount() * bin_count) {
-    for (const Beam& beam : beams) bands_.push_back(bandOf(beam, cells, rules));
+    const auto addBands = [&](size_t end, const Rules& own) {
+        BandsTo& bands = bands_.emplace_back(BandsTo{end, {}});
+        for (const Beam& beam : beams) bands.of_beams.push_back(bandOf(beam, cells, own));
+    };
+    for (const Zone& zone : rules.nearer) addBands(zone.end, {zone.pattern, zone.near, rules.floor, rules.of_fields});
+    addBands(bin_count, rules);
 }
 
 Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const {
@@ -113,21 +118,27 @@ void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
     static constexpr float ones[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
     float* sum = &grouped_[group * bin_count_];
     std::fill(sum, sum + bin_count_, 0.0f);
-    addRows(&echoes[groups_[group] * bin_count_], {ones, cellsIn(group)}, sum, bin_count_);
+    addRows(&echoes[groups_[group] * bin_count_], bin_count_, {ones, cellsIn(group)}, sum, bin_count_);
 }
 
 void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {
-    const Band& band = bands_[beam];
     std::ranges::fill(bins, 0.0f);
-    for (const Run& run : band.cells)
-        addRows(echoes.data() + run.first * bin_count_, run.weights, bins.data(), bin_count_);
-    for (const Run& run : band.groups)
-        addRows(grouped_.data() + run.first * bin_count_, run.weights, bins.data(), bin_count_);
+    size_t from = 0;
+    for (const BandsTo& bands : bands_) {
+        const Band& band = bands.of_beams[beam];
+        const auto add = [&](const Run& run, const float* rows) {
+            addRows(rows + run.first * bin_count_ + from, bin_count_, run.weights, bins.data() + from,
+                    bands.end - from);
+        };
+        for (const Run& run : band.cells) add(run, echoes.data());
+        for (const Run& run : band.groups) add(run, grouped_.data());
+        from = bands.end;
+    }
 }
 
 std::vector<double> Beamformer::weights(size_t beam) const {
     std::vector<double> all(groups_.back());
-    const Band& band = bands_[beam];
+    const Band& band = bands_.back().of_beams[beam];
     for (const Run& run : band.cells)
         for (size_t i = 0; i < run.weights.size(); ++i) all[run.first + i] = static_cast<double>(run.weights[i]);
     for (const Run& run : band.groups)

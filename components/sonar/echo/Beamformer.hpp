@@ -19,11 +19,18 @@ public:
 
     static constexpr size_t group_cells = 8;
 
+    /** Bins before `end` in which beams have another pattern: those of an array that is not focused there. */
+    struct Zone {
+        size_t end;
+        Pattern pattern;
+        double near;
+    };
     struct Rules {
         Pattern pattern;
         double near;             ///< How far from its bearing a beam weighs each cell [rad].
         double floor;            ///< What is below it, to either side of 0, is not heard [1].
         bool of_fields = false;  ///< Fields are summed; of groups, whose fields have any phase, the mean is of powers.
+        std::vector<Zone> nearer = {};  ///< Zones of nearer bins, in order; `pattern` is that of the bins behind them.
     };
 
     /** `cells` are side by side and equal. Cells that are wider count as a group each; they must be far from all beams.
@@ -36,7 +43,7 @@ public:
     /** Fills the bins of one beam. Allocates nothing, and any threads may form beams at once. */
     void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const;
 
-    /** Of beam k: its weight of each cell as it is applied [1]. */
+    /** Of beam k: its weight of each cell as it is applied, in the farthest bins [1]. */
     std::vector<double> weights(size_t beam) const;
 
 private:
@@ -49,11 +56,16 @@ private:
         std::array<Run, 2> cells, groups;
     };
     Band bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const;
+    /** Bins, from the first to before `end`, and the bands of all beams there. */
+    struct BandsTo {
+        size_t end;
+        std::vector<Band> of_beams;
+    };
     size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
 
     std::vector<size_t> groups_;  ///< The first cell of each, and the number of all.
     size_t bin_count_;
-    std::vector<Band> bands_;
+    std::vector<BandsTo> bands_;  ///< From the nearest bins on.
     std::vector<float> grouped_;  ///< [group][bin].
 };
 

@@ -1,16 +1,35 @@
 #include "components/sonar/echo/EchoGrid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace insonify::sonar {
 
 Beamformer beamformerOf(const RenderPlan& plan) {
     const Directivity& directivity = *plan.directivity;
-    return {plan.beams,
-            plan.cells,
-            static_cast<size_t>(plan.grid.bin_count),
-            {[&](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing); },
-             directivity.nearAzimuth(), directivity.floor()}};
+    const auto zoneRules = [&](size_t zone) {
+        return Beamformer::Rules{
+            [&, zone](double azimuth, double bearing) { return directivity.azimuth(azimuth, bearing, zone); },
+            directivity.nearAzimuth(zone), directivity.floor()};
+    };
+    return {plan.beams, plan.cells, static_cast<size_t>(plan.grid.bin_count),
+            rulesOfZones(plan, static_cast<size_t>(plan.grid.bin_count), zoneRules)};
+}
+
+Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
+                               const std::function<Beamformer::Rules(size_t zone)>& zoneRules) {
+    const Directivity& directivity = *plan.directivity;
+    Beamformer::Rules rules = zoneRules(directivity.lastZone());
+    const double width = plan.grid.bin_width * plan.grid.bin_count / static_cast<double>(samples);
+    size_t from = 0;
+    for (size_t zone = 0; zone < directivity.lastZone(); ++zone) {  // a sample is in the zone of its middle
+        const double end = std::clamp(std::round(directivity.zoneEnd(zone) / width), 0.0, static_cast<double>(samples));
+        if (static_cast<size_t>(end) <= from) continue;
+        from = static_cast<size_t>(end);
+        Beamformer::Rules own = zoneRules(zone);
+        rules.nearer.push_back({from, std::move(own.pattern), own.near});
+    }
+    return rules;
 }
 
 EchoGrid::EchoGrid(const RenderPlan& plan, int threads)

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,10 @@ namespace insonify::sonar {
 
 /** Of a plan that forms beams. */
 Beamformer beamformerOf(const RenderPlan& plan);
+
+/** Rules of a beamformer of a plan's beams with `samples` in range: those of the directivity's zones. */
+Beamformer::Rules rulesOfZones(const RenderPlan& plan, size_t samples,
+                               const std::function<Beamformer::Rules(size_t zone)>& zoneRules);
 
 /** The way of echoes from azimuth cells to the bins of a ping: beams are formed of the cells, and the pulse spreads
  *  them in range. Of a plan without either, cells are the ping's beams, and there is no work. */

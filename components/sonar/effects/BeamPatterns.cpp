@@ -1,4 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/effects/Places.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -15,10 +20,59 @@ void checkLaws(const SonarConfig& config, types::Diagnostics& diagnostics) {
     checkLaw("receive.elevation", config.beam_pattern->receive.elevation);
 }
 
+/** Elements of the receiving array. */
+size_t receivingElements(const SonarConfig& config) {
+    if (config.imperfections && config.imperfections->elements)
+        return static_cast<size_t>(*config.imperfections->elements);
+    std::optional<double> wavelength;
+    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
+    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
+    return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
+}
+
+/** Diagnostics of a receiving array whose law can be evaluated. */
+void checkAlive(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const acoustics::BeamLaw& law = *config.beam_pattern->receive.azimuth;
+    if (law.aperture_m ? !config.frequency_khz : !law.width_deg) return;
+    const size_t count = receivingElements(config);
+    checkPlaces("imperfections.dead_elements", config.imperfections->dead_elements, count, "elements", diagnostics);
+    if (std::ranges::count(config.imperfections->elementFactors(count), 0.0) == static_cast<std::ptrdiff_t>(count))
+        diagnostics.push_back({"imperfections", fmt::format("leaves none of {} elements alive", count)});
+}
+
+/** Diagnostics of what concerns the receiving array. */
+void checkReceivingArray(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const ImperfectionsConfig& own = *config.imperfections;
+    if (!own.hasElementErrors() && !own.focus_m) return;
+    const auto& law = config.beam_pattern ? config.beam_pattern->receive.azimuth : std::optional<acoustics::BeamLaw>();
+    const char* const name = own.hasElementErrors() ? "imperfections" : "imperfections.focus_m";
+    if (!law)
+        return diagnostics.push_back({name, "needs beam_pattern.receive.azimuth, whose aperture the elements fill"});
+    const acoustics::Weighting weighting = law->weighting.value_or(acoustics::Weighting::Uniform);
+    if (!law->file.empty())
+        return diagnostics.push_back(
+            {name, "is given with a measured table in beam_pattern.receive.azimuth, which has its device's errors"});
+    if (weighting == acoustics::Weighting::Gaussian || weighting == acoustics::Weighting::Piston)
+        return diagnostics.push_back(
+            {name,
+             "needs a weighted line in beam_pattern.receive.azimuth; a gaussian or piston is no row of elements"});
+    if (own.focus_m && !config.frequency_khz)
+        diagnostics.push_back({"imperfections.focus_m", "is given without frequency_khz, which it needs"});
+    if (own.focus_m && config.elements)
+        diagnostics.push_back(
+            {"imperfections.focus_m",
+             "is given with elements, whose signals are those of the far field; give one of the two"});
+    if (own.elements && config.elements)
+        diagnostics.push_back({"imperfections.elements", "is given with elements; their number is that of `elements`"});
+    if (diagnostics.empty() && own.hasElementErrors()) checkAlive(config, diagnostics);
+}
+
 /** Directivity (ACOUSTICS.md 5.9): in elevation as cells are summed, in azimuth as beams are formed of them. */
 class BeamPatterns final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
+        if (config.imperfections) checkReceivingArray(config, diagnostics);
         if (!config.beam_pattern) return;
         if (config.model == Model::Cerqueira2017)
             diagnostics.push_back({"beam_pattern", "is given with model: cerqueira2017; it belongs to physical"});

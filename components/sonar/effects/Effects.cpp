@@ -26,16 +26,17 @@ const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
 const Effect& pointTargets();
+const Effect& imperfections();
 const Effect& truth();
 
 namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),
-                                   &pulse(),        &ringDown(),    &volume(),         &speckle(),
-                                   &multipath(),    &thinWalls(),   &slabs(),          &refraction(),
-                                   &motionInPing(), &normalMaps(),  &pointTargets(),   &truth()};
+    std::vector<const Effect*> all{
+        &absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),  &pulse(), &ringDown(),
+        &volume(),       &speckle(),     &multipath(),      &thinWalls(),     &slabs(), &refraction(),
+        &motionInPing(), &normalMaps(),  &pointTargets(),   &imperfections(), &truth()};
 };
 
 List& list() {

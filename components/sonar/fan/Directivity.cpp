@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "components/sonar/fan/BinGrid.hpp"
@@ -35,6 +36,52 @@ double amplitudeOf(const std::optional<acoustics::BeamPattern>& law, double angl
     return law ? law->amplitude(angle, axis) : 1;
 }
 
+/** Elements of the receiving array. */
+size_t elementCount(const SonarConfig& config) {
+    if (config.imperfections && config.imperfections->elements)
+        return static_cast<size_t>(*config.imperfections->elements);
+    std::optional<double> wavelength;
+    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
+    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
+    return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
+}
+
+/** A zone of range, and the phase at the ends of an array that is not focused there. */
+struct FocusZone {
+    double end;    ///< [m]
+    double phase;  ///< [rad]
+};
+
+/** Zones in which the phase at the ends, pi L^2 / (4 lambda) (1 / R - 1 / F), differs from that of the zone's middle by
+ *  a sixteenth of pi at most, or by 7 % of itself. A zone whose phase is less than that is in focus. Nearer than the
+ *  array is long it is taken as of that range: Fresnel's approximation ends there. */
+std::vector<FocusZone> focusZones(double length, double wavelength, double focus, double range) {
+    const double scale = pi * length * length / (4 * wavelength);
+    const auto phaseAt = [&](double r) { return scale * (1 / std::max(r, length) - 1 / focus); };
+    std::vector<FocusZone> zones;
+    constexpr double step = pi / 8, growth = 0.15;
+    for (double side : {1.0, -1.0}) {  // before the focus, behind it
+        const double farthest = side * phaseAt(side > 0 ? 0 : range);
+        std::vector<FocusZone> own;
+        for (double low = step / 2; low < farthest;) {
+            const double high = low + std::max(step, growth * low);
+            const double near = 1 / focus + side * (side > 0 ? low : high) / scale;
+            own.push_back({near > 0 ? 1 / near : std::numeric_limits<double>::infinity(), side * 0.5 * (low + high)});
+            low = high;
+        }
+        if (side > 0) {
+            zones.assign(own.rbegin(), own.rend());
+            const double behind = 1 / focus - 0.5 * step / scale;
+            zones.push_back({behind > 0 ? 1 / behind : std::numeric_limits<double>::infinity(), 0});
+        } else {
+            zones.insert(zones.end(), own.begin(), own.end());
+        }
+    }
+    zones.back().end = std::numeric_limits<double>::infinity();
+    return zones;
+}
+
 /** The angle to either side of 0, turned by whole turns. */
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
@@ -58,28 +105,79 @@ Directivity::Directivity(const SonarConfig& config)
     receive_azimuth_ = patternOf(config.beam_pattern->receive.azimuth, wavelength);
     transmit_elevation_ = patternOf(config.beam_pattern->transmit.elevation, wavelength);
     receive_elevation_ = patternOf(config.beam_pattern->receive.elevation, wavelength);
+    if (config.imperfections && receive_azimuth_) makeZones(config, wavelength);
+}
+
+void Directivity::makeZones(const SonarConfig& config, std::optional<double> wavelength) {
+    const ImperfectionsConfig& errors = *config.imperfections;
+    const double aperture = receive_azimuth_->aperture();
+    if (aperture == 0 || (!errors.hasElementErrors() && !errors.focus_m)) return;
+    const size_t count = elementCount(config);
+    const std::vector<double> weights = acoustics::elementWeights(count, aperture, receive_azimuth_->taper());
+    const std::vector<std::complex<double>> factors = errors.elementFactors(count);
+    std::vector<FocusZone> focus{{std::numeric_limits<double>::infinity(), 0}};
+    if (errors.focus_m && wavelength)
+        focus = focusZones(aperture * *wavelength, *wavelength, *errors.focus_m, config.range);
+    for (const auto& [end, phase] : focus) {
+        std::vector<std::complex<double>> parts;
+        for (size_t m = 0; m < count; ++m) {
+            const double place = 2 * acoustics::elementPlace(m, count);
+            parts.push_back(weights[m] * (factors[m] * std::polar(1.0, -phase * place * place) - 1.0));
+        }
+        zones_.push_back({end, phase, acoustics::ElementField(parts)});
+    }
+}
+
+const Directivity::Zone& Directivity::zoneOfPhase(double phase) const {
+    return *std::ranges::min_element(zones_, {}, [&](const Zone& zone) { return std::abs(zone.phase - phase); });
+}
+
+double Directivity::zoneEnd(size_t zone) const {
+    return zone < lastZone() ? zones_[zone].end : std::numeric_limits<double>::infinity();
+}
+
+size_t Directivity::zoneAt(double range) const {
+    size_t zone = 0;
+    while (zone < lastZone() && range >= zones_[zone].end) ++zone;
+    return zone;
+}
+
+double Directivity::nearAzimuth(size_t zone) const {
+    if (zones_.empty()) return nearAzimuth();
+    return nearAzimuth() + 4 * std::abs(zones_[zone].phase) / (pi * receive_azimuth_->aperture());
 }
 
 double Directivity::sentAzimuth(double azimuth) const {
     return powerOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
-double Directivity::heardAzimuth(double azimuth, double bearing) const {
+double Directivity::heardAzimuth(double azimuth, double bearing, size_t zone) const {
+    if (!zones_.empty()) return std::norm(heardField(azimuth, bearing, zone));
     return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
                     : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
-double Directivity::azimuth(double azimuth, double bearing) const {
-    return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing);
+double Directivity::azimuth(double azimuth, double bearing, size_t zone) const {
+    return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing, zone);
+}
+
+double Directivity::idealAzimuth(double azimuth, double bearing) const {
+    return sentAzimuth(azimuth) * (conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
+                                            : powerOf(receive_azimuth_, wrapped(azimuth - bearing)));
 }
 
 double Directivity::sentAmplitude(double azimuth) const {
     return amplitudeOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
-double Directivity::heardAmplitude(double azimuth, double bearing) const {
-    return conical_ ? amplitudeOf(receive_azimuth_, azimuth, bearing)
-                    : amplitudeOf(receive_azimuth_, wrapped(azimuth - bearing));
+std::complex<double> Directivity::heardField(double azimuth, double bearing, size_t zone) const {
+    const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
+    const double ideal = amplitudeOf(receive_azimuth_, angle, axis);
+    if (zones_.empty() || std::abs(angle) > pi / 2) return ideal;
+    // A straight array that is steered is foreshortened, and so is the way to its ends.
+    const double foreshortened = std::cos(axis) * std::cos(axis);
+    const Zone& own = conical_ ? zoneOfPhase(zones_[zone].phase * foreshortened) : zones_[zone];
+    return ideal + own.added.at(receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis)));
 }
 
 double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }
@@ -104,7 +202,7 @@ Directivity::Span Directivity::azimuthSpan(const Fan& beams) const {
 
 double Directivity::halfPowerAzimuth() const {
     double angle = 0;
-    while (angle < pi && azimuth(angle, 0) > 0.5) angle += reach_step / 50;
+    while (angle < pi && idealAzimuth(angle, 0) > 0.5) angle += reach_step / 50;
     return 2 * angle;
 }
 
@@ -130,7 +228,8 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
 Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool casts_rays) {
     const Fan all = makeBeams(sampled);
     if (!casts_rays || !directivity.hasAzimuth()) return all;
-    const double near = sampled.elements ? 2 * pi : directivity.nearAzimuth();  // elements hear each cell by itself
+    const bool each = sampled.elements || (sampled.isCoherent() && directivity.isComplex());
+    const double near = each ? 2 * pi : directivity.nearAzimuth(0);  // cells of fields with phases are heard one by one
     const double from = beams.front().centre - near, to = beams.back().centre + near;
     const auto side = [&](const Beam& cell) {
         if (cell.high + 2 * pi >= from && cell.low + 2 * pi <= to) return 0;  // across the seam

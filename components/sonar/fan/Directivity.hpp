@@ -1,8 +1,12 @@
 #pragma once
+#include <algorithm>
+#include <complex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/ElementField.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 
@@ -19,19 +23,29 @@ public:
     bool hasElevation() const { return transmit_elevation_ || receive_elevation_; }
     /** Of a beam of a bearing, at an azimuth from the sonar's axis [rad]. A conical fan is a straight array, whose
      *  beams widen as they are steered; the beams of a planar one are alike. */
-    double azimuth(double azimuth, double bearing) const;
+    double azimuth(double azimuth, double bearing) const { return this->azimuth(azimuth, bearing, lastZone()); }
+    double azimuth(double azimuth, double bearing, size_t zone) const;
     double elevation(double angle) const;
-    /** The same of the field, of which the power is the square, with the signs of its sidelobes [1]. */
-    double azimuthAmplitude(double azimuth, double bearing) const {
-        return sentAmplitude(azimuth) * heardAmplitude(azimuth, bearing);
+    /** The same of the field, of which the power is the square, with the signs of its sidelobes, or their phases [1].
+     */
+    std::complex<double> azimuthField(double azimuth, double bearing, size_t zone) const {
+        return sentAmplitude(azimuth) * heardField(azimuth, bearing, zone);
     }
     double sentAmplitude(double azimuth) const;
-    double heardAmplitude(double azimuth, double bearing) const;
+    std::complex<double> heardField(double azimuth, double bearing, size_t zone) const;
     /** The same of one way [rad]. */
     double sentAzimuth(double azimuth) const;
-    double heardAzimuth(double azimuth, double bearing) const;
+    double heardAzimuth(double azimuth, double bearing, size_t zone) const;
     double sentElevation(double angle) const;
     double heardElevation(double angle) const;
+    /** Zones of range, from the nearest on, in each of which the receiving array has one pattern: one zone, but where
+     * it has a fixed focus. */
+    size_t zoneCount() const { return std::max<size_t>(1, zones_.size()); }
+    size_t lastZone() const { return zoneCount() - 1; }
+    double zoneEnd(size_t zone) const;  ///< Slant range to which it reaches; of the last one infinity [m].
+    size_t zoneAt(double range) const;  ///< That of a slant range [m].
+    bool isComplex() const { return !zones_.empty(); }  ///< Whether fields have phases, and not signs alone.
+
     double floor() const { return floor_; }  ///< Below it a pattern is not drawn [1].
 
     /** Elevation to either side beyond which it stays below the floor [rad], at most pi/2. */
@@ -46,9 +60,21 @@ public:
     /** To either side of its bearing, within which a beam weighs each cell: all of the main lobe and the sidelobes that
      *  stand out [rad]. */
     double nearAzimuth() const { return 10 * halfPowerAzimuth(); }
+    double nearAzimuth(size_t zone) const;
 
 private:
     using Law = std::optional<acoustics::BeamPattern>;
+    /** A zone of range and what its focus and the errors of the elements add to the field of the law. */
+    struct Zone {
+        double end;    ///< [m]
+        double phase;  ///< At the ends of the array, relative to its middle, out of focus [rad].
+        acoustics::ElementField added;
+    };
+    double idealAzimuth(double azimuth, double bearing) const;
+    void makeZones(const SonarConfig& config, std::optional<double> wavelength);
+    const Zone& zoneOfPhase(double phase) const;
+
+    std::vector<Zone> zones_;  ///< Empty for an ideal array.
     bool conical_;
     double floor_;
     Law transmit_azimuth_, receive_azimuth_, transmit_elevation_, receive_elevation_;

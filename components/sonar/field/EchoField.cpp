@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
+#include "components/sonar/echo/EchoGrid.hpp"
 #include "components/sonar/echo/RangeResponse.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/field/RandomFields.hpp"
@@ -44,14 +45,29 @@ INSONIFY_VECTOR_CLONES void square(const float* fields, float* __restrict intens
         intensities[j] = fields[2 * j] * fields[2 * j] + fields[2 * j + 1] * fields[2 * j + 1];
 }
 
-Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers) {
+/** Forms fields by the real or the imaginary part of the patterns. */
+Beamformer fieldBeamformer(const RenderPlan& plan, size_t numbers, bool imaginary) {
     const Directivity& directivity = *plan.directivity;
-    return {plan.beams,
-            plan.cells,
-            numbers,
-            {[&](double azimuth, double bearing) { return directivity.azimuthAmplitude(azimuth, bearing); },
-             plan.config.elements ? 2 * std::numbers::pi : directivity.nearAzimuth(), std::sqrt(directivity.floor()),
-             true}};
+    const bool each = plan.config.elements || directivity.isComplex();
+    const auto zoneRules = [&](size_t zone) {
+        const auto pattern = [&directivity, zone, imaginary](double azimuth, double bearing) {
+            const std::complex<double> field = directivity.azimuthField(azimuth, bearing, zone);
+            return imaginary ? field.imag() : field.real();
+        };
+        return Beamformer::Rules{pattern, each ? 2 * std::numbers::pi : directivity.nearAzimuth(),
+                                 std::sqrt(directivity.floor()), true};
+    };
+    Beamformer::Rules rules = rulesOfZones(plan, numbers / 2, zoneRules);
+    for (Beamformer::Zone& zone : rules.nearer) zone.end *= 2;  // real, imaginary
+    return {plan.beams, plan.cells, numbers, rules};
+}
+
+/** fields[j] += i turned[j], complex numbers. */
+INSONIFY_VECTOR_CLONES void addTurned(const float* turned, float* __restrict fields, size_t count) {
+    for (size_t j = 0; j < count; ++j) {
+        fields[2 * j] -= turned[2 * j + 1];
+        fields[2 * j + 1] += turned[2 * j];
+    }
 }
 
 /** Range cells in which the water's scatterers are as fine, and where a beam's are, in their cubes. */
@@ -136,8 +152,12 @@ EchoField::EchoField(const RenderPlan& plan, int threads) : plan_(plan), respons
     for (int k = 0; k < grid.bin_count; ++k) amplitudes_.push_back(std::sqrt(levels.factor(static_cast<size_t>(k))));
     cells_.resize(plan.cells.size() * numbers());
     if (plan.has(Pass::Beamform)) {
-        beamformer_ = fieldBeamformer(plan, numbers());
+        beamformer_ = fieldBeamformer(plan, numbers(), false);
         beams_.resize(plan.beams.size() * numbers());
+        if (plan.directivity->isComplex()) {
+            turner_ = fieldBeamformer(plan, numbers(), true);
+            turned_.resize(beams_.size());
+        }
     }
     scratch_.resize(static_cast<size_t>(threads));
     for (Scratch& scratch : scratch_) {
@@ -211,9 +231,15 @@ void EchoField::form(ThreadPool& threads) {
             for (auto i = static_cast<size_t>(part); i < count; i += static_cast<size_t>(parts)) work(i);
         });
     };
-    eachOf(beamformer_->groupCount(), [&](size_t group) { beamformer_->sumGroup(group, cells_); });
+    eachOf(beamformer_->groupCount(), [&](size_t group) {
+        beamformer_->sumGroup(group, cells_);
+        if (turner_) turner_->sumGroup(group, cells_);
+    });
     eachOf(plan_.beams.size(), [&](size_t beam) {
         beamformer_->form(beam, cells_, {&beams_[beam * numbers()], numbers()});
+        if (!turner_) return;
+        turner_->form(beam, cells_, {&turned_[beam * numbers()], numbers()});
+        addTurned(&turned_[beam * numbers()], &beams_[beam * numbers()], response_.samples());
     });
 }
 

@@ -93,8 +93,10 @@ private:
     FieldResponse response_;
     std::vector<double> amplitudes_;  ///< Spreading and absorption of the field in each range cell [1/m].
     std::optional<Beamformer> beamformer_;
-    std::vector<float> cells_;  ///< [cell][sample][real, imaginary].
-    std::vector<float> beams_;  ///< [beam][sample][real, imaginary]; none where cells are beams.
+    std::optional<Beamformer> turner_;  ///< Imaginary part of patterns with phases; none where they have signs alone.
+    std::vector<float> cells_;          ///< [cell][sample][real, imaginary].
+    std::vector<float> beams_;          ///< [beam][sample][real, imaginary]; none where cells are beams.
+    std::vector<float> turned_;         ///< Beams of `turner_`.
     std::vector<Scratch> scratch_;
     types::Pose sonar_;
 };

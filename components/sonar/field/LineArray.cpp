@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "components/acoustics/ElementField.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -13,23 +15,6 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 constexpr size_t oversampling = 16;
-
-/** Weights across an aperture whose far field is `taper`: its Fourier series, of which the coefficients are the far
- *  field at whole u (Woodward 1946), as far as so many elements can tell and there are directions: `aperture` in
- *  wavelengths. */
-std::vector<double> weightsOf(size_t count, double aperture, const acoustics::Taper& taper) {
-    std::vector<double> weights;
-    const auto terms = static_cast<size_t>(std::ceil(std::min(0.5 * static_cast<double>(count), aperture)));
-    const auto size = static_cast<double>(count);
-    for (size_t m = 0; m < count; ++m) {
-        const double place = (static_cast<double>(m) + 0.5) / size - 0.5;
-        double weight = 1;
-        for (size_t n = 1; n < terms; ++n)
-            weight += 2 * taper.amplitude(static_cast<double>(n)) * std::cos(2 * pi * static_cast<double>(n) * place);
-        weights.push_back(weight / size);
-    }
-    return weights;
-}
 
 /** Mean of exp(2 pi i place sine) over the sines of a cell. */
 Complex meanTurn(double place, const Cone& cell) {
@@ -71,7 +56,7 @@ ComplexRows sentField(const RenderPlan& plan, const EchoField& field) {
     ComplexRows rows(plan.cells.size(), field.response().samples());
     for (size_t cell = 0; cell < plan.cells.size(); ++cell) {
         const double azimuth = plan.cells[cell].centre;
-        const auto sent = static_cast<float>(plan.directivity->azimuthAmplitude(azimuth, azimuth));
+        const auto sent = static_cast<float>(plan.directivity->sentAmplitude(azimuth));
         const std::span<const float> numbers = field.cell(cell);
         const auto row = rows.row(cell);
         for (size_t i = 0; i < row.size(); ++i) row[i] = {sent * numbers[2 * i], sent * numbers[2 * i + 1]};
@@ -79,12 +64,17 @@ ComplexRows sentField(const RenderPlan& plan, const EchoField& field) {
     return rows;
 }
 
+void multiplyRows(ComplexRows& rows, std::span<const Complex> factors) {
+    for (size_t m = 0; m < factors.size(); ++m)
+        for (auto& value : rows.row(m)) value *= std::complex<float>(factors[m]);
+}
+
 }  // namespace
 
 LineArray::LineArray(size_t count, double spacing, double wavelength, const acoustics::Taper& taper)
     : spacing_(spacing),
       wavelength_(wavelength),
-      weights_(weightsOf(count, static_cast<double>(count) * spacing / wavelength, taper)) {}
+      weights_(acoustics::elementWeights(count, static_cast<double>(count) * spacing / wavelength, taper)) {}
 
 double LineArray::position(size_t element) const {
     return (static_cast<double>(element) - 0.5 * static_cast<double>(count() - 1)) * spacing_;
@@ -151,7 +141,8 @@ LineArray lineArrayOf(const SonarConfig& config) {
 
 void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
                  types::SonarElements& signals) {
-    const ComplexRows heard = array.hear(sentField(plan, field), conesOf(plan.cells));
+    ComplexRows heard = array.hear(sentField(plan, field), conesOf(plan.cells));
+    if (plan.config.imperfections) multiplyRows(heard, plan.config.imperfections->elementFactors(array.count()));
     signals.speed_of_sound = plan.grid.speed_of_sound;
     signals.wavelength = array.wavelength();
     signals.sample_spacing = field.response().sampleWidth();

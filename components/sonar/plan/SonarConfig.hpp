@@ -8,6 +8,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
 #include "components/acoustics/Water.hpp"
+#include "components/sonar/plan/ImperfectionsConfig.hpp"
 #include "types/Describe.hpp"
 
 namespace insonify::sonar {
@@ -221,6 +222,7 @@ struct SonarConfig {
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
     int32_t max_walls = 4;
+    std::optional<ImperfectionsConfig> imperfections;
     std::map<std::string, std::map<std::string, double>> effects;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -335,6 +337,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.elements);
     visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
     visit(Field{"max_walls", "1", "walls (`shell` of a material) that sound goes through", 0, 16}, self.max_walls);
+    visit(Field{"imperfections", "",
+                "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
+          self.imperfections);
     visit(Field{"effects", "",
                 "numbers of effects of other libraries, by name (components/sonar/README.md, A new effect)"},
           self.effects);

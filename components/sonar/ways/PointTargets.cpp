@@ -83,14 +83,24 @@ double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
     const double off = std::remainder(echo.heard.azimuth - beam.centre, 2 * std::numbers::pi);
     const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
-    const double across = pattern && pattern->hasAzimuth() ? pattern->sentAzimuth(echo.sent.azimuth) *
-                                                                 pattern->heardAzimuth(echo.heard.azimuth, beam.centre)
-                                                           : in_box && plan_.beams.spans(echo.sent.azimuth);
+    const double across = pattern && pattern->hasAzimuth()
+                              ? pattern->sentAzimuth(echo.sent.azimuth) *
+                                    pattern->heardAzimuth(echo.heard.azimuth, beam.centre, pattern->zoneAt(echo.range))
+                              : in_box && plan_.beams.spans(echo.sent.azimuth);
     const double along =
         pattern && pattern->hasElevation()
             ? pattern->sentElevation(echo.sent.elevation) * pattern->heardElevation(echo.heard.elevation)
             : std::abs(echo.heard.elevation) <= half_height && std::abs(echo.sent.elevation) <= half_height;
     return pattern && across * along < pattern->floor() ? 0 : across * along;
+}
+
+std::complex<double> PointTargets::phaseIn(const Beam& beam, const Return& echo) const {
+    if (!plan_.directivity || !plan_.directivity->hasAzimuth()) return 1;
+    const double sent = plan_.directivity->sentAmplitude(echo.sent.azimuth);
+    const std::complex<double> heard =
+        plan_.directivity->heardField(echo.heard.azimuth, beam.centre, plan_.directivity->zoneAt(echo.range));
+    if (heard.imag() == 0) return std::copysign(1.0, sent * heard.real());
+    return std::copysign(1.0, sent) * heard / std::abs(heard);
 }
 
 bool PointTargets::spread(double range) {
@@ -127,11 +137,7 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
     for (size_t k = 0; k < plan_.beams.size(); ++k) {
         const double power = powerIn(plan_.beams[k], echo);
         if (!(power > 0)) continue;
-        double sign = 1;
-        if (plan_.directivity && plan_.directivity->hasAzimuth())
-            sign = plan_.directivity->sentAmplitude(echo.sent.azimuth) *
-                   plan_.directivity->heardAmplitude(echo.heard.azimuth, plan_.beams[k].centre);
-        field.add(k, echo.range, std::copysign(std::sqrt(echo.intensity * power), sign) * unit);
+        field.add(k, echo.range, std::sqrt(echo.intensity * power) * phaseIn(plan_.beams[k], echo) * unit);
         heard = true;
     }
     return heard;

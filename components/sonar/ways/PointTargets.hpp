@@ -1,4 +1,5 @@
 #pragma once
+#include <complex>
 #include <optional>
 #include <vector>
 
@@ -60,6 +61,8 @@ private:
     /** None where it is not heard. */
     static std::optional<TargetWay> bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target);
     double powerIn(const Beam& beam, const Return& echo) const;
+    /** Sign or phase of the field pattern there, of magnitude 1. */
+    std::complex<double> phaseIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first` on; whether there is any. */
     bool spread(double range);
     bool addTo(types::Sonar& ping, const Return& echo) const;

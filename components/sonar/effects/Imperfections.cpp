@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/effects/Places.hpp"
+#include "types/Hash.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+void checkBeams(const SonarConfig& config, types::Diagnostics& diagnostics) {
+    const ImperfectionsConfig& own = *config.imperfections;
+    const auto beams = static_cast<size_t>(std::max(1, config.beams()));
+    checkPlaces("imperfections.dead_beams", own.dead_beams, beams, "beams", diagnostics);
+    if (std::ranges::count(own.beamFactors(beams), 0.0f) == static_cast<std::ptrdiff_t>(beams))
+        diagnostics.push_back({"imperfections", fmt::format("leaves none of {} beams alive", beams)});
+}
+
+/** What the channels of the beams, and the clock that samples them, do to complete bins. */
+class ImperfectBeams final : public PingEffect {
+public:
+    explicit ImperfectBeams(const RenderPlan& plan)
+        : plan_(plan),
+          own_(*plan.config.imperfections),
+          factors_(own_.beamFactors(plan.beams.size())),
+          share_(own_.crosstalk_db ? static_cast<float>(std::pow(10, *own_.crosstalk_db / 10)) : 0.0f) {}
+
+    void addToBins(types::Sonar& ping) override {
+        if (own_.clock_jitter_us > 0) jitter(ping);
+        if (share_ > 0) mix(ping);
+        for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+            const float factor = factors_[plan_.beams.row(beam)];
+            if (factor == 1) continue;
+            for (size_t k = 0; k < ping.bin_count; ++k) ping.bins[beam * ping.bin_count + k] *= factor;
+        }
+    }
+
+private:
+    /** Samples all beams at times that are off, with straight lines between bins. */
+    void jitter(types::Sonar& ping) {
+        kept_.assign(ping.bins.begin(), ping.bins.end());
+        const auto count = static_cast<double>(ping.bin_count);
+        const double bins_per_us = 1 / static_cast<double>(ping.bin_duration.microseconds);
+        for (size_t k = 0; k < ping.bin_count; ++k) {
+            const uint64_t word = types::hashed(own_.seed, static_cast<uint64_t>(ping.time.microseconds), k);
+            const double normal = std::sqrt(-2 * std::log(types::unit(word >> 32))) *
+                                  std::cos(2 * std::numbers::pi * types::unit(word & 0xffffffff));
+            const double at =
+                std::clamp(static_cast<double>(k) + normal * own_.clock_jitter_us * bins_per_us, 0.0, count - 1);
+            const size_t low = std::min(static_cast<size_t>(at), size_t{ping.bin_count} - (ping.bin_count > 1 ? 2 : 1));
+            const size_t high = std::min(low + 1, size_t{ping.bin_count} - 1);
+            const auto part = static_cast<float>(at - static_cast<double>(low));
+            for (size_t row = 0; row < ping.bins.size(); row += ping.bin_count)
+                ping.bins[row + k] = kept_[row + low] + part * (kept_[row + high] - kept_[row + low]);
+        }
+    }
+    /** Adds to each beam a share of its neighbours along the arc. */
+    void mix(types::Sonar& ping) {
+        kept_.assign(ping.bins.begin(), ping.bins.end());
+        const size_t bins = ping.bin_count;
+        for (size_t i = 0; i < kept_.size(); ++i) {
+            if (i >= bins) ping.bins[i] += share_ * kept_[i - bins];
+            if (i + bins < kept_.size()) ping.bins[i] += share_ * kept_[i + bins];
+        }
+    }
+
+    const RenderPlan& plan_;
+    ImperfectionsConfig own_;
+    std::vector<float> factors_;  ///< Of beams as the ping counts them.
+    float share_;
+    std::vector<float> kept_;
+};
+
+/** Errors of one device (ACOUSTICS.md 5.27). Those of elements and focus are in its directivity. */
+class Imperfections final : public Effect {
+public:
+    void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
+        if (!config.imperfections) return;
+        if (config.model == Model::Cerqueira2017)
+            diagnostics.push_back({"imperfections", "is given with model: cerqueira2017; it belongs to physical"});
+        checkBeams(config, diagnostics);
+    }
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        return plan.config.imperfections || leaveOut(plan, {"imperfections", Reason::NotConfigured});
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& /*geometry*/) const override {
+        return std::make_unique<ImperfectBeams>(plan);
+    }
+    std::string takeOut(SonarConfig& config) const override {
+        if (!config.imperfections) return {};
+        config.imperfections.reset();
+        return "imperfections";
+    }
+};
+
+}  // namespace
+
+const Effect& imperfections() {
+    static const Imperfections effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar
