@@ -138,7 +138,7 @@ objects:
   - {names: ["*"], count: [1, 1], x: [%(nearest)g, %(farthest)g], y: [-%(side)g, %(side)g], z: [-0.2, 0.2], frame: vehicle, gap: 0,
      roll_deg: [-180, 180], pitch_deg: [-90, 90], yaw_deg: [-180, 180]}
 classes: {%(classes)s}
-picture: {shape: fan, height: %(height)d, dynamic_range_db: 50}
+picture: {shape: fan, height: %(height)d, dynamic_range_db: 100, reference_db: -10}
 annotations: {min_level: 100, min_pixels: 15}
 """
 
@@ -147,7 +147,7 @@ SET = """\
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
 ablated: ["near_[0-4].yml"] # of these, to compare with and without an effect; absent: all
-decibels: 50                # of white over black: crops are given back as amplitudes; absent: grey levels as they are
+decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
 margin: [0.05, 0.3]         # of a box, drawn, on each side
 effects:
@@ -159,8 +159,8 @@ effects:
 
 
 BANDS = {  # name of the sweep, nearest and farthest [m], to either side [m], quietest and loudest noise [dB], height [px], settings
-    "near": (2.2, 4.5, 0.2, -95, -65, 500, ""),
-    "far": (4.5, 13, 0.5, -105, -80, 1000, "  sonar.range: [14]\n  sonar.bin_count: [1000]\n"
+    "near": (2.2, 4.5, 0.2, -112, -80, 500, ""),
+    "far": (4.5, 13, 0.5, -122, -95, 1000, "  sonar.range: [14]\n  sonar.bin_count: [1000]\n"
                                            "  sonar.beam_count: [96]\n  sonar.field_of_view_deg: [24]\n"),
 }
 

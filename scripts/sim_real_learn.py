@@ -49,14 +49,29 @@ class Hog:
     def learn(self, parts, seed):
         """From parts (x, y), each of which weighs as much as the others."""
         from sklearn.svm import LinearSVC
-        flips = [(np.concatenate([x, x[:, :, ::-1]]), np.concatenate([y, y])) for x, y in parts]
-        share = weights([y for _, y in flips], self.count)
-        self.svm = LinearSVC(C=0.1, random_state=seed, max_iter=5000)
-        self.svm.fit(np.concatenate([self.features(x) for x, _ in flips]), np.concatenate([y for _, y in flips]),
+        rng = np.random.default_rng(seed)
+        copies = [(np.concatenate([x] + [varied(x, rng) for _ in range(4)]), np.tile(y, 5)) for x, y in parts]
+        share = weights([y for _, y in copies], self.count)
+        self.svm = LinearSVC(C=0.03, random_state=seed, max_iter=3000)
+        self.svm.fit(np.concatenate([self.features(x) for x, _ in copies]), np.concatenate([y for _, y in copies]),
                      sample_weight=share / share.mean())
 
     def find(self, x):
         return self.svm.predict(self.features(x))
+
+
+def varied(x, rng):
+    """Crops mirrored, rotated and scaled at random, with another contrast, blur and noise. For HOG; `augmented` is for the CNN."""
+    from scipy import ndimage
+    result = np.empty_like(x)
+    for i, each in enumerate(x):
+        angle, scale = rng.uniform(-0.35, 0.35), rng.uniform(0.8, 1.25, 2) * (1, rng.choice([-1, 1]))
+        matrix = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) * scale
+        centre = (np.array(each.shape) - 1) / 2
+        moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
+        moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
+        result[i] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
+    return result
 
 
 class Cnn:

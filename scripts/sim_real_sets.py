@@ -183,7 +183,10 @@ def generate(insonify, plan, effect, cache):
         command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
         for name, value in values.items():
             command += ["--set", f"{name}={json.dumps(value)}"]
-        done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
+        try:
+            done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
+        except OSError as error:
+            raise Wrong(f"{insonify}: cannot be run ({error.strerror})") from None
         if done.returncode != 0:
             raise Wrong(f"{sweep}: insonify dataset failed: {done.stderr.strip() or done.stdout.strip()}")
     return folders
