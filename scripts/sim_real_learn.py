@@ -6,11 +6,11 @@ SIDE = 32  # of what a classifier sees [px]
 
 
 def normalised(pixels, side=SIDE):
-    """Of one size, and of one contrast: 0 at the darkest tenth, 1 at what 1 % exceed."""
+    """One size and one contrast: the root of levels that are 0 at the darkest tenth and 1 where 1 % exceed them."""
     low, high = np.percentile(pixels, [10, 99])
     levels = np.clip((pixels - low) / max(high - low, 1e-6), 0, 1).astype(np.float32)
-    return np.asarray(Image.fromarray(levels, "F").resize((side, side), Image.Resampling.BOX if min(levels.shape) > side
-                                                           else Image.Resampling.BILINEAR), np.float32)
+    return np.sqrt(Image.fromarray(levels, "F").resize((side, side), Image.Resampling.BOX if min(levels.shape) > side
+                                                        else Image.Resampling.BILINEAR))
 
 
 def arrays(crops, labels):
@@ -19,7 +19,7 @@ def arrays(crops, labels):
 
 
 def weights(parts, count):
-    """So that each part is drawn as often as the others, and of it each class."""
+    """Returns probabilities that give each part equal weight, and each class within a part."""
     total = []
     for y in parts:
         counts = np.bincount(y, minlength=count)
@@ -36,21 +36,22 @@ def scores(truth, found, count):
 
 
 class Hog:
-    name = "HOG and linear SVM"
+    name = "HOG with 8 x 8 mean levels, linear SVM"
 
-    def __init__(self, count):
-        self.count = count
+    def __init__(self, count, copies=1):
+        self.count, self.copies = count, copies
 
     @staticmethod
     def features(x):
         from skimage.feature import hog
-        return np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x])
+        small = x.reshape(len(x), 8, SIDE // 8, 8, SIDE // 8).mean((2, 4)).reshape(len(x), -1)
+        return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x]), 0.3 * small])
 
     def learn(self, parts, seed):
-        """From parts (x, y), each of which weighs as much as the others."""
+        """Trains on parts (x, y), which have equal weight."""
         from sklearn.svm import LinearSVC
         rng = np.random.default_rng(seed)
-        copies = [(np.concatenate([x] + [varied(x, rng) for _ in range(4)]), np.tile(y, 5)) for x, y in parts]
+        copies = [(np.concatenate([x] + [varied(x, rng) for _ in range(self.copies)]), np.tile(y, 1 + self.copies)) for x, y in parts]
         share = weights([y for _, y in copies], self.count)
         self.svm = LinearSVC(C=0.03, random_state=seed, max_iter=3000)
         self.svm.fit(np.concatenate([self.features(x) for x, _ in copies]), np.concatenate([y for _, y in copies]),
@@ -131,7 +132,7 @@ def augmented(x):
 
 
 def classifier(wanted):
-    """(kind, what it is said to be): the wanted one, or HOG where torch is missing."""
+    """Returns the class and name of the wanted classifier, or HOG where torch is missing."""
     if wanted == "cnn":
         try:
             import torch
@@ -143,7 +144,7 @@ def classifier(wanted):
 
 
 def nearest(from_crops, to_crops):
-    """Distance of each crop to the nearest of others: 16 x 16 pixels, mean and contrast taken out, so 0 to 2."""
+    """Returns the distance of each crop to its nearest neighbour: 16 x 16 pixels without mean and contrast, 0 to 2."""
     def flat(crops):
         x = np.stack([normalised(crop.pixels, 16).ravel() for crop in crops])
         x -= x.mean(1, keepdims=True)

@@ -13,15 +13,15 @@ def spread(values):
 
 
 def table(rows):
-    lines = ["| learnt from | pictures | accuracy | macro-F1 |", "| --- | --- | --- | --- |"]
+    lines = ["| trained on | pictures | accuracy | macro-F1 |", "| --- | --- | --- | --- |"]
     for row in rows:
-        lines.append(f"| {row['name']} | {row['learnt']} | {spread([run['accuracy'] for run in row['runs']])} | "
+        lines.append(f"| {row['name']} | {row['pictures']} | {spread([run['accuracy'] for run in row['runs']])} | "
                      f"{spread([run['macro_f1'] for run in row['runs']])} |")
     return lines
 
 
 def paired(rows):
-    """What the whole model has more than the model without an effect, seed by seed."""
+    """Returns the gain of the whole model over the model without an effect, seed by seed."""
     lines = ["| effect | accuracy gained by it | macro-F1 gained by it |", "| --- | --- | --- |"]
     for row in rows[1:]:
         gains = [[a[key] - b[key] for a, b in zip(rows[0]["runs"], row["runs"])] for key in ("accuracy", "macro_f1")]
@@ -49,7 +49,7 @@ def confusion_picture(file, labels, rows):
     draw = ImageDraw.Draw(picture)
     for k, row in enumerate(rows):
         x0 = left + k * (size * CELL + left)
-        draw.text((x0, 12), f"{row['name']}: of each true class (rows), found (columns) [%]", fill=INK)
+        draw.text((x0, 12), f"{row['name']}: true class (rows), found class (columns) [%]", fill=INK)
         total = np.sum([run["confusion"] for run in row["runs"]], axis=0)
         for i in range(size):
             draw.text((x0 - 110, top + i * CELL + CELL // 2), labels[i][:18], fill=INK)
@@ -81,7 +81,7 @@ def evenly(items, count):
 
 
 def examples_picture(file, labels, simulated, test, found, count=16):
-    """Of each class: simulated, real ones that were found, and real ones that were not, by what learnt from simulated ones."""
+    """Draws for each class simulated crops, recognised and missed real crops, by the classifier that was trained on simulated crops."""
     picture = Image.new("RGB", (200 + count * CELL, 3 * len(labels) * CELL), "white")
     draw = ImageDraw.Draw(picture)
     for k, label in enumerate(labels):
@@ -102,7 +102,7 @@ def write(folder, result, simulated, test):
     lines = ["# From simulated to real pictures", "",
              f"{result['classifier']}, {len(rows[0]['runs'])} seeds; mean and deviation over them. "
              + ("Validation: both halves are of the first half of the real pictures." if result["validation"] else
-                "Tested on the second half of the real pictures, of which nothing was learnt."), "",
+                "Tested on the second half of the real pictures, which were not used for training."), "",
              "| pictures | " + " | ".join(labels) + " |", "| --- |" + " --- |" * len(labels)]
     lines += [f"| {what} | " + " | ".join(map(str, counts)) + " |" for what, counts in result["counts"].items()] + [""]
     lines += table(rows) + ["", f"Simulated only is {ratio:.2f} of real only. The largest class alone would be {chance:.2f}.", ""]
