@@ -1,0 +1,155 @@
+"""Classifiers for scripts/sim_to_real: a small CNN (torch) and HOG with a linear SVM (scikit-image, scikit-learn)."""
+import numpy as np
+from PIL import Image
+
+SIDE = 32  # of what a classifier sees [px]
+
+
+def normalised(pixels, side=SIDE):
+    """One size and one contrast: the root of levels that are 0 at the darkest tenth and 1 where 1 % exceed them."""
+    low, high = np.percentile(pixels, [10, 99])
+    levels = np.clip((pixels - low) / max(high - low, 1e-6), 0, 1).astype(np.float32)
+    return np.sqrt(Image.fromarray(levels, "F").resize((side, side), Image.Resampling.BOX if min(levels.shape) > side
+                                                        else Image.Resampling.BILINEAR))
+
+
+def arrays(crops, labels):
+    return (np.stack([normalised(crop.pixels) for crop in crops]),
+            np.array([labels.index(crop.label) for crop in crops]))
+
+
+def weights(parts, count):
+    """Returns probabilities that give each part equal weight, and each class within a part."""
+    total = []
+    for y in parts:
+        counts = np.bincount(y, minlength=count)
+        total.append(1 / counts[y] / (counts > 0).sum())
+    return np.concatenate(total) / len(parts)
+
+
+def scores(truth, found, count):
+    confusion = np.zeros((count, count), int)
+    np.add.at(confusion, (truth, found), 1)
+    hits, given, there = np.diag(confusion), confusion.sum(0), confusion.sum(1)
+    f1 = 2 * hits / np.maximum(given + there, 1)
+    return {"accuracy": float(hits.sum() / confusion.sum()), "macro_f1": float(f1.mean()), "confusion": confusion.tolist()}
+
+
+class Hog:
+    name = "HOG with 8 x 8 mean levels, linear SVM"
+
+    def __init__(self, count, copies=1):
+        self.count, self.copies = count, copies
+
+    @staticmethod
+    def features(x):
+        from skimage.feature import hog
+        small = x.reshape(len(x), 8, SIDE // 8, 8, SIDE // 8).mean((2, 4)).reshape(len(x), -1)
+        return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x]), 0.3 * small])
+
+    def learn(self, parts, seed):
+        """Trains on parts (x, y), which have equal weight."""
+        from sklearn.svm import LinearSVC
+        rng = np.random.default_rng(seed)
+        copies = [(np.concatenate([x] + [varied(x, rng) for _ in range(self.copies)]), np.tile(y, 1 + self.copies)) for x, y in parts]
+        share = weights([y for _, y in copies], self.count)
+        self.svm = LinearSVC(C=0.03, random_state=seed, max_iter=3000)
+        self.svm.fit(np.concatenate([self.features(x) for x, _ in copies]), np.concatenate([y for _, y in copies]),
+                     sample_weight=share / share.mean())
+
+    def find(self, x):
+        return self.svm.predict(self.features(x))
+
+
+def varied(x, rng):
+    """Crops mirrored, rotated and scaled at random, with another contrast, blur and noise. For HOG; `augmented` is for the CNN."""
+    from scipy import ndimage
+    result = np.empty_like(x)
+    for i, each in enumerate(x):
+        angle, scale = rng.uniform(-0.35, 0.35), rng.uniform(0.8, 1.25, 2) * (1, rng.choice([-1, 1]))
+        matrix = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) * scale
+        centre = (np.array(each.shape) - 1) / 2
+        moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
+        moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
+        result[i] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
+    return result
+
+
+class Cnn:
+    name = "CNN of three layers"
+
+    def __init__(self, count, steps=500, batch=64):
+        self.count, self.steps, self.batch = count, steps, batch
+
+    def learn(self, parts, seed):
+        import torch
+        torch.manual_seed(seed)
+        rng = np.random.default_rng(seed)
+        layers, before = [], 1
+        for channels in (16, 32, 64):
+            layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
+                       torch.nn.MaxPool2d(2)]
+            before = channels
+        self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
+                                       torch.nn.Linear(256, self.count))
+        x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
+        share = weights([y for _, y in parts], self.count)
+        optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
+        plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=self.steps)
+        self.net.train()
+        for _ in range(self.steps):
+            chosen = rng.choice(len(x), self.batch, p=share)
+            loss = torch.nn.functional.cross_entropy(self.net(augmented(torch.from_numpy(x[chosen, None]))), torch.from_numpy(y[chosen]),
+                                                     label_smoothing=0.1)
+            optimiser.zero_grad()
+            loss.backward()
+            optimiser.step()
+            plan.step()
+        self.net.eval()
+
+    def find(self, x):
+        import torch
+        with torch.no_grad():
+            return self.net(torch.from_numpy(x[:, None])).argmax(1).numpy()
+
+
+def augmented(x):
+    """Mirrored, turned, sheared and scaled at random; of other contrast, with more noise or less sharp."""
+    import torch
+    n = len(x)
+    turn, tilt = (torch.rand(n) - 0.5) * 0.7, (torch.rand(n) - 0.5) * 0.4
+    width, height = 0.8 + 0.45 * torch.rand(2, n)
+    width = width * (torch.randint(0, 2, (n,)) * 2 - 1)
+    matrix = torch.stack([torch.stack([turn.cos() * width, tilt - turn.sin() * height, (torch.rand(n) - 0.5) * 0.3], 1),
+                          torch.stack([turn.sin() * width, turn.cos() * height, (torch.rand(n) - 0.5) * 0.3], 1)], 1)
+    grid = torch.nn.functional.affine_grid(matrix, x.shape, align_corners=False)
+    x = torch.nn.functional.grid_sample(x, grid, padding_mode="reflection", align_corners=False)
+    blurred = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (1, 1, 1, 1), mode="reflect"), 3, 1)
+    x = torch.lerp(x, blurred, torch.rand(n, 1, 1, 1))
+    x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
+    noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
+    return (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
+
+
+def classifier(wanted):
+    """Returns the class and name of the wanted classifier, or HOG where torch is missing."""
+    if wanted == "cnn":
+        try:
+            import torch
+            torch.set_num_threads(2)
+            return Cnn, Cnn.name
+        except ImportError:
+            return Hog, f"{Hog.name} (torch is not installed)"
+    return Hog, Hog.name
+
+
+def nearest(from_crops, to_crops):
+    """Returns the distance of each crop to its nearest neighbour: 16 x 16 pixels without mean and contrast, 0 to 2."""
+    def flat(crops):
+        x = np.stack([normalised(crop.pixels, 16).ravel() for crop in crops])
+        x -= x.mean(1, keepdims=True)
+        return x / np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-6)
+    alike = flat(from_crops) @ flat(to_crops).T
+    if from_crops is to_crops:
+        np.fill_diagonal(alike, -1)
+    return np.sqrt(np.maximum(0, 2 - 2 * alike.max(1)))

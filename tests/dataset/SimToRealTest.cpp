@@ -1,0 +1,13 @@
+// scripts/sim_to_real, by the tests of its own language.
+#include <gmock/gmock.h>
+
+#include "tests/support/Paths.hpp"
+#include "tests/support/Python.hpp"
+
+TEST(SimToRealTest, HalvesNeverShareAFilmAndWrongInputIsOneError) {
+    if (!insonify::pythonHas("numpy, PIL, yaml")) GTEST_SKIP() << "python lacks numpy, Pillow or PyYAML";
+    const std::filesystem::path answer = std::filesystem::path(testing::TempDir()) / "sim_to_real.txt";
+    const std::string said =
+        insonify::pythonSays(insonify::test::sourceFile("tests/dataset/check_sim_to_real.py"), answer);
+    EXPECT_THAT(said, testing::HasSubstr("\nOK\n"));
+}

@@ -1,0 +1,154 @@
+"""Holds scripts/sim_to_real to what it says: halves never share a film, and each wrong input is one error and exit 2.
+Sets are made by a command in the place of insonify, which writes what a data set has."""
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+import sim_real_sets as sets  # noqa: E402
+
+# Draws a bright square for each class that its first argument names, as `insonify dataset ... --out FOLDER` would.
+STAND_IN = """#!{python}
+import json, sys
+from pathlib import Path
+import numpy as np
+from PIL import Image
+folder = Path(sys.argv[sys.argv.index("--out") + 1])
+folder.mkdir(parents=True)
+classes = {classes}
+images, annotations = [], []
+for i in range(4 * len(classes)):
+    pixels = np.random.default_rng(i).integers(0, 60, (40, 40), np.uint8)
+    pixels[10:20, 10:20] = 200
+    Image.fromarray(pixels).save(folder / f"{{i:06d}}_0.png")
+    images.append({{"id": i, "file_name": f"{{i:06d}}_0.png"}})
+    annotations.append({{"image_id": i, "category_id": i % len(classes), "bbox": [10, 10, 10, 10]}})
+(folder / "instances_train.json").write_text(json.dumps({{"images": images, "annotations": annotations,
+    "categories": [{{"id": i, "name": name}} for i, name in enumerate(classes)]}}))
+(folder / "manifest.json").write_text("{{}}")
+"""
+
+
+class Halves(unittest.TestCase):
+    def test_no_film_and_no_picture_is_in_both(self):
+        rng, cut = random.Random(3), 0
+        for _ in range(300):
+            films = rng.choice([[""], [f"film_{i}" for i in range(rng.randint(2, 9))]])
+            crops = [sets.Crop(np.zeros((4, 4)), label, rng.choice(films), f"{label}/img_{i}.png")
+                     for label in "abc"[:rng.randint(2, 3)] for i in range(rng.randint(4, 40))]
+            try:
+                train, test = sets.halves(crops)
+            except sets.Wrong:  # a class of one film alone
+                continue
+            cut += 1
+            self.assertEqual(sorted(each.name for each in train + test), sorted(each.name for each in crops))
+            self.assertFalse({each.name for each in train} & {each.name for each in test})
+            self.assertFalse({each.group for each in train} & {each.group for each in test} - {""})
+            self.assertEqual({each.label for each in train}, {each.label for each in test})
+        self.assertGreater(cut, 200)
+
+    def test_without_films_the_numbering_is_cut_once(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for label in "ab":
+                (Path(folder) / label).mkdir()
+                for i in range(1, 13):  # by number, not by letter: img_10 follows img_9
+                    Image.new("L", (8, 8), i).save(Path(folder) / label / f"img_{i}.png")
+            train, test = sets.halves(sets.real(Path(folder))[0])
+            for label in "ab":
+                numbers = [[int(each.name.split("_")[1][:-4]) for each in part if each.label == label] for part in (train, test)]
+                self.assertEqual(numbers, [list(range(1, 7)), list(range(7, 13))])
+
+
+class Wrong(unittest.TestCase):
+    def setUp(self):
+        held = tempfile.TemporaryDirectory()
+        self.addCleanup(held.cleanup)
+        self.folder = Path(held.name)
+        for label in ("ball", "box"):
+            (self.folder / "real" / label).mkdir(parents=True)
+            for i in range(6):
+                Image.fromarray(np.random.default_rng(i).integers(0, 255, (20, 20), np.uint8)).save(
+                    self.folder / "real" / label / f"{i}.png")
+        plan = self.folder / "set"
+        plan.mkdir()
+        (plan / "deployment.yml").write_text("tasks: {}\n")
+        (plan / "sweep.yml").write_text("poses: {}\n")
+        (plan / "set.yml").write_text("deployment: deployment.yml\nsweeps: [sweep.yml]\neffects: {pulse: {sonar.pulse: null}}\n")
+        self.stand_in(["ball", "box"])
+
+    def stand_in(self, classes):
+        command = self.folder / "insonify"
+        command.write_text(STAND_IN.format(python=sys.executable, classes=classes))
+        command.chmod(0o755)
+
+    def refuses(self, said, *more):
+        done = subprocess.run([sys.executable, ROOT / "scripts/sim_to_real", self.folder / "real", self.folder / "set", "--out",
+                               self.folder / "out", "--insonify", self.folder / "insonify", *more], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(said, done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertEqual(len([line for line in done.stderr.splitlines() if line.startswith("sim_to_real: ")]), 1, done.stderr)
+
+    def test_empty_class(self):
+        (self.folder / "real" / "net").mkdir()
+        self.refuses("net: holds 0 pictures; a class has at least 4")
+
+    def test_one_class(self):
+        for file in (self.folder / "real" / "box").iterdir():
+            file.unlink()
+        (self.folder / "real" / "box").rmdir()
+        self.refuses("has 1 classes; there must be at least two")
+
+    def test_unreadable_picture(self):
+        (self.folder / "real" / "box" / "7.jpg").write_bytes(b"no picture")
+        self.refuses("box/7.jpg: cannot be read as a picture")
+
+    def test_damaged_zip(self):
+        (self.folder / "real" / "net.zip").write_bytes(b"no zip")
+        self.refuses("net.zip: is no zip file")
+
+    def test_damaged_coco(self):
+        (self.folder / "real" / "frames.json").write_text("{}")
+        self.refuses("frames.json: is no COCO file")
+
+    def test_no_folder(self):
+        (self.folder / "real").rename(self.folder / "elsewhere")
+        self.refuses("is no folder")
+
+    def test_class_missing_in_the_sweep(self):
+        self.stand_in(["ball", "tire"])
+        self.refuses("box: is a class of")
+
+    def test_no_windows(self):
+        self.stand_in([])
+        self.refuses("the sweeps gave no windows")
+
+    def test_failing_command(self):
+        (self.folder / "insonify").write_text("#!/bin/sh\necho sweep.yml:1:1 is wrong >&2; exit 2\n")
+        self.refuses("sweep.yml:1:1 is wrong")
+
+    def test_unknown_effect(self):
+        self.refuses("--ablate plse: is no effect of", "--ablate", "plse")
+
+    def test_no_command(self):
+        (self.folder / "insonify").unlink()
+        self.refuses("there is no such command")
+
+    def test_set_without_sweeps(self):
+        (self.folder / "set" / "set.yml").write_text("deployment: deployment.yml\n")
+        self.refuses("must have deployment and sweeps")
+
+    def test_set_names_no_file(self):
+        (self.folder / "set" / "sweep.yml").unlink()
+        self.refuses("no file is named as its sweeps are")
+
+
+if __name__ == "__main__":
+    unittest.main()
