@@ -45,7 +45,8 @@ TEST(MaterialLawsTest, LambertsLawIsThatOfNeitherTableNorLobe) {
 TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
     for (const double frequency_khz : {100.0, 900.0, 3000.0})
         for (const acoustics::Matter matter : {acoustics::Matter::Steel, acoustics::Matter::Concrete}) {
-            const MaterialLaws laws = lawsOf({.matter = std::string(acoustics::nameOf(matter))}, frequency_khz);
+            const MaterialLaws laws =
+                lawsOf({.name = "m", .matter = std::string(acoustics::nameOf(matter))}, frequency_khz);
             const acoustics::RoughSurface surface =
                 acoustics::roughSurfaceOf(acoustics::propertiesOf(matter), frequency_khz, 1025, 1500);
             EXPECT_TRUE(laws.has_matter && laws.hasLobes());
@@ -63,7 +64,7 @@ TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
 }
 
 TEST(MaterialLawsTest, MatterWithoutALobeIsATableAlone) {
-    const MaterialLaws rock = lawsOf({.matter = "rock"}, 900);
+    const MaterialLaws rock = lawsOf({.name = "m", .matter = "rock"}, 900);
     EXPECT_FALSE(rock.hasLobes());
     EXPECT_FALSE(rock.followsLambert(0));
     const double r =
@@ -72,7 +73,7 @@ TEST(MaterialLawsTest, MatterWithoutALobeIsATableAlone) {
 }
 
 TEST(MaterialLawsTest, WithoutAFrequencyMatterFollowsLambertsLaw) {
-    const types::Material steel{.lambert_db = -9.8f, .matter = "steel", .reflection = 0.936f};
+    const types::Material steel{.name = "m", .lambert_db = -9.8f, .matter = "steel", .reflection = 0.936f};
     types::Material plain = steel;
     plain.matter.clear();
     const MaterialLaws laws = lawsOf(steel, {}), as_before = lawsOf(plain, {});
