@@ -123,7 +123,7 @@ Noise::Noise(const NoiseConfig& config) : config_(config) {
 uint64_t Noise::multiply(const Run& run) const {
     if (config_.speckle->law == SpeckleLaw::Gaussian) return run.multiplyByNormals(*config_.speckle);
     Variates factor, texture;
-    run.draw(Stream::Speckle, filtered_.speckle, factor);
+    run.draw(Stream::Speckle, filtered_.factor, factor);
     if (config_.speckle->law == SpeckleLaw::K) {
         drawExponentials(run.key, Stream::Texture, run.chunk, texture);
         turnToGamma(gamma_->values(), texture);
@@ -161,7 +161,7 @@ void Noise::drawFiltered(const types::Sonar& ping, uint64_t seed) {
         const BeamKey key{{low(seed), high(seed)}, static_cast<uint32_t>(stream), low(time), high(time)};
         if (wanted) filter_->draw(key, ping.beam_count, ping.bin_count, variates);
     };
-    draw(Stream::Speckle, config_.speckle.has_value(), filtered_.speckle);
+    draw(Stream::Speckle, config_.speckle.has_value(), filtered_.factor);
     draw(Stream::Ambient, addsAmbient(), filtered_.ambient);
     draw(Stream::Additive, config_.additive.has_value(), filtered_.additive);
 }

@@ -31,9 +31,10 @@ public:
 
 private:
     struct Run;
-    /** Filtered variates of all bins of a ping: of speckle, the sea's noise and additive noise; empty without. */
+    /** Filtered variates of all bins of a ping: what multiplies echoes, the sea's noise and additive noise; empty
+     * without. */
     struct Filtered {
-        std::vector<float> speckle, ambient, additive;
+        std::vector<float> factor, ambient, additive;
     };
     bool addsAmbient() const;
     void drawFiltered(const types::Sonar& ping, uint64_t seed);

@@ -26,16 +26,6 @@ void AmbientConfig::check(types::Diagnostics& diagnostics) const {
     }
 }
 
-void NoiseConfig::check(types::Diagnostics& diagnostics) const {
-    if (!filter) return;
-    if (isNone()) return diagnostics.push_back({"filter", "has nothing to filter; give speckle, ambient or additive"});
-    if (speckle && speckle->law == SpeckleLaw::Gamma)
-        diagnostics.push_back(
-            {"filter", "is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages"});
-    if (speckle && speckle->law == SpeckleLaw::Gaussian)
-        diagnostics.push_back({"filter", "is given with speckle.law: gaussian, which is no field; give rayleigh or k"});
-}
-
 double ambientIntensity(const AmbientConfig& ambient) {
     if (ambient.level_db) return powerOf(*ambient.level_db);
     const double spectrum = acoustics::coatesSpectrumDb(ambient.frequency_khz, *ambient.wind_m_s, ambient.shipping);

@@ -113,7 +113,17 @@ struct NoiseConfig {
                     "absent: one look, independent in each bin"},
               self.filter);
     }
-    void check(types::Diagnostics& diagnostics) const;
+    void check(types::Diagnostics& diagnostics) const {
+        if (!filter) return;
+        if (isNone())
+            return diagnostics.push_back({"filter", "has nothing to filter; give speckle, ambient or additive"});
+        if (speckle && speckle->law == SpeckleLaw::Gamma)
+            diagnostics.push_back(
+                {"filter", "is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages"});
+        if (speckle && speckle->law == SpeckleLaw::Gaussian)
+            diagnostics.push_back(
+                {"filter", "is given with speckle.law: gaussian, which is no field; give rayleigh or k"});
+    }
 };
 
 /** Mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10) [1]. */

@@ -197,25 +197,39 @@ void Acoustics::readTable(const std::filesystem::path& folder, types::Diagnostic
     }
 }
 
-void Acoustics::applyTo(types::Material& target) const {
-    if (sediment || material || lambert_db || table || shell) {
+namespace {
+
+/** Takes away the laws that given values replace. */
+void clearLaws(const Acoustics& given, types::Material& target) {
+    const bool has_scattering = given.sediment || given.material || given.lambert_db || given.table || given.shell;
+    if (has_scattering) {
         target.shell.reset();
         target.seabed.clear();
-        target.measured = measured;
+        target.measured = given.measured;
     }
-    if (sediment || material || lambert_db || table || shell || reflection || roughness_slope) target.matter.clear();
-    if (sediment) {
-        const std::string name(types::EnumNames<Sediment>::names[static_cast<size_t>(*sediment)]);
-        if (!lambert_db && acoustics::seabedNamed(name)) target.seabed = name;
-        target.lambert_db = static_cast<float>(lambertDb(*sediment));
+    if (has_scattering || given.reflection || given.roughness_slope) target.matter.clear();
+}
+
+void applyNames(const Acoustics& given, types::Material& target) {
+    if (given.sediment) {
+        const std::string name(types::EnumNames<Sediment>::names[static_cast<size_t>(*given.sediment)]);
+        if (!given.lambert_db && acoustics::seabedNamed(name)) target.seabed = name;
+        target.lambert_db = static_cast<float>(lambertDb(*given.sediment));
     }
-    if (material) {
-        target.lambert_db = static_cast<float>(lambertDb(*material));
-        target.reflection = static_cast<float>(scene::reflection(*material));
-        const bool has_law = acoustics::propertiesOf(*material).hasRoughness();
-        if (has_law && !lambert_db && !reflection && !roughness_slope && !table)
-            target.matter = acoustics::nameOf(*material);
+    if (given.material) {
+        target.lambert_db = static_cast<float>(lambertDb(*given.material));
+        target.reflection = static_cast<float>(scene::reflection(*given.material));
+        const bool has_law = acoustics::propertiesOf(*given.material).hasRoughness();
+        if (has_law && !given.lambert_db && !given.reflection && !given.roughness_slope && !given.table)
+            target.matter = acoustics::nameOf(*given.material);
     }
+}
+
+}  // namespace
+
+void Acoustics::applyTo(types::Material& target) const {
+    clearLaws(*this, target);
+    applyNames(*this, target);
     if (shell) {
         target.shell = shell->shell();
         target.lambert_db = static_cast<float>(convex_body_db);

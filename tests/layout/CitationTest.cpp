@@ -52,9 +52,10 @@ std::set<std::string> knownMarkdown() {
     static const std::regex written(R"re("([\w./-]*\w\.md)")re");
     std::set<std::string> known;
     for (const Source& source : markdownFiles()) known.insert(nameOf(source.path));
-    for (const Source& source : sourcesIn("components", {".cpp"}))
-        for (const std::string& line : source.lines)
-            for (const std::string& path : matches(line, written)) known.insert(nameOf(path));
+    for (const char* folder : {"components", "scripts"})
+        for (const Source& source : sourcesIn(folder, {".cpp", ".py"}))
+            for (const std::string& line : source.lines)
+                for (const std::string& path : matches(line, written)) known.insert(nameOf(path));
     return known;
 }
 
