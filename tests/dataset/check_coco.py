@@ -31,7 +31,7 @@ def main(coco_folder, npz_folder):
             assert os.path.exists(os.path.join(coco_folder, image["file_name"]))
             (name,) = glob.glob(os.path.join(npz_folder, f"{image['id']:06}_*.npz"))
             ping = np.load(name)
-            objects = [text.decode() for text in ping["objects"]]
+            objects = [str(text) for text in ping["objects"]]
             x, y = places(ping, image["width"], image["height"])
             for annotation in coco.loadAnns(coco.getAnnIds(image["id"])):
                 left, top, width, height = annotation["bbox"]

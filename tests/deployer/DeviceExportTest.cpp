@@ -210,7 +210,8 @@ TEST_F(DeviceExportTest, WhatIsNoSideScanIsRefused) {
     expectRefused("no.ping", "x.xtf", {}, "no.ping");
     expectRefused("receiver.ping", "x.xtf", {"--pose", "receiver.ping"}, "--pose takes poses");
     expectRefused("receiver.ping", "x.xtf", {"--pose", "vehicle.pos"}, "vehicle.pos");
-    expectRefused("receiver.ping", "pings.0.log/x.xtf", {}, "pings.0.log: --to: is no folder and cannot be made");
+    expectRefused("receiver.ping", "out/lines.0.log/x.xtf", {},
+                  "out/lines.0.log: --to: is no folder and cannot be made");
     const WallFolder wall;
     ASSERT_EQ(wall.run({"--pings", "1"}).code, 0);
     expectRefused("sonar.ping", "x.xtf", {},

@@ -205,7 +205,7 @@ TEST_F(ImportCommandTest, WhatCannotBeImportedIsToldWithTheReason) {
     writeFile(folder_ / "plain.yml", wall_deployment);
     EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that gives out codes"));
     const Outcome outcome =
-        callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "nowhere/dive.0.log"});
+        callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("nowhere"));
+    EXPECT_THAT(outcome.err, HasSubstr("plain.yml: --to: is no folder and cannot be made"));
 }
