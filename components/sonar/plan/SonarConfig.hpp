@@ -287,6 +287,9 @@ struct SonarConfig {
     /** The properties that a scanning sonar has as well. */
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
+    /** The keys that a receiver has now. */
+    template <class Self, class V>
+    static void describeMoved(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
     /** The diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
@@ -343,6 +346,12 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"effects", "",
                 "numbers of effects of other libraries, by name (components/sonar/README.md, A new effect)"},
           self.effects);
+    describeMoved(self, visit);
+}
+
+template <class Self, class V>
+void SonarConfig::describeMoved(Self& self, V& visit) {
+    using types::Field;
     visit(Field{"tvg", "",
                 "has moved: a sonar gives intensities; tvg belongs to a receiver::ReceiverTask after the noise"},
           self.tvg);
