@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<std::string> namesOf(int count) {
+std::vector<std::string> numbered(int count) {
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) names.push_back("stone_" + std::to_string(i));
     return names;
@@ -19,7 +19,7 @@ std::vector<std::string> namesOf(int count) {
 
 SceneParts stones(int count) {
     SceneParts parts;
-    for (const std::string& name : namesOf(count)) {
+    for (const std::string& name : numbered(count)) {
         Placeable& stone = parts.placeables[name];
         stone.radius = 0.5;
         stone.low = -0.4;
@@ -41,7 +41,7 @@ Sweep sweepOf(std::vector<double> x, std::vector<double> y) {
 std::vector<PlacedObject> placed(const Sweep& sweep, const SceneParts& scene, int count, uint64_t pose,
                                  const types::Pose& vehicle = {}) {
     Placement placement(sweep, scene, pose, vehicle);
-    placement.add(0, namesOf(count));
+    placement.add(0, numbered(count));
     return placement.objects();
 }
 

@@ -17,11 +17,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-template <class T>
-void put(std::vector<char>& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 /** A message of sonar data, whose samples count up from `begin`. Offsets are those of the layout, behind a header
  * of 16.
  */

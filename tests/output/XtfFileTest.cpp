@@ -38,18 +38,13 @@ types::Sonar line(int number, uint32_t bins = 5, double speed_of_sound = 1500) {
     return ping;
 }
 
-types::Pose poseAt(double yaw_deg) {
+types::Pose headed(double yaw_deg) {
     types::Pose pose;
     pose.position = {12.5, -3.25, -4};
     pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
                        glm::angleAxis(types::radians(10), glm::dvec3(0, 1, 0)) *
                        glm::angleAxis(types::radians(5), glm::dvec3(1, 0, 0));
     return pose;
-}
-
-template <class T>
-void put(std::vector<char>& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
 class XtfFileTest : public SideScanFileTest {
@@ -59,7 +54,7 @@ protected:
     static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
         std::vector<char> bytes = xtfHeader(format, lines.front());
-        for (const types::Sonar& line : lines) appendXtfPing(format, line, {poseAt(30), 6.5, 0.5, 0}, bytes);
+        for (const types::Sonar& line : lines) appendXtfPing(format, line, {headed(30), 6.5, 0.5, 0}, bytes);
         return bytes;
     }
     std::unique_ptr<SideScanFile> open(const std::filesystem::path& path) const override {
@@ -92,7 +87,7 @@ TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
 
 TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
     const SideScanLine read_back = read(fileOf({line(0)})).front();
-    const types::Pose &pose = read_back.record.sonar, expected = poseAt(30);
+    const types::Pose &pose = read_back.record.sonar, expected = headed(30);
     EXPECT_NEAR(glm::length(pose.position - expected.position), 0, 1e-6);
     EXPECT_NEAR(std::abs(glm::dot(pose.orientation, expected.orientation)), 1, 1e-12);
     EXPECT_EQ(pose.time.microseconds, first_time);
