@@ -9,6 +9,7 @@
 #include "components/device/PingProtocol.hpp"
 #include "components/device/Probe.hpp"
 #include "components/device/SeaNet.hpp"
+#include "tests/device/ByteStrings.hpp"
 #include "tests/support/OculusDriver.hpp"
 #include "types/ConfigError.hpp"
 
@@ -19,13 +20,6 @@ using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::Field;
 using ::testing::HasSubstr;
-
-Bytes textBytes(const std::string& text) { return {text.begin(), text.end()}; }
-
-Bytes operator+(Bytes a, const Bytes& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
 
 TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
     EXPECT_EQ(probeAddress("127.0.0.1").host, "127.0.0.1");
@@ -57,19 +51,19 @@ TEST(ProbeTest, DevicesTellWhatTheyAre) {
               "Blue Robotics Ping1D, id 7, revision 2, firmware 3.29.0, protocol 1.0.0");
     EXPECT_FALSE(pingDeviceIn(information)) << "the rest is on its way";
     EXPECT_THAT(*pingDeviceIn(pingBytes(PingDeviceInformation{9, 0, 0, 0, 0, 0}) + version), HasSubstr("of type 9"));
-    EXPECT_EQ(ping360DiscoveryIn(textBytes("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
+    EXPECT_EQ(ping360DiscoveryIn(bytesOf("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
               "SONAR PING360, Blue Robotics, MAC Address:- 02-00");
     OculusStatus status{.part = 1032, .address = {192, 168, 2, 3}};
-    EXPECT_EQ(oculusIn(textBytes(status)), "Blueprint Subsea Oculus M750d, at 192.168.2.3, running");
+    EXPECT_EQ(oculusIn(bytesOf(status)), "Blueprint Subsea Oculus M750d, at 192.168.2.3, running");
     status.status = 1;
-    EXPECT_THAT(*oculusIn(textBytes(status)), HasSubstr("not ready"));
+    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("not ready"));
     status.part = 9;
-    EXPECT_THAT(*oculusIn(textBytes(status)), HasSubstr("Oculus of part 9,"));
+    EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("Oculus of part 9,"));
     EXPECT_EQ(oculusIn(oculusDummy(1, 1032)), "Blueprint Subsea Oculus, message 0xff");
     EXPECT_EQ(seaNetIn(SeaNetAlive{}.message().packet()), "Tritech SeaNet device, node 2, alive");
     EXPECT_EQ(seaNetIn(Bytes{'@', '0'} + SeaNetVersion{.software = 3, .serial = 1234}.message().packet()),
               "Tritech SeaNet device, node 2, software 3, serial number 1234");
-    EXPECT_EQ(sonar3dIn(textBytes("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
+    EXPECT_EQ(sonar3dIn(bytesOf("HTTP/1.1 200 OK\r\n\r\n{\"version_short\": \"1.7.1\"}")),
               "Water Linked Sonar 3D-15, version 1.7.1");
 }
 
@@ -86,8 +80,8 @@ TEST(ProbeTest, WhatOnlyLooksLikeAPacketOfSeaNetIsNone) {
 }
 
 TEST(ProbeTest, BytesOfOthersAreNoDevice) {
-    for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), textBytes("HTTP/1.1 404 Not Found\r\n\r\n{}"),
-                               textBytes("SONAR"), textBytes("SONAR PING360\x01"), Bytes(200, '@')}) {
+    for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), bytesOf("HTTP/1.1 404 Not Found\r\n\r\n{}"),
+                               bytesOf("SONAR"), bytesOf("SONAR PING360\x01"), Bytes(200, '@')}) {
         EXPECT_FALSE(pingDeviceIn(bytes));
         EXPECT_FALSE(ping360DiscoveryIn(bytes));
         EXPECT_FALSE(oculusIn(bytes));
@@ -117,7 +111,7 @@ public:
     StatusSender(const char* from, uint16_t port, const OculusStatus& status) {
         const sockaddr_in here = test::Socket::address(inet_addr(from), 0);
         EXPECT_EQ(bind(socket_.file(), reinterpret_cast<const sockaddr*>(&here), sizeof here), 0);
-        thread_ = std::thread([this, port, bytes = textBytes(status)] {
+        thread_ = std::thread([this, port, bytes = bytesOf(status)] {
             const sockaddr_in to = test::Socket::address(htonl(INADDR_LOOPBACK), port);
             while (!stop_) {
                 sendto(socket_.file(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),

@@ -2,7 +2,6 @@
 // Files of side-scans, written and read back.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -14,11 +13,6 @@
 #include "types/ConfigError.hpp"
 
 namespace insonify::output {
-
-template <class T>
-void put(std::vector<char>& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-}
 
 class SideScanFileTest : public testing::Test {
 protected:

@@ -24,7 +24,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double evenly(Random& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
@@ -135,14 +135,14 @@ TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) 
             for (int step = 0; step < 8; ++step) {
                 auto geometry = std::make_shared<types::Geometry>(*always);
                 for (size_t mesh = 0; mesh < 3; ++mesh) {
-                    if (uniform(random, 0, 1) < 0.4) continue;
-                    const glm::dvec3 at(uniform(random, 4, 18), uniform(random, -6, 6), uniform(random, -3, 1));
+                    if (evenly(random, 0, 1) < 0.4) continue;
+                    const glm::dvec3 at(evenly(random, 4, 18), evenly(random, -6, 6), evenly(random, -3, 1));
                     geometry->objects.push_back({fmt::format("new {}", mesh), static_cast<int>(mesh),
-                                                 glm::translate(glm::dmat4(1), at), uniform(random, 0, 1) < 0.7});
+                                                 glm::translate(glm::dmat4(1), at), evenly(random, 0, 1) < 0.7});
                 }
-                types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0}, uniform(random, -0.5, 0.5));
+                types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0}, evenly(random, -0.5, 0.5));
                 snapshot.water_surface = 3;
-                snapshot.moved = {{1, glm::translate(glm::dmat4(1), {uniform(random, 6, 12), 2, -1})}};
+                snapshot.moved = {{1, glm::translate(glm::dmat4(1), {evenly(random, 6, 12), 2, -1})}};
                 kept.setGeometry(geometry);
                 SonarRenderer anew(config, geometry);
                 ASSERT_EQ(binsWith(kept, snapshot), binsWith(anew, snapshot)) << name << ' ' << trial << ' ' << step;

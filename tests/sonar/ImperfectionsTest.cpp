@@ -25,7 +25,7 @@ using Phasor = std::complex<double>;
 constexpr double array_wavelength = 0.002;
 
 /** A fan of 41 beams over 40 deg, whose receiving array is 32 wavelengths long: 64 elements. */
-SonarConfig arrayOf(Weighting weighting = Weighting::Uniform) {
+SonarConfig imperfectFan(Weighting weighting = Weighting::Uniform) {
     SonarConfig config =
         test::sonarOf({.beams = 41, .width_deg = 40, .height_deg = 60, .bins = 100, .rows = 32, .columns = 2});
     config.visibility = Visibility::Cpu;
@@ -59,7 +59,7 @@ TEST(ImperfectionsTest, SidelobesRiseByTheVarianceOfTheErrorsOverTheElements) {
     for (const Weighting weighting : {Weighting::Uniform, Weighting::Taylor})
         for (const auto& [gain_db, phase_deg, dead] :
              {Case{1, 0, 0}, Case{0, 8, 0}, Case{1, 8, 0}, Case{0, 0, 0.05}, Case{2, 20, 0.1}}) {
-            const SonarConfig ideal = arrayOf(weighting);
+            const SonarConfig ideal = imperfectFan(weighting);
             const Directivity without(ideal);
             const double s = gain_db * std::log(10) / 20, p = radians(phase_deg), alive = 1 - dead;
             // Moments of (alive) exp(s n) exp(i p n'), n and n' N(0, 1).
@@ -92,7 +92,7 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
     ImperfectionsConfig errors;
     errors.elements = 25;
     errors.dead_elements = {12};
-    SonarConfig config = withErrors(arrayOf(), errors);
+    SonarConfig config = withErrors(imperfectFan(), errors);
     const Directivity with(config);
     for (double angle = -radians(80); angle < radians(80); angle += radians(0.31)) {
         const double u = 32 * std::sin(angle), sinc = std::abs(u) < 1e-9 ? 1 : std::sin(pi * u) / (pi * u);
@@ -105,7 +105,7 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
 }
 
 TEST(ImperfectionsTest, NoErrorsAreTheSameBits) {
-    SonarConfig plain = arrayOf(), coherent = arrayOf(Weighting::Taylor), boxes = arrayOf();
+    SonarConfig plain = imperfectFan(), coherent = imperfectFan(Weighting::Taylor), boxes = imperfectFan();
     coherent.speckle.emplace().coherent = true;
     boxes.beam_pattern.reset();
     for (const SonarConfig& config : {plain, coherent, boxes})
@@ -117,7 +117,7 @@ TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoh
     types::Snapshot snapshot = test::snapshotOf(test::openWater());
     snapshot.targets = {{glm::dvec3(8 * std::cos(0.1), 8 * std::sin(0.1), 0), 0}};
     for (const bool is_coherent : {false, true}) {
-        SonarConfig config = withErrors(arrayOf(), errors);
+        SonarConfig config = withErrors(imperfectFan(), errors);
         config.beam_pattern->floor_db = -90;
         if (is_coherent) config.speckle.emplace().coherent = true;
         const types::Sonar ping = imperfectPing(config, snapshot);
@@ -136,7 +136,7 @@ TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
     const ImperfectionsConfig errors{.gain_error_db = 3, .phase_error_deg = 40, .dead_element_share = 0.1};
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
     const auto sidelobes = [&](bool is_coherent, const std::optional<ImperfectionsConfig>& own) {
-        SonarConfig config = arrayOf(Weighting::Taylor);
+        SonarConfig config = imperfectFan(Weighting::Taylor);
         config.imperfections = own;
         config.beam_pattern->floor_db = -80;
         config.bin_count = 100;
@@ -184,7 +184,7 @@ double mainLobeWidth(const std::function<double(double)>& power) {
 TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
     constexpr double length = 0.2;  // far field beyond 20 m
     for (const double focus : {1.5, 4.0, 1e5}) {
-        SonarConfig config = arrayOf();
+        SonarConfig config = imperfectFan();
         config.range = 30;
         config.beam_pattern->receive.azimuth->aperture_m = length;
         config.imperfections.emplace().focus_m = focus;
@@ -208,7 +208,7 @@ TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
 }
 
 TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
-    SonarConfig config = arrayOf(Weighting::Hann);
+    SonarConfig config = imperfectFan(Weighting::Hann);
     config.range = 200;
     const Directivity ideal(config);
     for (const double focus : {3.0, 1e5}) {
@@ -221,7 +221,7 @@ TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
 }
 
 TEST(ImperfectionsTest, ATargetNearAnArrayThatIsFocusedFarBlooms) {
-    SonarConfig config = arrayOf();
+    SonarConfig config = imperfectFan();
     config.beam_pattern->receive.azimuth->aperture_m = 0.15;
     const auto beamsOver = [&](double range, bool is_focused) {
         SonarConfig own = config;
@@ -238,7 +238,7 @@ TEST(ImperfectionsTest, ATargetNearAnArrayThatIsFocusedFarBlooms) {
 }
 
 TEST(ImperfectionsTest, DeadBeamsAreEmptyInTheOrderOfTheTableAndOthersKeepTheirBits) {
-    SonarConfig config = arrayOf();
+    SonarConfig config = imperfectFan();
     config.bearings_deg = {10, -10, 5, 0, -5, 15};
     config.field_of_view_deg.reset();
     config.beam_width_deg = 2;
@@ -270,7 +270,7 @@ TEST(ImperfectionsTest, SharesAndGainsOfBeamsAreDrawnByTheSeed) {
 }
 
 TEST(ImperfectionsTest, CrosstalkPutsAShareOfEachBeamIntoItsNeighbours) {
-    const SonarConfig config = arrayOf();
+    const SonarConfig config = imperfectFan();
     const types::Sonar clean = imperfectPing(config), mixed = imperfectPing(withErrors(config, {.crosstalk_db = -20}));
     const size_t n = clean.bin_count;
     for (size_t i = n; i + n < clean.bins.size(); ++i)
@@ -279,7 +279,7 @@ TEST(ImperfectionsTest, CrosstalkPutsAShareOfEachBeamIntoItsNeighbours) {
 }
 
 TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
-    SonarConfig config = arrayOf();
+    SonarConfig config = imperfectFan();
     config.bin_count = 400;
     const types::Sonar clean = imperfectPing(config);
     const auto jittered = [&](double sd_bins, int64_t time) {
@@ -322,41 +322,41 @@ std::vector<std::string> complaintsOf(const SonarConfig& config) {
 
 TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
-    EXPECT_THAT(complaintsOf(withErrors(arrayOf(), gains)), IsEmpty());
-    SonarConfig boxes = withErrors(arrayOf(), gains);
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), gains)), IsEmpty());
+    SonarConfig boxes = withErrors(imperfectFan(), gains);
     boxes.beam_pattern.reset();
     EXPECT_THAT(complaintsOf(boxes),
                 ElementsAre("imperfections needs beam_pattern.receive.azimuth, whose aperture the elements fill"));
     boxes.imperfections = ImperfectionsConfig{.dead_beams = {3}};
     EXPECT_THAT(complaintsOf(boxes), IsEmpty()) << "beams need no pattern";
-    EXPECT_THAT(complaintsOf(withErrors(arrayOf(), {.dead_beams = {0, 41}})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
                 ElementsAre("imperfections.dead_beams[1] is 41; there are 41 beams, 0 to 40"));
-    EXPECT_THAT(complaintsOf(withErrors(arrayOf(), {.dead_elements = {64}})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_elements = {64}})),
                 ElementsAre("imperfections.dead_elements[0] is 64; there are 64 elements, 0 to 63"));
-    EXPECT_THAT(complaintsOf(withErrors(arrayOf(), {.dead_element_share = 1})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_element_share = 1})),
                 ElementsAre("imperfections leaves none of 64 elements alive"));
-    EXPECT_THAT(complaintsOf(withErrors(arrayOf(), {.dead_beam_share = 1})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_beam_share = 1})),
                 ElementsAre("imperfections leaves none of 41 beams alive"));
-    SonarConfig measured = withErrors(arrayOf(), gains);
+    SonarConfig measured = withErrors(imperfectFan(), gains);
     measured.beam_pattern->receive.azimuth = acoustics::BeamLaw{};
     measured.beam_pattern->receive.azimuth->file = "pattern.csv";
     EXPECT_THAT(complaintsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
-    SonarConfig gaussian = withErrors(arrayOf(Weighting::Gaussian), {.focus_m = 3});
+    SonarConfig gaussian = withErrors(imperfectFan(Weighting::Gaussian), {.focus_m = 3});
     gaussian.beam_pattern->receive.azimuth->aperture_m.reset();
     gaussian.beam_pattern->receive.azimuth->width_deg = 2;
     EXPECT_THAT(complaintsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m needs a weighted line")));
-    SonarConfig toneless = withErrors(arrayOf(), {.focus_m = 3});
+    SonarConfig toneless = withErrors(imperfectFan(), {.focus_m = 3});
     toneless.frequency_khz.reset();
     toneless.beam_pattern->receive.azimuth->aperture_m.reset();
     toneless.beam_pattern->receive.azimuth->width_deg = 2;
     EXPECT_THAT(complaintsOf(toneless),
                 ElementsAre("imperfections.focus_m is given without frequency_khz, which it needs"));
-    SonarConfig published = withErrors(arrayOf(), {.dead_beams = {1}});
+    SonarConfig published = withErrors(imperfectFan(), {.dead_beams = {1}});
     published.beam_pattern.reset();
     published.model = Model::Cerqueira2017;
     EXPECT_THAT(complaintsOf(published),
                 ElementsAre("imperfections is given with model: cerqueira2017; it belongs to physical"));
-    SonarConfig elements = withErrors(arrayOf(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
+    SonarConfig elements = withErrors(imperfectFan(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
     elements.beam_geometry = BeamGeometry::Conical;
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
