@@ -177,4 +177,9 @@ size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, Ec
     return heard;
 }
 
+bool PointTargets::addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field) {
+    const auto echo = returnOf(way, way, strength_db);
+    return echo && spread(echo->range) && (field ? addTo(*field, *echo, 0) : addTo(ping, *echo));
+}
+
 }  // namespace insonify::sonar
