@@ -17,6 +17,7 @@
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
+#include "tests/support/Weightings.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -224,6 +225,26 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
                 }
                 EXPECT_NEAR(decibels(sumOf(ping) / sum), 0, 0.3) << "the rest of the plate is silent";
             }
+}
+
+TEST(EdgeDiffractionTest, ItIsHeardAsAPointTargetOfItsStrength) {
+    const double length = 0.1, range = 6.013;
+    const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
+    types::Snapshot target = test::snapshotOf(test::openWater(), {0, 0, 0}, 0.07, 0.05);
+    target.targets = {{{range, 0, 0}, decibels(coherentSquare(length, range) / std::pow(2 * pi, 2))}};
+    for (const bool coherent : {false, true}) {
+        SonarConfig config = edgeSonar();
+        config.beam_count = 20;
+        config.quality.rows = config.quality.columns_per_beam = 16;
+        config.pulse.emplace().bandwidth_khz = 10;
+        config.beam_pattern.emplace().receive.azimuth = test::lawOf(acoustics::Weighting::Hann, 3);
+        if (coherent) config.speckle.emplace().coherent = true;
+        const types::Sonar edge = test::pingOf(config, test::snapshotOf(scene, {0, 0, 0}, 0.07, 0.05));
+        const types::Sonar point = test::pingOf(without(config), target);
+        const double loudest = double{*std::ranges::max_element(point.bins)};
+        ASSERT_GT(loudest, 0);
+        for (size_t i = 0; i < edge.bins.size(); ++i) ASSERT_NEAR(edge.bins[i], point.bins[i], 1e-3 * loudest) << i;
+    }
 }
 
 TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
