@@ -340,7 +340,7 @@ TEST(EdgeDiffractionTest, WhatIsWrongIsRefused) {
     EXPECT_THAT(diagnosticOf("{model: cerqueira2017, effects: {edge_diffraction: {}}}"),
                 HasSubstr("it belongs to physical"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, motion_in_ping: true, effects: {edge_diffraction: {}}}"),
-                HasSubstr("leave out water.profile and motion_in_ping"));
+                HasSubstr("no motion within a ping"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 0}}}"),
                 HasSubstr("effects.edge_diffraction.min_turn_deg: is 0; must be 1 to 180 deg"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {turn: 60}}}"),
