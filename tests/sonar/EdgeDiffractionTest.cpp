@@ -17,6 +17,7 @@
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
+#include "tests/support/Weightings.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -226,6 +227,26 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
             }
 }
 
+TEST(EdgeDiffractionTest, ItIsHeardAsAPointTargetOfItsStrength) {
+    const double length = 0.1, range = 6.013;
+    const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
+    types::Snapshot target = test::snapshotOf(test::openWater(), {0, 0, 0}, 0.07, 0.05);
+    target.targets = {{{range, 0, 0}, decibels(coherentSquare(length, range) / std::pow(2 * pi, 2))}};
+    for (const bool coherent : {false, true}) {
+        SonarConfig config = edgeSonar();
+        config.beam_count = 20;
+        config.quality.rows = config.quality.columns_per_beam = 16;
+        config.pulse.emplace().bandwidth_khz = 10;
+        config.beam_pattern.emplace().receive.azimuth = test::lawOf(acoustics::Weighting::Hann, 3);
+        if (coherent) config.speckle.emplace().coherent = true;
+        const types::Sonar edge = test::pingOf(config, test::snapshotOf(scene, {0, 0, 0}, 0.07, 0.05));
+        const types::Sonar point = test::pingOf(without(config), target);
+        const double loudest = double{*std::ranges::max_element(point.bins)};
+        ASSERT_GT(loudest, 0);
+        for (size_t i = 0; i < edge.bins.size(); ++i) ASSERT_NEAR(edge.bins[i], point.bins[i], 1e-3 * loudest) << i;
+    }
+}
+
 TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
     const auto scene = smooth({sheet(0.1f, 0.1f)}, {placed({10, 0, 0}, pi / 2)});
     const double expected = std::pow(0.01 / wavelength, 2) / 1e4;
@@ -319,7 +340,7 @@ TEST(EdgeDiffractionTest, WhatIsWrongIsRefused) {
     EXPECT_THAT(diagnosticOf("{model: cerqueira2017, effects: {edge_diffraction: {}}}"),
                 HasSubstr("it belongs to physical"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, motion_in_ping: true, effects: {edge_diffraction: {}}}"),
-                HasSubstr("leave out water.profile and motion_in_ping"));
+                HasSubstr("no motion within a ping"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {min_turn_deg: 0}}}"),
                 HasSubstr("effects.edge_diffraction.min_turn_deg: is 0; must be 1 to 180 deg"));
     EXPECT_THAT(diagnosticOf("{frequency_khz: 300, effects: {edge_diffraction: {turn: 60}}}"),

@@ -332,11 +332,12 @@ std::vector<FacetRecord> facetLobes(const types::Geometry& geometry, const Mater
     for (size_t i = 0; i < geometry.meshes.size(); ++i) {
         const types::Mesh& mesh = geometry.meshes[i];
         std::vector<FacetRecord> records(mesh.indices.size() / 3, FacetRecord{vec4(0), vec4(0), vec4(0)});
-        const glm::dmat3 world_from_mesh = worldFromMesh(geometry, i);
-        std::optional<StraightEdges> edges;
-        if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);
-        if (hasLobes(mesh, laws))
+        if (hasLobes(mesh, laws)) {
+            const glm::dmat3 world_from_mesh = worldFromMesh(geometry, i);
+            std::optional<StraightEdges> edges;
+            if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);
             records = facetLobes(mesh, world_from_mesh, laws.wavelength.value_or(0), edges ? &*edges : nullptr);
+        }
         all.insert(all.end(), records.begin(), records.end());
     }
     return all;

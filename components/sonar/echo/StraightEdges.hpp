@@ -30,9 +30,9 @@ struct StraightEdges {
 };
 
 /** Returns the edges at which the surface turns by at least an angle, and those with one face only (ACOUSTICS.md 3.12).
- *  Pieces on one line between the same two flat parts are one edge, whatever the triangles are. Omitted are hollow
- *  edges of no turn, edges of three or more faces, and chains of edges that stand for a curve: at both ends they
- *  go on in the same flat part with a bend of less than 60 deg.
+ *  Pieces on one line between the same two flat parts are one edge, whatever the triangles are. Omits edges of three
+ *  or more faces, and edges that stand for a curve: at both ends they go on in the same flat part with a bend of less
+ *  than 60 deg.
  *  @param world_from_mesh  turns and scales the mesh; angles and lengths are those of the world
  *  @param min_turn  [rad], above 0 */
 StraightEdges straightEdges(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double min_turn);

@@ -59,8 +59,9 @@ public:
             diagnostics.push_back({path, "is given with model: cerqueira2017; it belongs to physical"});
         else if (!config.frequency_khz)
             diagnostics.push_back({path, "needs frequency_khz, which has the wavelength"});
-        if ((config.water && config.water->profile) || config.motion_in_ping)
-            diagnostics.push_back({path, "goes along straight ways; leave out water.profile and motion_in_ping"});
+        if ((config.water && config.water->profile) || followsMotion(config))
+            diagnostics.push_back(
+                {path, "takes straight ways: no profile of the speed of sound and no motion within a ping"});
     }
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         const auto own = plan.config.effects.find(own_key);

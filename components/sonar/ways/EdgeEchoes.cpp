@@ -15,6 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double main_lobe = 0.75 * pi;  ///< Phase at the end of a length up to which it echoes as a whole [rad].
+constexpr double min_section = 1e-10;    ///< What is fainter, -100 dB, is omitted [m^2].
 constexpr int max_pieces = 16;           ///< Points that stand for the part of a rough edge that glints [1].
 
 double square(double x) { return x * x; }
@@ -126,6 +127,7 @@ EdgeEchoes::EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry)
                                  ->edges(worldFromMesh(geometry, i), plan.laws, plan.laws.sharp_turn.value()));
     for (size_t i = 0; i < geometry.objects.size(); ++i) addObject(i, geometry);
     places_ = still_;
+    echoes_.reserve(max_pieces + 2);
 }
 
 void EdgeEchoes::addObject(size_t object, const types::Geometry& geometry) {
@@ -178,10 +180,10 @@ size_t EdgeEchoes::add(const types::Snapshot& snapshot, types::Sonar& ping, Echo
         for (const EdgeEcho& echo : echoes_) {
             TargetWay way;
             way.length = glm::distance(sonar, echo.at);
-            if (!(echo.section > 0 && way.length > 0 && way.length < plan_.grid.range_max)) continue;
+            if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
             way.direction = sonar_from_world * ((echo.at - sonar) / way.length);
-            if (!sightlines_.isOpen(echo.at)) continue;
-            any |= points_.addAlong(way, 10 * std::log10(echo.section), ping, field);
+            if (points_.mayHear(way.direction) && sightlines_.isOpen(echo.at))
+                any |= points_.addAlong(way, 10 * std::log10(echo.section), ping, field);
         }
         heard += any ? 1 : 0;
     }

@@ -50,6 +50,9 @@ public:
      *  whether any beam has it. */
     bool addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field);
 
+    /** Whether any beam may hear a direction, a unit vector in the sonar's axes. Quick: false is certain. */
+    bool mayHear(const glm::dvec3& direction) const;
+
 private:
     /** One echo of a target: out one way, back another or the same. */
     struct Return {
