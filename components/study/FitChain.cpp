@@ -100,11 +100,12 @@ types::Sonar meanEchoes(const FitChain& chain) {
     config.speckle.reset();
     config.elements.reset();
     config.absorption.reset();
+    if (chain.isSideScan()) config.quality.columns_per_beam = 512;
     types::Sonar ping;
     sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
     renderer.render(chain.snapshot, ping);
     if (!chain.isSideScan()) return ping;
-    constexpr size_t few = 32;
+    constexpr size_t few = 8;  // one for each block of levels
     std::vector<types::Sonar> lines;
     types::Snapshot snapshot = chain.snapshot;
     const size_t count = std::min(few, chain.lines.size());
