@@ -9,10 +9,11 @@ double tabulatedBackscatter(uint table, double cosine) {
 }
 
 // sinc^2 of the phase beta = k L sin(t) at one end of a length over that in its middle, up to 3 pi / 4; from there on its mean,
-// 1 / (2 beta^2), for the interference of both ends changes within a band, and with the slightest turn. `at`: beta^2 / pi.
-double diffracted(double at) {
+// 1 / (2 beta^2), for the interference of both ends changes within a band, and with the slightest turn. `at`: beta^2 / pi;
+// `edges`: 1 where that mean is an echo of edges instead (ACOUSTICS.md 3.12), else 0.
+double diffracted(double at, double edges) {
     double beta_square = LOBE_PI * at;
-    if (beta_square > 0.5625 * LOBE_PI * LOBE_PI) return 0.5 / beta_square;
+    if (beta_square > 0.5625 * LOBE_PI * LOBE_PI) return (1.0 - edges) * 0.5 / beta_square;
     double sum = 1.0, term = 1.0;
     for (int n = 1; n < 8; ++n) {
         term *= -4.0 * beta_square / double((2 * n + 1) * (2 * n + 2));
@@ -30,7 +31,7 @@ double lobeOverCosine(double power, LobeSlopes slopes, double cosine) {
     double rough_2 = (1.0 - flat_2) * double(exp(float(-at_2 * square)));
     double both = rough_1 * rough_2, all = both;
     if (flat_1 + flat_2 > 0.0)
-        all = (rough_1 + flat_1 * diffracted(at_1)) * (rough_2 + flat_2 * diffracted(at_2));
+        all = (rough_1 + flat_1 * diffracted(at_1, slopes.edges)) * (rough_2 + flat_2 * diffracted(at_2, slopes.edges));
     return power / sqrt(slopes.square_1 * slopes.square_2) *
            (both * square * square * secant + (all - both) * cosine);
 }
@@ -86,5 +87,6 @@ LobeSlopes lobeSlopes(FacetRecord facet, double relief, double range, double nor
     }
     slopes.wave_1 = double(facet.first.y);
     slopes.wave_2 = double(facet.second.y);
+    slopes.edges = double(facet.axis.w);
     return slopes;
 }

@@ -322,7 +322,7 @@ float strengthRange(Seen seen, Covered cell, vec2 towards, float width, float he
     MaterialRecord material = materials[seen.material];
     if (!FOLLOWS_LAMBERT(material.law) && inverse_range > 0.0) {
         float cosine = mapped ? seen.mapped : min(cell.perpendicular * inverse_range, 1.0);
-        LobeSlopes slopes = LobeSlopes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        LobeSlopes slopes = LobeSlopes(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         if (material.law.y > 0.0) {
             Angles at = anglesOf(towards);
             vec3 normal = rounded(seen.normal) / seen.normal_length.high;

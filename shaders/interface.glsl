@@ -65,15 +65,16 @@ struct CurveRecord {
 
 // How a facet spreads the lobe of its material, in two principal directions of its plane.
 struct FacetRecord {
-    vec4 axis;           // xyz: the first direction, which is turned as normals are, of any length
+    vec4 axis;           // xyz: the first direction, which is turned as normals are, of any length; w: 1 where all edges of its flat
+                         // part echo themselves, else 0
     vec4 first, second;  // x, y: mean square slopes of steps and of diffraction [1], z: curvature [1/m]; w: the smooth surface's
                          // slope along the second is first.w + second.w times the square of that along the first [1]
 };
 
 // How a lobe is seen in two directions across each other: squares of the sines of the way to the normal, mean square slopes of
-// all that widens it, and of these the part of diffraction [1].
+// all that widens it, and of these the part of diffraction; edges: 1 where the sidelobes of diffraction are echoes of edges [1].
 struct LobeSlopes {
-    double sine_1, sine_2, square_1, square_2, wave_1, wave_2;
+    double sine_1, sine_2, square_1, square_2, wave_1, wave_2, edges;
 };
 
 // One draw of a run of triangles.

@@ -119,23 +119,34 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
         const double heading = headingOf(vehicle_), c = std::cos(heading), s = std::sin(heading);
         at = {vehicle_.position.x + c * at.x - s * at.y, vehicle_.position.y + s * at.x + c * at.y};
     }
-    const auto angle = [&](const std::vector<double>& span, uint64_t of) {
-        return span.empty() ? 0 : between(span, of);
-    };
-    const types::Mount turn{{},
-                            angle(group.roll_deg, word + tilt_words),
-                            angle(group.pitch_deg, word + tilt_words + 1),
-                            angle(group.yaw_deg, word + 3)};
-    const Placeable object = group.tilts() ? turned(filed, turn.orientation()) : filed;
+    const glm::dquat turn = turnOf(group, word);
+    const Placeable object = group.tilts() ? turned(filed, turn) : filed;
     const Circle circle{at.x, at.y, object.radius};
     if (!isFree(group, circle)) return std::nullopt;
     const std::optional<double> z = heightOf(group, object, circle, word + 2);
     if (!z) return std::nullopt;
     PlacedObject placed{name, object.filed, true};
     placed.at.position = {at.x, at.y, *z};
-    placed.at.orientation = turn.orientation() * placed.at.orientation;
+    placed.at.orientation = turn * placed.at.orientation;
     taken_.push_back(circle);
     return placed;
+}
+
+glm::dquat Placement::turnOf(const ObjectGroup& group, uint64_t word) const {
+    if (group.any_turn) {  // K. Shoemake, Uniform random rotations, in Graphics Gems III, 1992
+        const double share = between({0, 1}, word + tilt_words), near = std::sqrt(1 - share), far = std::sqrt(share);
+        const double a = types::radians(between({0, 360}, word + tilt_words + 1)),
+                     b = types::radians(between({0, 360}, word + 3));
+        return {far * std::cos(b), near * std::sin(a), near * std::cos(a), far * std::sin(b)};
+    }
+    const auto angle = [&](const std::vector<double>& span, uint64_t of) {
+        return span.empty() ? 0 : between(span, of);
+    };
+    return types::Mount{{},
+                        angle(group.roll_deg, word + tilt_words),
+                        angle(group.pitch_deg, word + tilt_words + 1),
+                        angle(group.yaw_deg, word + 3)}
+        .orientation();
 }
 
 bool Placement::isFree(const ObjectGroup& group, const Circle& circle) const {

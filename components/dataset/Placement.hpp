@@ -22,6 +22,7 @@ private:
     /** Chooses at random, each equally likely. Takes words from `last_word` downwards. */
     std::vector<bool> chosen(size_t count, size_t wanted, uint64_t last_word) const;
     std::optional<PlacedObject> tryOnce(const ObjectGroup& group, const std::string& name, uint64_t word);
+    glm::dquat turnOf(const ObjectGroup& group, uint64_t word) const;
     bool isFree(const ObjectGroup& group, const Circle& circle) const;
     /** A random number between two by its number in this sample; the first where they are the same. */
     double between(const std::vector<double>& span, uint64_t word) const;

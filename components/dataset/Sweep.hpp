@@ -93,6 +93,7 @@ struct ObjectGroup {
     std::optional<std::string> ground;
     Frame frame = Frame::World;
     std::vector<double> x, y, z, roll_deg, pitch_deg, yaw_deg;
+    bool any_turn = false;
     double gap = 0.1;
     std::vector<uint32_t> count;
     int line = 0, column = 0;  ///< Where it stands in the sweep.
@@ -114,12 +115,13 @@ struct ObjectGroup {
               self.roll_deg);
         visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [least, most]", -360, 360},
               self.pitch_deg);
+        visit(Field{"any_turn", "", "instead of the three: turned any way, each equally likely"}, self.any_turn);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
         visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
         visit(Field{"avoid", "", "nodes that stay where they are, from whose boxes they keep off"}, self.avoid);
         visit(Field{"count", "1", "how many of them are there: [least, most]; absent: all", 0, 1e6}, self.count);
     }
-    bool tilts() const { return !roll_deg.empty() || !pitch_deg.empty(); }
+    bool tilts() const { return any_turn || !roll_deg.empty() || !pitch_deg.empty(); }
     void check(types::Diagnostics& diagnostics) const;
 };
 

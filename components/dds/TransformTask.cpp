@@ -7,13 +7,13 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int max_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int max_transforms_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
 constexpr int depth = 1000;                  ///< Messages of all senders that wait to be taken.
 constexpr size_t largest = size_t{1} << 20;  ///< Of a message [B].
-constexpr types::Time patience{2'000'000};   ///< With a chain that is not whole.
+constexpr types::Time chain_patience{2'000'000};   ///< With a chain that is not whole.
 constexpr types::Time static_period{100'000};
 
-std::unique_ptr<Reader> readerOf(Node& node, const std::string& topic, const Quality& quality,
+std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, const Quality& quality,
                                  std::function<void()> arrived) {
     auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name, ros::TFMessage::type_hash,
                                          quality, std::move(arrived), largest);
@@ -70,10 +70,10 @@ bool TransformTask::configureHook() {
     fixed_.reset();
     node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
                   static_cast<size_t>(config->node.gid_size));
-    moving_ = readerOf(*node_, config->topic, {.reliability = config->reliability, .depth = depth},
+    moving_ = transformReader(*node_, config->topic, {.reliability = config->reliability, .depth = depth},
                        [this] { arrived_.raise(); });
     fixed_ =
-        readerOf(*node_, config->static_topic, {.depth = depth, .transient_local = true}, [this] { arrived_.raise(); });
+        transformReader(*node_, config->static_topic, {.depth = depth, .transient_local = true}, [this] { arrived_.raise(); });
     node_->announce();
     return true;
 }
@@ -94,7 +94,7 @@ void TransformTask::updateHook() {
 void TransformTask::take(Reader& reader, bool is_static) {
     int taken = 0;
     uint64_t sender = 0;
-    for (; taken < max_at_once && reader.take(bytes_, sender); ++taken) try {
+    for (; taken < max_transforms_at_once && reader.take(bytes_, sender); ++taken) try {
             ros::decode(std::span<const char>(bytes_), message_);
             for (const ros::TransformStamped& transform : message_.transforms) add(transform, is_static);
         } catch (const ros::CdrError& error) {
@@ -102,7 +102,7 @@ void TransformTask::take(Reader& reader, bool is_static) {
                                       : "a message that is none of its type",
                        std::string(": ") + error.what());
         }
-    if (taken == max_at_once) arrived_.raise();
+    if (taken == max_transforms_at_once) arrived_.raise();
 }
 
 void TransformTask::add(const ros::TransformStamped& transform, bool is_static) {
@@ -121,7 +121,7 @@ void TransformTask::tell(Output& output) {
         kept.lacking.reset();
     else if (!kept.lacking)
         kept.lacking = now();
-    if (kept.lacking && !diagnostic.empty() && now() - *kept.lacking >= patience)
+    if (kept.lacking && !diagnostic.empty() && now() - *kept.lacking >= chain_patience)
         gaps_.add(output.port.name() + ": " + diagnostic);
     if (!placed) return;
     const bool is_fixed = placed->time.isNull();

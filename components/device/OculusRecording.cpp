@@ -12,7 +12,7 @@ namespace insonify::device {
 namespace {
 
 constexpr uint32_t file_mark = 0x11223344, item_mark = 0xaabbccdd;
-constexpr size_t max_payload = size_t{1} << 28;
+constexpr size_t max_recorded_payload = size_t{1} << 28;
 
 template <class Header, class Visit>
 void visitFileHeader(Header& header, Visit&& visit) {
@@ -55,7 +55,7 @@ void refuseUnreadable(const std::filesystem::path& file) {
 std::optional<Bytes> OculusItem::content() const {
     if (compression != zipped) return payload;
     constexpr size_t size_bytes = 4;
-    if (payload.size() < size_bytes || original_size > max_payload) return std::nullopt;
+    if (payload.size() < size_bytes || original_size > max_recorded_payload) return std::nullopt;
     Bytes unpacked(std::max<size_t>(original_size, 1));
     uLongf size = original_size;
     const int result = uncompress(unpacked.data(), &size, payload.data() + size_bytes, payload.size() - size_bytes);
@@ -109,7 +109,7 @@ std::optional<OculusItem> OculusRecording::next() {
         OculusItem item;
         uint32_t payload_size = 0;
         visitItem(item, payload_size, NumberReader(bytes, mark_size));
-        if (payload_size > max_payload || at_ + OculusItem::header_size + payload_size > size_) continue;
+        if (payload_size > max_recorded_payload || at_ + OculusItem::header_size + payload_size > size_) continue;
         at_ += OculusItem::header_size;
         item.payload = take(payload_size);
         at_ += payload_size;

@@ -16,8 +16,8 @@
 namespace insonify::device {
 namespace {
 
-constexpr size_t header_size = 8, crc_size = 4, max_diagnostics = 100;
-constexpr size_t max_payload = size_t{1} << 22;  // once it is no longer compressed [bytes]
+constexpr size_t packet_header_size = 8, crc_size = 4, max_complaints = 100;
+constexpr size_t max_image_bytes = size_t{1} << 22;  // once it is no longer compressed [bytes]
 constexpr std::string_view magic1 = "RIP1", magic2 = "RIP2", type_url = "type.googleapis.com/",
                            package = "waterlinked.sonar.protocol.", range_image = "RangeImage",
                            strength_image = "BitmapImageGreyscale8";
@@ -69,7 +69,7 @@ Bytes packet(std::string_view name, const Bytes& message, RipVersion version) {
     }
     const std::string_view magic = version == RipVersion::Rip2 ? magic2 : magic1;
     Bytes bytes(magic.begin(), magic.end());
-    append(bytes, static_cast<uint32_t>(header_size + payload.size() + crc_size));
+    append(bytes, static_cast<uint32_t>(packet_header_size + payload.size() + crc_size));
     bytes.insert(bytes.end(), payload.begin(), payload.end());
     append(bytes, crcOf(bytes));
     return bytes;
@@ -177,12 +177,12 @@ RipMessage messageIn(std::span<const uint8_t> any) {
 
 /** What a packet carries, no longer compressed. */
 std::string payloadOf(std::span<const uint8_t> packet) {
-    const auto* begin = reinterpret_cast<const char*>(packet.data()) + header_size;
-    const size_t size = packet.size() - header_size - crc_size;
+    const auto* begin = reinterpret_cast<const char*>(packet.data()) + packet_header_size;
+    const size_t size = packet.size() - packet_header_size - crc_size;
     if (packet[3] == '1') return {begin, size};
     size_t length = 0;
     std::string payload;
-    if (!snappy::GetUncompressedLength(begin, size, &length) || length > max_payload ||
+    if (!snappy::GetUncompressedLength(begin, size, &length) || length > max_image_bytes ||
         !snappy::Uncompress(begin, size, &payload))
         throw BadPacket("is compressed by something else than snappy");
     return payload;
@@ -207,10 +207,10 @@ bool beginsPacket(std::span<const uint8_t> bytes) {
 
 /** The length of the packet that begins here. */
 size_t lengthOf(std::span<const uint8_t> bytes) {
-    if (bytes.size() < header_size) throw BadPacket(fmt::format("is cut off after {} bytes", bytes.size()));
+    if (bytes.size() < packet_header_size) throw BadPacket(fmt::format("is cut off after {} bytes", bytes.size()));
     const size_t length = read<uint32_t>(bytes, 4);
-    if (length < header_size + crc_size || length > max_rip_packet)
-        throw BadPacket(fmt::format("says that it has {} bytes; may have {} to {}", length, header_size + crc_size,
+    if (length < packet_header_size + crc_size || length > max_rip_packet)
+        throw BadPacket(fmt::format("says that it has {} bytes; may have {} to {}", length, packet_header_size + crc_size,
                                     max_rip_packet));
     return length;
 }
@@ -243,7 +243,7 @@ std::vector<RipMessage> ripMessages(std::span<const uint8_t> bytes, std::vector<
             messages.push_back(readPacket(rest, length));
             at += length;
         } catch (const BadPacket& error) {
-            if (diagnostics && diagnostics->size() < max_diagnostics)
+            if (diagnostics && diagnostics->size() < max_complaints)
                 diagnostics->push_back(fmt::format("the packet at byte {} {}", at, error.what()));
             at += magic1.size();
         }

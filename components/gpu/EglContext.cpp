@@ -28,6 +28,17 @@ bool hasEgl() {
     return has;
 }
 
+/** Whether the kernel has a node of a graphics card, by the names of drivers for Linux: where it has none, EGL, which
+ *  loads a score of libraries, need not be asked. */
+bool hasNode() {
+    constexpr std::string_view drivers[] = {"dri", "nvidia", "nvhost", "nvmap", "dxg", "mali", "kgsl", "pvr"};
+    std::error_code none;
+    return std::ranges::any_of(std::filesystem::directory_iterator("/dev", none), [&](const auto& node) {
+        const std::string name = node.path().filename().string();
+        return std::ranges::any_of(drivers, [&](std::string_view driver) { return name.starts_with(driver); });
+    });
+}
+
 bool clientHas(const char* extension) { return hasEgl() && epoxy_has_egl_extension(EGL_NO_DISPLAY, extension); }
 
 std::vector<EGLDeviceEXT> devices() {
@@ -187,6 +198,7 @@ bool EglContext::isAskedFor(const std::string& device) {
 
 bool EglContext::hasCard() {
     static const bool has = [] {
+        if (!hasNode()) return false;
         std::vector<Candidate> all = candidates("auto");
         std::erase_if(all, [](const Candidate& candidate) { return !candidate.may_be_card; });
         if (all.empty()) return false;

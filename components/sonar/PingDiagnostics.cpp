@@ -108,7 +108,7 @@ std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
     if (scene.targets.empty() || coverage.plan.config.model != Model::Physical) return "";
     const glm::dvec3& place = scene.sonar.position;
     const auto nearest = std::ranges::min_element(
-        scene.targets, {}, [&](const types::PointTarget& target) { return glm::distance(target.position, place); });
+        scene.targets, {}, [&](const auto& target) { return glm::distance(target.position, place); });
     const auto index = static_cast<size_t>(nearest - scene.targets.begin());
     const std::string hindrance = hindranceText(coverage, inSonar(scene, nearest->position));
     return fmt::format("; its nearest target {:.4g} m away at {}, {}: {}", glm::distance(nearest->position, place),

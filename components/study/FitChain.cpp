@@ -100,7 +100,7 @@ types::Sonar meanEchoes(const FitChain& chain) {
     config.speckle.reset();
     config.elements.reset();
     config.absorption.reset();
-    if (chain.isSideScan()) config.quality.columns_per_beam = 512;
+    if (chain.isSideScan()) config.quality.columns_per_beam = 128, config.quality.rows = 2;
     types::Sonar ping;
     sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
     renderer.render(chain.snapshot, ping);

@@ -6,6 +6,7 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
+#include "tests/acoustics/Degree.hpp"
 #include "tests/support/Folder.hpp"
 #include "types/ConfigError.hpp"
 
@@ -14,8 +15,6 @@ namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
-
-constexpr double degree = pi / 180;
 
 /** Integral of a function of the angle of incidence, from 0 to a right angle. */
 template <class F>

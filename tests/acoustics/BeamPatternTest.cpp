@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "components/acoustics/BeamPattern.hpp"
+#include "tests/acoustics/Degree.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Weightings.hpp"
 #include "types/ConfigError.hpp"
@@ -16,8 +17,6 @@ using std::numbers::pi;
 using test::WeightingRow;
 using test::weightings;
 using ::testing::HasSubstr;
-
-constexpr double degree = pi / 180;
 
 struct DolphRow {
     double sidelobe_db, width;

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-const HalfSpace steel{7850.0 / 1025, 5900.0 / 1500, 1e-4};
+const HalfSpace steel_space{7850.0 / 1025, 5900.0 / 1500, 1e-4};
 
 /** Integral over K of f(K) 2 pi K, in logarithmic steps. */
 template <class F>
@@ -58,7 +58,7 @@ TEST(RoughSurfaceTest, HeightsAndSlopesAreIntegralsOfTheSpectrum) {
 }
 
 TEST(RoughSurfaceTest, TheReflectionIsThatOfTheImpedanceInTheWater) {
-    const RoughSurface surface(steel, {1e-5, 1e-4}, 3770);
+    const RoughSurface surface(steel_space, {1e-5, 1e-4}, 3770);
     EXPECT_NEAR(surface.reflection(), (46.315 - 1.5375) / (46.315 + 1.5375), 1e-6);
     EXPECT_NEAR(surface.reflection(), halfSpaceReflection({7850.0 / 1025, 5900.0 / 1500, 0}, pi / 2).real(), 1e-12);
     EXPECT_NEAR(RoughSurface({1, 1, 0}, {1e-5, 1e-4}, 3770).reflection(), 0, 1e-15) << "water in water";
@@ -67,7 +67,7 @@ TEST(RoughSurfaceTest, TheReflectionIsThatOfTheImpedanceInTheWater) {
 TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
     double last_share = 0, last_slope = 1, last_diffuse = 1;
     for (const double height : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
-        const RoughSurface surface(steel, {height, 1e-3}, 3770);
+        const RoughSurface surface(steel_space, {height, 1e-3}, 3770);
         EXPECT_GE(surface.lobeShare(), last_share);
         EXPECT_LT(surface.squareSlope(), last_slope);
         EXPECT_LT(surface.diffuse(pi / 4), last_diffuse);
@@ -76,7 +76,7 @@ TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
     EXPECT_NEAR(last_share, 1, 1e-6);
     EXPECT_LT(last_slope, 1e-12);
     EXPECT_LT(last_diffuse, 1e-7);
-    const RoughSurface mirror(steel, {0, 1e-3}, 3770);
+    const RoughSurface mirror(steel_space, {0, 1e-3}, 3770);
     EXPECT_EQ(mirror.lobeShare(), 1);
     EXPECT_EQ(mirror.squareSlope(), 0);
     EXPECT_EQ(mirror.diffuse(1), 0);
@@ -84,7 +84,7 @@ TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
 }
 
 TEST(RoughSurfaceTest, GreatHeightsFollowLambertsLawOfAllThatIsReflected) {
-    const RoughSurface surface(steel, {0.02, 0.02}, 3770);
+    const RoughSurface surface(steel_space, {0.02, 0.02}, 3770);
     EXPECT_LT(surface.lobeShare(), 1e-12);
     const double mu = std::pow(surface.reflection(), 2) / pi;
     for (const double grazing_deg : {20.0, 45.0, 70.0, 90.0}) {
@@ -123,7 +123,7 @@ TEST(RoughSurfaceTest, NoEnergyIsCreated) {
             EXPECT_LE(energyBack(surface, incidence), reflected * (1 + 1e-5) + 1e-15) << i;
     }
     // The cap is what holds it: small perturbations alone would scatter more than arrives.
-    EXPECT_GT(RoughSurface(steel, {0.02, 0.02}, 3770).perturbation(1), 1);
+    EXPECT_GT(RoughSurface(steel_space, {0.02, 0.02}, 3770).perturbation(1), 1);
 }
 
 TEST(RoughSurfaceTest, AllMatterIsFiniteFrom10KilohertzTo3Megahertz) {

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "components/acoustics/SeabedBackscatter.hpp"
+#include "tests/acoustics/Degree.hpp"
 
 namespace insonify::acoustics {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double report_speed = 1528;  // of the sound in the water of table 3 [m/s]
 
 constexpr double grazing_deg[] = {1, 2, 3, 5, 7, 10, 20, 40, 60, 70, 80, 85, 88, 89, 90};

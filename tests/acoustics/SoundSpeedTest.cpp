@@ -8,7 +8,7 @@
 namespace insonify::acoustics {
 namespace {
 
-Water water(double celsius, double psu, double depth) {
+Water waterAt(double celsius, double psu, double depth) {
     Water water;
     water.temperature_celsius = celsius;
     water.salinity_psu = psu;
@@ -17,7 +17,7 @@ Water water(double celsius, double psu, double depth) {
 }
 
 Water equatorial(double celsius, double psu, double depth) {
-    Water at = water(celsius, psu, depth);
+    Water at = waterAt(celsius, psu, depth);
     at.latitude_deg = 0;
     return at;
 }
@@ -32,8 +32,8 @@ double wongZhuSpeed(double t, double s, double p, double c_s2 = 1.288598e-4) {
 }
 
 TEST(SoundSpeedTest, MackenzieMeetsItsPublishedCheckValues) {
-    EXPECT_NEAR(mackenzieSpeed(water(25, 35, 1000)), 1550.744, 1e-3);
-    EXPECT_NEAR(mackenzieSpeed(water(40, 40, 10000)), 1718.774, 1e-3);
+    EXPECT_NEAR(mackenzieSpeed(waterAt(25, 35, 1000)), 1550.744, 1e-3);
+    EXPECT_NEAR(mackenzieSpeed(waterAt(40, 40, 10000)), 1718.774, 1e-3);
 }
 
 TEST(SoundSpeedTest, ChenAndMilleroMeetUnescosCheckValue) {
@@ -80,11 +80,11 @@ TEST(SoundSpeedTest, LeroyHasTheTableOfItsPublishedProgram) {
                           Case{20, 2000, 1548.98}})
         EXPECT_NEAR(leroySpeed(equatorial(c.celsius, 30, c.depth)), c.speed, 0.0051) << c.celsius << ' ' << c.depth;
     // At 45 deg of latitude it is faster in the deep.
-    EXPECT_GT(leroySpeed(water(40, 30, 5000)), 1641.20 + 0.2);
+    EXPECT_GT(leroySpeed(waterAt(40, 30, 5000)), 1641.20 + 0.2);
 }
 
 TEST(SoundSpeedTest, LatitudeChangesTheSpeedInTheDeepAsPressureDoes) {
-    Water pole = water(2, 35, 9000), equator = pole;
+    Water pole = waterAt(2, 35, 9000), equator = pole;
     pole.latitude_deg = -90;
     equator.latitude_deg = 0;
     EXPECT_NEAR(leroySpeed(pole) - leroySpeed(equator), 0.97, 0.01);
@@ -100,7 +100,7 @@ TEST(SoundSpeedTest, EveryLawIsNearUnescosEquation) {
     };
     for (const Case& c : {Case{0, 35, 1449.14}, Case{10, 35, 1489.82}, Case{20, 35, 1521.46}, Case{30, 35, 1545.59},
                           Case{10, 25, 1477.68}, Case{20, 25, 1510.31}, Case{10, 40, 1495.93}, Case{30, 40, 1550.81}}) {
-        const Water at = water(c.celsius, c.psu, 0);
+        const Water at = waterAt(c.celsius, c.psu, 0);
         EXPECT_NEAR(chenMilleroSpeed(c.celsius, c.psu, 0), c.speed, 0.01) << c.celsius << ' ' << c.psu;
         EXPECT_NEAR(leroySpeed(at), c.speed, 0.15) << c.celsius << ' ' << c.psu;
         EXPECT_NEAR(medwinSpeed(at), c.speed, 0.3) << c.celsius << ' ' << c.psu;
@@ -109,14 +109,14 @@ TEST(SoundSpeedTest, EveryLawIsNearUnescosEquation) {
         EXPECT_NEAR(delGrossoSpeed(at), c.speed, 0.12) << c.celsius << ' ' << c.psu;
     }
     for (const Case& c : {Case{0, 5, 1409.16}, Case{10, 5, 1453.45}, Case{20, 5, 1488.04}, Case{30, 5, 1514.46}})
-        EXPECT_NEAR(leroySpeed(water(c.celsius, c.psu, 0)), c.speed, 0.15) << c.celsius << ' ' << c.psu;
+        EXPECT_NEAR(leroySpeed(waterAt(c.celsius, c.psu, 0)), c.speed, 0.15) << c.celsius << ' ' << c.psu;
 }
 
 TEST(SoundSpeedTest, AllLawsAgreeInSeaWater) {
     for (double t : {2.0, 10.0, 25.0})
         for (double s : {32.0, 35.0, 38.0})
             for (double z : {0.0, 100.0, 1000.0}) {
-                const Water at = water(t, s, z);
+                const Water at = waterAt(t, s, z);
                 for (const auto law : {SoundSpeedLaw::Leroy, SoundSpeedLaw::Coppens, SoundSpeedLaw::ChenMillero,
                                        SoundSpeedLaw::DelGrosso})
                     EXPECT_NEAR(soundSpeed(law, at), mackenzieSpeed(at), 0.7)
@@ -127,18 +127,18 @@ TEST(SoundSpeedTest, AllLawsAgreeInSeaWater) {
 
 TEST(SoundSpeedTest, LeroyHoldsInFreshWater) {
     // Pure water at atmospheric pressure: Bilaniuk and Wong 1993, 1447.27 m/s at 10 degC and 1482.34 at 20.
-    EXPECT_NEAR(leroySpeed(water(10, 0, 0)), 1447.27, 0.3);
-    EXPECT_NEAR(leroySpeed(water(20, 0, 0)), 1482.34, 0.3);
+    EXPECT_NEAR(leroySpeed(waterAt(10, 0, 0)), 1447.27, 0.3);
+    EXPECT_NEAR(leroySpeed(waterAt(20, 0, 0)), 1482.34, 0.3);
 }
 
 TEST(SoundSpeedTest, ValidityNamesTheRangeOfEachLaw) {
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Leroy, water(12, 0, 8)), "");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Leroy, water(12, 45, 8)), "45 psu (0 to 42)");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Mackenzie, water(31, 20, 8)), "31 degC (-2 to 30), 20 psu (25 to 40)");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Medwin, water(12, 35, 2000)), "2000 m depth (0 to 1000)");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Coppens, water(12, 35, 5000)), "5000 m depth (0 to 4000)");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::ChenMillero, water(12, 41, 10)), "41 psu (0 to 40)");
-    EXPECT_EQ(outsideValidity(SoundSpeedLaw::DelGrosso, water(12, 5, 10)), "5 psu (30 to 40)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Leroy, waterAt(12, 0, 8)), "");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Leroy, waterAt(12, 45, 8)), "45 psu (0 to 42)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Mackenzie, waterAt(31, 20, 8)), "31 degC (-2 to 30), 20 psu (25 to 40)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Medwin, waterAt(12, 35, 2000)), "2000 m depth (0 to 1000)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::Coppens, waterAt(12, 35, 5000)), "5000 m depth (0 to 4000)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::ChenMillero, waterAt(12, 41, 10)), "41 psu (0 to 40)");
+    EXPECT_EQ(outsideValidity(SoundSpeedLaw::DelGrosso, waterAt(12, 5, 10)), "5 psu (30 to 40)");
 }
 
 TEST(SoundSpeedTest, EveryLawIsFiniteAtEveryEdgeOfItsBounds) {
@@ -146,7 +146,7 @@ TEST(SoundSpeedTest, EveryLawIsFiniteAtEveryEdgeOfItsBounds) {
         for (double t : {-6.0, 50.0})
             for (double s : {0.0, 50.0})
                 for (double z : {0.0, 12000.0})
-                    EXPECT_TRUE(std::isfinite(soundSpeed(static_cast<SoundSpeedLaw>(law), water(t, s, z))))
+                    EXPECT_TRUE(std::isfinite(soundSpeed(static_cast<SoundSpeedLaw>(law), waterAt(t, s, z))))
                         << law << ' ' << t << ' ' << s << ' ' << z;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "components/dataset/Placement.hpp"
 #include "types/ConfigError.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<std::string> namesOf(int count) {
+std::vector<std::string> numbered(int count) {
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) names.push_back("stone_" + std::to_string(i));
     return names;
@@ -19,7 +20,7 @@ std::vector<std::string> namesOf(int count) {
 
 SceneParts stones(int count) {
     SceneParts parts;
-    for (const std::string& name : namesOf(count)) {
+    for (const std::string& name : numbered(count)) {
         Placeable& stone = parts.placeables[name];
         stone.radius = 0.5;
         stone.low = -0.4;
@@ -41,7 +42,7 @@ Sweep sweepOf(std::vector<double> x, std::vector<double> y) {
 std::vector<PlacedObject> placed(const Sweep& sweep, const SceneParts& scene, int count, uint64_t pose,
                                  const types::Pose& vehicle = {}) {
     Placement placement(sweep, scene, pose, vehicle);
-    placement.add(0, namesOf(count));
+    placement.add(0, numbered(count));
     return placement.objects();
 }
 
@@ -119,6 +120,28 @@ TEST(PlacementTest, ATiltedObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
     }
     sweep.objects[0].roll_deg = {180, 180};
     EXPECT_NEAR(placed(sweep, scene, 2, 0)[0].at.position.z, -6, 1e-6);
+}
+
+TEST(PlacementTest, AnyTurnHasNoDirectionThatItPrefers) {
+    Sweep sweep = sweepOf({1, 30}, {1, 30});
+    sweep.objects[0].any_turn = true;
+    const SceneParts scene = stones(1);
+    constexpr int poses = 4000;
+    glm::dmat3 mean(0), square(0);
+    double angle = 0;
+    for (uint64_t pose = 0; pose < poses; ++pose) {
+        const glm::dquat turn = placed(sweep, scene, 1, pose)[0].at.orientation;
+        ASSERT_NEAR(glm::length(turn), 1, 1e-12);
+        const glm::dmat3 axes = glm::mat3_cast(turn);
+        mean += axes / double(poses), square += glm::matrixCompMult(axes, axes) / double(poses);
+        angle += 2 * std::acos(std::min(std::abs(turn.w), 1.0)) / poses;
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_NEAR(mean[i][k], 0, 0.03) << i << k;
+            EXPECT_NEAR(square[i][k], 1 / 3.0, 0.02) << i << k;
+        }
+    EXPECT_NEAR(angle, std::numbers::pi / 2 + 2 / std::numbers::pi, 0.03);  // the mean of (1 - cos) / pi from 0 to pi
 }
 
 TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {

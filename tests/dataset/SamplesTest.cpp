@@ -36,7 +36,7 @@ Sweep drawn(uint32_t count) {
 }
 
 /** Objects "stone_0" and on, each of half a metre about its origin. */
-SceneParts stones(int count) {
+SceneParts stoneParts(int count) {
     SceneParts parts;
     for (int i = 0; i < count; ++i) {
         Placeable stone;
@@ -88,7 +88,7 @@ TEST(SamplesTest, SettingsAndScenesShareTheirPosesAndHaveNoiseOfTheirOwn) {
     sweep.objects.emplace_back();
     sweep.objects[0].names = {"stone_*"};
     sweep.objects[0].x = sweep.objects[0].y = {-10, 10};
-    const Samples samples(sweep, {}, {stones(3)});
+    const Samples samples(sweep, {}, {stoneParts(3)});
     const Sample near = samples.at(2), far = samples.at(7);
     EXPECT_EQ(near.at.position, far.at.position);
     EXPECT_NE(near.seed, far.seed);
@@ -112,7 +112,7 @@ TEST(SamplesTest, ObjectsThatAreNotThereOrTwiceAreRefusedWithTheirPlace) {
     for (ObjectGroup& group : sweep.objects) group.names = {"stone_1"}, group.x = group.y = {0, 1}, group.line = 9;
     const auto messageOf = [&] {
         try {
-            const Samples samples(sweep, {}, {stones(2)});
+            const Samples samples(sweep, {}, {stoneParts(2)});
         } catch (const types::ConfigError& error) {
             return error.diagnostics().front().text();
         }
@@ -130,7 +130,7 @@ TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
     group.names = {"stone_0", "stone_3"};
     group.avoid = {"wall"};
     group.x = group.y = {-10, 10};
-    SceneParts few = stones(1), many = stones(4);
+    SceneParts few = stoneParts(1), many = stoneParts(4);
     few.nodes = {"wall"};
     const Samples samples(sweep, {}, {few, many});
     EXPECT_THAT(samples.objectsOf(0), ElementsAre("stone_0"));

@@ -45,7 +45,7 @@ std::vector<char> wireXtf() {
     return bytes;
 }
 
-const std::string deployment = R"(schedule: lockstep
+const std::string above_ground = R"(schedule: lockstep
 tasks:
   sonar: {type: sonar::SideScanTask, properties: {range: 30, bin_count: 500}}
   receiver: {type: receiver::ReceiverTask, properties: {output: code, code: {bits: 16}}}
@@ -81,7 +81,7 @@ class AltitudeRunTest : public testing::Test {
 protected:
     void SetUp() override {
         writeBytes(folder_ / "wire.xtf", wireXtf());
-        writeFile(folder_ / "side.yml", deployment);
+        writeFile(folder_ / "side.yml", above_ground);
         const Outcome outcome = callInsonify(folder_, {"log", "import", "wire.xtf", "--to", "wire.0.log"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
     }

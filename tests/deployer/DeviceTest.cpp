@@ -77,6 +77,16 @@ TEST(DeviceTest, ThePropertyGoesBeforeTheVariable) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
+TEST(DeviceTest, WhereRaysAreChosenOrThereIsNoCardNoDeviceIsAskedFor) {
+    const bool may_have_card = fs::exists("/dev/dri") || fs::exists("/dev/nvidiactl") || fs::exists("/dev/dxg");
+    for (const std::string choice : {"visibility: cpu", "motion_in_ping: true", "visibility: auto"}) {
+        const WallFolder folder(replaced(wall_deployment, "range: 20", choice + "\n      range: 20"));
+        const auto [outcome, asked] = witnessed(folder, {"run", "wall.yml", "--pings", "1"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(asked, choice == "visibility: auto" && may_have_card) << choice;
+    }
+}
+
 TEST(DeviceTest, ADeploymentIsCheckedWithoutAskingForADevice) {
     for (const std::string visibility : {"auto", "gl", "cpu"}) {
         const auto with = [&](const std::string& more) {

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 namespace {
 
 /** The wall as an instrument records it: codes of 16 bits, beams at whole hundredths of a degree. */
-std::string codedWall() {
+std::string wallOfCodes() {
     std::string text = replaced(wall_deployment, "beam_count: 16", "beam_count: 20");
     text = replaced(text, "  log:\n",
                     "  receiver:\n    type: receiver::ReceiverTask\n    properties:\n      output: code\n"
@@ -47,11 +47,11 @@ protected:
     void recordAChange() const {
         record(2);
         const std::string before = readFile(folder_ / "dive.oculus");
-        writeFile(folder_ / "wall.yml", replaced(codedWall(), "range: 20", "range: 15"));
+        writeFile(folder_ / "wall.yml", replaced(wallOfCodes(), "range: 20", "range: 15"));
         record(4);
         const std::string after = readFile(folder_ / "dive.oculus");
         const size_t header = 48, ping = (after.size() - header) / 4;
-        writeFile(folder_ / "wall.yml", codedWall());
+        writeFile(folder_ / "wall.yml", wallOfCodes());
         writeFile(folder_ / "dive.oculus", before + after.substr(header + 2 * ping));
     }
     Outcome import(const std::string& recording, const std::string& deployment = "wall.yml") const {
@@ -67,7 +67,7 @@ protected:
         return {};
     }
 
-    const WallFolder folder_{codedWall()};
+    const WallFolder folder_{wallOfCodes()};
 };
 
 }  // namespace

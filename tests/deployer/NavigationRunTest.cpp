@@ -13,13 +13,13 @@ using namespace insonify::deployer;
 
 namespace {
 
-const std::string deployment = test::sourceFile("deploy/navigation.yml");
+const std::string navigation = test::sourceFile("deploy/navigation.yml");
 
 class NavigationRunTest : public testing::Test {
 protected:
     /** Runs it with a small sonar, which takes no time. */
     void run(const std::string& out, std::vector<std::string> more = {}) {
-        std::vector<std::string> words = {"run",   deployment,
+        std::vector<std::string> words = {"run",   navigation,
                                           "--out", out,
                                           "--set", "sonar.beam_count=32",
                                           "--set", "sonar.bin_count=100",

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = insonify::test::source_dir;
+const fs::path sources = insonify::test::source_dir;
 
 bool holdsCommands(const CodeBlock& block) { return block.language == "sh"; }
 
@@ -31,9 +31,9 @@ std::vector<std::string> pagesWithCommands() {
 
 /** What a user has in the folder in which he reads a page: the project, with nothing in it that a run has left. */
 void makeCheckout(const TestFolder& folder) {
-    fs::copy(root / "deploy", folder / "deploy", fs::copy_options::recursive);
+    fs::copy(sources / "deploy", folder / "deploy", fs::copy_options::recursive);
     for (const char* name : {"types", "components", "shaders", "scripts", "tests"})
-        fs::create_directory_symlink(root / name, folder / name);
+        fs::create_directory_symlink(sources / name, folder / name);
     fs::create_directories(folder / "build");
     fs::create_directory_symlink(insonify::test::bin_dir, folder / "build/bin");
 }
@@ -203,7 +203,7 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
     const WallFolder folder(deployment);
     writeFile(folder / "mean_echo.cpp", codeOf(readPage("components/framework/README.md"), "cpp"));
     const Outcome built =
-        Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + root.string(),
+        Process({"g++", "-std=c++20", "-shared", "-fPIC", "-I" + sources.string(),
                  "-I" + std::string(insonify::test::build_dir) + "/include", "mean_echo.cpp", "-o", "mean_echo.so"},
                 folder.path())
             .wait();
@@ -220,5 +220,5 @@ TEST(PagesTest, TheComponentBuildsAndRunsInADeployment) {
 
 TEST(PagesTest, TheFirstDeploymentIsTheMinimalOne) {
     for (const char* path : {"README.md", "components/framework/README.md"})
-        EXPECT_THAT(readFile(root / "deploy/minimal.yml"), HasSubstr(codeOf(readPage(path), "yaml"))) << path;
+        EXPECT_THAT(readFile(sources / "deploy/minimal.yml"), HasSubstr(codeOf(readPage(path), "yaml"))) << path;
 }

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = insonify::test::source_dir, deployment = root / "deploy/hil_ping360.yml";
+const fs::path checkout = insonify::test::source_dir, ping_360 = checkout / "deploy/hil_ping360.yml";
 
 /** The numbers in the first match of a pattern with groups of numbers. */
 std::vector<double> numbersIn(const std::string& text, const std::string& pattern) {
@@ -34,7 +34,7 @@ protected:
         if (!insonify::pythonHas("brping"))
             GTEST_SKIP() << "PyPI's bluerobotics-ping is not in " << insonify::python()
                          << ": scripts/setup puts it there";
-        run_.emplace(insonifyWords({"run", deployment, "--out", "out", "--set", "ping360.port=0", "--set",
+        run_.emplace(insonifyWords({"run", ping_360, "--out", "out", "--set", "ping360.port=0", "--set",
                                     "ping1d.port=0", "--set", "scene.pose_timeout=60", "--set",
                                     "bottom.pose_timeout=60", "--set", "ping360.seconds_per_gradian=0.001", "--set",
                                     "scanner_noise.speckle=null", "--set", "scanner_noise.ambient=null"}),
@@ -54,7 +54,7 @@ protected:
     }
     std::string lineOf(const std::string& task) const { return folder_ / "out" / task; }
     json driven(const std::string& arguments) const {
-        const std::string script = root / "tests/deployer/ping_driver.py";
+        const std::string script = checkout / "tests/deployer/ping_driver.py";
         const std::string said = insonify::pythonSays(script + " " + arguments, folder_ / "said.txt");
         const json parsed = json::parse(said, nullptr, false);
         EXPECT_FALSE(parsed.is_discarded()) << said.substr(0, 2000);
@@ -80,8 +80,8 @@ double rangeOf(const json& told) {
 
 /** From the sonar to the quay's wall along a bearing, as the scene's script and the deployment have it [m]. */
 double wallAt(double angle) {
-    const double wall = numbersIn(readFile(root / "scripts/make_harbour.py"), "QUAY = ([\\d.]+)").at(0);
-    const double vehicle = numbersIn(readFile(deployment), "position: \\[([-\\d.]+), ([-\\d.]+), ([-\\d.]+)\\]").at(1);
+    const double wall = numbersIn(readFile(checkout / "scripts/make_harbour.py"), "QUAY = ([\\d.]+)").at(0);
+    const double vehicle = numbersIn(readFile(ping_360), "position: \\[([-\\d.]+), ([-\\d.]+), ([-\\d.]+)\\]").at(1);
     const double to_port = (200 - angle) * std::numbers::pi / 200;
     return (wall - vehicle) / std::sin(to_port);
 }
@@ -90,7 +90,7 @@ double wallAt(double angle) {
 double bottomBelow() {
     const TestFolder folder;
     const std::string program = "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '" +
-                                (root / "scripts").string() +
+                                (checkout / "scripts").string() +
                                 "'); import numpy; from make_harbour import *; "
                                 "print(-5.8 - Floor(fractal_surface(numpy.random.default_rng(2017))).z(17, -1))";
     return std::stod(python(folder, program).out);

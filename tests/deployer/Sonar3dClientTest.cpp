@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 constexpr double ball_radius = 0.8;  // [m]
 
 /** The sonar at the origin looks north at a wall 5 m away, with a ball before it to port, above. */
-std::string deployment(const TestFolder& folder) {
+std::string sonar3dIn(const TestFolder& folder) {
     writeFile(folder / "wall.world", wallAndBall(5, "3.5 1 0.6", ball_radius));
     writeFile(folder / "x.yml", R"(schedule: realtime
 tasks:
@@ -54,7 +54,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
     const bool unicast = GetParam();
     const std::string group_port = std::to_string(20000 + getpid() % 20000);  // not that of a test beside this one
     const TestFolder folder;
-    HilRun run(deployment(folder), {"device.multicast_port=" + group_port});
+    HilRun run(sonar3dIn(folder), {"device.multicast_port=" + group_port});
     const int port = run.port();
     ASSERT_GT(port, 0) << readFile(run.folder() / "stderr.txt");
     const std::string script = test::sourceFile("tests/deployer/sonar3d_client.py ");
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Sonar3dClientTest, ::testing::Bool(),
 TEST(Sonar3dReconnectTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
-    HilRun run(deployment(folder), {});
+    HilRun run(sonar3dIn(folder), {});
     const int port = run.port();
     ASSERT_GT(port, 0) << readFile(run.folder() / "stderr.txt");
     const Bytes about = httpBytes(HttpRequest{"GET", "/api/v1/integration/about", ""}, "sonar");

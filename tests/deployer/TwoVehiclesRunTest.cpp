@@ -15,7 +15,7 @@ const char* const world = R"(<sdf version="1.9"><world name="w">
 </world></sdf>)";
 
 // Bins are 100 us at 1000 m/s: 0.1 m. Blue is 20 m before red and looks back at it.
-const char* const deployment = R"(tasks:
+const char* const two_vehicles = R"(tasks:
   red:  {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [5, 0, -3], yaw_deg: 90}]}}
   blue: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [5, 20, -3], yaw_deg: -90}]}}
   red_scene:  {type: scene::SceneTask, activity: {trigger: [pose]}, properties: {file: case.world, mount: {position: [1.5, 0, 0]}}}
@@ -46,7 +46,7 @@ TEST(TwoVehiclesRunTest, EachHearsTheOtherWhereItIs) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
-    writeFile(folder / "two.yml", deployment);
+    writeFile(folder / "two.yml", two_vehicles);
     const Outcome run = callInsonify(folder, {"run", "two.yml", "--pings", "2", "--out", "out"});
     ASSERT_EQ(run.code, 0) << run.err;
     // sonars are 1.5 and 3 m before their hulls' middles, the other's bow is 2 and 1 m before its own: 16.5 and 16 m
@@ -58,7 +58,7 @@ TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLos
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
-    std::string often = replaced(deployment, "blue: {type: pose::TrajectoryTask, activity: {period: 0.1}",
+    std::string often = replaced(two_vehicles, "blue: {type: pose::TrajectoryTask, activity: {period: 0.1}",
                                  "blue: {type: pose::TrajectoryTask, activity: {period: 0.05}");
     often = replaced(often, "to: red_scene.blue.pose}", "to: red_scene.blue.pose, policy: {type: buffer, size: 8}}");
     writeFile(folder / "two.yml", often);
@@ -78,7 +78,7 @@ TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
-    std::string alone = deployment;
+    std::string alone = two_vehicles;
     alone = replaced(alone, "  - {from: blue.pose, to: red_scene.blue.pose}\n", "");
     writeFile(folder / "two.yml", alone);
     ASSERT_EQ(callInsonify(folder, {"run", "two.yml", "--pings", "2", "--out", "out"}).code, 0);
@@ -90,7 +90,7 @@ TEST(TwoVehiclesRunTest, APortOfAModelThatTheWorldHasNotIsRefused) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
-    writeFile(folder / "two.yml", replaced(deployment, "red_scene.blue.pose", "red_scene.green.pose"));
+    writeFile(folder / "two.yml", replaced(two_vehicles, "red_scene.blue.pose", "red_scene.green.pose"));
     const Outcome outcome = callInsonify(folder, {"check", "two.yml"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_NE(outcome.err.find("green.pose"), std::string::npos) << outcome.err;

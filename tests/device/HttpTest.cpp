@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/device/Http.hpp"
+#include "tests/device/ByteStrings.hpp"
 #include "tests/support/CommaLocale.hpp"
 
 namespace insonify::device {
@@ -9,7 +10,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 const std::string post =

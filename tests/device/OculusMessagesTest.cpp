@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-OculusFire fireOf(uint16_t version) {
+OculusFire fireOfVersion(uint16_t version) {
     OculusFire fire{.mode = 2, .rate = 3, .network_speed = 7, .gamma = 127, .flags = 0x5F};
     fire.header.version = version;
     fire.range = 12.5;
@@ -50,7 +50,7 @@ Bytes recording(const char* name) {
 
 TEST(OculusMessagesTest, AFireMessageHasItsFieldsWhereDriversPutThem) {
     for (const uint16_t version : {1, 2}) {
-        const Bytes bytes = bytesOf(fireOf(version));
+        const Bytes bytes = bytesOf(fireOfVersion(version));
         ASSERT_EQ(bytes.size(), version == 2 ? 89u : 53u);
         EXPECT_EQ(read<uint16_t>(bytes, 0), 0x4F53);
         EXPECT_EQ(read<uint16_t>(bytes, 6), 0x15);
@@ -67,7 +67,7 @@ TEST(OculusMessagesTest, AFireMessageHasItsFieldsWhereDriversPutThem) {
         EXPECT_EQ(fire->rateHz(), 5);
         EXPECT_NEAR(fire->gammaExponent(), 0.5, 0.002);
     }
-    EXPECT_EQ(read<uint32_t>(bytesOf(fireOf(2)), 53), 0x200u);
+    EXPECT_EQ(read<uint32_t>(bytesOf(fireOfVersion(2)), 53), 0x200u);
 }
 
 TEST(OculusMessagesTest, RatesAreThoseOfTheDevice) {
@@ -79,7 +79,7 @@ TEST(OculusMessagesTest, RatesAreThoseOfTheDevice) {
 
 TEST(OculusMessagesTest, AFireMessageOfPayloadSizeZeroIsAsLongAsItsVersion) {
     for (const uint16_t version : {0, 1, 2}) {
-        Bytes bytes = bytesOf(fireOf(version));
+        Bytes bytes = bytesOf(fireOfVersion(version));
         write<uint32_t>(bytes, 10, 0);
         const auto messages = framed(joined({bytes, bytes}), 1);
         ASSERT_THAT(messages, SizeIs(2)) << version;
@@ -89,7 +89,7 @@ TEST(OculusMessagesTest, AFireMessageOfPayloadSizeZeroIsAsLongAsItsVersion) {
 }
 
 TEST(OculusMessagesTest, AFireMessageThatIsShortOrLongIsReadAsFarAsItGoes) {
-    const Bytes whole = bytesOf(fireOf(2));
+    const Bytes whole = bytesOf(fireOfVersion(2));
     for (size_t size = 0; size < 53; ++size) EXPECT_FALSE(oculusFire(std::span(whole).first(size))) << size;
     EXPECT_EQ(oculusFire(std::span(whole).first(53))->extended_flags, 0u);
     EXPECT_EQ(oculusFire(joined({whole, Bytes(100, 0xEE)}))->salinity, 34);
@@ -165,7 +165,7 @@ TEST(OculusMessagesTest, UserConfigDummyAndLogAreMessages) {
 }
 
 TEST(OculusMessagesTest, AStreamGoesOnAfterWhatIsNoMessage) {
-    const Bytes fire = bytesOf(fireOf(1)), noise = {'S', 'O', 0, 'S', 0xFF, 'S', 'O'};
+    const Bytes fire = bytesOf(fireOfVersion(1)), noise = {'S', 'O', 0, 'S', 0xFF, 'S', 'O'};
     for (const size_t step : {1, 7, 1000})
         EXPECT_THAT(framed(joined({noise, fire, noise, noise, fire, Bytes(40, 'S'), fire}), step),
                     ElementsAre(fire, fire, fire));
@@ -183,7 +183,7 @@ TEST(OculusMessagesTest, AStreamGoesOnAfterWhatIsNoMessage) {
 }
 
 TEST(OculusMessagesTest, AStreamThatIsCutOffGivesWhatIsWhole) {
-    const Bytes fire = bytesOf(fireOf(2)), two = joined({fire, fire});
+    const Bytes fire = bytesOf(fireOfVersion(2)), two = joined({fire, fire});
     for (size_t size = 0; size < two.size(); ++size)
         EXPECT_EQ(framed(std::span(two).first(size), 16).size(), size / fire.size());
     OculusFramer framer(4096);

@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-constexpr Ping360Acoustics acoustics{1, 50, 100, 750, 600};
+constexpr Ping360Acoustics own_acoustics{1, 50, 100, 750, 600};
 
 Ping360TaskConfig quickConfig() {
     Ping360TaskConfig config;
@@ -99,12 +99,12 @@ TEST_F(Ping360TaskTest, ItAnswersByDatagramConnectionAndLine) {
     for (Driver& driver : drivers) {
         driver.say(PingGeneralRequest{PingDeviceInformation::message});
         EXPECT_EQ(next<PingDeviceInformation>(driver).type, 2);
-        driver.say(Ping360Transducer{0, 250, acoustics, 1, 0});
+        driver.say(Ping360Transducer{0, 250, own_acoustics, 1, 0});
         const auto data = next<Ping360DeviceData>(driver);
         EXPECT_EQ(data.angle, 250);
         EXPECT_EQ(data.data.size(), 600u);
         EXPECT_EQ(echoOf(data), 45) << "what the sonar heard there";
-        driver.say(Ping360Transducer{0, 400, acoustics, 1, 0});
+        driver.say(Ping360Transducer{0, 400, own_acoustics, 1, 0});
         EXPECT_EQ(next<PingNack>(driver).text, "angle is 400; must be 0 to 399");
     }
 }
@@ -112,8 +112,8 @@ TEST_F(Ping360TaskTest, ItAnswersByDatagramConnectionAndLine) {
 TEST_F(Ping360TaskTest, TwoDriversHearTheirOwnEchoes) {
     Driver a(tcp()), b(tcp());
     for (int i = 0; i < 20; ++i) {
-        a.say(Ping360Transducer{1, 250, acoustics, 1, 0});
-        b.say(Ping360Transducer{1, 300, acoustics, 1, 0});
+        a.say(Ping360Transducer{1, 250, own_acoustics, 1, 0});
+        b.say(Ping360Transducer{1, 300, own_acoustics, 1, 0});
         EXPECT_EQ(echoOf(next<Ping360DeviceData>(a)), 45);
         EXPECT_EQ(echoOf(next<Ping360DeviceData>(b)), 90);
     }
@@ -122,11 +122,11 @@ TEST_F(Ping360TaskTest, TwoDriversHearTheirOwnEchoes) {
 TEST_F(Ping360TaskTest, ADriverThatLeavesInMidPingHarmsNobody) {
     for (int i = 0; i < 50; ++i) {
         Driver gone(tcp());
-        gone.say(Ping360Transducer{1, 300, acoustics, 1, 0});
+        gone.say(Ping360Transducer{1, 300, own_acoustics, 1, 0});
         cycle();
     }
     Driver stays(tcp());
-    stays.say(Ping360Transducer{1, 250, acoustics, 1, 0});
+    stays.say(Ping360Transducer{1, 250, own_acoustics, 1, 0});
     EXPECT_EQ(echoOf(next<Ping360DeviceData>(stays)), 45);
 }
 
@@ -156,7 +156,7 @@ TEST_F(Ping360TaskTest, ANoisyLineLosesNothingThatIsWhole) {
         Bytes noise(static_cast<size_t>(length(random)));
         for (uint8_t& each : noise) each = static_cast<uint8_t>(byte(random));
         if (!noise.empty()) driver.give(noise);
-        driver.say(Ping360Transducer{1, i, acoustics, 0, 0});
+        driver.say(Ping360Transducer{1, i, own_acoustics, 0, 0});
         ASSERT_EQ(next<Ping360DeviceData>(driver).angle, i);
     }
 }

@@ -5,6 +5,7 @@
 #include "components/device/Ping1dMessages.hpp"
 #include "components/device/Ping360Messages.hpp"
 #include "components/device/PingProtocol.hpp"
+#include "tests/device/ByteStrings.hpp"
 
 namespace insonify::device {
 namespace {
@@ -24,11 +25,6 @@ std::vector<uint16_t> messagesIn(const Bytes& bytes) {
     PingFrameReader reader(largest);
     reader.add(bytes);
     return messagesIn(reader);
-}
-
-Bytes operator+(Bytes a, const Bytes& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
 }
 
 /** What is read of a message that was written. */

@@ -9,6 +9,7 @@
 #include "components/device/PingProtocol.hpp"
 #include "components/device/Probe.hpp"
 #include "components/device/SeaNet.hpp"
+#include "tests/device/ByteStrings.hpp"
 #include "tests/support/OculusDriver.hpp"
 #include "types/ConfigError.hpp"
 
@@ -19,13 +20,6 @@ using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::Field;
 using ::testing::HasSubstr;
-
-Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
-
-Bytes operator+(Bytes a, const Bytes& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
 
 TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
     EXPECT_EQ(probeAddress("127.0.0.1").host, "127.0.0.1");

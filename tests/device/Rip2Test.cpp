@@ -66,7 +66,7 @@ Bytes withSum(Bytes bytes) {
 }
 
 /** A packet whose payload is not ours, with the right length and checksum. */
-Bytes framed(const Bytes& payload) {
+Bytes packed(const Bytes& payload) {
     RangePixels empty;
     Bytes bytes = ripPacket(empty, RipVersion::Rip1);
     bytes.resize(8);
@@ -80,7 +80,7 @@ Bytes wrapped(std::string_view type, const Bytes& message) {
     any.text(1, type);
     any.bytes(2, message);
     whole.bytes(1, any.message());
-    return framed(whole.message());
+    return packed(whole.message());
 }
 
 TEST(Rip2Test, BothImagesComeBackInBothVersions) {
@@ -170,8 +170,8 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
     StrengthPixels missing = someStrengths();
     missing.height = 4;
     EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels where 3 x 4 are told"));
-    EXPECT_THAT(diagnosticOf(framed({0x0A, 5, 1})), HasSubstr("holds no message"));
-    EXPECT_THAT(diagnosticOf(framed({})), HasSubstr("holds no message"));
+    EXPECT_THAT(diagnosticOf(packed({0x0A, 5, 1})), HasSubstr("holds no message"));
+    EXPECT_THAT(diagnosticOf(packed({})), HasSubstr("holds no message"));
     const std::string type = "type.googleapis.com/waterlinked.sonar.protocol.RangeImage";
     EXPECT_THAT(diagnosticOf(wrapped(type, {0x52, 2, 0x80, 0x80})), HasSubstr("has pixels that are cut off"));
     EXPECT_THAT(diagnosticOf(wrapped(type, {0x28})), HasSubstr("holds a range image that is cut off"));
@@ -179,7 +179,7 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
 }
 
 TEST(Rip2Test, APayloadThatIsNotSnappysIsNoPacket) {
-    Bytes changed = framed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it holds 32 GB
+    Bytes changed = packed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it holds 32 GB
     changed[3] = '2';
     changed.resize(changed.size() - 4);
     EXPECT_THAT(diagnosticOf(withSum(changed)), HasSubstr("is compressed by something else than snappy"));

@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-std::vector<SeaNetMessage> messagesIn(const Bytes& bytes) {
+std::vector<SeaNetMessage> seaNetIn(const Bytes& bytes) {
     SeaNetReader reader;
     reader.add(bytes);
     std::vector<SeaNetMessage> messages;
@@ -88,7 +88,7 @@ TEST(SeaNetTest, AnswersHaveTheSizesThatDriversDemand) {
 }
 
 TEST(SeaNetTest, EveryMessageComesBack) {
-    const auto there = [](const SeaNetMessage& message) { return messagesIn(message.packet()).at(0); };
+    const auto there = [](const SeaNetMessage& message) { return seaNetIn(message.packet()).at(0); };
     const auto command = SeaNetHeadCommand::in(there(someCommand().message()));
     ASSERT_TRUE(command);
     expectSame(*command, someCommand());
@@ -147,7 +147,7 @@ TEST(SeaNetTest, ShortLongAndMisSizedPacketsArePassedOver) {
     const Bytes good = seaNetRequest(SeaNetType::SendData).packet();
     const auto followed = [&](Bytes bad) {
         bad.insert(bad.end(), good.begin(), good.end());
-        return messagesIn(bad);
+        return seaNetIn(bad);
     };
     for (size_t length = 0; length < good.size(); ++length) {
         Bytes all(good.begin(), good.begin() + static_cast<long>(length));

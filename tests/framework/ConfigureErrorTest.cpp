@@ -9,7 +9,7 @@ namespace insonify::framework {
 namespace {
 
 /** Finds only when it is configured that its port is taken. */
-struct Listener : TaskContext {
+struct Stickler : TaskContext {
     using TaskContext::TaskContext;
     struct Config {
         double port = 1;
@@ -25,7 +25,7 @@ struct Listener : TaskContext {
 TEST(ConfigureErrorTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
     Registry registry;
     registry.add(
-        {"test::Listener", "listens", [](const std::string& name) { return std::make_unique<Listener>(name); }});
+        {"test::Listener", "listens", [](const std::string& name) { return std::make_unique<Stickler>(name); }});
     const char* yaml =
         "tasks:\n"
         "  a: {type: test::Listener, activity: {period: 1}, properties: {port: 7}}\n"

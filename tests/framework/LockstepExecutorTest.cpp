@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-const std::atomic<bool> never{false};
+const std::atomic<bool> not_stopped{false};
 
 /** Plays at given times, as a log does. */
 struct Player : TaskContext, ClockSource {
@@ -31,15 +31,15 @@ struct Player : TaskContext, ClockSource {
     }
 };
 
-struct Shot {
+struct Shell {
     static constexpr const char* type_name = "/test/Shot";
     static constexpr bool counted = true;
 };
 
 /** Writes what runs are counted in; in error from its third cycle on where it is to be. */
-struct Gun : TaskContext {
+struct Mortar : TaskContext {
     using TaskContext::TaskContext;
-    OutputPort<Shot> shot{this, "shot", "counted"};
+    OutputPort<Shell> shot{this, "shot", "counted"};
     bool fails = false;
     void updateHook() override {
         if (fails && shot.written() == 2) return error("jammed");
@@ -48,12 +48,12 @@ struct Gun : TaskContext {
 };
 
 /** A graph, and an executor for it that starts at 1 s. */
-struct Bench {
+struct Range {
     Graph graph;
     std::shared_ptr<Environment> environment = std::make_shared<Environment>();
     std::optional<LockstepExecutor> executor;
 
-    ~Bench() {
+    ~Range() {
         for (TaskContext* task : graph.order()) task->stop(), task->cleanup();
     }
     template <class Task>
@@ -71,14 +71,14 @@ struct Bench {
         for (const auto& task : graph.tasks()) ASSERT_TRUE(task->configure() && task->start());
         executor->begin();
     }
-    Progress run(const RunLimits& limits, const std::atomic<bool>& stop = never, const Executor::Report& report = {}) {
+    Progress run(const RunLimits& limits, const std::atomic<bool>& stop = not_stopped, const Executor::Report& report = {}) {
         executor->run(limits, stop, report);
         return executor->progress();
     }
 };
 
 TEST(LockstepExecutorTest, TimeGoesFromOneInstantToTheNextAndWritersWorkFirst) {
-    Bench bench;
+    Range bench;
     auto& relay = bench.add<test::Relay>("relay");
     auto& source = bench.add<test::Source>("source", 0.25);
     bench.graph.connect(source.value, relay.in, {});
@@ -91,7 +91,7 @@ TEST(LockstepExecutorTest, TimeGoesFromOneInstantToTheNextAndWritersWorkFirst) {
 }
 
 TEST(LockstepExecutorTest, AClockSourceIsDueWhenItSaysAndEndsTheRun) {
-    Bench bench;
+    Range bench;
     auto& player = bench.add<Player>("player");
     auto& relay = bench.add<test::Relay>("relay");
     bench.graph.connect(player.value, relay.in, {});
@@ -102,7 +102,7 @@ TEST(LockstepExecutorTest, AClockSourceIsDueWhenItSaysAndEndsTheRun) {
 }
 
 TEST(LockstepExecutorTest, WithALimitItGoesOnWhileASourceThatHasFinishedStillWrites) {
-    Bench bench;
+    Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);  // has finished after 3, and writes on
     bench.start();
     bench.run({.duration_s = 1});
@@ -110,8 +110,8 @@ TEST(LockstepExecutorTest, WithALimitItGoesOnWhileASourceThatHasFinishedStillWri
 }
 
 TEST(LockstepExecutorTest, ItEndsOnceEverySourceHasWrittenSoManyCountedSamples) {
-    Bench bench;
-    auto &fast = bench.add<Gun>("fast", 0.1), &slow = bench.add<Gun>("slow", 0.2);
+    Range bench;
+    auto &fast = bench.add<Mortar>("fast", 0.1), &slow = bench.add<Mortar>("slow", 0.2);
     bench.start();
     EXPECT_EQ(bench.run({.samples = 4}).samples, 4u);
     EXPECT_EQ(slow.shot.written(), 4u);
@@ -119,8 +119,8 @@ TEST(LockstepExecutorTest, ItEndsOnceEverySourceHasWrittenSoManyCountedSamples) 
 }
 
 TEST(LockstepExecutorTest, ACountThatCannotBeReachedAnyMoreEndsTheRun) {
-    Bench bench;
-    bench.add<Gun>("gun", 0.1).fails = true;
+    Range bench;
+    bench.add<Mortar>("gun", 0.1).fails = true;
     bench.start();
     EXPECT_EQ(bench.run({.samples = 4}).samples, 2u);
 }
@@ -129,7 +129,7 @@ TEST(LockstepExecutorTest, ACountThatCannotBeReachedAnyMoreEndsTheRun) {
 struct Picky : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "numbers"};
-    OutputPort<Shot> shot{this, "shot", "counted"};
+    OutputPort<Shell> shot{this, "shot", "counted"};
     void updateHook() override {
         double number = 0;
         if (!in.readNew(number)) return;
@@ -141,7 +141,7 @@ struct Picky : TaskContext {
 };
 
 TEST(LockstepExecutorTest, ARefusedSampleDoesNotEndARunThatCounts) {
-    Bench bench;
+    Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);
     source.config.set({.last = 100});
     auto& picky = bench.add<Picky>("picky");
@@ -160,7 +160,7 @@ struct Held : TaskContext {
 };
 
 TEST(LockstepExecutorTest, ACountEndsWithSourcesThatHoldWhatIsRefused) {
-    Bench bench;
+    Range bench;
     auto& held = bench.add<Held>("held", 0.1);
     auto& picky = bench.add<Picky>("picky");
     bench.graph.connect(held.value, picky.in, {});
@@ -170,7 +170,7 @@ TEST(LockstepExecutorTest, ACountEndsWithSourcesThatHoldWhatIsRefused) {
 }
 
 TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {
-    Bench bench;
+    Range bench;
     bench.add<test::Source>("source", 0.1);
     bench.start();
     std::atomic<bool> stop{false};
@@ -184,7 +184,7 @@ TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {
 }
 
 TEST(LockstepExecutorTest, NoInstantBeginsWhileSomeoneHoldsTheTimeBetweenTwo) {
-    Bench bench;
+    Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);
     bench.start();
     std::thread running;
@@ -199,7 +199,7 @@ TEST(LockstepExecutorTest, NoInstantBeginsWhileSomeoneHoldsTheTimeBetweenTwo) {
 }
 
 TEST(LockstepExecutorTest, TimeThatStandsStillGoesOnStepByStep) {
-    Bench bench;
+    Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);
     bench.start();
     EXPECT_THROW(bench.executor->step(), std::runtime_error);

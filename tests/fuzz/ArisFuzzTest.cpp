@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readAris(const Input& input) try {
     output::ArisFile file(input.file());
     while (const auto frame = file.next()) {
         EXPECT_NO_THROW(frame->ping.validate());
@@ -21,7 +21,7 @@ void read(const Input& input) try {
 }
 
 TEST(ArisFuzzTest, EveryFileIsPingsOrAnError) {
-    push({"aris", "dive.aris", {std::string("\x44\x44\x46\x05", 4), std::string("\x01\0\0\0", 4)}, read});
+    push({"aris", "dive.aris", {std::string("\x44\x44\x46\x05", 4), std::string("\x01\0\0\0", 4)}, readAris});
 }
 
 }  // namespace

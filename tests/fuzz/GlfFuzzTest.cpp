@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readGlf(const Input& input) try {
     output::GlfFile file(input.file());
     while (const auto frame = file.next()) {
         EXPECT_NO_THROW(frame->ping.validate());
@@ -25,7 +25,7 @@ TEST(GlfFuzzTest, EveryFileIsPingsOrAnError) {
           "dive.glf",
           {std::string("PK\3\4", 4), std::string("*\2", 2), std::string("\x01\0\xEF\xEF", 4),
            std::string("\xDE\xDE", 2), std::string("\x78\x9C", 2)},
-          read});
+          readGlf});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readJsf(const Input& input) try {
     output::JsfFile file(input.file());
     while (const auto line = file.next()) {
         EXPECT_NO_THROW(line->ping.validate());
@@ -20,7 +20,7 @@ void read(const Input& input) try {
 }
 
 TEST(JsfFuzzTest, EveryFileIsPingsOrAnError) {
-    push({"jsf", "line.jsf", {std::string("\x01\x16\x0D\0\x50\0\0\x14", 8), std::string("\x01\x16", 2)}, read});
+    push({"jsf", "line.jsf", {std::string("\x01\x16\x0D\0\x50\0\0\x14", 8), std::string("\x01\x16", 2)}, readJsf});
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ void allowed(Call call) try {
     expectOurWords(error.what());
 }
 
-void readAll(const Input& input) {
+void readLog(const Input& input) {
     allowed([&] { log::check(input.file()); });
     allowed([&] {
         const auto log = log::openLog(input.file());
@@ -29,7 +29,7 @@ void readAll(const Input& input) {
 }
 
 void readAndRepair(const Input& input) {
-    readAll(input);
+    readLog(input);
     allowed([&] {
         const auto folder = input.file().parent_path() / "repaired";
         std::filesystem::create_directory(folder);

@@ -22,7 +22,7 @@ void expectSound(const mavlink::Frame& frame) {
     EXPECT_EQ(again.frames[0].system, frame.system);
 }
 
-void enter(const Input& input) {
+void enterMavlink(const Input& input) {
     const auto bytes = input.octets();
     mavlink::Body bodies[] = {{{}, {0, 0, 0}}, {{.source = mavlink::Source::Vision}, {0, 0, 0}}};
     Time now = Time::fromSeconds(1e9);
@@ -43,11 +43,11 @@ void enter(const Input& input) {
     }
 }
 
-std::string words(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+std::string frameText(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 template <class Message>
 std::string packed(const Message& message, int version) {
-    return words(mavlink::frameOf(message, 1, 1, 0, version).bytes(Message::kind.crc_extra));
+    return frameText(mavlink::frameOf(message, 1, 1, 0, version).bytes(Message::kind.crc_extra));
 }
 
 TEST(MavlinkFuzzTest, EveryDatagramIsPosesOrNone) {
@@ -57,7 +57,7 @@ TEST(MavlinkFuzzTest, EveryDatagramIsPosesOrNone) {
            packed(mavlink::LocalPositionNed{.time_boot_ms = 5000, .x = 1}, 2),
            packed(mavlink::LocalPositionNed{.time_boot_ms = 5000, .x = 1}, 1),
            packed(mavlink::VisionPositionEstimate{.usec = 77}, 2), packed(mavlink::Heartbeat{}, 1)},
-          enter});
+          enterMavlink});
 }
 
 }  // namespace

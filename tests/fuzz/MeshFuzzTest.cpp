@@ -6,7 +6,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readMesh(const Input& input) try {
     const types::GeometryPtr geometry = meshes::readMeshFile(input.file());
     for (const types::Mesh& mesh : geometry->meshes) scene::expectSoundMesh(mesh, geometry->materials.size());
 } catch (const types::ConfigError& error) {
@@ -19,7 +19,7 @@ TEST(MeshFuzzTest, EveryDaeIsAMeshOrAnError) {
           {"<node id=\"a\" name=\"a\">", "<instance_node url=\"#a\"/>", "<instance_geometry url=\"#g\"/>",
            "<vcount>0 3</vcount>", "<p>0 1 2</p>", "stride=\"", "count=\"", "offset=\"", "set=\"", "</node>",
            "<polylist count=\"1\">", "#v", ",", " "},
-          read});
+          readMesh});
 }
 
 TEST(MeshFuzzTest, EveryObjIsAMeshOrAnError) {
@@ -27,7 +27,7 @@ TEST(MeshFuzzTest, EveryObjIsAMeshOrAnError) {
           "part.obj",
           {"v 0 0 0\n", "f 1 2 3\n", "f 1//1 2//1 -1//1\n", "vn 0 0 1\n", "vt 0 0\n", "o a\n", "usemtl b\n",
            "mtllib part.mtl\n", "\\\n", "l 1 2\n", "cstype bezier\n"},
-          read});
+          readMesh});
 }
 
 TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
@@ -35,7 +35,7 @@ TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
           "part.stl",
           {"solid a\n", "facet normal 0 0 1\n", "outer loop\n", "vertex 0 0 0\n", "endloop\n", "endfacet\n",
            "endsolid\n"},
-          read});
+          readMesh});
 }
 
 /** What the process that reads mesh files answers, as if that were an enemy. */

@@ -23,7 +23,7 @@ void expectSound(const device::OculusPing& ping) {
     EXPECT_GT(ping.gamma, 0);
 }
 
-void read(const Input& input) try {
+void readOculus(const Input& input) try {
     for (const device::OculusPing& ping : device::readOculusPings(input.file())) expectSound(ping);
 } catch (const types::ConfigError& error) {
     expectOurWords(error.what());
@@ -47,7 +47,7 @@ void frame(const Input& input) {
 }
 
 /** A sonar of two beams and two bins answers whatever the driver asks for. */
-void drive(const Input& input) {
+void driveOculus(const Input& input) {
     types::Time now{1'000'000};
     device::OculusEmulator emulator({}, now);
     emulator.opened(1);
@@ -85,7 +85,7 @@ TEST(OculusFuzzTest, ADriverThatSendsAnythingGetsPingsOrNothing) {
           "driver.raw",
           {std::string("\x53\x4f\0\0\0\0\x15\0\1\0", 10), std::string("\x25\0\0\0", 4), std::string("\x49\0\0\0", 4),
            std::string("\x53\x4f\0\0\0\0\x55\0\0\0", 10), std::string("\xff\xff\xff\xff\xff\xff\xff\x7f", 8)},
-          drive});
+          driveOculus});
 }
 
 TEST(OculusFuzzTest, EveryRecordingIsPingsOrAnError) {
@@ -101,7 +101,7 @@ TEST(OculusFuzzTest, EveryCaptureIsPingsOrAnError) {
           "capture.raw",
           {std::string("\x53\x4f", 2), std::string("\x23\0\1\0", 4), std::string("\x23\0\2\0", 4),
            std::string("\x53\x4f\0\0\0\0\x23\0\1\0", 10)},
-          read});
+          readOculus});
 }
 
 }  // namespace

@@ -75,26 +75,26 @@ void drive(device::PingDevice&& emulator, std::span<const uint8_t> bytes) {
     }
 }
 
-void enter(const Input& input) {
+void enterPing(const Input& input) {
     readFrames(input.octets());
     drive(device::Ping360Emulator({}), input.octets());
     drive(device::Ping1dEmulator({}), input.octets());
 }
 
-std::string words(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+std::string frameWords(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 TEST(PingFuzzTest, EveryLineIsFramesOrNoise) {
     const device::Ping360Acoustics acoustics{0, 32, 80, 740, 1024};
     push({"ping",
           "line.raw",
-          {"BR", words(device::pingBytes(device::PingGeneralRequest{5})),
-           words(device::pingBytes(device::PingGeneralRequest{1300})),
-           words(device::pingBytes(device::Ping360Transducer{1, 0, acoustics, 1, 0})),
-           words(device::pingBytes(device::Ping360AutoTransmit{1, acoustics, {}})),
-           words(device::pingBytes(device::Ping360MotorOff{})),
-           words(device::pingBytes(device::Ping1dSetRange{0, 1000})),
-           words(device::pingBytes(device::Ping1dContinuousStart{1300}))},
-          enter});
+          {"BR", frameWords(device::pingBytes(device::PingGeneralRequest{5})),
+           frameWords(device::pingBytes(device::PingGeneralRequest{1300})),
+           frameWords(device::pingBytes(device::Ping360Transducer{1, 0, acoustics, 1, 0})),
+           frameWords(device::pingBytes(device::Ping360AutoTransmit{1, acoustics, {}})),
+           frameWords(device::pingBytes(device::Ping360MotorOff{})),
+           frameWords(device::pingBytes(device::Ping1dSetRange{0, 1000})),
+           frameWords(device::pingBytes(device::Ping1dContinuousStart{1300}))},
+          enterPing});
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) {
+void readProperties(const Input& input) {
     framework::PropertySections sections;
     sections.read(input.file(), "properties.yml");
     sections.read(input.file(), "again.yml");
@@ -21,7 +21,7 @@ TEST(PropertyFileFuzzTest, EveryTextIsSectionsOrDiagnostics) {
           "properties.yml",
           {"--- name:", "--- name:default\n", " merge:false", " chain:", "chain:a,b\n", "<%= 1 %>", "\n", ": ", "[",
            "{", "&a ", "*a", "- ", "\t", "# "},
-          read});
+          readProperties});
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ void expectSound(std::span<const uint8_t> bytes) {
     for (const std::string& diagnostic : diagnostics) expectOurWords(diagnostic);
 }
 
-void read(const Input& input) {
+void readRip(const Input& input) {
     const auto bytes = input.octets();
     expectSound(bytes);
     expectSound(mended(bytes));
@@ -58,7 +58,7 @@ TEST(RipFuzzTest, EveryDatagramIsImagesOrNothing) {
           {"RIP1", "RIP2", "type.googleapis.com/waterlinked.sonar.protocol.RangeImage",
            "type.googleapis.com/waterlinked.sonar.protocol.BitmapImageGreyscale8", std::string("\x52\x03", 2),
            std::string("\xFF\xFF\xFF\xFF\x0F", 5)},
-          read});
+          readRip});
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace insonify::fuzz {
 namespace {
 
 template <class Message, class Sample, class... Layout>
-void read(const Input& input, const Layout&... layout) try {
+void readMessage(const Input& input, const Layout&... layout) try {
     Message message;
     ros::decode(input.span(), message);
     Sample sample;
@@ -48,16 +48,16 @@ void follow(const Input& input) try {
     expectOurWords(error.what());
 }
 
-void readAll(const Input& input) {
+void readMessages(const Input& input) {
     follow(input);
-    read<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
-    read<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
+    readMessage<ros::Odometry, types::Pose>(input, ros::WorldFrame::Enu);
+    readMessage<ros::PoseStamped, types::Pose>(input, ros::WorldFrame::Ned);
     for (const auto order : {ros::ImageOrder::RangeMajor, ros::ImageOrder::BeamMajor})
-        read<ros::ProjectedSonarImage, types::Sonar>(input, ros::ImageLayout{order, ros::SensorFrame::ZForward});
+        readMessage<ros::ProjectedSonarImage, types::Sonar>(input, ros::ImageLayout{order, ros::SensorFrame::ZForward});
 }
 
 TEST(RosFuzzTest, EveryMessageIsASampleOrAnError) {
-    push({"ros", "message", {std::string("\0\1\0\0", 4), "base_link", std::string("\1\0\0\0", 4)}, readAll});
+    push({"ros", "message", {std::string("\0\1\0\0", 4), "base_link", std::string("\1\0\0\0", 4)}, readMessages});
 }
 
 }  // namespace

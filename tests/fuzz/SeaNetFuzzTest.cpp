@@ -58,7 +58,7 @@ private:
          [](const std::string& text) { expectOurWords(text); }}};
 };
 
-void read(const Input& input) {
+void readSeaNet(const Input& input) {
     const auto bytes = input.octets();
     device::SeaNetReader reader;
     reader.add(bytes);
@@ -79,7 +79,7 @@ TEST(SeaNetFuzzTest, EveryLineIsPacketsAndWhatLiesBetween) {
           {std::string("@0008\x08\0\xFF\x02\x03\x10\x80\x02\n", 14),
            std::string("@000C\x0C\0\xFF\x02\x07\x19\x80\x02\0\0\0\0\n", 18), std::string("@004C\x4C\0\xFF\x02", 9),
            std::string("\xFF\xFF", 2)},
-          read});
+          readSeaNet});
 }
 
 }  // namespace

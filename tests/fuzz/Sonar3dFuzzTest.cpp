@@ -15,7 +15,7 @@ void expectSound(const device::Sonar3dState& state) {
     EXPECT_TRUE(state.udp_mode == "multicast" || state.udp_mode == "disabled" || state.unicast_port > 0);
 }
 
-void read(const Input& input) {
+void readSonar3d(const Input& input) {
     device::Sonar3dEmulator sonar({}, {[](const types::SonarSettings& asked) { EXPECT_TRUE(asked.range > 0); },
                                        [](const std::string& address, uint16_t port, device::Bytes) {
                                            EXPECT_FALSE(address.empty());
@@ -67,7 +67,7 @@ TEST(Sonar3dFuzzTest, EveryRequestIsAnsweredAndNoneSetsWhatTheDeviceCannotHave) 
            "unicast_destination_ip",
            "unicast_destination_port",
            "2026-01-01T00:00:00Z"},
-          read});
+          readSonar3d});
 }
 
 }  // namespace

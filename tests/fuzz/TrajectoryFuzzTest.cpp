@@ -7,7 +7,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readTrajectory(const Input& input) try {
     const auto trajectory = pose::Trajectory::fromCsv(input.file());
     for (const double time : {-1e9, 0.0, 0.7, 1e9}) EXPECT_TRUE(types::isUsable(trajectory.at(time))) << time;
 } catch (const types::ConfigError& error) {
@@ -19,7 +19,7 @@ TEST(TrajectoryFuzzTest, EveryTextIsATrajectoryOrAnError) {
           "trajectory.csv",
           {"time,x,y,z,qw,qx,qy,qz\n", ",", "\n", "\r\n", " ", "1e-308", "0x10", "1,2,3,4,1,0,0,0\n", "\"", "-0",
            "\xef\xbb\xbf"},
-          read});
+          readTrajectory});
 }
 
 }  // namespace

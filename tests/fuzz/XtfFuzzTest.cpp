@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-void read(const Input& input) try {
+void readXtf(const Input& input) try {
     output::XtfFile file(input.file());
     while (const auto line = file.next()) {
         EXPECT_NO_THROW(line->ping.validate());
@@ -21,7 +21,7 @@ void read(const Input& input) try {
 }
 
 TEST(XtfFuzzTest, EveryFileIsPingsOrAnError) {
-    push({"xtf", "line.xtf", {std::string("\xCE\xFA\0\0\x02\0", 6), std::string("\x7B\x01", 2)}, read});
+    push({"xtf", "line.xtf", {std::string("\xCE\xFA\0\0\x02\0", 6), std::string("\x7B\x01", 2)}, readXtf});
 }
 
 }  // namespace

@@ -69,5 +69,5 @@ TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
         replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect: no library has added any"));
+    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n"));
 }

@@ -11,7 +11,7 @@ using namespace insonify::layout;
 
 namespace {
 
-std::string textOf(const std::string& path) {
+std::string fileText(const std::string& path) {
     std::string text;
     for (const std::string& line : readSource(std::filesystem::path(insonify::test::source_dir) / path).lines)
         text += line + "\n";
@@ -89,7 +89,7 @@ TEST(LayoutTest, EveryHeaderIsOnThePageOfItsFolder) {
         for (const Source& source : sourcesIn(folder, {".hpp", ".cpp"}))
             files[pageOf(source)].insert(std::filesystem::path(source.path).filename());
     for (const auto& [page, names] : files) {
-        const std::string text = textOf(page);
+        const std::string text = fileText(page);
         for (const std::string& name : names)
             EXPECT_TRUE(!name.ends_with(".hpp") || text.find("`" + name + "`") != std::string::npos)
                 << page << ": " << name;
@@ -106,7 +106,7 @@ TEST(LayoutTest, EveryTestFileIsNamedAfterWhatItTests) {
 }
 
 TEST(LayoutTest, TheReadmeNamesEveryCommand) {
-    const std::string readme = textOf("README.md");
+    const std::string readme = fileText("README.md");
     for (const char* command : {"scripts/run", "scripts/test", "insonify run", "insonify check", "insonify plan",
                                 "insonify describe", "insonify log info", "insonify log export", "insonify replay"})
         EXPECT_NE(readme.find(command), std::string::npos) << command;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Names = std::vector<std::string>;
+using Texts = std::vector<std::string>;
 
 const fs::path root = insonify::test::source_dir;
 
@@ -39,16 +39,16 @@ bool leadsSomewhere(const Page& page, const std::string& link) {
     return (target.empty() ? page : readPage(target)).anchors().contains(link.substr(hash + 1));
 }
 
-Names brokenLinks(const Page& page) {
-    Names broken = page.links();
+Texts brokenLinks(const Page& page) {
+    Texts broken = page.links();
     std::erase_if(broken, [&](const std::string& link) { return isOnTheWeb(link) || leadsSomewhere(page, link); });
     return broken;
 }
 
 /** Addresses that no browser could open. */
-Names brokenAddresses(const Page& page) {
+Texts brokenAddresses(const Page& page) {
     static const std::regex form(R"(https://[\w-]+(\.[\w-]+)+(/[\w./~%#?=&+:-]*)?)");
-    Names broken = page.addresses();
+    Texts broken = page.addresses();
     std::erase_if(broken, [&](const std::string& address) { return std::regex_match(address, form); });
     return broken;
 }
@@ -62,8 +62,8 @@ size_t cellsOf(const std::string& line) {
 }
 
 /** Rows of tables with more or fewer cells than the row above. */
-Names unevenRows(const Page& page) {
-    Names uneven;
+Texts unevenRows(const Page& page) {
+    Texts uneven;
     size_t above = 0;
     for (const std::string& line : page.lines()) {
         const size_t cells = cellsOf(line);
@@ -74,9 +74,9 @@ Names unevenRows(const Page& page) {
 }
 
 /** Files and folders of the project that a page names in back quotes and that are not there. */
-Names missingPaths(const Page& page) {
+Texts deadLinks(const Page& page) {
     static const std::regex path("(types|components|shaders|deploy|tests|scripts)/[\\w./-]+");
-    Names missing;
+    Texts missing;
     for (const std::string& code : page.inlineCode()) {
         const std::string word = code.substr(0, code.find(' '));
         if (std::regex_match(word, path) && !fs::exists(root / word)) missing.push_back(word);
@@ -97,9 +97,9 @@ std::set<std::string> allTests() {
     return tests;
 }
 
-Names missingTests(const Page& page, const std::set<std::string>& tests) {
+Texts missingTests(const Page& page, const std::set<std::string>& tests) {
     static const std::regex test(R"(\w+Test\.\w+)");
-    Names missing;
+    Texts missing;
     for (const std::string& code : page.inlineCode())
         if (std::regex_match(code, test) && !tests.contains(code)) missing.push_back(code);
     return missing;
@@ -116,8 +116,8 @@ std::string printingCode() {
 }
 
 /** Parts of a quoted message, between the dots that stand for what changes, that the code does not print. */
-Names unprintedParts(const std::string& message, const std::string& code) {
-    Names unprinted;
+Texts unprintedParts(const std::string& message, const std::string& code) {
+    Texts unprinted;
     for (size_t at = 0; at < message.size();) {
         const size_t end = std::min(message.find("...", at), message.size());
         std::string part = message.substr(at, end - at);
@@ -140,7 +140,7 @@ TEST(PageTest, LinksOfEveryPageLeadSomewhere) {
 
 TEST(PageTest, EveryPageIsReachedFromTheReadme) {
     std::set<std::string> reached;
-    for (Names next = {"README.md"}; !next.empty();) {
+    for (Texts next = {"README.md"}; !next.empty();) {
         const std::string path = next.back();
         next.pop_back();
         if (!path.ends_with(".md") || !reached.insert(path).second) continue;
@@ -155,7 +155,7 @@ TEST(PageTest, EveryPageBesideTheCodeLeadsBackToTheReadme) {
     for (const Page& page : allPages()) {
         if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS")
             continue;
-        Names targets;
+        Texts targets;
         for (const std::string& link : page.links()) targets.push_back(targetOf(page, link));
         EXPECT_THAT(targets, Contains("README.md")) << page.path();
     }
@@ -169,7 +169,7 @@ TEST(PageTest, EveryComponentHasAPage) {
 TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
     const Page readme = readPage("README.md");
     EXPECT_LE(readme.lines().size(), 250u);
-    const Names links = readme.links();
+    const Texts links = readme.links();
     for (const std::string& heading : readme.headings(2))
         EXPECT_THAT(links, Contains("#" + *Page("", "## " + heading).anchors().begin())) << heading;
 }
@@ -191,7 +191,7 @@ TEST(PageTest, TheRowsOfATableHaveTheSameNumberOfCells) {
 TEST(PageTest, EveryFileAndTestThatAPageNamesIsThere) {
     const std::set<std::string> tests = allTests();
     for (const Page& page : allPages()) {
-        EXPECT_THAT(missingPaths(page), IsEmpty()) << page.path();
+        EXPECT_THAT(deadLinks(page), IsEmpty()) << page.path();
         EXPECT_THAT(missingTests(page, tests), IsEmpty()) << page.path();
     }
 }
@@ -218,7 +218,7 @@ TEST(PageTest, TheRulesRefuseWhatTheyShould) {
         "`tests/layout/PageTest.cpp`, `scripts/nowhere --all`, `PageTest.Nothing`\n");
     EXPECT_THAT(brokenLinks(page), ElementsAre("#nowhere", "log/README.md#no", "nowhere.png"));
     EXPECT_THAT(brokenAddresses(page), ElementsAre("https://a.org/b_(c", "http:/broken", "https://nowhere"));
-    EXPECT_THAT(missingPaths(page), ElementsAre("scripts/nowhere"));
+    EXPECT_THAT(deadLinks(page), ElementsAre("scripts/nowhere"));
     EXPECT_THAT(missingTests(page, allTests()), ElementsAre("PageTest.Nothing"));
     EXPECT_THAT(unprintedParts("...: is 3 m; may be ... or so", "\"{} is 3 m; may be {}\""), ElementsAre("or so"));
     EXPECT_THAT(unevenRows(Page("", "| a | b |\n| - | - |\n| a\\|b | c |\n\n| d |\n| e | f |\n")),

@@ -18,7 +18,7 @@ NoiseConfig filtered(const FilterConfig& filter, std::optional<SpeckleConfig> sp
     return config;
 }
 
-types::Sonar drawn(const FilterConfig& filter) { return noisyOf(filtered(filter), pingOf(beams, bins)); }
+types::Sonar filteredField(const FilterConfig& filter) { return noisyOf(filtered(filter), pingOf(beams, bins)); }
 
 /** Correlation of intensities so many beams and bins apart. */
 double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
@@ -71,7 +71,7 @@ TEST(FieldFilterTest, IntensitiesCorrelateByTheClosedFormInRangeAndAcrossBeams) 
         double along, across;
     };
     for (const auto& [looks, along, across] : {Case{1, 1.346, 0.3}, Case{4, 2.5, 1.5}, Case{2, 0.5, 3}}) {
-        const types::Sonar ping = drawn({looks, along, across});
+        const types::Sonar ping = filteredField({looks, along, across});
         EXPECT_NEAR(meanOf(ping.bins), 1, 0.02);
         EXPECT_NEAR(varianceOf(ping.bins), 1.0 / looks, 0.05 / looks);
         for (const size_t lag : {1u, 2u, 3u}) {
@@ -85,11 +85,11 @@ TEST(FieldFilterTest, IntensitiesCorrelateByTheClosedFormInRangeAndAcrossBeams) 
 
 TEST(FieldFilterTest, LooksAreGammaDistributedWithTheSkewOfItsLogarithm) {
     for (const int looks : {1, 2, 4, 16, 64}) {
-        const types::Sonar ping = drawn({looks, {}, {}});
+        const types::Sonar ping = filteredField({looks, {}, {}});
         const auto all = shares(ping.bins, [&](double x) { return gammaCdf(x, looks); });
         EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent) << looks;
         EXPECT_NEAR(logSkew(ping.bins), logSkewOf(looks), 0.03) << looks;
-        const types::Sonar correlated = drawn({looks, 1.3, {}});
+        const types::Sonar correlated = filteredField({looks, 1.3, {}});
         EXPECT_NEAR(logSkew(correlated.bins), logSkewOf(looks), 0.06) << looks << ": a filter keeps the law";
     }
     EXPECT_NEAR(logSkewOf(1), -1.1395, 1e-3) << "of the exponential law (Gumbel's)";

@@ -18,7 +18,7 @@ using test::RandomFan;
 using test::randomFans;
 
 /** Gray on a fixed scale, so that a pixel's value is its level. */
-DisplayConfig plain() {
+DisplayConfig wholeFan() {
     DisplayConfig config;
     config.width = 400;
     config.reference_db = 0;
@@ -27,8 +27,8 @@ DisplayConfig plain() {
 }
 
 template <class Picture>
-types::Image pictureOf(const types::Sonar& ping) {
-    Picture painter(plain());
+types::Image fanPicture(const types::Sonar& ping) {
+    Picture painter(wholeFan());
     types::Image picture;
     painter.paint(ping, picture);
     return picture;
@@ -39,10 +39,10 @@ types::Sonar filled(types::Sonar ping, float value) {
     return ping;
 }
 
-void paint(FanImage& painter, const types::Sonar& ping, types::Image& picture) { painter.paint(ping, picture); }
+void paintInto(FanImage& painter, const types::Sonar& ping, types::Image& picture) { painter.paint(ping, picture); }
 
 /** Without the line of the head, which hides echoes. */
-void paint(DiscImage& painter, types::Sonar ping, types::Image& picture) {
+void paintInto(DiscImage& painter, types::Sonar ping, types::Image& picture) {
     painter.skip(ping);
     ping.bearings.assign(ping.beam_count, types::Angle{});
     painter.paint(ping, picture);
@@ -51,10 +51,10 @@ void paint(DiscImage& painter, types::Sonar ping, types::Image& picture) {
 /** Expects that a picture shows echoes where a beam is and nothing in gaps. */
 template <class Picture>
 void expectWater(const types::Sonar& ping, const std::string& name, double margin) {
-    Picture loud_picture(plain()), silent_picture(plain());
+    Picture loud_picture(wholeFan()), silent_picture(wholeFan());
     types::Image loud, silent;
-    paint(loud_picture, filled(ping, 1), loud);
-    paint(silent_picture, filled(ping, 0), silent);
+    paintInto(loud_picture, filled(ping, 1), loud);
+    paintInto(silent_picture, filled(ping, 0), silent);
     const FanLayout& layout = loud_picture.layout();
     const cv::Mat echoes = test::pixelsOf(loud), nothing = test::pixelsOf(silent);
     for (int y = FanLayout::title_height; y < echoes.rows; ++y)
@@ -70,7 +70,7 @@ void expectWater(const types::Sonar& ping, const std::string& name, double margi
 
 TEST(FanOrderTest, AFanPictureIsThatOfTheSameBeamsInAscendingOrder) {
     for (const RandomFan& fan : randomFans(3, 40))
-        EXPECT_EQ(pictureOf<FanImage>(fan.ping).image, pictureOf<FanImage>(fan.ascending).image) << fan.name;
+        EXPECT_EQ(fanPicture<FanImage>(fan.ping).image, fanPicture<FanImage>(fan.ascending).image) << fan.name;
 }
 
 TEST(FanOrderTest, AFanPictureShowsEchoesWhereABeamIsAndNothingInGaps) {
@@ -81,7 +81,7 @@ TEST(FanOrderTest, ADiscShowsEachDirectionsNearestBeam) {
     const double sector = 2 * std::numbers::pi / DiscImage::sectors;
     for (const RandomFan& fan : randomFans(3, 40)) {
         expectWater<DiscImage>(fan.ping, fan.name, 2 * sector);
-        EXPECT_EQ(pictureOf<DiscImage>(fan.ping).image, pictureOf<DiscImage>(fan.ascending).image) << fan.name;
+        EXPECT_EQ(fanPicture<DiscImage>(fan.ping).image, fanPicture<DiscImage>(fan.ascending).image) << fan.name;
     }
 }
 
@@ -123,7 +123,7 @@ TEST(FanOrderTest, ATruthPictureIsThatOfTheSameBeamsInAscendingOrder) {
         for (size_t i = 0; i < truth.object.size(); ++i)
             truth.object[i] = static_cast<int32_t>(ping.bins[i] * 1e4f) % 3;
         std::ranges::fill(truth.shadow, uint8_t{0});
-        TruthImage painter(plain());
+        TruthImage painter(wholeFan());
         painter.regard(truth);
         types::Image picture;
         painter.paint(ping, picture);
@@ -161,8 +161,8 @@ TEST(FanOrderTest, TheSimilarityOfPingsDoesNotDependOnTheOrderOfBeams) {
     for (const RandomFan& fan : randomFans(1, 40)) {
         types::Sonar other = fan.ping;
         for (size_t i = 0; i < other.bins.size(); i += 3) other.bins[i] *= 0.3f;
-        EXPECT_DOUBLE_EQ(structuralSimilarity(fan.ping, other, plain()),
-                         structuralSimilarity(fan.ascending, test::reordered(other, fan.order), plain()))
+        EXPECT_DOUBLE_EQ(structuralSimilarity(fan.ping, other, wholeFan()),
+                         structuralSimilarity(fan.ascending, test::reordered(other, fan.order), wholeFan()))
             << fan.name;
     }
 }

@@ -1,57 +1,53 @@
 // JSF files, made here by EdgeTech's published layout, are read; so are damaged ones.
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <fstream>
 
 #include "components/output/JsfFile.hpp"
 #include "tests/output/SideScanFileTest.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/RecordedBytes.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {
 
+using test::putAt;
 using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-template <class T>
-void put(std::vector<char>& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-}
 
 /** A message of sonar data, whose samples count up from `begin`. Offsets are those of the layout, behind a header
  * of 16.
  */
 std::vector<char> sonarData(uint32_t number, uint8_t channel, uint16_t begin, uint16_t count = 4) {
     std::vector<char> bytes(16 + 240 + 2 * count);
-    put(bytes, 0, uint16_t{0x1601});
-    put(bytes, 2, uint8_t{13});  // version
-    put(bytes, 4, uint16_t{80});
-    put(bytes, 7, uint8_t{20});  // subsystem
-    put(bytes, 8, channel);
-    put(bytes, 12, static_cast<uint32_t>(bytes.size() - 16));
-    put(bytes, 16 + 0, int32_t{1'700'000'000 + static_cast<int32_t>(number)});
-    put(bytes, 16 + 8, number);
-    put(bytes, 16 + 30, uint16_t{1 | 8 | 32 | 64 | 512 | 1 << 14});  // all is valid
-    put(bytes, 16 + 80, int32_t{-68 * 600'000});                     // longitude, 10000 * minutes
-    put(bytes, 16 + 84, int32_t{48 * 600'000 + static_cast<int32_t>(number) * 600});
-    put(bytes, 16 + 88, int16_t{2});
-    put(bytes, 16 + 114, count);
-    put(bytes, 16 + 116, uint32_t{40'000});  // ns, two-way: 20 us
-    put(bytes, 16 + 126, uint16_t{44'000});  // 10 Hz
-    put(bytes, 16 + 128, uint16_t{46'000});
-    put(bytes, 16 + 136, int32_t{4'500});  // depth [mm]
-    put(bytes, 16 + 144, int32_t{6'250});  // altitude [mm]
-    put(bytes, 16 + 148, 1480.0f);
-    put(bytes, 16 + 168, int16_t{1});        // samples times 1/2
-    put(bytes, 16 + 172, uint16_t{33'000});  // heading [deg / 100]
-    put(bytes, 16 + 174, int16_t{-1820});    // pitch, 10 deg bow down
-    put(bytes, 16 + 176, int16_t{910});      // roll, 5 deg port up
-    put(bytes, 16 + 200, uint32_t{80'000'250});
-    for (uint16_t i = 0; i < count; ++i) put(bytes, size_t{256} + 2 * i, static_cast<uint16_t>(begin + i));
+    putAt(bytes, 0, uint16_t{0x1601});
+    putAt(bytes, 2, uint8_t{13});  // version
+    putAt(bytes, 4, uint16_t{80});
+    putAt(bytes, 7, uint8_t{20});  // subsystem
+    putAt(bytes, 8, channel);
+    putAt(bytes, 12, static_cast<uint32_t>(bytes.size() - 16));
+    putAt(bytes, 16 + 0, int32_t{1'700'000'000 + static_cast<int32_t>(number)});
+    putAt(bytes, 16 + 8, number);
+    putAt(bytes, 16 + 30, uint16_t{1 | 8 | 32 | 64 | 512 | 1 << 14});  // all is valid
+    putAt(bytes, 16 + 80, int32_t{-68 * 600'000});                     // longitude, 10000 * minutes
+    putAt(bytes, 16 + 84, int32_t{48 * 600'000 + static_cast<int32_t>(number) * 600});
+    putAt(bytes, 16 + 88, int16_t{2});
+    putAt(bytes, 16 + 114, count);
+    putAt(bytes, 16 + 116, uint32_t{40'000});  // ns, two-way: 20 us
+    putAt(bytes, 16 + 126, uint16_t{44'000});  // 10 Hz
+    putAt(bytes, 16 + 128, uint16_t{46'000});
+    putAt(bytes, 16 + 136, int32_t{4'500});  // depth [mm]
+    putAt(bytes, 16 + 144, int32_t{6'250});  // altitude [mm]
+    putAt(bytes, 16 + 148, 1480.0f);
+    putAt(bytes, 16 + 168, int16_t{1});        // samples times 1/2
+    putAt(bytes, 16 + 172, uint16_t{33'000});  // heading [deg / 100]
+    putAt(bytes, 16 + 174, int16_t{-1820});    // pitch, 10 deg bow down
+    putAt(bytes, 16 + 176, int16_t{910});      // roll, 5 deg port up
+    putAt(bytes, 16 + 200, uint32_t{80'000'250});
+    for (uint16_t i = 0; i < count; ++i) putAt(bytes, size_t{256} + 2 * i, static_cast<uint16_t>(begin + i));
     return bytes;
 }
 
@@ -108,18 +104,18 @@ TEST_F(JsfFileTest, EveryPingIsKeptWhenASideIsMissingOrSettingsChange) {
 
 TEST_F(JsfFileTest, AnalyticDataAreMagnitudesAndAWindowBeginsLater) {
     std::vector<char> message = sonarData(0, 1, 0, 4);
-    put(message, 16 + 34, int16_t{1});
-    put(message, 16 + 114, uint16_t{2});
-    put(message, 16 + 4, uint32_t{3});  // samples before the window
-    for (const size_t i : {0, 1, 2, 3}) put(message, 256 + 2 * i, static_cast<int16_t>(i % 2 == 0 ? -6 : 8));
+    putAt(message, 16 + 34, int16_t{1});
+    putAt(message, 16 + 114, uint16_t{2});
+    putAt(message, 16 + 4, uint32_t{3});  // samples before the window
+    for (const size_t i : {0, 1, 2, 3}) putAt(message, 256 + 2 * i, static_cast<int16_t>(i % 2 == 0 ? -6 : 8));
     EXPECT_THAT(read(message).front().ping.bins, ElementsAre(0, 0, 0, 5, 5));
 }
 
 TEST_F(JsfFileTest, WhatIsNoSideScanIsOmittedWithANotice) {
     std::vector<char> navigation = sonarData(0, 0, 0), high = sonarData(0, 0, 0), raw = sonarData(0, 0, 0);
-    put(navigation, 4, uint16_t{2002});
-    put(high, 7, uint8_t{21});
-    put(raw, 16 + 34, int16_t{2});
+    putAt(navigation, 4, uint16_t{2002});
+    putAt(high, 7, uint8_t{21});
+    putAt(raw, 16 + 34, int16_t{2});
     EXPECT_EQ(read(joined({sonarData(0, 1, 1), navigation, high, raw})).size(), 1u);
     EXPECT_THAT(notices_,
                 AllOf(Contains(HasSubstr("1 messages of type 2002")), Contains(HasSubstr("1 messages of subsystem 21")),
@@ -129,7 +125,7 @@ TEST_F(JsfFileTest, WhatIsNoSideScanIsOmittedWithANotice) {
 TEST_F(JsfFileTest, AWrongFileIsRefusedWithItsByte) {
     const auto with = [&](size_t at, auto value) {
         std::vector<char> bytes = joined({sonarData(0, 0, 1), sonarData(0, 1, 1)});
-        put(bytes, at, value);
+        putAt(bytes, at, value);
         return refusal(bytes);
     };
     EXPECT_THAT(with(264, uint16_t{7}), HasSubstr("line.jsf: byte 264: is 0x0007; a message begins with 0x1601"));

@@ -19,7 +19,7 @@ types::DepthMapPtr smallMap() {
 }
 
 /** The middle of a cell. */
-int levelAt(const types::Image& picture, const cv::Rect& cells, int row, int column) {
+int cellLevel(const types::Image& picture, const cv::Rect& cells, int row, int column) {
     const cv::Point at(cells.x + cells.width * (2 * column + 1) / 6, cells.y + cells.height * (2 * row + 1) / 4);
     return test::pixelsOf(picture).at<cv::Vec3b>(at)[1];
 }
@@ -30,11 +30,11 @@ TEST(RangeImageTest, TheNearestIsBrightestAndWhereNothingIsHeardIsBlack) {
     types::Image picture;
     image.paint(picture);
     EXPECT_EQ(picture.time.microseconds, 1'000'000);
-    EXPECT_EQ(levelAt(picture, image.cells(), 0, 0), 255);
-    EXPECT_NEAR(levelAt(picture, image.cells(), 0, 1), 127, 1);
-    EXPECT_EQ(levelAt(picture, image.cells(), 0, 2), 0);
-    EXPECT_EQ(levelAt(picture, image.cells(), 1, 0), 0) << "the farthest";
-    EXPECT_EQ(levelAt(picture, image.cells(), 1, 2), 255);
+    EXPECT_EQ(cellLevel(picture, image.cells(), 0, 0), 255);
+    EXPECT_NEAR(cellLevel(picture, image.cells(), 0, 1), 127, 1);
+    EXPECT_EQ(cellLevel(picture, image.cells(), 0, 2), 0);
+    EXPECT_EQ(cellLevel(picture, image.cells(), 1, 0), 0) << "the farthest";
+    EXPECT_EQ(cellLevel(picture, image.cells(), 1, 2), 255);
 }
 
 TEST(RangeImageTest, AnEmptyMapAndOneWithoutReturnsAreDrawnAllTheSame) {

@@ -22,7 +22,7 @@ types::Sonar pingOf(double field_of_view, size_t number) {
     return ping;
 }
 
-DisplayConfig configOf(uint32_t width) {
+DisplayConfig widthConfig(uint32_t width) {
     DisplayConfig config;
     config.width = width;
     return config;
@@ -32,7 +32,7 @@ template <class Picture>
 void expectPictures(uint32_t width, int expected_width, size_t& number) {
     for (const double field_of_view : fields_of_view) {
         SCOPED_TRACE(testing::Message() << width << " pixels, " << field_of_view << " degrees, number " << number);
-        Picture painter(configOf(width));
+        Picture painter(widthConfig(width));
         types::Image picture;
         ASSERT_NO_THROW(painter.paint(pingOf(field_of_view, number++), picture));
         EXPECT_EQ(picture.size.width, expected_width);
@@ -60,7 +60,7 @@ TEST(SmallPictureTest, EveryWidthFanAndRangeIsDrawn) {
 TEST(SmallPictureTest, EveryDynamicRangeIsDrawnSmall) {
     types::Image picture;
     for (const double dynamic_range : {1.0, 3.0, 40.0, 299.0, 300.0}) {
-        DisplayConfig config = configOf(256);
+        DisplayConfig config = widthConfig(256);
         config.dynamic_range_db = dynamic_range;
         EXPECT_NO_THROW(FanImage(config).paint(test::emptyPing(360, 7), picture)) << dynamic_range;
         EXPECT_NO_THROW(WaterfallImage(config).paint(test::emptyPing(360, 7), picture)) << dynamic_range;
@@ -69,7 +69,7 @@ TEST(SmallPictureTest, EveryDynamicRangeIsDrawnSmall) {
 
 /** Whether the brightest colour stands where the bar of colours begins. */
 bool showsColourBar(uint32_t width, double field_of_view) {
-    DisplayConfig config = configOf(width);
+    DisplayConfig config = widthConfig(width);
     config.colour_map = ColourMap::Gray;
     types::Image picture;
     FanImage(config).paint(test::emptyPing(field_of_view, 7), picture);

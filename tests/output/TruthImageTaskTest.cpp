@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 /** 60 beams over 120 deg, 100 bins. Beams 0 to 29, to starboard, show object 0 from 30 bins on, the others object 1
  *  from 60 bins on; what is nearer lies in shadow. */
-types::Sonar pingAt(double seconds) {
+types::Sonar truthAt(double seconds) {
     types::Sonar ping = test::emptyPing(120, 60);
     ping.time = types::Time::fromSeconds(seconds);
     ping.bins.assign(ping.bins.size(), 1);
@@ -41,8 +41,8 @@ protected:
         config.timeout = 0.5;
         task_.config.set(config);
     }
-    void givePing(double seconds) { give(pingAt(seconds)); }
-    void giveTruth(double seconds) { giveBeside(std::make_shared<const types::SonarTruth>(truthOf(pingAt(seconds)))); }
+    void givePing(double seconds) { give(truthAt(seconds)); }
+    void giveTruth(double seconds) { giveBeside(std::make_shared<const types::SonarTruth>(truthOf(truthAt(seconds)))); }
 };
 
 TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
@@ -58,7 +58,7 @@ TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
         return config;
     }());
     types::Image alone;
-    fan.paint(pingAt(1), alone);
+    fan.paint(truthAt(1), alone);
     const auto pixel = [&](double share, double bearing_deg, int half) {
         const cv::Point2d at = fan.layout().pixel(share * fan.layout().range(), types::radians(bearing_deg));
         return picture.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x) + 600 * half);
@@ -103,7 +103,7 @@ TEST_F(TruthImageTaskTest, APingWaitsForItsTruthAndIsLeftOutWithoutOne) {
 
 TEST_F(TruthImageTaskTest, ATruthOfAnotherSonarIsRefused) {
     start();
-    types::Sonar other = pingAt(1);
+    types::Sonar other = truthAt(1);
     other.resize(50, 60);
     beside_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
     givePing(1);
@@ -131,7 +131,7 @@ TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
     std::vector<types::SonarPtr> pings;
     std::vector<types::SonarTruthPtr> truths;
     for (int i = 0; i < 20; ++i) {
-        pings.push_back(std::make_shared<const types::Sonar>(pingAt(1 + i)));
+        pings.push_back(std::make_shared<const types::Sonar>(truthAt(1 + i)));
         truths.push_back(std::make_shared<const types::SonarTruth>(truthOf(*pings.back())));
     }
     cycle(pings[0], truths[0]);

@@ -8,7 +8,7 @@ namespace {
 
 using test::levelAt;
 
-DisplayConfig display() {
+DisplayConfig shownAs() {
     DisplayConfig config;
     config.width = 600;
     config.reference_db = 0;
@@ -17,7 +17,7 @@ DisplayConfig display() {
 }
 
 TEST(WaterfallImageTest, TheNewestPingIsOnTopAndRangeGrowsToTheRight) {
-    WaterfallImage waterfall(display());
+    WaterfallImage waterfall(shownAs());
     types::Image picture;
     waterfall.paint(test::withEcho(test::emptyPing(3, 1), 0, 25), picture);
     waterfall.paint(test::withEcho(test::emptyPing(3, 1), 0, 75), picture);
@@ -29,7 +29,7 @@ TEST(WaterfallImageTest, TheNewestPingIsOnTopAndRangeGrowsToTheRight) {
 }
 
 TEST(WaterfallImageTest, ARowIsTheMeanOverTheBeams) {
-    WaterfallImage waterfall(display());
+    WaterfallImage waterfall(shownAs());
     types::Sonar ping = test::emptyPing(90, 10);
     for (uint32_t bin = 0; bin < 100; ++bin) ping.bins[bin] = 0.1f;  // 0.01 over ten beams: 20 dB of 40
     types::Image picture;
@@ -38,7 +38,7 @@ TEST(WaterfallImageTest, ARowIsTheMeanOverTheBeams) {
 }
 
 TEST(WaterfallImageTest, OldPingsLeaveAtTheBottom) {
-    WaterfallImage waterfall(display());
+    WaterfallImage waterfall(shownAs());
     types::Sonar bright = test::emptyPing(3, 1);
     bright.bins.assign(bright.bins.size(), 1);
     waterfall.skip(bright);
@@ -52,7 +52,7 @@ TEST(WaterfallImageTest, OldPingsLeaveAtTheBottom) {
 }
 
 TEST(WaterfallImageTest, APingWithoutBeamsIsDrawnAllTheSame) {
-    WaterfallImage waterfall(display());
+    WaterfallImage waterfall(shownAs());
     types::Image picture;
     waterfall.paint(types::Sonar{}, picture);
     EXPECT_EQ(picture.size.width, 600);

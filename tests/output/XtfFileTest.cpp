@@ -1,7 +1,6 @@
 // XTF files are read back: our own, those of other programs, and damaged ones.
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <fstream>
 
 #include "components/output/XtfFile.hpp"
@@ -10,11 +9,13 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
+#include "tests/support/RecordedBytes.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::output {
 namespace {
 
+using test::putAt;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -38,18 +39,13 @@ types::Sonar line(int number, uint32_t bins = 5, double speed_of_sound = 1500) {
     return ping;
 }
 
-types::Pose poseAt(double yaw_deg) {
+types::Pose headed(double yaw_deg) {
     types::Pose pose;
     pose.position = {12.5, -3.25, -4};
     pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1)) *
                        glm::angleAxis(types::radians(10), glm::dvec3(0, 1, 0)) *
                        glm::angleAxis(types::radians(5), glm::dvec3(1, 0, 0));
     return pose;
-}
-
-template <class T>
-void put(std::vector<char>& bytes, size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
 class XtfFileTest : public SideScanFileTest {
@@ -59,7 +55,7 @@ protected:
     static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
         std::vector<char> bytes = xtfHeader(format, lines.front());
-        for (const types::Sonar& line : lines) appendXtfPing(format, line, {poseAt(30), 6.5, 0.5, 0}, bytes);
+        for (const types::Sonar& line : lines) appendXtfPing(format, line, {headed(30), 6.5, 0.5, 0}, bytes);
         return bytes;
     }
     std::unique_ptr<SideScanFile> open(const std::filesystem::path& path) const override {
@@ -92,7 +88,7 @@ TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
 
 TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
     const SideScanLine read_back = read(fileOf({line(0)})).front();
-    const types::Pose &pose = read_back.record.sonar, expected = poseAt(30);
+    const types::Pose &pose = read_back.record.sonar, expected = headed(30);
     EXPECT_NEAR(glm::length(pose.position - expected.position), 0, 1e-6);
     EXPECT_NEAR(std::abs(glm::dot(pose.orientation, expected.orientation)), 1, 1e-12);
     EXPECT_EQ(pose.time.microseconds, first_time);
@@ -113,7 +109,7 @@ TEST_F(XtfFileTest, RangesHoldWhereABinIsNoWholeMicroseconds) {
     types::Sonar fine = line(0);
     std::vector<char> bytes = fileOf({fine});
     for (const size_t channel : {0, 1})  // 19.5 us
-        put(bytes, first_ping + ping_header::size + channel * (channel_header::size + 10) + channel_header::slant_range,
+        putAt(bytes, first_ping + ping_header::size + channel * (channel_header::size + 10) + channel_header::slant_range,
             5 * 0.02925f);
     const types::Sonar ping = read(bytes).front().ping;
     EXPECT_NEAR(ping.binStart(5), 5 * 0.02925, 1e-7);
@@ -122,11 +118,11 @@ TEST_F(XtfFileTest, RangesHoldWhereABinIsNoWholeMicroseconds) {
 
 TEST_F(XtfFileTest, LatitudesAndLongitudesBecomeMetres) {
     std::vector<char> bytes = fileOf({line(0), line(1)});
-    put(bytes, xtf::file_header::nav_units, xtf::file_header::degrees);
+    putAt(bytes, xtf::file_header::nav_units, xtf::file_header::degrees);
     const size_t size = (bytes.size() - first_ping) / 2;
     for (const size_t i : {0, 1}) {
-        put(bytes, first_ping + i * size + ping_header::sonar, 48.0 + 0.001 * static_cast<double>(i));
-        put(bytes, first_ping + i * size + ping_header::sonar + 8, -69.0 - 0.001 * static_cast<double>(i));
+        putAt(bytes, first_ping + i * size + ping_header::sonar, 48.0 + 0.001 * static_cast<double>(i));
+        putAt(bytes, first_ping + i * size + ping_header::sonar + 8, -69.0 - 0.001 * static_cast<double>(i));
     }
     const std::vector<SideScanLine> lines = read(bytes);
     EXPECT_EQ(lines[0].record.sonar.position, glm::dvec3(0, 0, -4));
@@ -137,8 +133,8 @@ TEST_F(XtfFileTest, LatitudesAndLongitudesBecomeMetres) {
 
 TEST_F(XtfFileTest, ProjectedCoordinatesBeginAtTheirFirstPlace) {
     std::vector<char> bytes = fileOf({line(0)});
-    put(bytes, first_ping + ping_header::sonar, 5'367'000.5);
-    put(bytes, first_ping + ping_header::sonar + 8, 412'000.25);
+    putAt(bytes, first_ping + ping_header::sonar, 5'367'000.5);
+    putAt(bytes, first_ping + ping_header::sonar + 8, 412'000.25);
     EXPECT_EQ(read(bytes).front().record.sonar.position, glm::dvec3(0, 0, -4));
     EXPECT_THAT(notices_, Contains(HasSubstr("north 5367000.50 m, east 412000.25 m")));
 }
@@ -146,13 +142,13 @@ TEST_F(XtfFileTest, ProjectedCoordinatesBeginAtTheirFirstPlace) {
 TEST_F(XtfFileTest, OtherWaysToStateTheSameAreRead) {
     std::vector<char> bytes = fileOf({line(0)});
     const size_t port = first_ping + ping_header::size, starboard = port + channel_header::size + 10;
-    put(bytes, first_ping + ping_header::sound_speed, 750.0f);  // half of it
+    putAt(bytes, first_ping + ping_header::sound_speed, 750.0f);  // half of it
     for (const size_t side : {port, starboard})
-        put(bytes, side + channel_header::slant_range, 0.0f);  // by the duration
+        putAt(bytes, side + channel_header::slant_range, 0.0f);  // by the duration
     for (const size_t i : {0, 1})
-        put(bytes, xtf::file_header::channel_infos + i * xtf::channel_info::size + xtf::channel_info::sample_format,
+        putAt(bytes, xtf::file_header::channel_infos + i * xtf::channel_info::size + xtf::channel_info::sample_format,
             xtf::channel_info::legacy);
-    for (const size_t side : {port, starboard}) put(bytes, side + channel_header::weight, int16_t{2});
+    for (const size_t side : {port, starboard}) putAt(bytes, side + channel_header::weight, int16_t{2});
     const types::Sonar ping = read(bytes).front().ping;
     EXPECT_EQ(ping.speed_of_sound, 1500);
     EXPECT_EQ(ping.bin_duration.microseconds, 100);
@@ -162,9 +158,9 @@ TEST_F(XtfFileTest, OtherWaysToStateTheSameAreRead) {
 TEST_F(XtfFileTest, WhatIsUnknownOrOmittedIsNoticed) {
     std::vector<char> bytes = fileOf({line(0), line(1), line(2)});
     const size_t size = (bytes.size() - first_ping) / 3;
-    put(bytes, first_ping + xtf::packet::type, uint8_t{42});
-    put(bytes, first_ping + size + ping_header::roll, std::numeric_limits<float>::quiet_NaN());
-    put(bytes, xtf::file_header::channel_infos, uint8_t{3});  // bathymetry in place of port
+    putAt(bytes, first_ping + xtf::packet::type, uint8_t{42});
+    putAt(bytes, first_ping + size + ping_header::roll, std::numeric_limits<float>::quiet_NaN());
+    putAt(bytes, xtf::file_header::channel_infos, uint8_t{3});  // bathymetry in place of port
     const std::vector<SideScanLine> lines = read(bytes);
     ASSERT_EQ(lines.size(), 2u);
     EXPECT_FALSE(isUsable(lines[0].record.sonar));
@@ -179,7 +175,7 @@ TEST_F(XtfFileTest, AWrongFileIsRefusedWithItsByte) {
     const std::vector<char> good = fileOf({line(0)});
     const auto with = [&](size_t at, auto value) {
         std::vector<char> bytes = good;
-        put(bytes, at, value);
+        putAt(bytes, at, value);
         return refusal(bytes);
     };
     const size_t port = first_ping + ping_header::size;

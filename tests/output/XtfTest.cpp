@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /** Starboard counts up from 100, port from 1000. */
-types::Sonar line(int64_t time, uint32_t bins = 5) {
+types::Sonar pingLine(int64_t time, uint32_t bins = 5) {
     types::Sonar ping = test::pingOf(2, bins, 0, time);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
     ping.beam_width = types::Angle::fromDeg(0.5);
@@ -31,7 +31,7 @@ types::Sonar line(int64_t time, uint32_t bins = 5) {
     return ping;
 }
 
-types::Pose poseAt(int64_t time, double yaw_deg = 0) {
+types::Pose towed(int64_t time, double yaw_deg = 0) {
     types::Pose pose;
     pose.time = {time};
     pose.position = {12.5, -3.25, -4};
@@ -92,10 +92,10 @@ TEST_F(XtfTest, PyxtfReadsBackLinesAndWhatIsToldOfThem) {
     measured.range = 6.5;
     altitudes_.port.write(measured);
     constexpr int64_t first = 1'700'000'000'250'000;  // 2023-11-14 22:13:20.25 UTC
-    give(poseAt(first, 90));
-    give(line(first));
-    give(poseAt(first + 500'000, -45));
-    give(line(first + 500'000, 7));
+    give(towed(first, 90));
+    give(pingLine(first));
+    give(towed(first + 500'000, -45));
+    give(pingLine(first + 500'000, 7));
     task_.stop();
     const json file = readBack();
     EXPECT_EQ(file["channels"], json::parse(R"([["port", 450.0, 2, 3, 0.5, 50.0], ["stbd", 450.0, 2, 3, 0.5, 50.0]])"));
@@ -125,9 +125,9 @@ TEST_F(XtfTest, PyxtfReadsBackLinesAndWhatIsToldOfThem) {
 TEST_F(XtfTest, PyxtfReadsBackIntensitiesAsTheyAre) {
     NEED_PYXTF();
     start(XtfSamples::Float32);
-    types::Sonar ping = line(2'000'000);
+    types::Sonar ping = pingLine(2'000'000);
     ping.bins[0] = 1.25e-7f;
-    give(poseAt(2'000'000));
+    give(towed(2'000'000));
     give(ping);
     task_.stop();
     const json file = readBack();
@@ -137,8 +137,8 @@ TEST_F(XtfTest, PyxtfReadsBackIntensitiesAsTheyAre) {
 
 TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
     start();
-    give(poseAt(1'000'000));
-    give(line(1'000'000));
+    give(towed(1'000'000));
+    give(pingLine(1'000'000));
     task_.stop();
     const std::vector<char> bytes = bytesOf(folder_ / "line.xtf");
     EXPECT_EQ(bytes.size(), 1024 + 448u) << "256 + 2 * (64 + 10), up to a multiple of 64";
@@ -150,14 +150,14 @@ TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
 TEST_F(XtfTest, WhatIsNoCodeOrNoLineEndsTheFileWithItsReason) {
     const auto reasonOf = [&](types::Sonar ping) {
         start();
-        give(poseAt(ping.time.microseconds));
+        give(towed(ping.time.microseconds));
         give(ping);
         const std::string reason = task_.lastError();
         EXPECT_EQ(task_.state(), framework::TaskState::Exception);
         task_.recover();
         return reason;
     };
-    types::Sonar intensities = line(1'000'000), loud = line(1'000'000), ahead = line(1'000'000);
+    types::Sonar intensities = pingLine(1'000'000), loud = pingLine(1'000'000), ahead = pingLine(1'000'000);
     intensities.bins[2] = 1e-6f;
     loud.bins[2] = 70000;
     ahead.bearings[1] = {-0.5};
@@ -169,7 +169,7 @@ TEST_F(XtfTest, WhatIsNoCodeOrNoLineEndsTheFileWithItsReason) {
 
 TEST_F(XtfTest, APingBeforeAnyPoseIsWrittenWithoutOneAndTold) {
     start();
-    give(line(1'000'000));
+    give(pingLine(1'000'000));
     task_.stop();
     EXPECT_GT(bytesOf(folder_ / "line.xtf").size(), 1024u);
     EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings of line.xtf have no pose")));

@@ -12,6 +12,7 @@ COMMANDS = {
     "apt-cache": '! grep -qx "$2" unknown',
     "apt-get": 'echo "apt-get $*" >>asked',
     "cmake": 'echo "cmake $*" >>asked',
+    "ninja": '! grep -qx "${@: -1}" left_out',
     "sudo": 'exec "$@"',
 }
 
@@ -34,6 +35,7 @@ def system(tmp_path):
     (tmp_path / "build/build.ninja").touch()
     (tmp_path / "libraries").touch()
     (tmp_path / "unknown").touch()
+    (tmp_path / "left_out").touch()
     core = [folder for folder in (ROOT / "components").glob("*/packages") if not is_optional(folder.parent.name)]
     names = packages("components", "types", *(folder.parent.relative_to(ROOT) for folder in core))
     (tmp_path / "installed").write_text("\n".join(names) + "\n")
@@ -100,8 +102,11 @@ def test_sdf_brings_the_files_of_meshes_that_it_names(system):
 
 def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
     (system / "unknown").write_text("\n".join(packages("components/sdf")) + "\n")
+    (system / "left_out").write_text("insonify_component_sdf\n")
     code, lines, said = asked(system, "setup", "sdf")
     assert code == 0
+    assert lines[-1] == "cmake --build build --target insonify_component_meshes"
+    assert "scripts/setup: sdf cannot be built on this system, see above; it is left out" in said
     assert installed(lines) == [packages("components/meshes")]
     for name in packages("components/sdf"):
         assert f"this system has no package {name}; what of components/sdf needs it is left out" in said

@@ -18,7 +18,7 @@ types::Sonar beamsOf(const std::vector<float>& bins) {
     return ping;
 }
 
-std::vector<float> received(const ReceiverConfig& config, const types::Sonar& ping) {
+std::vector<float> heldBins(const ReceiverConfig& config, const types::Sonar& ping) {
     types::Sonar out;
     Receiver(config).receive(ping, out);
     return out.bins;
@@ -37,7 +37,7 @@ double levelOf(const std::vector<float>& bins, size_t count, size_t bin) {
 
 TEST(AutomaticGainTest, ASteadyLevelComesOutAtTheTarget) {
     for (const float level : {1e-6f, 1e-2f, 1.0f, 1e5f}) {
-        const std::vector<float> bins = received(following(), beamsOf(std::vector<float>(200, level)));
+        const std::vector<float> bins = heldBins(following(), beamsOf(std::vector<float>(200, level)));
         for (size_t bin = 0; bin < 200; ++bin) EXPECT_NEAR(levelOf(bins, 200, bin), -20, 1e-3) << level;
         EXPECT_NEAR(static_cast<double>(bins[0]), -20 - 10 * std::log10(2), 1e-3) << "beams keep their differences";
     }
@@ -48,7 +48,7 @@ TEST(AutomaticGainTest, AJumpIsFollowedInTheTimesOfAttackAndRelease) {
     std::fill(steps.begin() + 200, steps.begin() + 400, 1.0f);
     const types::Sonar ping = beamsOf(steps);
     const double bin_ms = 1e-3 * static_cast<double>(ping.bin_duration.microseconds);
-    const std::vector<float> bins = received(following(), ping);
+    const std::vector<float> bins = heldBins(following(), ping);
     for (size_t k = 0; k < 200; ++k) {
         const double up = 1 - (1 - 1e-4) * std::exp(-static_cast<double>(k + 1) * bin_ms / 2);
         EXPECT_NEAR(levelOf(bins, 600, 200 + k), -20 - 10 * std::log10(up), 0.01) << k;
@@ -61,13 +61,13 @@ TEST(AutomaticGainTest, AJumpIsFollowedInTheTimesOfAttackAndRelease) {
 TEST(AutomaticGainTest, ItsGainIsBoundedAndEmptyPingsStayEmpty) {
     ReceiverConfig config = following(Output::Intensity);
     config.automatic_gain->max_db = 10;
-    for (const float bin : received(config, beamsOf(std::vector<float>(50, 1e-9f)))) EXPECT_LE(bin, 1.6e-8f);
-    for (const float bin : received(config, beamsOf(std::vector<float>(50, 1e6f)))) EXPECT_GE(bin, 4.9e4f);
-    for (const float bin : received(config, beamsOf(std::vector<float>(50, 0)))) EXPECT_EQ(bin, 0);
+    for (const float bin : heldBins(config, beamsOf(std::vector<float>(50, 1e-9f)))) EXPECT_LE(bin, 1.6e-8f);
+    for (const float bin : heldBins(config, beamsOf(std::vector<float>(50, 1e6f)))) EXPECT_GE(bin, 4.9e4f);
+    for (const float bin : heldBins(config, beamsOf(std::vector<float>(50, 0)))) EXPECT_EQ(bin, 0);
     std::vector<float> strange(50, 1.0f);
     strange[7] = std::numeric_limits<float>::quiet_NaN();
     strange[9] = std::numeric_limits<float>::max();
-    const std::vector<float> bins = received(config, beamsOf(strange));
+    const std::vector<float> bins = heldBins(config, beamsOf(strange));
     EXPECT_TRUE(std::isnan(bins[7]));
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_TRUE(i % 50 == 7 || std::isfinite(bins[i])) << i;
 }
@@ -84,7 +84,7 @@ TEST(AutomaticGainTest, TheSamePingGetsTheSameGainWhateverCameBefore) {
 TEST(AutomaticGainTest, CodesComeOutAtTheTargetBelowFullScale) {
     ReceiverConfig config = following(Output::Code);
     config.code = CodeConfig{.bits = 16, .law = CodeLaw::Log, .full_scale_db = -10, .dynamic_range_db = 60};
-    const std::vector<float> bins = received(config, beamsOf(std::vector<float>(40, 7e-5f)));
+    const std::vector<float> bins = heldBins(config, beamsOf(std::vector<float>(40, 7e-5f)));
     EXPECT_NEAR(levelOf(bins, 40, 20), 65535 * (1 - 10.0 / 60), 2);
 }
 
@@ -94,15 +94,15 @@ TEST(AutomaticGainTest, NothingExceedsTheSaturation) {
     config.saturation_db = -10;
     config.gain_db = 3;
     const float gain = static_cast<float>(std::pow(10, 0.3));
-    std::vector<float> bins = received(config, ping);
+    std::vector<float> bins = heldBins(config, ping);
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_FLOAT_EQ(bins[i], std::min(0.1f, gain * ping.bins[i]));
     config.output = Output::LevelDb;
-    bins = received(config, ping);
+    bins = heldBins(config, ping);
     for (size_t i = 0; i < bins.size(); ++i)
         EXPECT_NEAR(bins[i], std::min(-10.0, 3 + 10 * std::log10(static_cast<double>(ping.bins[i]))), 1e-3);
     config.output = Output::Code;
     config.code = CodeConfig{.bits = 8, .law = CodeLaw::Linear, .full_scale_db = 0};
-    EXPECT_EQ(received(config, ping)[3], std::round(0.1f * 255)) << "below the largest code";
+    EXPECT_EQ(heldBins(config, ping)[3], std::round(0.1f * 255)) << "below the largest code";
     EXPECT_FALSE(Receiver(config).isNeutral());
 }
 

@@ -13,7 +13,7 @@ std::vector<float> numbersOf(const PointCloud2& message) {
     return numbers;
 }
 
-types::PointCloud smallCloud() {
+types::PointCloud twoPoints() {
     types::PointCloud cloud;
     cloud.time = {2'000'001};
     cloud.add({3, 2, -5}, 0.25);
@@ -34,12 +34,12 @@ types::DepthMap smallMap() {
 
 TEST(CloudsTest, PointsStandInTheAxesOfTheWorldFrame) {
     PointCloud2 message;
-    convert(smallCloud(), WorldFrame::Enu, message);
+    convert(twoPoints(), WorldFrame::Enu, message);
     EXPECT_EQ(message.width, 2u);
     EXPECT_EQ(message.height, 1u);
     EXPECT_EQ(message.header.frame_id, "map");
     EXPECT_THAT(numbersOf(message), testing::ElementsAre(-2, 3, -5, 0.25f, -0.5f, -1, -6, 0.125f));
-    convert(smallCloud(), WorldFrame::Ned, message);
+    convert(twoPoints(), WorldFrame::Ned, message);
     EXPECT_THAT(numbersOf(message), testing::ElementsAre(3, -2, 5, 0.25f, -1, -0.5f, 6, 0.125f));
 }
 
@@ -47,11 +47,11 @@ TEST(CloudsTest, PointsComeBackFromEveryFrame) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         PointCloud2 message;
         types::PointCloud back;
-        convert(smallCloud(), frame, message);
+        convert(twoPoints(), frame, message);
         convert(message, frame, back);
-        EXPECT_EQ(back.time, smallCloud().time);
-        EXPECT_EQ(back.points, smallCloud().points);
-        EXPECT_EQ(back.colors, smallCloud().colors);
+        EXPECT_EQ(back.time, twoPoints().time);
+        EXPECT_EQ(back.points, twoPoints().points);
+        EXPECT_EQ(back.colors, twoPoints().colors);
     }
 }
 
@@ -74,7 +74,7 @@ TEST(CloudsTest, WhatIsNoCloudIsRefusedWithItsReason) {
     PointCloud2 message;
     types::PointCloud cloud;
     const auto reason = [&](const auto& spoil) -> std::string {
-        convert(smallCloud(), WorldFrame::AsIs, message);
+        convert(twoPoints(), WorldFrame::AsIs, message);
         spoil();
         try {
             convert(message, WorldFrame::AsIs, cloud);

@@ -25,7 +25,7 @@ types::Imu smallImu() {
 }
 
 template <class Sample>
-Imu messageOf(const Sample& sample, WorldFrame frame) {
+Imu imuOf(const Sample& sample, WorldFrame frame) {
     Imu message;
     convert(sample, frame, "imu", message);
     return message;
@@ -38,13 +38,13 @@ glm::dvec3 ahead(const Imu& message) {
 }
 
 TEST(NavigationTest, AnImuLooksTheSameWayInEveryWorld) {
-    EXPECT_LT(glm::distance(ahead(messageOf(smallImu(), WorldFrame::AsIs)), {0, 1, 0}), 1e-15);
-    EXPECT_LT(glm::distance(ahead(messageOf(smallImu(), WorldFrame::Enu)), {-1, 0, 0}), 1e-15);
-    EXPECT_LT(glm::distance(ahead(messageOf(smallImu(), WorldFrame::Ned)), {0, -1, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::AsIs)), {0, 1, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Enu)), {-1, 0, 0}), 1e-15);
+    EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Ned)), {0, -1, 0}), 1e-15);
 }
 
 TEST(NavigationTest, AnImuFeelsInTheAxesOfItsBody) {
-    const Imu enu = messageOf(smallImu(), WorldFrame::Enu), ned = messageOf(smallImu(), WorldFrame::Ned);
+    const Imu enu = imuOf(smallImu(), WorldFrame::Enu), ned = imuOf(smallImu(), WorldFrame::Ned);
     EXPECT_EQ(enu.header.frame_id, "imu");
     EXPECT_EQ(enu.header.stamp, (Time{2, 1000}));
     EXPECT_EQ(enu.linear_acceleration, (Vector3{0.25, -0.5, 9.75}));
@@ -59,7 +59,7 @@ TEST(NavigationTest, AnImuComesBackInEveryWorld) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const types::Imu imu = smallImu();
         types::Imu again;
-        convert(messageOf(imu, frame), frame, again);
+        convert(imuOf(imu, frame), frame, again);
         EXPECT_LT(glm::length(again.orientation - imu.orientation), 1e-15);
         EXPECT_EQ(again.angular_velocity, imu.angular_velocity);
         EXPECT_EQ(again.linear_acceleration, imu.linear_acceleration);
@@ -74,7 +74,7 @@ TEST(NavigationTest, AnImuComesBackInEveryWorld) {
 TEST(NavigationTest, RocksSensorsHaveNoAttitude) {
     types::ImuSensors sensors, again;
     sensors.acc = {1, 2, 3};
-    const Imu message = messageOf(sensors, WorldFrame::Enu);
+    const Imu message = imuOf(sensors, WorldFrame::Enu);
     EXPECT_EQ(message.orientation_covariance[0], -1);
     EXPECT_EQ(message.orientation, Quaternion{});
     EXPECT_EQ(message.angular_velocity_covariance[0], -1) << "a rate that is not known";

@@ -16,7 +16,7 @@ types::Image smallPicture(types::ImageMode mode, uint32_t pixel_size) {
     return picture;
 }
 
-std::string diagnosticOf(const types::Image& picture) {
+std::string refusalOf(const types::Image& picture) {
     try {
         Image message;
         convert(picture, "", message);
@@ -47,11 +47,11 @@ TEST(PicturesTest, ColoursAndGreysBecomeRossEncodingsAndComeBack) {
 }
 
 TEST(PicturesTest, WhatHasNoEncodingIsRefused) {
-    EXPECT_EQ(diagnosticOf(smallPicture(types::ImageMode{258}, 1)),
+    EXPECT_EQ(refusalOf(smallPicture(types::ImageMode{258}, 1)),
               "a picture of mode 258 with 1 bytes a pixel is not known: mono8, mono16, rgb8 and bgr8 are");
     types::Image picture = smallPicture(types::ImageMode::Bgr, 3);
     picture.image.pop_back();
-    EXPECT_EQ(diagnosticOf(picture), "the picture does not hold the pixels that it announces");
+    EXPECT_EQ(refusalOf(picture), "the picture does not hold the pixels that it announces");
 }
 
 }  // namespace

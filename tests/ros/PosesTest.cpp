@@ -8,7 +8,7 @@ namespace insonify::ros {
 namespace {
 
 template <class Message>
-Message messageOf(const types::Pose& pose, WorldFrame frame) {
+Message poseMessage(const types::Pose& pose, WorldFrame frame) {
     Message message;
     convert(pose, frame, message);
     return message;
@@ -28,17 +28,17 @@ glm::dvec3 nose(const Pose& pose) {
 }
 
 TEST(PosesTest, AsItIsNothingIsTurned) {
-    const auto message = messageOf<PoseStamped>(smallPose(), WorldFrame::AsIs);
+    const auto message = poseMessage<PoseStamped>(smallPose(), WorldFrame::AsIs);
     EXPECT_EQ(message.header, (Header{{2, 1000}, "world"}));
     EXPECT_EQ(message.pose.position, (Point{3, 2, -5}));
     EXPECT_EQ(message.pose.orientation.z, smallPose().orientation.z);
 }
 
 TEST(PosesTest, ABodyThatLooksWestDoesSoInEveryWorld) {
-    const auto enu = messageOf<PoseStamped>(smallPose(), WorldFrame::Enu).pose;
+    const auto enu = poseMessage<PoseStamped>(smallPose(), WorldFrame::Enu).pose;
     EXPECT_EQ(enu.position, (Point{-2, 3, -5}));  // 2 west, 3 north, 5 deep
     expectNear(nose(enu), {-1, 0, 0});
-    const auto ned = messageOf<PoseStamped>(smallPose(), WorldFrame::Ned).pose;
+    const auto ned = poseMessage<PoseStamped>(smallPose(), WorldFrame::Ned).pose;
     EXPECT_EQ(ned.position, (Point{3, -2, 5}));
     expectNear(nose(ned), {0, -1, 0});
     EXPECT_LT(ned.orientation.z, 0);  // to port is against the right-handed turn about down
@@ -46,9 +46,9 @@ TEST(PosesTest, ABodyThatLooksWestDoesSoInEveryWorld) {
 
 TEST(PosesTest, ALevelBodyThatLooksNorthIsTheUnitInNedAndAQuarterTurnInEnu) {
     types::Pose pose;
-    const auto ned = messageOf<PoseStamped>(pose, WorldFrame::Ned).pose.orientation;
+    const auto ned = poseMessage<PoseStamped>(pose, WorldFrame::Ned).pose.orientation;
     EXPECT_DOUBLE_EQ(ned.w, 1);
-    const auto enu = messageOf<PoseStamped>(pose, WorldFrame::Enu).pose.orientation;
+    const auto enu = poseMessage<PoseStamped>(pose, WorldFrame::Enu).pose.orientation;
     EXPECT_NEAR(enu.w, std::sqrt(0.5), 1e-15);
     EXPECT_NEAR(enu.z, std::sqrt(0.5), 1e-15);
 }
@@ -56,13 +56,13 @@ TEST(PosesTest, ALevelBodyThatLooksNorthIsTheUnitInNedAndAQuarterTurnInEnu) {
 TEST(PosesTest, ANoseDownBodyIsSoInNed) {
     types::Pose pose;
     pose.orientation = glm::angleAxis(types::radians(30), glm::dvec3(0, 1, 0));  // looks down in Rock
-    expectNear(nose(messageOf<PoseStamped>(pose, WorldFrame::Ned).pose), {std::cos(types::radians(30)), 0, 0.5});
+    expectNear(nose(poseMessage<PoseStamped>(pose, WorldFrame::Ned).pose), {std::cos(types::radians(30)), 0, 0.5});
 }
 
 TEST(PosesTest, ATransformIsThatOfTheOdometry) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
-        const auto odometry = messageOf<Odometry>(smallPose(), frame);
-        const auto message = messageOf<TFMessage>(smallPose(), frame);
+        const auto odometry = poseMessage<Odometry>(smallPose(), frame);
+        const auto message = poseMessage<TFMessage>(smallPose(), frame);
         ASSERT_EQ(message.transforms.size(), 1u);
         const TransformStamped& transform = message.transforms[0];
         EXPECT_EQ(transform.header, odometry.header);
@@ -95,9 +95,9 @@ TEST(PosesTest, AMountIsATransformToTheAxesOfThePing) {
 
 TEST(PosesTest, OdometryHasTheVelocityInTheBody) {
     // 0.5 north, 1.5 west, seen from a body that looks west: 1.5 ahead, 0.5 to starboard
-    const auto enu = messageOf<Odometry>(smallPose(), WorldFrame::Enu);
+    const auto enu = poseMessage<Odometry>(smallPose(), WorldFrame::Enu);
     expectNear({enu.twist.twist.linear.x, enu.twist.twist.linear.y, enu.twist.twist.linear.z}, {1.5, -0.5, -0.25});
-    const auto ned = messageOf<Odometry>(smallPose(), WorldFrame::Ned);
+    const auto ned = poseMessage<Odometry>(smallPose(), WorldFrame::Ned);
     expectNear({ned.twist.twist.linear.x, ned.twist.twist.linear.y, ned.twist.twist.linear.z}, {1.5, 0.5, 0.25});
     EXPECT_EQ(ned.twist.twist.angular, (Vector3{0.1, -0.2, -0.3}));
     EXPECT_NEAR(enu.pose.covariance[0], 2, 1e-14);  // of east: Rock's y
@@ -109,7 +109,7 @@ TEST(PosesTest, OdometryComesBackInEveryWorld) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const types::Pose pose = smallPose();
         types::Pose again;
-        convert(messageOf<Odometry>(pose, frame), frame, again);
+        convert(poseMessage<Odometry>(pose, frame), frame, again);
         EXPECT_EQ(again.time, pose.time);
         EXPECT_EQ(again.source_frame, "body");
         EXPECT_EQ(again.target_frame, "world");
@@ -127,7 +127,7 @@ TEST(PosesTest, OdometryComesBackInEveryWorld) {
 TEST(PosesTest, WhatIsUnknownIsSaidAndComesBackAsUnknown) {
     types::Pose pose;
     pose.position = {1, 2, 3};
-    const auto message = messageOf<Odometry>(pose, WorldFrame::Enu);
+    const auto message = poseMessage<Odometry>(pose, WorldFrame::Enu);
     EXPECT_EQ(message.twist.twist.linear, Vector3{});
     EXPECT_EQ(message.twist.covariance[0], -1);
     EXPECT_EQ(message.twist.covariance[21], -1);
@@ -136,7 +136,7 @@ TEST(PosesTest, WhatIsUnknownIsSaidAndComesBackAsUnknown) {
     convert(message, WorldFrame::Enu, again);
     EXPECT_TRUE(std::isnan(again.velocity.x) && std::isnan(again.angular_velocity.z));
     EXPECT_TRUE(std::isnan(again.cov_position[0][0]) && std::isnan(again.cov_velocity[2][2]));
-    convert(messageOf<PoseStamped>(pose, WorldFrame::Ned), WorldFrame::Ned, again);
+    convert(poseMessage<PoseStamped>(pose, WorldFrame::Ned), WorldFrame::Ned, again);
     EXPECT_EQ(again.position, pose.position);
     EXPECT_TRUE(std::isnan(again.velocity.x));
 }

@@ -47,7 +47,7 @@ protected:
 
 glm::dquat turn(double deg, glm::dvec3 axis) { return glm::angleAxis(types::radians(deg), axis); }
 
-void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-9) << a.x << " " << a.y << " " << a.z; }
+void expectAt(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-9) << a.x << " " << a.y << " " << a.z; }
 
 glm::dvec3 placeOf(const types::MovedObject& moved) { return glm::dvec3(moved.world_from_object[3]); }
 
@@ -70,22 +70,22 @@ TEST_F(SceneTaskTest, TheSonarIsWhereTheMountHasIt) {
     start();
     const auto snapshot = ping(at(1, {10, 20, 30}, turn(90, {0, 0, 1})));
     ASSERT_TRUE(snapshot);
-    expectNear(snapshot->sonar.position, {10, 21, 29.5});
-    expectNear(snapshot->sonar.orientation * glm::dvec3(1, 0, 0), {0, 0, -1});  // positive pitch looks down
-    expectNear(snapshot->sonar.orientation * glm::dvec3(0, 1, 0), {-1, 0, 0});
+    expectAt(snapshot->sonar.position, {10, 21, 29.5});
+    expectAt(snapshot->sonar.orientation * glm::dvec3(1, 0, 0), {0, 0, -1});  // positive pitch looks down
+    expectAt(snapshot->sonar.orientation * glm::dvec3(0, 1, 0), {-1, 0, 0});
 }
 
 TEST_F(SceneTaskTest, TheMountTurnsByRollThenPitchThenYaw) {
     const Mount mount{.position = {}, .roll_deg = 10, .pitch_deg = 20, .yaw_deg = 30};
     const glm::dvec3 v{1, 2, 3};
-    expectNear(mount.orientation() * v, turn(30, {0, 0, 1}) * (turn(20, {0, 1, 0}) * (turn(10, {1, 0, 0}) * v)));
-    expectNear(Mount{.position = {}, .yaw_deg = 90}.orientation() * glm::dvec3(1, 0, 0), {0, 1, 0});  // to port
+    expectAt(mount.orientation() * v, turn(30, {0, 0, 1}) * (turn(20, {0, 1, 0}) * (turn(10, {1, 0, 0}) * v)));
+    expectAt(Mount{.position = {}, .yaw_deg = 90}.orientation() * glm::dvec3(1, 0, 0), {0, 1, 0});  // to port
 }
 
 TEST_F(SceneTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     config_.mount.position = {100, 0, 0};
     start();
-    expectNear(ping(at(1, {0, 0, 0}, {1.001, 0, 0, 0}))->sonar.position, {100, 0, 0});
+    expectAt(ping(at(1, {0, 0, 0}, {1.001, 0, 0, 0}))->sonar.position, {100, 0, 0});
 }
 
 TEST_F(SceneTaskTest, ANodeFollowsItsPortAndKeepsItsScaleAndWhatIsBelowIt) {
@@ -101,10 +101,10 @@ TEST_F(SceneTaskTest, ANodeFollowsItsPortAndKeepsItsScaleAndWhatIsBelowIt) {
     ASSERT_EQ(snapshot->moved.size(), 2u);
     const types::MovedObject& hull = snapshot->moved[0];
     EXPECT_EQ(snapshot->geometry->objects[hull.object].name, "boat");
-    expectNear(placeOf(hull), {100, 0, 0});
+    expectAt(placeOf(hull), {100, 0, 0});
     // x of the model is x of the body, which looks along y of the world now; scale 2
-    expectNear(glm::dvec3(hull.world_from_object * glm::dvec4(1, 0, 0, 1)), {100, 2, 0});
-    expectNear(placeOf(snapshot->moved[1]), {100, 0, 10});
+    expectAt(glm::dvec3(hull.world_from_object * glm::dvec4(1, 0, 0, 1)), {100, 2, 0});
+    expectAt(placeOf(snapshot->moved[1]), {100, 0, 10});
 }
 
 TEST_F(SceneTaskTest, TheInnermostNodeWithAPoseDecides) {
@@ -116,8 +116,8 @@ TEST_F(SceneTaskTest, TheInnermostNodeWithAPoseDecides) {
     boat_.port.write(at(1, {100, 0, 0}));
     const auto snapshot = ping(at(2, {0, 0, 0}));
     ASSERT_EQ(snapshot->moved.size(), 2u);
-    expectNear(placeOf(snapshot->moved[0]), {100, 0, 0});
-    expectNear(placeOf(snapshot->moved[1]), {7, 7, 7});
+    expectAt(placeOf(snapshot->moved[0]), {100, 0, 0});
+    expectAt(placeOf(snapshot->moved[1]), {7, 7, 7});
 }
 
 TEST_F(SceneTaskTest, OnlyNodesOfTheFileHaveAPort) {
@@ -157,7 +157,7 @@ TEST_F(SceneTaskTest, AnUnusablePoseOfANodeLeavesItWhereItWas) {
     boat_.port.write(at(2, {types::Pose::unknown, 0, 0}));
     const auto snapshot = ping(at(2, {0, 0, 0}));
     ASSERT_TRUE(snapshot);
-    expectNear(placeOf(snapshot->moved.at(0)), {5, 0, 0});
+    expectAt(placeOf(snapshot->moved.at(0)), {5, 0, 0});
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
 }
 

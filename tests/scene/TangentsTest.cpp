@@ -9,7 +9,7 @@ namespace insonify::scene {
 namespace {
 
 /** A square in the plane z = 0 whose u is x, mirrored at x = 0 if asked; v points down, as in glTF. */
-Surface square(bool mirrored) {
+Surface mappedSquare(bool mirrored) {
     Surface surface;
     for (const float x : {-1.0f, 0.0f, 1.0f})
         for (const float y : {0.0f, 1.0f}) {
@@ -22,7 +22,7 @@ Surface square(bool mirrored) {
 }
 
 TEST(TangentsTest, TheyPointAlongUAndTheirHandednessAgainstV) {
-    Surface surface = square(false);
+    Surface surface = mappedSquare(false);
     makeTangents(surface);
     ASSERT_EQ(surface.tangents.size(), 6u);
     for (const glm::vec4 tangent : surface.tangents) {
@@ -33,7 +33,7 @@ TEST(TangentsTest, TheyPointAlongUAndTheirHandednessAgainstV) {
 }
 
 TEST(TangentsTest, AVertexOnTheEdgeOfAMirroredMapIsDoubled) {
-    Surface surface = square(true);
+    Surface surface = mappedSquare(true);
     makeTangents(surface);
     ASSERT_EQ(surface.positions.size(), 8u);
     ASSERT_EQ(surface.tangents.size(), 8u);
@@ -44,7 +44,7 @@ TEST(TangentsTest, AVertexOnTheEdgeOfAMirroredMapIsDoubled) {
 }
 
 TEST(TangentsTest, WithoutAreaInUvAnyDirectionInThePlaneServes) {
-    Surface surface = square(false);
+    Surface surface = mappedSquare(false);
     for (glm::vec2& uv : surface.uvs) uv = {0.5f, 0.5f};
     makeTangents(surface);
     for (const glm::vec4 tangent : surface.tangents) {
@@ -54,7 +54,7 @@ TEST(TangentsTest, WithoutAreaInUvAnyDirectionInThePlaneServes) {
 }
 
 TEST(TangentsTest, FlatNormalsStandOnTheirTriangles) {
-    Surface surface = square(false);
+    Surface surface = mappedSquare(false);
     surface.normals.clear();
     surface.positions[5].z = 1;
     makeFlatNormals(surface);

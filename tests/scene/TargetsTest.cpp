@@ -61,7 +61,7 @@ protected:
     test::Reader<types::SnapshotPtr> out_;
 };
 
-void expectNear(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z; }
+void expectClose(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z; }
 
 TEST_F(TargetsTest, WithoutAnyASnapshotHasNone) {
     start();
@@ -77,12 +77,12 @@ TEST_F(TargetsTest, OneStandsInTheWorldAndOneOnANodeWithAnOffsetInItsAxes) {
     ASSERT_EQ(snapshot->targets.size(), 6u);
     EXPECT_EQ(snapshot->target_names->at(2), "bow");
     EXPECT_EQ(snapshot->targets[2].strength_db, -30);
-    expectNear(snapshot->targets[0].position, {4, 5, -6});
-    expectNear(snapshot->targets[1].position, {1, -3, 2});
-    expectNear(snapshot->targets[2].position, {1, 0, 3});    // ahead is to port where a boat is turned by 90 degrees
-    expectNear(snapshot->targets[3].position, {1, -2, 12});  // 10 m up, as the boat is twice as large
-    expectNear(snapshot->targets[4].position, {10, 1, 0});
-    expectNear(snapshot->targets[5].position, {0, 0, 0});
+    expectClose(snapshot->targets[0].position, {4, 5, -6});
+    expectClose(snapshot->targets[1].position, {1, -3, 2});
+    expectClose(snapshot->targets[2].position, {1, 0, 3});    // ahead is to port where a boat is turned by 90 degrees
+    expectClose(snapshot->targets[3].position, {1, -2, 12});  // 10 m up, as the boat is twice as large
+    expectClose(snapshot->targets[4].position, {10, 1, 0});
+    expectClose(snapshot->targets[5].position, {0, 0, 0});
 }
 
 TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
@@ -92,16 +92,16 @@ TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
                        {"top", glm::dvec3(1, 0, 0), "mast", 0},
                        {"buoy", glm::dvec3(4, 5, -6), "", 0}};
     start();
-    expectNear(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is where the file has it
+    expectClose(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is where the file has it
     boat_.port.write(at(2, {100, 0, 0}, 180));
     const auto moved = ping(2);
-    expectNear(moved->targets[0].position, {97, 0, 1});
-    expectNear(moved->targets[1].position, {99, 0, 10});
-    expectNear(moved->targets[2].position, {4, 5, -6});
+    expectClose(moved->targets[0].position, {97, 0, 1});
+    expectClose(moved->targets[1].position, {99, 0, 10});
+    expectClose(moved->targets[2].position, {4, 5, -6});
     mast_.port.write(at(3, {0, 0, 50}));
     const auto apart = ping(3);
-    expectNear(apart->targets[0].position, {97, 0, 1});
-    expectNear(apart->targets[1].position, {1, 0, 50});
+    expectClose(apart->targets[0].position, {97, 0, 1});
+    expectClose(apart->targets[1].position, {1, 0, 50});
 }
 
 TEST_F(TargetsTest, WhatIsWrongIsToldWithItsPlace) {

@@ -24,7 +24,7 @@ using test::expectForm;
 using test::pingOf;
 using types::radians;
 
-SonarConfig sonarOf(double fov_deg, double height_deg, double bin, int bins, int rows = 512) {
+SonarConfig floorSonar(double fov_deg, double height_deg, double bin, int bins, int rows = 512) {
     SonarConfig config;
     config.speed_of_sound = 1500;
     config.range_rounding = RangeRounding::Exact;
@@ -68,7 +68,7 @@ void makeShiny(types::Material& material, float reflection, float slope) {
 }
 
 TEST(BackscatterPingTest, ASeabedIsHeardByTheLawOfItsReportAtTheSonarsFrequency) {
-    SonarConfig config = sonarOf(1, 40, 0.15, 200);
+    SonarConfig config = floorSonar(1, 40, 0.15, 200);
     config.frequency_khz = 100;
     const auto snapshot =
         changed(test::sceneOf({test::ground(-5)}), [](types::Material& m) { m.seabed = "medium_sand"; });
@@ -81,7 +81,7 @@ TEST(BackscatterPingTest, ASeabedIsHeardByTheLawOfItsReportAtTheSonarsFrequency)
 }
 
 TEST(BackscatterPingTest, ASeabedOfASonarWithoutAFrequencyFollowsLambert) {
-    const SonarConfig config = sonarOf(1, 40, 0.15, 200);
+    const SonarConfig config = floorSonar(1, 40, 0.15, 200);
     const auto plain = test::snapshotOf(test::sceneOf({test::ground(-5)}, -16.7f));
     const auto sand = changed(plain.geometry, [](types::Material& m) { m.seabed = "medium_sand"; });
     EXPECT_EQ(pingOf(config, sand).bins, pingOf(config, plain).bins);
@@ -102,7 +102,7 @@ TEST(BackscatterPingTest, AMeasuredTableIsHeardAsItWasMeasured) {
                                 [&](double angle) { return std::pow(10, levelAt(angle * 180 / pi) / 10); });
     const auto half =
         bottomOf(5, radians(20), radians(1), [&](double angle) { return std::pow(10, levelAt(angle * 90 / pi) / 10); });
-    for (const SonarConfig& way : everyWay(sonarOf(1, 40, 0.15, 200))) expectForm(pingOf(way, snapshot), right, half);
+    for (const SonarConfig& way : everyWay(floorSonar(1, 40, 0.15, 200))) expectForm(pingOf(way, snapshot), right, half);
 }
 
 TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWhateverTheRows) {
@@ -111,14 +111,14 @@ TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWhateverTheRows) {
                                   [&](types::Material& m) { makeShiny(m, reflection, 0.1f); });
     const double right = 10 * std::log10(reflection * reflection * 0.25 / 4);
     for (int rows : {64, 256, 2048})
-        for (const SonarConfig& way : everyWay(sonarOf(2, 2, 1, 60, rows)))
+        for (const SonarConfig& way : everyWay(floorSonar(2, 2, 1, 60, rows)))
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
     const auto lambert = changed(snapshot.geometry, [](types::Material& m) { m.lambert_db = 0, m.reflection = 0; });
-    EXPECT_GT(std::abs(targetStrength(pingOf(sonarOf(2, 2, 1, 60), lambert), 50) - right), 3) << "the form sees a law";
+    EXPECT_GT(std::abs(targetStrength(pingOf(floorSonar(2, 2, 1, 60), lambert), 50) - right), 3) << "the form sees a law";
 }
 
 TEST(BackscatterPingTest, ASphereOfSmoothMatterHasTheTargetStrengthOfItsReflection) {
-    SonarConfig config = sonarOf(2, 2, 1, 60);
+    SonarConfig config = floorSonar(2, 2, 1, 60);
     config.frequency_khz = 900;
     const auto strength = [&](const SonarConfig& way, const char* matter) {
         return targetStrength(pingOf(way, changed(test::sceneOf({test::sphere(0.5, 128)}, 0, {{50.5, 0, 0}}),
@@ -143,14 +143,14 @@ TEST(BackscatterPingTest, AnEllipsoidHasTheTargetStrengthOfItsRadiiOfCurvature) 
     const auto snapshot = changed(geometry, [](types::Material& m) { makeShiny(m, 1, 0.1f); });
     const double right = 10 * std::log10(b * b / a * (c * c / a) / 4);
     for (int rows : {64, 512})
-        for (const SonarConfig& way : everyWay(sonarOf(2, 2, 1, 60, rows)))
+        for (const SonarConfig& way : everyWay(floorSonar(2, 2, 1, 60, rows)))
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
     EXPECT_GT(std::abs(10 * std::log10(b * c / 4) - right), 0.5) << "of semi-axes instead";
 }
 
 TEST(BackscatterPingTest, APlateAtNormalIncidenceHasItsTargetStrength) {
     const double side = 0.4, wavelength = 1500 / 30e3, area = side * side;
-    SonarConfig config = sonarOf(2, 2, 1, 60);
+    SonarConfig config = floorSonar(2, 2, 1, 60);
     config.frequency_khz = 30;
     const auto snapshot = changed(test::sceneOf({test::quad({50, -0.2f, -0.2f}, {0, 0.4f, 0}, {0, 0, 0.4f})}),
                                   [](types::Material& m) { makeShiny(m, 1, 0); });
@@ -180,7 +180,7 @@ TEST(BackscatterPingTest, ARoughCylinderBroadsideHasItsTargetStrength) {
                                   [&](types::Material& m) { makeShiny(m, 1, static_cast<float>(slope)); });
     const double right = 10 * std::log10(radius * length / (4 * std::sqrt(pi) * slope));
     for (int rows : {64, 256, 1024})
-        for (const SonarConfig& way : everyWay(sonarOf(2, 2, 1, 60, rows)))
+        for (const SonarConfig& way : everyWay(floorSonar(2, 2, 1, 60, rows)))
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
 }
 
@@ -190,7 +190,7 @@ TEST(BackscatterPingTest, AMirrorIsTheSonarsImageWhateverTheSamples) {
     const double right = 10 * std::log10(0.25 / 400);
     for (int rows : {16, 64, 512, 2048})
         for (int columns : {3, 64}) {
-            SonarConfig config = sonarOf(20, 20, 1, 20, rows);
+            SonarConfig config = floorSonar(20, 20, 1, 20, rows);
             config.frequency_khz = 750;
             config.quality.columns_per_beam = columns;
             for (const SonarConfig& way : everyWay(config)) {
@@ -206,7 +206,7 @@ TEST(BackscatterPingTest, ALobeIsHeardWithoutAnyLambertianPart) {
         makeShiny(m, 0.5f, 0.1f);
         m.lambert_db = -1000;  // 0 as a float
     });
-    for (const SonarConfig& way : everyWay(sonarOf(20, 20, 1, 20))) {
+    for (const SonarConfig& way : everyWay(floorSonar(20, 20, 1, 20))) {
         const types::Sonar ping = pingOf(way, snapshot);
         EXPECT_NEAR(10 * std::log10(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0)),
                     10 * std::log10(0.25 / 400), 0.5);

@@ -14,7 +14,7 @@ namespace {
 
 using types::radians;
 
-SonarConfig fan(double field_of_view_deg, int beams, int columns_per_beam = 2) {
+SonarConfig plainFan(double field_of_view_deg, int beams, int columns_per_beam = 2) {
     SonarConfig config;
     config.field_of_view_deg = field_of_view_deg;
     config.beam_count = beams;
@@ -55,7 +55,7 @@ void expectTiled(const std::vector<Part>& parts, const ViewFrustum& frustum, con
 }
 
 /** One of 40 m range in bins of 0.1 m. */
-types::Sonar pingOf(SonarConfig config, const types::Snapshot& snapshot) {
+types::Sonar plainPing(SonarConfig config, const types::Snapshot& snapshot) {
     config.speed_of_sound = 1000;
     config.range = 40;
     config.bin_count = 400;
@@ -70,7 +70,7 @@ std::vector<float> beamOf(const types::Sonar& ping, uint32_t k) {
 }
 
 /** Relative L2 of their difference. */
-double difference(const std::vector<float>& a, const std::vector<float>& b) {
+double largestDifference(const std::vector<float>& a, const std::vector<float>& b) {
     double error = 0, norm = 0;
     for (size_t i = 0; i < a.size(); ++i) {
         error += std::pow(double{a[i]} - b[i], 2);
@@ -90,7 +90,7 @@ types::Snapshot room(double yaw = 0) {
 
 TEST(BeamFanTest, SlabsOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
     for (double degrees = 1; degrees <= 360; degrees += 0.5) {
-        const SonarConfig config = fan(degrees, 64);
+        const SonarConfig config = plainFan(degrees, 64);
         const auto frusta = makeFrusta(config, makeBeams(config));
         ASSERT_EQ(frusta.size(), static_cast<size_t>(std::ceil(degrees / 60)));
         EXPECT_NEAR(frusta.front().azimuth - frusta.front().half_width, -radians(degrees) / 2, 1e-12);
@@ -106,14 +106,14 @@ TEST(BeamFanTest, SlabsOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
 }
 
 TEST(BeamFanTest, TheImageReachesTheApertureInItsCorners) {
-    const SonarConfig config = fan(100, 10);
+    const SonarConfig config = plainFan(100, 10);
     for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config)))
         EXPECT_NEAR(std::atan(frustum.extent_v * std::cos(frustum.half_width)), radians(config.beam_height_deg / 2),
                     1e-12);
 }
 
 TEST(BeamFanTest, BeamsPartitionTheFanFromStarboardToPort) {
-    const auto beams = makeBeams(fan(130, 512));
+    const auto beams = makeBeams(plainFan(130, 512));
     ASSERT_EQ(beams.size(), 512u);
     EXPECT_NEAR(beams.front().low, -radians(65), 1e-12);
     EXPECT_NEAR(beams.back().high, radians(65), 1e-12);
@@ -127,7 +127,7 @@ TEST(BeamFanTest, BeamsPartitionTheFanFromStarboardToPort) {
 TEST(BeamFanTest, SharesOfAColumnAddUpToItsWidth) {
     for (double degrees : {1.0, 59.0, 61.0, 130.0, 360.0})
         for (int columns_per_beam : {1, 2, 7}) {
-            const SonarConfig config = fan(degrees, 33, columns_per_beam);
+            const SonarConfig config = plainFan(degrees, 33, columns_per_beam);
             const auto beams = makeBeams(config);
             for (const ViewFrustum& frustum : makeFrusta(config, beams)) {
                 const ColumnShares shares = makeShares(config, beams, frustum);
@@ -140,7 +140,7 @@ TEST(BeamFanTest, SharesOfAColumnAddUpToItsWidth) {
 
 TEST(BeamFanTest, EachBeamOwnsExactlyItsBearings) {
     for (double degrees : {10.0, 130.0, 360.0}) {
-        const SonarConfig config = fan(degrees, 50, 3);
+        const SonarConfig config = plainFan(degrees, 50, 3);
         const auto beams = makeBeams(config);
         for (const ViewFrustum& frustum : makeFrusta(config, beams)) {
             const auto parts = partsOfBeams(makeShares(config, beams, frustum), frustum, beams.size());
@@ -150,7 +150,7 @@ TEST(BeamFanTest, EachBeamOwnsExactlyItsBearings) {
 }
 
 TEST(BeamFanTest, ATableMayHaveGapsOverlapsAndAnyOrder) {
-    SonarConfig config = fan(0, 0);
+    SonarConfig config = plainFan(0, 0);
     config.bearings_deg = {-50, -10, -9, 0, 33.3, 60};
     config.beam_width_deg = 4;
     const auto beams = makeBeams(config);
@@ -168,7 +168,7 @@ TEST(BeamFanTest, ATableMayHaveGapsOverlapsAndAnyOrder) {
 }
 
 TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
-    SonarConfig config = fan(130, 16, 4);
+    SonarConfig config = plainFan(130, 16, 4);
     config.beam_geometry = BeamGeometry::Conical;
     config.beam_height_deg = 40;
     const auto beams = makeBeams(config);
@@ -192,14 +192,14 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
 }
 
 TEST(BeamFanTest, NoBeamIsEmptyWhereBeamsAreNarrowerThanColumns) {
-    const SonarConfig config = fan(360, 4096, 1);  // in the middle of a frustum columns are 1.1 beams wide
+    const SonarConfig config = plainFan(360, 4096, 1);  // in the middle of a frustum columns are 1.1 beams wide
     const auto beams = makeBeams(config);
     std::vector<int> shares_of(beams.size());
     for (const ViewFrustum& frustum : makeFrusta(config, beams))
         for (const ShareRecord& share : makeShares(config, beams, frustum).shares) ++shares_of[share.beam];
     EXPECT_EQ(std::ranges::count(shares_of, 0), 0);
 
-    const auto ping = pingOf(fan(110, 1000, 1), room());
+    const auto ping = plainPing(plainFan(110, 1000, 1), room());
     for (uint32_t k = 0; k < ping.beam_count; ++k) {
         const auto beam = beamOf(ping, k);
         EXPECT_GT(std::accumulate(beam.begin(), beam.end(), 0.0), 0) << k;
@@ -207,31 +207,31 @@ TEST(BeamFanTest, NoBeamIsEmptyWhereBeamsAreNarrowerThanColumns) {
 }
 
 TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
-    SonarConfig full = fan(360, 360, 4), narrow = fan(10, 10, 4);
+    SonarConfig full = plainFan(360, 360, 4), narrow = plainFan(10, 10, 4);
     full.quality.rows = narrow.quality.rows = 512;
-    const auto all = pingOf(full, room());
+    const auto all = plainPing(full, room());
     for (int first : {0, 55, 117, 175, 236, 350}) {
-        const auto few = pingOf(narrow, room(radians(first + 5 - 180)));
+        const auto few = plainPing(narrow, room(radians(first + 5 - 180)));
         for (uint32_t k = 0; k < 10; ++k)
-            EXPECT_LT(difference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3) << first + k;
+            EXPECT_LT(largestDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3) << first + k;
     }
 }
 
 TEST(BeamFanTest, AWallThroughThreeSlabsHasNoSeam) {
     // Turned by ten beams, the same bearings of the world lie elsewhere in the frusta.
     const auto wall = test::sceneOf({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
-    SonarConfig config = fan(150, 150, 4);
+    SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
-    const auto straight = pingOf(config, test::snapshotOf(wall));
-    const auto turned = pingOf(config, test::snapshotOf(wall, {}, radians(10)));
-    for (uint32_t k = 10; k < 140; ++k) EXPECT_LT(difference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
+    const auto straight = plainPing(config, test::snapshotOf(wall));
+    const auto turned = plainPing(config, test::snapshotOf(wall, {}, radians(10)));
+    for (uint32_t k = 10; k < 140; ++k) EXPECT_LT(largestDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
 }
 
 TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeSlabs) {
-    SonarConfig config = fan(150, 150, 4);
+    SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
-    const auto ping = pingOf(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));
-    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(difference(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
+    const auto ping = plainPing(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));
+    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(largestDifference(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
 }
 
 }  // namespace insonify::sonar

@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 namespace {
 
-SonarConfig sonarOf(double range, int bins) {
+SonarConfig rangedSonar(double range, int bins) {
     SonarConfig config;
     config.range = range;
     config.bin_count = bins;
@@ -25,7 +25,7 @@ std::vector<float> levels(const SonarConfig& config, const std::vector<double>& 
 }
 
 TEST(BinLevelsTest, IntensityFallsWithSpreadingAndAbsorption) {
-    SonarConfig config = sonarOf(4, 2);  // middles at 1 and 3 m
+    SonarConfig config = rangedSonar(4, 2);  // middles at 1 and 3 m
     config.absorption.emplace().db_per_m = 0.5;
     const auto bins = levels(config, {0.2, 0.2});
     EXPECT_NEAR(bins[0], 0.2 * std::pow(10, -0.1), 1e-7);
@@ -33,7 +33,7 @@ TEST(BinLevelsTest, IntensityFallsWithSpreadingAndAbsorption) {
 }
 
 TEST(BinLevelsTest, TwoMegahertzAtFourHundredMetresIsNoEchoForNoFloatHoldsIt) {
-    SonarConfig config = sonarOf(400, 800);
+    SonarConfig config = rangedSonar(400, 800);
     config.water = acoustics::Water{10, 35, 10, 8.1};
     config.absorption = AbsorptionConfig{{}, acoustics::AbsorptionLaw::FrancoisGarrison, 2000};
     const double r = 399.75;
@@ -43,20 +43,20 @@ TEST(BinLevelsTest, TwoMegahertzAtFourHundredMetresIsNoEchoForNoFloatHoldsIt) {
 }
 
 TEST(BinLevelsTest, AnIntensityIsAtMostTheLargestFloat) {
-    EXPECT_EQ(levels(sonarOf(0.2, 2), {1e60, 1}).front(), std::numeric_limits<float>::max());
+    EXPECT_EQ(levels(rangedSonar(0.2, 2), {1e60, 1}).front(), std::numeric_limits<float>::max());
 }
 
-TEST(BinLevelsTest, NoEchoIsZero) { EXPECT_EQ(levels(sonarOf(100, 2), {0, -1}), (std::vector<float>{0, 0})); }
+TEST(BinLevelsTest, NoEchoIsZero) { EXPECT_EQ(levels(rangedSonar(100, 2), {0, -1}), (std::vector<float>{0, 0})); }
 
 TEST(BinLevelsTest, NeutralAbsorptionEqualsNone) {
-    SonarConfig neutral = sonarOf(50, 100);
+    SonarConfig neutral = rangedSonar(50, 100);
     neutral.absorption.emplace().db_per_m = 0;
     const std::vector<double> accumulated(100, 0.3);
-    EXPECT_EQ(levels(neutral, accumulated), levels(sonarOf(50, 100), accumulated));
+    EXPECT_EQ(levels(neutral, accumulated), levels(rangedSonar(50, 100), accumulated));
 }
 
 TEST(BinLevelsTest, MeansOfThePublishedModelPassThrough) {
-    SonarConfig config = sonarOf(50, 3);
+    SonarConfig config = rangedSonar(50, 3);
     config.model = Model::Cerqueira2017;
     config.absorption.emplace().db_per_m = 1;
     EXPECT_EQ(levels(config, {0, 0.25, 1}), (std::vector<float>{0, 0.25f, 1}));

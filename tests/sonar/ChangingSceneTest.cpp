@@ -24,11 +24,11 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double evenly(Random& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-SonarConfig fan(int rows = 32, int columns = 2) {
+SonarConfig wideFan(int rows = 32, int columns = 2) {
     SonarConfig config;
     config.visibility = Visibility::Cpu;
     config.frequency_khz = 400;
@@ -72,7 +72,7 @@ std::unique_ptr<scene::Bathymetry> floorOf(const std::string& file, double reach
     return std::make_unique<scene::Bathymetry>(config, file);
 }
 
-std::vector<float> pingOf(SonarRenderer& renderer, const types::Snapshot& snapshot) {
+std::vector<float> binsWith(SonarRenderer& renderer, const types::Snapshot& snapshot) {
     types::Sonar ping;
     renderer.render(snapshot, ping);
     return ping.bins;
@@ -85,7 +85,7 @@ size_t threads() {
 
 /** Sonars with one effect each that meets the scene in a way of its own. */
 std::vector<std::pair<std::string, SonarConfig>> sonars() {
-    SonarConfig plain = fan(), coherent = fan(), mirrors = fan(), pattern = fan(), means = fan();
+    SonarConfig plain = wideFan(), coherent = wideFan(), mirrors = wideFan(), pattern = wideFan(), means = wideFan();
     coherent.speckle.emplace().coherent = true;
     mirrors.multipath.emplace().surface.emplace();
     mirrors.multipath->bounces = 2;
@@ -113,13 +113,13 @@ TEST(ChangingSceneTest, AMissionOverTilesPingsAsRenderersMadeAnewForEachTile) {
             const bool changed = snapshot.geometry != std::exchange(before, snapshot.geometry);
             changes += changed;
             EXPECT_FALSE(kept->setGeometry(snapshot.geometry)) << "the plan is the same";
-            const std::vector<float> bins = pingOf(*kept, snapshot);
+            const std::vector<float> bins = binsWith(*kept, snapshot);
             for (const float bin : bins) heard += static_cast<double>(bin);
             if (!changed || changes % 7 != 1) continue;
             snapshot.geometry = fresh_floor->about({way, -60, -4}, rest);
             snapshot.ahead = nullptr;
             SonarRenderer anew(config, snapshot.geometry);
-            ASSERT_EQ(bins, pingOf(anew, snapshot)) << name << " at " << way;
+            ASSERT_EQ(bins, binsWith(anew, snapshot)) << name << " at " << way;
         }
         EXPECT_GT(changes, 100) << name;
         EXPECT_GT(heard, 0) << name;
@@ -135,17 +135,17 @@ TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) 
             for (int step = 0; step < 8; ++step) {
                 auto geometry = std::make_shared<types::Geometry>(*always);
                 for (size_t mesh = 0; mesh < 3; ++mesh) {
-                    if (uniform(random, 0, 1) < 0.4) continue;
-                    const glm::dvec3 at(uniform(random, 4, 18), uniform(random, -6, 6), uniform(random, -3, 1));
+                    if (evenly(random, 0, 1) < 0.4) continue;
+                    const glm::dvec3 at(evenly(random, 4, 18), evenly(random, -6, 6), evenly(random, -3, 1));
                     geometry->objects.push_back({fmt::format("new {}", mesh), static_cast<int>(mesh),
-                                                 glm::translate(glm::dmat4(1), at), uniform(random, 0, 1) < 0.7});
+                                                 glm::translate(glm::dmat4(1), at), evenly(random, 0, 1) < 0.7});
                 }
-                types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0}, uniform(random, -0.5, 0.5));
+                types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0}, evenly(random, -0.5, 0.5));
                 snapshot.water_surface = 3;
-                snapshot.moved = {{1, glm::translate(glm::dmat4(1), {uniform(random, 6, 12), 2, -1})}};
+                snapshot.moved = {{1, glm::translate(glm::dmat4(1), {evenly(random, 6, 12), 2, -1})}};
                 kept.setGeometry(geometry);
                 SonarRenderer anew(config, geometry);
-                ASSERT_EQ(pingOf(kept, snapshot), pingOf(anew, snapshot)) << name << ' ' << trial << ' ' << step;
+                ASSERT_EQ(binsWith(kept, snapshot), binsWith(anew, snapshot)) << name << ' ' << trial << ' ' << step;
             }
         }
 }
@@ -161,18 +161,18 @@ TEST(ChangingSceneTest, AMaterialThatComesWithAnObjectChangesThePlanAndThePings)
     shiny->meshes[1].clusters[0].material = 1;
     EXPECT_EQ(shiny->meshes.shared(0), bare->meshes.shared(0));
     EXPECT_NE(shiny->meshes.shared(1), bare->meshes.shared(1));
-    SonarRenderer kept(fan(), bare), of_bare(fan(), bare), of_shiny(fan(), shiny);
+    SonarRenderer kept(wideFan(), bare), of_bare(wideFan(), bare), of_shiny(wideFan(), shiny);
     kept.setQuality(48, 3);
     of_bare.setQuality(48, 3);
     of_shiny.setQuality(48, 3);
     for (int turn = 0; turn < 3; ++turn) {
         EXPECT_EQ(kept.setGeometry(bare), turn > 0);
-        EXPECT_EQ(pingOf(kept, test::snapshotOf(bare)), pingOf(of_bare, test::snapshotOf(bare)));
+        EXPECT_EQ(binsWith(kept, test::snapshotOf(bare)), binsWith(of_bare, test::snapshotOf(bare)));
         EXPECT_TRUE(kept.setGeometry(shiny));
-        EXPECT_EQ(pingOf(kept, test::snapshotOf(shiny)), pingOf(of_shiny, test::snapshotOf(shiny)));
+        EXPECT_EQ(binsWith(kept, test::snapshotOf(shiny)), binsWith(of_shiny, test::snapshotOf(shiny)));
         EXPECT_EQ(kept.renderPlan().config.rows(), 48) << "quality is kept";
     }
-    EXPECT_NE(pingOf(of_bare, test::snapshotOf(bare)), pingOf(of_shiny, test::snapshotOf(shiny)));
+    EXPECT_NE(binsWith(of_bare, test::snapshotOf(bare)), binsWith(of_shiny, test::snapshotOf(shiny)));
 }
 
 TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
@@ -180,8 +180,8 @@ TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
     types::GeometryPtr before = floor->about({60, -60, -4}, rest);
-    SonarRenderer renderer(fan(), before);
-    pingOf(renderer, test::snapshotOf(before, {60, -60, -4}, 0, 0.5));
+    SonarRenderer renderer(wideFan(), before);
+    binsWith(renderer, test::snapshotOf(before, {60, -60, -4}, 0, 0.5));
     size_t running = 0;
     for (double way = 61; way < 200; way += 1) {
         types::Snapshot snapshot = test::snapshotOf(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
@@ -193,7 +193,7 @@ TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
             trees.push_back(MeshTree::of(before->meshes.shared(i)));
         }
         renderer.setGeometry(snapshot.geometry);
-        pingOf(renderer, snapshot);
+        binsWith(renderer, snapshot);
         size_t same = 0;
         for (size_t i = 0; i < snapshot.geometry->meshes.size(); ++i)
             for (size_t k = 0; k < before->meshes.size(); ++k)
@@ -222,7 +222,7 @@ TEST_F(ChosenQualityTest, IsKeptAndIsNotChosenAgainForTheNextTile) {
     const Folder folder;
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
-    SonarConfig config = fan();
+    SonarConfig config = wideFan();
     config.quality = {};
     config.quality.target_error = 0.01;
     startWith(config);
@@ -252,7 +252,7 @@ TEST(ChangingSceneTest, TwoSonarsOfAScenesFileHaveItsMeshesAndFactsOnce) {
                                          "1</size></box></geometry></visual></link></model></world></sdf>";
     const auto one = scene::sharedScene(folder / "box.sdf"), other = scene::sharedScene(folder / "box.sdf");
     EXPECT_EQ(one, other);
-    SonarRenderer first(fan(), one->geometry), second(fan(16, 2), other->geometry);
+    SonarRenderer first(wideFan(), one->geometry), second(wideFan(16, 2), other->geometry);
     const std::weak_ptr<MeshFacts> facts = MeshFacts::of(one->geometry->meshes.shared(0));
     EXPECT_FALSE(facts.expired());
     std::ofstream(folder / "box.sdf", std::ios::app) << "\n";

@@ -15,7 +15,7 @@ namespace {
 
 using test::pingOf;
 
-SonarConfig fan(Model model, BeamGeometry beams, Deposit deposit, double field_of_view_deg = 130) {
+SonarConfig depositFan(Model model, BeamGeometry beams, Deposit deposit, double field_of_view_deg = 130) {
     SonarConfig config =
         test::sonarOf({.beams = 64, .width_deg = field_of_view_deg, .height_deg = 50, .bins = 400, .rows = 128});
     config.model = model;
@@ -36,7 +36,7 @@ struct Kind {
 class DepositTest : public testing::TestWithParam<Kind> {
 protected:
     SonarConfig with(Deposit deposit) const {
-        return fan(GetParam().model, GetParam().beams, deposit, GetParam().field_of_view_deg);
+        return depositFan(GetParam().model, GetParam().beams, deposit, GetParam().field_of_view_deg);
     }
 };
 
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
                          });
 
 TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
-    SonarConfig cpu = fan(Model::Cerqueira2017, BeamGeometry::Planar, Deposit::Cpu, 60);
+    SonarConfig cpu = depositFan(Model::Cerqueira2017, BeamGeometry::Planar, Deposit::Cpu, 60);
     cpu.published = true;
     SonarConfig gpu = cpu;
     gpu.deposit = Deposit::Gpu;
@@ -169,13 +169,13 @@ TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFro
         "pictures are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
     for (const bool with_effect : {false, true})
         for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
-            SonarConfig config = fan(Model::Physical, BeamGeometry::Planar, where);
+            SonarConfig config = depositFan(Model::Physical, BeamGeometry::Planar, where);
             if (with_effect) config.effects["own_sums"] = {};
             const SonarRenderer renderer(config, snapshot.geometry);
             EXPECT_EQ(std::ranges::count(renderer.plan().notices, notice), with_effect && where == Deposit::Gpu)
                 << "effect " << with_effect << ", on the device " << (where == Deposit::Gpu);
         }
-    SonarConfig cpu = fan(Model::Physical, BeamGeometry::Planar, Deposit::Cpu), gpu = cpu;
+    SonarConfig cpu = depositFan(Model::Physical, BeamGeometry::Planar, Deposit::Cpu), gpu = cpu;
     gpu.deposit = Deposit::Gpu;
     gpu.effects["own_sums"] = {};
     EXPECT_EQ(pingOf(gpu, snapshot).bins, pingOf(cpu, snapshot).bins);
@@ -186,10 +186,10 @@ TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {
     // that it depends on the bins only where a pixel is deep.
     const auto wall = test::snapshotOf(test::sceneOf({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));
     for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
-        SonarConfig config = fan(Model::Physical, BeamGeometry::Planar, where, 30);
+        SonarConfig config = depositFan(Model::Physical, BeamGeometry::Planar, where, 30);
         config.beam_height_deg = 20;
         EXPECT_NEAR(manyOverOne(config, wall), 1, 1e-6) << "faced";
-        config = fan(Model::Physical, BeamGeometry::Planar, where);
+        config = depositFan(Model::Physical, BeamGeometry::Planar, where);
         EXPECT_NEAR(manyOverOne(config, hardScene()), 1, 2e-4) << "grazed";
         config.quality.rows = 512;
         EXPECT_NEAR(manyOverOne(config, hardScene()), 1, 5e-5) << "grazed, in shallower pixels";

@@ -43,7 +43,7 @@ SonarConfig arrayOf(Weighting weighting) {
 }
 
 /** A level bottom with a ball on it. */
-types::Snapshot scene() {
+types::Snapshot twoTargets() {
     return test::snapshotOf(test::sceneOf({test::ground(-2), test::sphere(0.5, 32)}, 0, {{}, {6, 1, -1.5}}));
 }
 
@@ -54,7 +54,7 @@ struct Heard {
 
 Heard heard(const SonarConfig& config) {
     Heard result;
-    const types::Snapshot snapshot = scene();
+    const types::Snapshot snapshot = twoTargets();
     SonarRenderer renderer(config, snapshot.geometry);
     renderer.render(snapshot, result.ping);
     renderer.takeElements(result.ping, result.signals);
@@ -145,7 +145,7 @@ TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
                 static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
 }
 
-std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
+std::vector<std::string> refusalsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::vector<std::string> texts;
@@ -154,26 +154,26 @@ std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
 }
 
 TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
-    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
+    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.speckle.reset();
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(refusalsOf(config),
                 ElementsAre("elements need speckle: {coherent: true}; without it energies are summed, "
                             "not fields"));
     config = arrayOf(Weighting::Uniform);
     config.beam_geometry = BeamGeometry::Planar;
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(refusalsOf(config),
                 ElementsAre("elements need beam_geometry: conical, for a straight array hears cones"));
     config = arrayOf(Weighting::Uniform);
     config.beam_pattern.reset();
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(refusalsOf(config),
                 ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
-    EXPECT_THAT(diagnosticsOf(arrayOf(Weighting::Gaussian)),
+    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Gaussian)),
                 ElementsAre(HasSubstr("they make no measured table, gaussian")));
     config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     config.elements->spacing_m = 0.01;
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(refusalsOf(config),
                 ElementsAre(HasSubstr("elements are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
                                       "beam_pattern.receive.azimuth is 0.0846")));
 }
@@ -187,7 +187,7 @@ protected:
 TEST_F(ElementPortTest, ThePortTellsThemOfEachPing) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     startWith(arrayOf(Weighting::Uniform));
-    const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(scene()));
+    const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(twoTargets()));
     types::SonarElementsPtr signals;
     ASSERT_TRUE(ping && signals_.port.readNew(signals));
     const Heard expected = heard(arrayOf(Weighting::Uniform));

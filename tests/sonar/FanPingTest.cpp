@@ -16,7 +16,7 @@ namespace {
 using types::radians;
 
 /** One effect, how it is asked for, and what it needs. */
-struct Effect {
+struct FanEffect {
     const char* name;
     std::function<void(SonarConfig&)> ask;
     bool drawn = true;         ///< Pictures show it as well.
@@ -34,7 +34,7 @@ BeamPatternConfig pattern() {
     return pattern;
 }
 
-std::vector<Effect> effects() {
+std::vector<FanEffect> fanEffects() {
     const auto plain = [](SonarConfig&) {};
     const auto coherent = [](SonarConfig& c) {
         c.frequency_khz = 300;
@@ -78,7 +78,7 @@ std::vector<Effect> effects() {
 }
 
 /** A sonar of 100 bins of 0.2 m. */
-SonarConfig sonar(const test::Table& table, const Effect& effect, Visibility visibility = Visibility::Cpu) {
+SonarConfig sonar(const test::Table& table, const FanEffect& effect, Visibility visibility = Visibility::Cpu) {
     SonarConfig config;
     config.speed_of_sound = 1000;
     config.range = 20;
@@ -178,7 +178,7 @@ bool canHave(const test::Table& table, const SonarConfig& config) {
     return config.beam_geometry == BeamGeometry::Planar || isAhead(table);
 }
 
-class FanPingTest : public testing::TestWithParam<Effect> {
+class FanPingTest : public testing::TestWithParam<FanEffect> {
 protected:
     template <class Use>
     void forTables(int rounds, const Use& use) const {
@@ -275,7 +275,7 @@ TEST_P(FanPingTest, RaysAndPicturesAgree) {
     });
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, FanPingTest, testing::ValuesIn(effects()), [](const auto& effect) {
+INSTANTIATE_TEST_SUITE_P(Effects, FanPingTest, testing::ValuesIn(fanEffects()), [](const auto& effect) {
     std::string name = effect.param.name;
     std::ranges::replace(name, ' ', '_');
     return name;
@@ -286,7 +286,7 @@ TEST(FanPingTest, CoherentSpeckleKeepsTheEnergyOfEveryTable) {
     std::mt19937 random(3);
     for (const test::Table& table : test::tablesOf(random)) {
         SCOPED_TRACE(testing::PrintToString(table));
-        SonarConfig energies = sonar(table, effects().front());
+        SonarConfig energies = sonar(table, fanEffects().front());
         energies.frequency_khz = 300;
         energies.bin_count = 400;
         energies.quality.rows = 256;

@@ -20,19 +20,19 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using types::radians;
-using Complex = std::complex<double>;
+using Phasor = std::complex<double>;
 
-constexpr double wavelength = 0.002;
+constexpr double array_wavelength = 0.002;
 
 /** A fan of 41 beams over 40 deg, whose receiving array is 32 wavelengths long: 64 elements. */
-SonarConfig fanOf(Weighting weighting = Weighting::Uniform) {
+SonarConfig imperfectFan(Weighting weighting = Weighting::Uniform) {
     SonarConfig config =
         test::sonarOf({.beams = 41, .width_deg = 40, .height_deg = 60, .bins = 100, .rows = 32, .columns = 2});
     config.visibility = Visibility::Cpu;
     config.speed_of_sound = 1500;
     config.frequency_khz = 750;
     config.beam_pattern.emplace().receive.azimuth.emplace().weighting = weighting;
-    config.beam_pattern->receive.azimuth->aperture_m = 32 * wavelength;
+    config.beam_pattern->receive.azimuth->aperture_m = 32 * array_wavelength;
     return config;
 }
 
@@ -41,11 +41,11 @@ SonarConfig withErrors(SonarConfig config, const ImperfectionsConfig& errors) {
     return config;
 }
 
-types::Snapshot bottom() {
+types::Snapshot flatBottom() {
     return test::snapshotOf(test::sceneOf({test::ground(-2), test::sphere(0.5, 16)}, 0, {{}, {6, 1, -1.5}}));
 }
 
-types::Sonar pingOf(const SonarConfig& config, const types::Snapshot& snapshot = bottom()) {
+types::Sonar imperfectPing(const SonarConfig& config, const types::Snapshot& snapshot = flatBottom()) {
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;
     renderer.render(snapshot, ping);
@@ -59,7 +59,7 @@ TEST(ImperfectionsTest, SidelobesRiseByTheVarianceOfTheErrorsOverTheElements) {
     for (const Weighting weighting : {Weighting::Uniform, Weighting::Taylor})
         for (const auto& [gain_db, phase_deg, dead] :
              {Case{1, 0, 0}, Case{0, 8, 0}, Case{1, 8, 0}, Case{0, 0, 0.05}, Case{2, 20, 0.1}}) {
-            const SonarConfig ideal = fanOf(weighting);
+            const SonarConfig ideal = imperfectFan(weighting);
             const Directivity without(ideal);
             const double s = gain_db * std::log(10) / 20, p = radians(phase_deg), alive = 1 - dead;
             // Moments of (alive) exp(s n) exp(i p n'), n and n' N(0, 1).
@@ -92,7 +92,7 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
     ImperfectionsConfig errors;
     errors.elements = 25;
     errors.dead_elements = {12};
-    SonarConfig config = withErrors(fanOf(), errors);
+    SonarConfig config = withErrors(imperfectFan(), errors);
     const Directivity with(config);
     for (double angle = -radians(80); angle < radians(80); angle += radians(0.31)) {
         const double u = 32 * std::sin(angle), sinc = std::abs(u) < 1e-9 ? 1 : std::sin(pi * u) / (pi * u);
@@ -105,11 +105,11 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
 }
 
 TEST(ImperfectionsTest, NoErrorsAreTheSameBits) {
-    SonarConfig plain = fanOf(), coherent = fanOf(Weighting::Taylor), boxes = fanOf();
+    SonarConfig plain = imperfectFan(), coherent = imperfectFan(Weighting::Taylor), boxes = imperfectFan();
     coherent.speckle.emplace().coherent = true;
     boxes.beam_pattern.reset();
     for (const SonarConfig& config : {plain, coherent, boxes})
-        EXPECT_EQ(pingOf(withErrors(config, {.seed = 9})).bins, pingOf(config).bins);
+        EXPECT_EQ(imperfectPing(withErrors(config, {.seed = 9})).bins, imperfectPing(config).bins);
 }
 
 TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoherence) {
@@ -117,10 +117,10 @@ TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoh
     types::Snapshot snapshot = test::snapshotOf(test::openWater());
     snapshot.targets = {{glm::dvec3(8 * std::cos(0.1), 8 * std::sin(0.1), 0), 0}};
     for (const bool is_coherent : {false, true}) {
-        SonarConfig config = withErrors(fanOf(), errors);
+        SonarConfig config = withErrors(imperfectFan(), errors);
         config.beam_pattern->floor_db = -90;
         if (is_coherent) config.speckle.emplace().coherent = true;
-        const types::Sonar ping = pingOf(config, snapshot);
+        const types::Sonar ping = imperfectPing(config, snapshot);
         const Directivity pattern(config);
         for (size_t beam = 0; beam < ping.beam_count; ++beam) {
             double sum = 0;
@@ -136,12 +136,12 @@ TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
     const ImperfectionsConfig errors{.gain_error_db = 3, .phase_error_deg = 40, .dead_element_share = 0.1};
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
     const auto sidelobes = [&](bool is_coherent, const std::optional<ImperfectionsConfig>& own) {
-        SonarConfig config = fanOf(Weighting::Taylor);
+        SonarConfig config = imperfectFan(Weighting::Taylor);
         config.imperfections = own;
         config.beam_pattern->floor_db = -80;
         config.bin_count = 100;
         if (is_coherent) config.speckle.emplace().coherent = true;
-        const types::Sonar ping = pingOf(config, snapshot);
+        const types::Sonar ping = imperfectPing(config, snapshot);
         double side = 0, all = 0;
         for (size_t beam = 0; beam < ping.beam_count; ++beam)
             for (size_t k = 0; k < ping.bin_count; ++k) {
@@ -158,8 +158,8 @@ TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
 
 /** What an array hears of a point at a range and angle, by the exact ways to its elements, focused at another range. */
 double exactPower(double length, size_t count, double range, double angle, double focus) {
-    Complex sum;
-    const double k = 2 * pi / wavelength;
+    Phasor sum;
+    const double k = 2 * pi / array_wavelength;
     for (size_t m = 0; m < count; ++m) {
         const double y = length * acoustics::elementPlace(m, count);
         const double way = std::hypot(range * std::cos(angle), range * std::sin(angle) - y) - range;
@@ -170,7 +170,7 @@ double exactPower(double length, size_t count, double range, double angle, doubl
 }
 
 /** Width between the half-power points of a pattern, the outermost ones, relative to its maximum [rad]. */
-double widthOf(const std::function<double(double)>& power) {
+double mainLobeWidth(const std::function<double(double)>& power) {
     double top = 0, low = 0, high = 0;
     for (double a = -0.3; a <= 0.3; a += 2e-4) top = std::max(top, power(a));
     for (double a = -0.3; a <= 0.3; a += 2e-4)
@@ -184,7 +184,7 @@ double widthOf(const std::function<double(double)>& power) {
 TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
     constexpr double length = 0.2;  // far field beyond 20 m
     for (const double focus : {1.5, 4.0, 1e5}) {
-        SonarConfig config = fanOf();
+        SonarConfig config = imperfectFan();
         config.range = 30;
         config.beam_pattern->receive.azimuth->aperture_m = length;
         config.imperfections.emplace().focus_m = focus;
@@ -195,8 +195,8 @@ TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
             const size_t zone = pattern.zoneAt(range);
             const auto ours = [&](double angle) { return pattern.azimuth(angle, 0, zone); };
             const auto exact = [&](double angle) { return exactPower(length, 100, range, angle, focus); };
-            const double wide = widthOf(exact), slack = 0.12 * wide + 5e-4;
-            EXPECT_NEAR(widthOf(ours), wide, slack) << range << " m focused at " << focus;
+            const double wide = mainLobeWidth(exact), slack = 0.12 * wide + 5e-4;
+            EXPECT_NEAR(mainLobeWidth(ours), wide, slack) << range << " m focused at " << focus;
             double off = 0, all = 0;
             for (double angle = -0.2; angle < 0.2; angle += 1e-3) {
                 off += std::abs(ours(angle) - exact(angle));
@@ -208,7 +208,7 @@ TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
 }
 
 TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
-    SonarConfig config = fanOf(Weighting::Hann);
+    SonarConfig config = imperfectFan(Weighting::Hann);
     config.range = 200;
     const Directivity ideal(config);
     for (const double focus : {3.0, 1e5}) {
@@ -221,13 +221,13 @@ TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
 }
 
 TEST(ImperfectionsTest, ATargetNearAnArrayThatIsFocusedFarBlooms) {
-    SonarConfig config = fanOf();
+    SonarConfig config = imperfectFan();
     config.beam_pattern->receive.azimuth->aperture_m = 0.15;
     const auto beamsOver = [&](double range, bool is_focused) {
         SonarConfig own = config;
         if (!is_focused) own.imperfections.emplace().focus_m = 10;
         types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.02, 32)}, 0, {{range, 0, 0}}));
-        const types::Sonar ping = pingOf(own, snapshot);
+        const types::Sonar ping = imperfectPing(own, snapshot);
         std::vector<double> sums(ping.beam_count);
         for (size_t i = 0; i < ping.bins.size(); ++i) sums[i / ping.bin_count] += static_cast<double>(ping.bins[i]);
         const double top = std::ranges::max(sums);
@@ -238,11 +238,11 @@ TEST(ImperfectionsTest, ATargetNearAnArrayThatIsFocusedFarBlooms) {
 }
 
 TEST(ImperfectionsTest, DeadBeamsAreEmptyInTheOrderOfTheTableAndOthersKeepTheirBits) {
-    SonarConfig config = fanOf();
+    SonarConfig config = imperfectFan();
     config.bearings_deg = {10, -10, 5, 0, -5, 15};
     config.field_of_view_deg.reset();
     config.beam_width_deg = 2;
-    const types::Sonar whole = pingOf(config), some = pingOf(withErrors(config, {.dead_beams = {1, 5}}));
+    const types::Sonar whole = imperfectPing(config), some = imperfectPing(withErrors(config, {.dead_beams = {1, 5}}));
     for (size_t i = 0; i < whole.bins.size(); ++i) {
         const size_t beam = i / whole.bin_count;
         EXPECT_EQ(some.bins[i], beam == 1 || beam == 5 ? 0.0f : whole.bins[i]) << beam;
@@ -270,8 +270,8 @@ TEST(ImperfectionsTest, SharesAndGainsOfBeamsAreDrawnByTheSeed) {
 }
 
 TEST(ImperfectionsTest, CrosstalkPutsAShareOfEachBeamIntoItsNeighbours) {
-    const SonarConfig config = fanOf();
-    const types::Sonar clean = pingOf(config), mixed = pingOf(withErrors(config, {.crosstalk_db = -20}));
+    const SonarConfig config = imperfectFan();
+    const types::Sonar clean = imperfectPing(config), mixed = imperfectPing(withErrors(config, {.crosstalk_db = -20}));
     const size_t n = clean.bin_count;
     for (size_t i = n; i + n < clean.bins.size(); ++i)
         EXPECT_FLOAT_EQ(mixed.bins[i], clean.bins[i] + 0.01f * clean.bins[i - n] + 0.01f * clean.bins[i + n]);
@@ -279,13 +279,13 @@ TEST(ImperfectionsTest, CrosstalkPutsAShareOfEachBeamIntoItsNeighbours) {
 }
 
 TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
-    SonarConfig config = fanOf();
+    SonarConfig config = imperfectFan();
     config.bin_count = 400;
-    const types::Sonar clean = pingOf(config);
+    const types::Sonar clean = imperfectPing(config);
     const auto jittered = [&](double sd_bins, int64_t time) {
-        types::Snapshot snapshot = bottom();
+        types::Snapshot snapshot = flatBottom();
         snapshot.time.microseconds = time;
-        return pingOf(
+        return imperfectPing(
             withErrors(config, {.clock_jitter_us = sd_bins * static_cast<double>(clean.bin_duration.microseconds)}),
             snapshot);
     };
@@ -312,7 +312,7 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
     EXPECT_NEAR(std::sqrt(square / count), 0.3, 0.08);
 }
 
-std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
+std::vector<std::string> complaintsOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::vector<std::string> texts;
@@ -322,45 +322,45 @@ std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
 
 TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
-    EXPECT_THAT(diagnosticsOf(withErrors(fanOf(), gains)), IsEmpty());
-    SonarConfig boxes = withErrors(fanOf(), gains);
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), gains)), IsEmpty());
+    SonarConfig boxes = withErrors(imperfectFan(), gains);
     boxes.beam_pattern.reset();
-    EXPECT_THAT(diagnosticsOf(boxes),
+    EXPECT_THAT(complaintsOf(boxes),
                 ElementsAre("imperfections needs beam_pattern.receive.azimuth, whose aperture the elements fill"));
     boxes.imperfections = ImperfectionsConfig{.dead_beams = {3}};
-    EXPECT_THAT(diagnosticsOf(boxes), IsEmpty()) << "beams need no pattern";
-    EXPECT_THAT(diagnosticsOf(withErrors(fanOf(), {.dead_beams = {0, 41}})),
+    EXPECT_THAT(complaintsOf(boxes), IsEmpty()) << "beams need no pattern";
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
                 ElementsAre("imperfections.dead_beams[1] is 41; there are 41 beams, 0 to 40"));
-    EXPECT_THAT(diagnosticsOf(withErrors(fanOf(), {.dead_elements = {64}})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_elements = {64}})),
                 ElementsAre("imperfections.dead_elements[0] is 64; there are 64 elements, 0 to 63"));
-    EXPECT_THAT(diagnosticsOf(withErrors(fanOf(), {.dead_element_share = 1})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_element_share = 1})),
                 ElementsAre("imperfections leaves none of 64 elements alive"));
-    EXPECT_THAT(diagnosticsOf(withErrors(fanOf(), {.dead_beam_share = 1})),
+    EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), {.dead_beam_share = 1})),
                 ElementsAre("imperfections leaves none of 41 beams alive"));
-    SonarConfig measured = withErrors(fanOf(), gains);
+    SonarConfig measured = withErrors(imperfectFan(), gains);
     measured.beam_pattern->receive.azimuth = acoustics::BeamLaw{};
     measured.beam_pattern->receive.azimuth->file = "pattern.csv";
-    EXPECT_THAT(diagnosticsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
-    SonarConfig gaussian = withErrors(fanOf(Weighting::Gaussian), {.focus_m = 3});
+    EXPECT_THAT(complaintsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
+    SonarConfig gaussian = withErrors(imperfectFan(Weighting::Gaussian), {.focus_m = 3});
     gaussian.beam_pattern->receive.azimuth->aperture_m.reset();
     gaussian.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(diagnosticsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m needs a weighted line")));
-    SonarConfig toneless = withErrors(fanOf(), {.focus_m = 3});
+    EXPECT_THAT(complaintsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m needs a weighted line")));
+    SonarConfig toneless = withErrors(imperfectFan(), {.focus_m = 3});
     toneless.frequency_khz.reset();
     toneless.beam_pattern->receive.azimuth->aperture_m.reset();
     toneless.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(diagnosticsOf(toneless),
+    EXPECT_THAT(complaintsOf(toneless),
                 ElementsAre("imperfections.focus_m is given without frequency_khz, which it needs"));
-    SonarConfig published = withErrors(fanOf(), {.dead_beams = {1}});
+    SonarConfig published = withErrors(imperfectFan(), {.dead_beams = {1}});
     published.beam_pattern.reset();
     published.model = Model::Cerqueira2017;
-    EXPECT_THAT(diagnosticsOf(published),
+    EXPECT_THAT(complaintsOf(published),
                 ElementsAre("imperfections is given with model: cerqueira2017; it belongs to physical"));
-    SonarConfig elements = withErrors(fanOf(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
+    SonarConfig elements = withErrors(imperfectFan(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
     elements.beam_geometry = BeamGeometry::Conical;
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
-    EXPECT_THAT(diagnosticsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
+    EXPECT_THAT(complaintsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
                                                      HasSubstr("their number is that of `elements`")));
 }
 

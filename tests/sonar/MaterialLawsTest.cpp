@@ -54,7 +54,7 @@ TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
             EXPECT_NEAR(double{laws.records[0].law.y} / power, 1, 1e-6);
             EXPECT_NEAR(double{laws.records[0].law.z} / surface.squareSlope(), 1, 1e-6);
             // Beyond the lobe: small perturbations, between two entries of the table to 0.5 dB.
-            const LobeSlopes far{1, 0, 1e-6, 1e-6, 0, 0};
+            const LobeSlopes far{1, 0, 1e-6, 1e-6, 0, 0, 0};
             for (double grazing_deg = 20; grazing_deg < 75; grazing_deg += 1.7) {
                 const double cosine = std::sin(types::radians(grazing_deg));
                 const double exact = surface.diffuse(types::radians(grazing_deg)) / cosine;

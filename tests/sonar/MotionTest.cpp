@@ -25,7 +25,7 @@ using types::radians;
 constexpr double c = 1500;
 
 /** 40 beams of 1 deg to 300 m, by bins of 0.1 m. */
-SonarConfig fan() {
+SonarConfig movingFan() {
     SonarConfig config;
     config.range_rounding = RangeRounding::Exact;
     config.speed_of_sound = c;
@@ -42,7 +42,7 @@ SonarConfig fan() {
 }
 
 /** A plate of 1 m across the x axis about its object's origin. */
-types::Mesh plate(float size = 1) { return test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size}); }
+types::Mesh facingPlate(float size = 1) { return test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size}); }
 
 struct Loudest {
     double range;
@@ -81,7 +81,7 @@ types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& g
 
 /** The slant range and the direction at which a point is heard: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
  *  solved by halving. */
-struct Heard {
+struct HeardAt {
     double range;
     glm::dvec3 direction;
 };
@@ -93,7 +93,7 @@ double rootOf(const F& f, double low, double high) {
     }
     return low;
 }
-Heard exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
+HeardAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
     const double out = rootOf([&](double t) { return c * t - glm::length(point + point_velocity * t); }, 0,
                               4 * glm::length(point) / c);
     const glm::dvec3 met = point + point_velocity * out;
@@ -110,8 +110,8 @@ TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
          {Case{{200, 5, 0}, {-20, 0, 0}, {}}, Case{{200, 5, 0}, {}, {15, 0, 0}},
           Case{{250, -40, 3}, {10, 12, 0}, {25, -3, 0.5}}, Case{{80, 10, 0}, {30, 0, 0}, {-20, 0, 0}}}) {
         const types::Sonar ping =
-            pingOfMoving(fan(), test::sceneOf({plate()}), moving.place, moving.velocity, moving.sonar);
-        const Heard exact = exactly(moving.place, moving.velocity, moving.sonar);
+            pingOfMoving(movingFan(), test::sceneOf({facingPlate()}), moving.place, moving.velocity, moving.sonar);
+        const HeardAt exact = exactly(moving.place, moving.velocity, moving.sonar);
         const Loudest loudest = loudestOf(ping);
         EXPECT_NEAR(loudest.range, exact.range, 0.11);
         EXPECT_NEAR(loudest.bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.6));
@@ -122,7 +122,7 @@ TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
 TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
     const auto geometry = test::sceneOf({test::wall(200)});
     const glm::dvec3 velocity{25, 8, 0};
-    SonarRenderer renderer(fan(), geometry);
+    SonarRenderer renderer(movingFan(), geometry);
     types::Sonar ping;
     types::SonarTruth truth;
     renderer.setTruth(ping, &truth);
@@ -149,7 +149,7 @@ TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
 
 TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
     const auto geometry = test::sceneOf({test::ground(-10)});
-    SonarConfig config = fan();
+    SonarConfig config = movingFan();
     config.beam_height_deg = 40;
     const auto energyOf = [&](glm::dvec3 velocity) {
         double sum = 0;
@@ -164,7 +164,7 @@ TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
 
 TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
     const auto nothing = test::openWater();
-    SonarRenderer renderer(fan(), nothing);
+    SonarRenderer renderer(movingFan(), nothing);
     types::Sonar ping;
     const glm::dvec3 place(240, 30, 2), velocity(-15, 4, 0), sonar(20, 1, 0);
     for (const double ago : {0.5, 0.0}) {
@@ -173,7 +173,7 @@ TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
         snapshot.targets = {{place - ago * velocity, 0}};
         renderer.render(snapshot, ping);
     }
-    const Heard exact = exactly(place, velocity, sonar);
+    const HeardAt exact = exactly(place, velocity, sonar);
     EXPECT_NEAR(loudestOf(ping).range, exact.range, 0.051) << "its own bin";
     EXPECT_NEAR(loudestOf(ping).bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.51));
     EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
@@ -181,8 +181,8 @@ TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
 
 TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
     const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
-    const auto geometry = test::sceneOf({plate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
-    const Loudest loudest = loudestOf(pingOf(fan(), movingSonar(geometry, {}, {0, 0, turn})));
+    const auto geometry = test::sceneOf({facingPlate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+    const Loudest loudest = loudestOf(pingOf(movingFan(), movingSonar(geometry, {}, {0, 0, turn})));
     EXPECT_NEAR(loudest.range, 200, 0.11);
     EXPECT_NEAR(loudest.bearing, bearing - turn * flight, radians(0.6));
     EXPECT_GT(turn * flight, radians(7)) << "where it was is seven beams off";
@@ -190,11 +190,11 @@ TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
 
 TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
     const double turn = radians(45), flight = 2 * 200 / c;
-    SonarConfig one = fan();
+    SonarConfig one = movingFan();
     one.beam_count = 1;
     one.field_of_view_deg = 2;
     const auto heardAt = [&](double bearing) {
-        const auto geometry = test::sceneOf({plate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        const auto geometry = test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
     EXPECT_GT(heardAt(turn * flight / 2), 0);
@@ -203,15 +203,15 @@ TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
 }
 
 TEST(MotionTest, AChirpShiftsWhatMovesByItsRangeDopplerCoupling) {
-    SonarConfig config = fan();
+    SonarConfig config = movingFan();
     config.frequency_khz = 300;
     config.pulse.emplace().bandwidth_khz = 5;
     config.pulse->chirp_us = 20000;
     const double seconds = 0.02 * 300e3 / 5e3, speed = 2;  // f T / B = 1.2 s
     EXPECT_DOUBLE_EQ(dopplerCoupling(config), seconds);
-    const auto geometry = test::sceneOf({plate()});
+    const auto geometry = test::sceneOf({facingPlate()});
     for (const double away : {speed, -speed}) {
-        const Heard exact = exactly({150, 1, 0}, {away, 0, 0}, {});
+        const HeardAt exact = exactly({150, 1, 0}, {away, 0, 0}, {});
         EXPECT_NEAR(loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {away, 0, 0})).range,
                     exact.range + away * seconds, 0.11);
     }
@@ -221,32 +221,32 @@ TEST(MotionTest, AChirpShiftsWhatMovesByItsRangeDopplerCoupling) {
 }
 
 TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
-    const auto geometry = test::sceneOf({test::ground(-10), plate(5)}, -10, {{}, {100, 3, 0}});
-    SonarConfig without = fan();
+    const auto geometry = test::sceneOf({test::ground(-10), facingPlate(5)}, -10, {{}, {100, 3, 0}});
+    SonarConfig without = movingFan();
     without.motion_in_ping = false;
     const types::Sonar absent = pingOf(without, movingSonar(geometry, {}));
     EXPECT_GT(loudestOf(absent).intensity, 0);
-    const double slow = 0.99 * motionBound(fan(), makeBinGrid(fan())).speed;
+    const double slow = 0.99 * motionBound(movingFan(), makeBinGrid(movingFan())).speed;
     EXPECT_NEAR(slow, 0.99 * 0.1 * c / (4 * 300), 1e-9);
     for (const glm::dvec3& velocity : {glm::dvec3(0), glm::dvec3(slow, 0, 0), glm::dvec3(types::Pose::unknown)})
-        EXPECT_EQ(pingOf(fan(), movingSonar(geometry, velocity)).bins, absent.bins);
-    EXPECT_NE(pingOf(fan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
+        EXPECT_EQ(pingOf(movingFan(), movingSonar(geometry, velocity)).bins, absent.bins);
+    EXPECT_NE(pingOf(movingFan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
 }
 
 TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
     const auto geometry = test::sceneOf({test::ground(-10)});
-    const RenderPlan plan = makeRenderPlan(fan(), *geometry);
+    const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
     EXPECT_FALSE(plan.leftOut("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
                 testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
-    SonarConfig without = fan();
+    SonarConfig without = movingFan();
     without.motion_in_ping = false;
     EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));
 }
 
 /** What is wrong with a configuration, joined. */
-std::string diagnosticsOf(const SonarConfig& config) {
+std::string complaintOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::string all;
@@ -255,17 +255,17 @@ std::string diagnosticsOf(const SonarConfig& config) {
 }
 
 TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
-    EXPECT_EQ(diagnosticsOf(fan()), "");
-    SonarConfig config = fan();
+    EXPECT_EQ(complaintOf(movingFan()), "");
+    SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
     EXPECT_TRUE(config.castsRays()) << "whatever device there is";
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(diagnosticsOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
-    config = fan();
+    EXPECT_THAT(complaintOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
+    config = movingFan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(complaintOf(config),
                 HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
     types::Diagnostics diagnostics;
     acoustics::PulseConfig tone;
@@ -282,7 +282,7 @@ TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
 }
 
 TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
-    const auto geometry = test::sceneOf({plate()});
+    const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
     const auto putAt = [&](double x) {
@@ -304,7 +304,7 @@ TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
 }
 
 TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
-    const auto geometry = test::sceneOf({plate()});
+    const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
     const auto putAt = [&](double x, double yaw) {
@@ -333,7 +333,7 @@ TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
 }
 
 TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
-    const auto geometry = test::sceneOf({plate(), plate()});
+    const auto geometry = test::sceneOf({facingPlate(), facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
     glm::dmat4 place(1);
@@ -376,7 +376,7 @@ protected:
     SweepTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
     void start(bool sweeps) {
         ScanningSonarConfig config;
-        config.sonar = fan();
+        config.sonar = movingFan();
         config.sonar.beam_width_deg = 2;
         config.head = {.left_deg = 180, .right_deg = -180, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}};
         config.head.sweeps = sweeps;

@@ -22,7 +22,7 @@ using test::pingOf;
 using types::radians;
 
 /** Bins of 0.1 m to 30 m, rays that look 60 deg up and down. */
-SonarConfig sonarOf(double fov_deg, int beams) {
+SonarConfig surfaceSonar(double fov_deg, int beams) {
     return test::sonarOf(
         {.beams = beams, .width_deg = fov_deg, .height_deg = 120, .bins = 300, .rows = 512, .columns = 2});
 }
@@ -64,7 +64,7 @@ std::vector<size_t> heardBins(const types::Sonar& ping, uint32_t beam = 0) {
 }
 
 TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
-    const SonarConfig config = sonarOf(40, 1);
+    const SonarConfig config = surfaceSonar(40, 1);
     const auto ping = pingOf(mirrored(config), withTarget(3, {12, 0, -1}));
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const std::vector<double> ranges{r1, (r1 + r2) / 2, r2};
@@ -80,7 +80,7 @@ TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
 }
 
 TEST(MultipathTest, TheFirstEchoOfATargetIsTheSameBitForBit) {
-    const SonarConfig config = sonarOf(40, 4);
+    const SonarConfig config = surfaceSonar(40, 4);
     const auto with = pingOf(mirrored(config), withTarget(3, {12, 2, -1}));
     const auto without = pingOf(config, withTarget(3, {12, 2, -1}));
     for (size_t i = 0; i < without.bins.size(); ++i)
@@ -93,7 +93,7 @@ TEST(MultipathTest, TheFirstEchoOfATargetIsTheSameBitForBit) {
 
 /** How many returns of a target there are with a plate somewhere. */
 size_t returnsWith(types::Mesh plate) {
-    auto config = mirrored(sonarOf(20, 1));
+    auto config = mirrored(surfaceSonar(20, 1));
     auto scene = test::sceneOf({std::move(plate)}, -200);
     return heardBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
 }
@@ -111,7 +111,7 @@ TEST(MultipathTest, EachLegOfATargetsWaysIsHiddenByItself) {
 }
 
 TEST(MultipathTest, WhatIsOutsideOfTheApertureIsNeitherSentNorHeard) {
-    auto config = mirrored(sonarOf(40, 1));
+    auto config = mirrored(surfaceSonar(40, 1));
     config.beam_height_deg = 50;  // the way by the surface goes up by 30.3 deg
     EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
     config.beam_height_deg = 62;
@@ -120,12 +120,12 @@ TEST(MultipathTest, WhatIsOutsideOfTheApertureIsNeitherSentNorHeard) {
 
 TEST(MultipathTest, ATargetAboveTheSurfaceIsNotHeard) {
     const auto snapshot = withTarget(3, {12, 0, 4});
-    EXPECT_EQ(heardBins(pingOf(mirrored(sonarOf(40, 1)), snapshot)).size(), 0u);
-    EXPECT_EQ(heardBins(pingOf(sonarOf(40, 1), snapshot)).size(), 1u);
+    EXPECT_EQ(heardBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
+    EXPECT_EQ(heardBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
 }
 
 TEST(MultipathTest, PatternsOfTheWayOutAndTheWayBackAreEachTheirOwn) {
-    auto config = mirrored(sonarOf(40, 1));
+    auto config = mirrored(surfaceSonar(40, 1));
     acoustics::BeamLaw narrow, wide;
     narrow.weighting = wide.weighting = acoustics::Weighting::Gaussian;
     narrow.width_deg = 20;
@@ -169,7 +169,7 @@ struct Bottom {
 };
 
 TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
-    const SonarConfig config = sonarOf(8, 4);
+    const SonarConfig config = surfaceSonar(8, 4);
     const auto scene = test::sceneOf({test::ground(-4)});
     const auto ghosts = difference(pingOf(mirrored(config), under(2, scene)), pingOf(config, under(2, scene)));
     const Bottom expected(120, radians(8));
@@ -183,7 +183,7 @@ TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
 }
 
 TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
-    const SonarConfig config = sonarOf(90, 16);
+    const SonarConfig config = surfaceSonar(90, 16);
     const auto scene = test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}});
     const auto with = pingOf(mirrored(config), under(2, scene)), without = pingOf(config, under(2, scene));
     size_t same = 0, more = 0;
@@ -200,20 +200,20 @@ TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
 
 TEST(MultipathTest, NothingAboveTheSurfaceIsHeard) {
     const auto wall = test::sceneOf({test::wall(10)});
-    const auto ping = pingOf(mirrored(sonarOf(8, 1)), under(2, wall));
+    const auto ping = pingOf(mirrored(surfaceSonar(8, 1)), under(2, wall));
     // Straight at most to where the wall meets the surface; farther away there are ghosts of what is below it.
     double dry = 0, all = 0;
-    const auto open = pingOf(sonarOf(8, 1), under(2, wall));
+    const auto open = pingOf(surfaceSonar(8, 1), under(2, wall));
     for (size_t k = 0; k < 300; ++k) all += open.bins[k];
     for (size_t k = 0; k < 300; ++k) dry += ping.bins[k];
     EXPECT_GT(std::abs(dry / all - 1), 0.01);
     const auto beyond = under(2, test::sceneOf({test::quad({10, -5, 3}, {0, 10, 0}, {0, 0, 3})}));
-    EXPECT_TRUE(heardBins(pingOf(mirrored(sonarOf(8, 1)), beyond)).empty());
-    EXPECT_FALSE(heardBins(pingOf(sonarOf(8, 1), beyond)).empty());
+    EXPECT_TRUE(heardBins(pingOf(mirrored(surfaceSonar(8, 1)), beyond)).empty());
+    EXPECT_FALSE(heardBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
 }
 
 TEST(MultipathTest, WithoutBouncesOrAnythingToReflectEveryBinIsAsItWas) {
-    auto config = sonarOf(40, 8);
+    auto config = surfaceSonar(40, 8);
     const auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
     const auto without = pingOf(config, snapshot).bins;
     EXPECT_EQ(pingOf(mirrored(config, 0, 0), snapshot).bins, without);
@@ -281,7 +281,7 @@ types::Mesh wallToPort(float from = -50, float to = 50) {
 }
 
 TEST(MultipathTest, AMirrorShowsATargetByItsReflection) {
-    const SonarConfig config = bouncing(sonarOf(170, 1));
+    const SonarConfig config = bouncing(surfaceSonar(170, 1));
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const auto returns = [&](types::Mesh wall, float reflection) {
         auto snapshot = test::snapshotOf(sceneWith({{std::move(wall), mirrorOf(reflection)}}));
@@ -309,7 +309,7 @@ double between(const types::Sonar& ping, double from, double to, size_t beam = 0
 
 /** A low fan to both sides, finely sampled. */
 SonarConfig lowFan(int beams) {
-    SonarConfig config = sonarOf(140, beams);
+    SonarConfig config = surfaceSonar(140, beams);
     config.beam_height_deg = 20;
     config.quality.columns_per_beam = 4096 / beams;
     return config;
@@ -373,7 +373,7 @@ SonarConfig cornerSonar() {
     config.quality.rows = config.quality.columns_per_beam = 256;
     return config;
 }
-constexpr double corner_range = 50, wavelength = 0.003;
+constexpr double corner_range = 50, corner_wavelength = 0.003;
 
 double strengthOf(const SonarConfig& config, types::GeometryPtr corner) {
     const auto ping = pingOf(config, test::snapshotOf(std::move(corner)));
@@ -402,13 +402,13 @@ TEST(MultipathTest, ADihedralHasItsTargetStrengthOverFortyDegrees) {
     const SonarConfig config = bouncing(cornerSonar(), 2);
     for (const double yaw : {-20.0, -10.0, 0.0, 7.0, 20.0}) {
         const double aperture = 2 * a * b * std::sin(radians(45 - std::abs(yaw)));
-        EXPECT_NEAR(strengthOf(config, dihedral(a, b, yaw)), 20 * std::log10(aperture / wavelength), 1) << yaw;
+        EXPECT_NEAR(strengthOf(config, dihedral(a, b, yaw)), 20 * std::log10(aperture / corner_wavelength), 1) << yaw;
     }
-    EXPECT_NEAR(20 * std::log10(2 * a * b * std::sin(radians(45)) / wavelength),
-                20 * std::log10(std::numbers::sqrt2 * a * b / wavelength), 1e-9);
+    EXPECT_NEAR(20 * std::log10(2 * a * b * std::sin(radians(45)) / corner_wavelength),
+                20 * std::log10(std::numbers::sqrt2 * a * b / corner_wavelength), 1e-9);
     // Without a mirror there is no second bounce: what is left are the sidelobes of both plates (ACOUSTICS.md 3.6).
-    const double beta = 2 * pi / wavelength * a * std::sin(radians(45)),
-                 plate = a * b / wavelength * std::cos(radians(45));
+    const double beta = 2 * pi / corner_wavelength * a * std::sin(radians(45)),
+                 plate = a * b / corner_wavelength * std::cos(radians(45));
     EXPECT_NEAR(strengthOf(bouncing(cornerSonar(), 1), dihedral(a, b, 0)),
                 10 * std::log10(2 * plate * plate / (2 * beta * beta)), 0.5);
 }
@@ -456,7 +456,7 @@ TEST(MultipathTest, ATrihedralHasItsTargetStrengthOverFortyDegrees) {
         for (const auto& [yaw, pitch] :
              {std::pair{0.0, 0.0}, {20.0, 0.0}, {-20.0, 0.0}, {0.0, 20.0}, {0.0, -20.0}, {10.0, 5.0}}) {
             const double aperture = side * side * trihedralAperture(square, yaw, pitch);
-            EXPECT_NEAR(strengthOf(config, trihedral(side, square, yaw, pitch)), 20 * std::log10(aperture / wavelength),
+            EXPECT_NEAR(strengthOf(config, trihedral(side, square, yaw, pitch)), 20 * std::log10(aperture / corner_wavelength),
                         2)
                 << (square ? "square " : "triangular ") << yaw << ' ' << pitch;
         }
@@ -495,7 +495,7 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     EXPECT_EQ(coherentReflection(0, 0.003, 1), 1);
     const double roughness = 2 * (2 * pi / 0.5) * 0.0053 * 9 * 0.3;
     EXPECT_DOUBLE_EQ(coherentReflection(3, 0.5, 0.3), std::exp(-roughness * roughness / 2));
-    const SonarConfig config = sonarOf(40, 8);
+    const SonarConfig config = surfaceSonar(40, 8);
     auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
     const auto plain = pingOf(config, snapshot), flat = pingOf(mirrored(config), snapshot);
     SonarRenderer rough(mirrored(config, 3), snapshot.geometry);
@@ -513,7 +513,7 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
 }
 
 TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
-    const SonarConfig config = sonarOf(8, 4);
+    const SonarConfig config = surfaceSonar(8, 4);
     const auto snapshot = under(2, test::sceneOf({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
     SonarRenderer renderer(mirrored(config), snapshot.geometry);
     types::Sonar ping;
@@ -544,7 +544,7 @@ TEST(MultipathTest, ThreadsMakeNoDifference) {
     const auto bins = [&](int threads) {
         RenderOptions options;
         options.threads = threads;
-        SonarRenderer renderer(mirrored(sonarOf(90, 16), 3), snapshot.geometry, options);
+        SonarRenderer renderer(mirrored(surfaceSonar(90, 16), 3), snapshot.geometry, options);
         types::Sonar ping;
         renderer.render(snapshot, ping);
         return ping.bins;
@@ -555,7 +555,7 @@ TEST(MultipathTest, ThreadsMakeNoDifference) {
 
 TEST(MultipathTest, WithAPatternAndConesAndAMovingObjectGhostsAreWhereTheyAre) {
     for (const BeamGeometry geometry : {BeamGeometry::Planar, BeamGeometry::Conical}) {
-        SonarConfig config = mirrored(sonarOf(60, 30));
+        SonarConfig config = mirrored(surfaceSonar(60, 30));
         config.beam_geometry = geometry;
         acoustics::BeamLaw law;
         law.width_deg = 3;

@@ -102,7 +102,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // in WallsTest.cpp:
                                                "thin walls",
                                                // in ImperfectionsTest.cpp:
-                                               "imperfections"};
+                                               "imperfections",
+                                               // in EdgeDiffractionTest.cpp:
+                                               "edge diffraction"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

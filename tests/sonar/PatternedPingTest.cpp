@@ -24,7 +24,7 @@ using test::lawOf;
 using test::pingOf;
 using types::radians;
 
-SonarConfig sonarOf(double fov_deg, int beams, double bin, int bins) {
+SonarConfig patternedSonar(double fov_deg, int beams, double bin, int bins) {
     return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
@@ -39,7 +39,7 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
 }
 
 TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
-    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 16);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 20);
     config.beam_pattern->floor_db = -80;
@@ -73,7 +73,7 @@ test::Form weightedPitchedBottom(double height, double pitch, double delta,
 }
 
 TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
-    SonarConfig config = sonarOf(1, 1, 0.1, 300);
+    SonarConfig config = patternedSonar(1, 1, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 12);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 16);
     config.beam_pattern->floor_db = -80;
@@ -98,7 +98,7 @@ TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
 }
 
 TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
-    SonarConfig config = sonarOf(60, 30, 0.1, 200);
+    SonarConfig config = patternedSonar(60, 30, 0.1, 200);
     config.beam_height_deg = 40;
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
     config.beam_pattern->floor_db = -90;
@@ -113,7 +113,7 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
 }
 
 TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
-    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
     const types::Sonar plain = pingOf(config, snapshot);
     acoustics::PulseConfig pulse;
@@ -126,7 +126,7 @@ TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
 
 TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
     const auto geometry = test::sceneOf({test::ground(-5)});
-    SonarConfig config = sonarOf(60, 16, 0.1, 300);
+    SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const RenderPlan plain = makeRenderPlan(config, *geometry);
     EXPECT_FALSE(plain.has(Pass::Beamform) || plain.has(Pass::Pulse));
     for (const char* const effect : {"azimuth beam pattern", "elevation beam pattern", "range point-spread"}) {
@@ -151,7 +151,7 @@ TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
 
 /** What a fan of close beams hears of a small disc straight ahead. */
 BeamCut cutOf(const acoustics::BeamLaw& law) {
-    SonarConfig config = sonarOf(24, 601, 0.5, 24);
+    SonarConfig config = patternedSonar(24, 601, 0.5, 24);
     config.beam_height_deg = 2;
     config.quality.rows = 64;
     config.beam_pattern.emplace().receive.azimuth = law;
@@ -192,7 +192,7 @@ struct MeasuredBeam {
 
 TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
     const MeasuredBeam beam;
-    SonarConfig config = sonarOf(18, 361, 0.5, 24);
+    SonarConfig config = patternedSonar(18, 361, 0.5, 24);
     config.beam_height_deg = 2;
     config.quality.rows = 256;
     config.quality.columns_per_beam = 4;
@@ -218,7 +218,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
 }
 
 TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
-    SonarConfig config = sonarOf(90, 90, 0.2, 100);
+    SonarConfig config = patternedSonar(90, 90, 0.2, 100);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
     const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
@@ -230,7 +230,7 @@ TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
 }
 
 TEST(PatternedPingTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
-    SonarConfig config = sonarOf(2, 1, 0.01, 1200);
+    SonarConfig config = patternedSonar(2, 1, 0.01, 1200);
     config.beam_height_deg = 2;
     config.quality.columns_per_beam = 64;
     config.pulse.emplace().bandwidth_khz = 5;  // c / 2B = 0.1 m

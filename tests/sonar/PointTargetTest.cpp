@@ -30,14 +30,14 @@ using test::pingOf;
 using types::radians;
 
 /** Bins of 0.1 m to 20 m, rays. */
-SonarConfig sonarOf(double fov_deg, int beams) {
+SonarConfig targetSonar(double fov_deg, int beams) {
     SonarConfig config = test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = 200, .rows = 16, .columns = 2});
     config.visibility = Visibility::Cpu;
     return config;
 }
 
 /** A level sonar at the origin with one target of 0 dB. */
-types::Snapshot withTarget(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
+types::Snapshot withPoint(types::GeometryPtr geometry, glm::dvec3 position, double strength_db = 0) {
     types::Snapshot snapshot = test::snapshotOf(std::move(geometry));
     snapshot.targets = {{position, strength_db}};
     return snapshot;
@@ -146,7 +146,7 @@ TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
     for (const Law& pattern : patterns)
         for (const Law& pulse : pulses)
             for (const double absorption : {0.0, 0.35}) {
-                SonarConfig config = sonarOf(40, 21);
+                SonarConfig config = targetSonar(40, 21);
                 config.beam_pattern.emplace();
                 pattern.set(config);
                 pulse.set(config);
@@ -156,7 +156,7 @@ TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
                 types::Sonar ping;
                 double worst = 0;
                 for (const glm::dvec3& at : places()) {
-                    renderer.render(withTarget(geometry, at, -17.5), ping);
+                    renderer.render(withPoint(geometry, at, -17.5), ping);
                     const std::vector<double> shape = shapeOf(config, ping, at);
                     const double distance_db = 10 * std::log10(glm::length(at));
                     ASSERT_GT(*std::ranges::max_element(shape), 0);
@@ -172,12 +172,12 @@ TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
 TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
     const auto geometry = openWater();
     for (const BeamGeometry fan : {BeamGeometry::Planar, BeamGeometry::Conical}) {
-        SonarConfig config = sonarOf(60, 6);
+        SonarConfig config = targetSonar(60, 6);
         config.beam_geometry = fan;
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
         const auto heardIn = [&](double azimuth_deg, double elevation_deg) {
-            renderer.render(withTarget(geometry, towards(azimuth_deg, elevation_deg, 5.03)), ping);
+            renderer.render(withPoint(geometry, towards(azimuth_deg, elevation_deg, 5.03)), ping);
             std::vector<size_t> beams;
             for (size_t i = 0; i < ping.bins.size(); ++i)
                 if (ping.bins[i] > 0) {
@@ -217,7 +217,7 @@ TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
     types::Sonar ping;
     int tried = 0;
     for (int round = 0; round < 12; ++round) {
-        SonarConfig fan = sonarOf(60, 7);
+        SonarConfig fan = targetSonar(60, 7);
         fan.range = uniform(5, 30);
         fan.range_rounding = round % 2 == 0 ? RangeRounding::Exact : RangeRounding::Sample;
         fan.speed_of_sound = uniform(1400, 1600);
@@ -227,7 +227,7 @@ TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
                 SonarRenderer renderer(sonar, geometry);
                 for (int k = 20 + round; k < grid.bin_count - 20; k += 12, ++tried) {
                     ASSERT_EQ(binAt(grid.edge(k), grid.bin_width), k);
-                    renderer.render(withTarget(geometry, {grid.edge(k), 0, 0}), ping);
+                    renderer.render(withPoint(geometry, {grid.edge(k), 0, 0}), ping);
                     expect(k, std::span(ping.bins).subspan(3 * ping.bin_count, ping.bin_count));  // of the middle beam
                 }
             };
@@ -251,10 +251,10 @@ TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
 }
 
 TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
-    SonarConfig config = sonarOf(360, 12);
+    SonarConfig config = targetSonar(360, 12);
     const auto geometry = openWater();
     for (double azimuth = -180; azimuth < 180; azimuth += 7.3) {
-        const types::Sonar ping = pingOf(config, withTarget(geometry, towards(azimuth, 0, 5)));
+        const types::Sonar ping = pingOf(config, withPoint(geometry, towards(azimuth, 0, 5)));
         EXPECT_EQ(std::ranges::count_if(ping.bins, [](float x) { return x > 0; }), 1) << azimuth;
     }
 }
@@ -268,7 +268,7 @@ BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     std::vector<double> level;
     for (double angle = 0; angle < 12; angle += step) {
         const glm::dvec3 at = in_azimuth ? towards(angle, 0, 10.05) : towards(0, angle, 10.05);
-        renderer.render(withTarget(geometry, at), ping);
+        renderer.render(withPoint(geometry, at), ping);
         level.push_back(sumOf(ping));
     }
     return BeamCut(level, 0, step);
@@ -279,7 +279,7 @@ TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
         for (const bool in_azimuth : {true, false}) {
             acoustics::BeamLaw law = row.law();
             law.width_deg = 3;
-            SonarConfig config = sonarOf(2, 1);
+            SonarConfig config = targetSonar(2, 1);
             (in_azimuth ? config.beam_pattern.emplace().receive.azimuth
                         : config.beam_pattern.emplace().receive.elevation) = law;
             sweep(config, in_azimuth).expect(row);
@@ -287,10 +287,10 @@ TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
 }
 
 TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) {
-    SonarConfig config = sonarOf(20, 10);
+    SonarConfig config = targetSonar(20, 10);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     const auto geometry = openWater();
-    const auto outside = withTarget(geometry, towards(35.3, 0, 10.05));
+    const auto outside = withPoint(geometry, towards(35.3, 0, 10.05));
     const types::Sonar heard = pingOf(config, outside);
     const double top = *std::ranges::max_element(heard.bins) * std::pow(10.05, 4);
     EXPECT_LT(10 * std::log10(top), -25);
@@ -300,16 +300,16 @@ TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) 
 }
 
 TEST(PointTargetTest, NearerThanRangeMinItIsSilentAndBeyondTheRangeOnlyItsPulseIsHeard) {
-    SonarConfig config = sonarOf(20, 1);
+    SonarConfig config = targetSonar(20, 1);
     config.range_min = 2;
     const auto geometry = openWater();
-    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {1.999, 0, 0}))), 0);
-    EXPECT_GT(sumOf(pingOf(config, withTarget(geometry, {2.001, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {0, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {20.01, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {1.999, 0, 0}))), 0);
+    EXPECT_GT(sumOf(pingOf(config, withPoint(geometry, {2.001, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {0, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {20.01, 0, 0}))), 0);
     config.pulse.emplace().duration_us = 1000;  // half a metre
-    EXPECT_GT(sumOf(pingOf(config, withTarget(geometry, {20.2, 0, 0}))), 0);
-    EXPECT_EQ(sumOf(pingOf(config, withTarget(geometry, {20.3, 0, 0}))), 0);
+    EXPECT_GT(sumOf(pingOf(config, withPoint(geometry, {20.2, 0, 0}))), 0);
+    EXPECT_EQ(sumOf(pingOf(config, withPoint(geometry, {20.3, 0, 0}))), 0);
 }
 
 /** A plate of 1 m square to the x axis. */
@@ -318,11 +318,11 @@ types::GeometryPtr plate(double x, double y = 0) {
 }
 
 TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
-    SonarConfig config = sonarOf(40, 20);
+    SonarConfig config = targetSonar(40, 20);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     for (const SonarConfig& way : everyWay(config)) {
         const auto heardOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
-            types::Snapshot with = withTarget(geometry, at, 20), without = with;
+            types::Snapshot with = withPoint(geometry, at, 20), without = with;
             without.targets.clear();
             return sumOf(pingOf(way, with)) - sumOf(pingOf(way, without));
         };
@@ -339,9 +339,9 @@ TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
 
 TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
     const auto geometry = plate(5);
-    SonarRenderer renderer(sonarOf(40, 20), geometry);
+    SonarRenderer renderer(targetSonar(40, 20), geometry);
     types::Sonar ping;
-    types::Snapshot snapshot = withTarget(geometry, {10, 0, 0}, 60);
+    types::Snapshot snapshot = withPoint(geometry, {10, 0, 0}, 60);
     const auto targetsHeard = [&] {
         renderer.render(snapshot, ping);
         return renderer.othersHeard();
@@ -364,25 +364,25 @@ TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
 }
 
 TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
-    SonarConfig config = sonarOf(40, 20);
+    SonarConfig config = targetSonar(40, 20);
     const auto near = openWater();
     types::Snapshot snapshot = test::snapshotOf(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
     snapshot.targets = {{snapshot.sonar.position + snapshot.sonar.orientation * towards(7.3, -5, 12.34), -10}};
     const types::Sonar far = pingOf(config, snapshot),
-                       here = pingOf(config, withTarget(near, towards(7.3, -5, 12.34), -10));
+                       here = pingOf(config, withPoint(near, towards(7.3, -5, 12.34), -10));
     for (size_t i = 0; i < far.bins.size(); ++i) EXPECT_NEAR(far.bins[i], here.bins[i], 1e-6 * here.bins[i]) << i;
 }
 
 TEST(PointTargetTest, NothingOfItChangesNoBit) {
-    SonarConfig config = sonarOf(40, 20);
+    SonarConfig config = targetSonar(40, 20);
     config.pulse.emplace().bandwidth_khz = 4;
     const auto geometry = test::sceneOf({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});
     for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
         config.model = model;
         if (model == Model::Cerqueira2017) config.pulse.reset();
         const types::Sonar plain = pingOf(config, test::snapshotOf(geometry));
-        EXPECT_EQ(pingOf(config, withTarget(geometry, {5, 0, 0}, -3000)).bins, plain.bins);
-        const types::Sonar loud = pingOf(config, withTarget(geometry, {5, 0, 0}, 0));
+        EXPECT_EQ(pingOf(config, withPoint(geometry, {5, 0, 0}, -3000)).bins, plain.bins);
+        const types::Sonar loud = pingOf(config, withPoint(geometry, {5, 0, 0}, 0));
         EXPECT_EQ(loud.bins == plain.bins, model == Model::Cerqueira2017) << "means know no targets";
     }
 }

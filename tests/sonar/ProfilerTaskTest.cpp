@@ -15,7 +15,7 @@ using test::ground;
 using test::quad;
 using test::sceneOf;
 
-constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
+constexpr double profile_bin = 0.03;  // 20 us at 1500 m/s [m]
 constexpr double down = 90;
 
 class ProfilerTaskTest : public test::TaskBench<ProfilerTask, types::SnapshotPtr, types::PointCloudPtr> {
@@ -60,8 +60,8 @@ TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
         worst_mirrored = std::max(worst_mirrored, glm::distance(got, {5, -3 - height * std::tan(a), -height}));
         EXPECT_GT(cloud->intensity(static_cast<size_t>(k)), 0);
     }
-    std::cout << "flat bottom: soundings at most " << worst << " m off, bins of " << bin << " m\n";
-    EXPECT_LT(worst, 0.5 * bin);
+    std::cout << "flat bottom: soundings at most " << worst << " m off, bins of " << profile_bin << " m\n";
+    EXPECT_LT(worst, 0.5 * profile_bin);
     EXPECT_GT(worst_mirrored, 30);
 }
 
@@ -81,7 +81,7 @@ TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehic
         double worst = 0;
         for (const glm::dvec3& p : cloud->points) worst = std::max(worst, std::abs(glm::dot(normal, p)));
         std::cout << "tilted plane, yaw " << yaw << ", roll " << roll << ": at most " << worst << " m off the plane\n";
-        EXPECT_LT(worst, 0.5 * bin);
+        EXPECT_LT(worst, 0.5 * profile_bin);
     }
 }
 
@@ -98,7 +98,7 @@ TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone)
     const auto onAnEdge = [](double y) { return std::abs(y - 1) < 0.3 || std::abs(y - 3) < 0.3; };  // either is right
     for (const glm::dvec3& p : cloud->points) {
         if (onAnEdge(p.y)) continue;
-        EXPECT_NEAR(p.z, p.y > 1 && p.y < 3 ? -8 : -10, bin) << p.y;
+        EXPECT_NEAR(p.z, p.y > 1 && p.y < 3 ? -8 : -10, profile_bin) << p.y;
     }
 }
 

@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 namespace {
 
-SonarConfig published() {
+SonarConfig publishedSonar() {
     SonarConfig config;
     config.model = Model::Cerqueira2017;
     config.published = true;
@@ -28,7 +28,7 @@ SonarConfig published() {
     return config;
 }
 
-std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+std::vector<float> publishedBins(const SonarConfig& config, const types::GeometryPtr& geometry) {
     return test::pingOf(config, test::snapshotOf(geometry)).bins;
 }
 
@@ -71,17 +71,17 @@ void expectEqual(const std::vector<float>& got, const std::vector<double>& expec
 
 TEST(PublishedTest, BinsAreTheCountOfPixelsOfOneWideFrustum) {
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
-        SonarConfig config = published();
+        SonarConfig config = publishedSonar();
         config.deposit = deposit;
-        expectEqual(binsOf(config, test::sceneOf({test::ground(-5)})), counted(config, 5));
+        expectEqual(publishedBins(config, test::sceneOf({test::ground(-5)})), counted(config, 5));
     }
 }
 
 TEST(PublishedTest, AbsorptionActsBeforeTheSigmoid) {
-    SonarConfig config = published();
+    SonarConfig config = publishedSonar();
     config.beam_height_deg = 80;  // sees the ground at cosines up to 0.64
     config.absorption.emplace().db_per_m = 0.3;
-    const auto got = binsOf(config, test::sceneOf({test::ground(-5)}));
+    const auto got = publishedBins(config, test::sceneOf({test::ground(-5)}));
     expectEqual(got, counted(config, 5, 0.3 / 8.685889638));
     double difference = 0;
     const auto without = counted(config, 5);
@@ -90,22 +90,22 @@ TEST(PublishedTest, AbsorptionActsBeforeTheSigmoid) {
 }
 
 TEST(PublishedTest, AnEmptySeaIsTheSigmoidOfZeroInBinZero) {
-    const SonarConfig config = published();
-    const auto bins = binsOf(config, test::sceneOf({test::ground(500)}));
+    const SonarConfig config = publishedSonar();
+    const auto bins = publishedBins(config, test::sceneOf({test::ground(500)}));
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_NEAR(bins[i], i % 500 ? 0 : 6.1e-6, 1e-7) << i;
 }
 
 TEST(PublishedTest, FootprintsFillTheBinsThatItLeavesEmpty) {
-    SonarConfig config = published();
+    SonarConfig config = publishedSonar();
     const auto geometry = test::sceneOf({test::ground(-5)});
     const auto empty = [](const std::vector<float>& bins) {
         int count = 0;
         for (size_t k = 200; k < 490; ++k) count += bins[24 * 500 + k] == 0;
         return count;
     };
-    EXPECT_GT(empty(binsOf(config, geometry)), 100);
+    EXPECT_GT(empty(publishedBins(config, geometry)), 100);
     config.published = false;
-    EXPECT_EQ(empty(binsOf(config, geometry)), 0);
+    EXPECT_EQ(empty(publishedBins(config, geometry)), 0);
 }
 
 }  // namespace insonify::sonar

@@ -112,7 +112,7 @@ TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom)
 }
 
 /** A plate of 40 x 8 m square to the x axis, its middle at a place. */
-types::Mesh plate(glm::vec3 middle) { return test::quad(middle - glm::vec3(0, 20, 4), {0, 40, 0}, {0, 0, 8}); }
+types::Mesh uprightPlate(glm::vec3 middle) { return test::quad(middle - glm::vec3(0, 20, 4), {0, 40, 0}, {0, 0, 8}); }
 
 TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
     const auto exact = [](double seconds) {
@@ -126,7 +126,7 @@ TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
     EXPECT_NEAR(rise, 0.1 * 1951 * 1951 / (2 * 1530.0) * 1530 / 1500 * 1530 / 1500, 5) << "the brief form";
     const SonarConfig thin = longRange(thermocline(), 0.4);
     const auto heard = [&](double height, const SonarConfig& config) {
-        const auto geometry = test::sceneOf({plate({met.across, 0, -300 + height})});
+        const auto geometry = test::sceneOf({uprightPlate({met.across, 0, -300 + height})});
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
         renderer.render(test::snapshotOf(geometry, {0, 0, -300}), ping);
@@ -195,7 +195,7 @@ TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
     std::vector<acoustics::RayPoint> at(2);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
     const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
-    const auto both = test::sceneOf({plate(place(0)), plate(place(1))}), far = test::sceneOf({plate(place(1))});
+    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}), far = test::sceneOf({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
     const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
     const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
@@ -206,7 +206,7 @@ TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
 }
 
 TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
-    const auto geometry = test::sceneOf({plate({0, 0, 0})}, 0, {{0, 0, 5000}});
+    const auto geometry = test::sceneOf({uprightPlate({0, 0, 0})}, 0, {{0, 0, 5000}});
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{1.0}, at);
     types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, -300});

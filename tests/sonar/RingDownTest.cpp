@@ -10,21 +10,21 @@
 namespace insonify::sonar {
 namespace {
 
-SonarConfig sonar() {
+SonarConfig ringingSonar() {
     SonarConfig config = test::sonarOf({.beams = 4, .bins = 200, .rows = 32});
     config.visibility = Visibility::Cpu;
     config.pulse.emplace().bandwidth_khz = 4;
     return config;
 }
 
-types::Sonar pingOf(const SonarConfig& config, const types::GeometryPtr& geometry) {
+types::Sonar ringingPing(const SonarConfig& config, const types::GeometryPtr& geometry) {
     return test::pingOf(config, test::snapshotOf(geometry));
 }
 
 TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
-    SonarConfig config = sonar();
+    SonarConfig config = ringingSonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-30, 12};
-    const types::Sonar ping = pingOf(config, test::openWater());
+    const types::Sonar ping = ringingPing(config, test::openWater());
     const auto at = [](double r) { return std::pow(10, (-30 - 12 * r) / 10); };
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
         for (size_t k = 0; k < ping.bin_count; ++k) {
@@ -38,12 +38,12 @@ TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
 
 TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
     const auto geometry = test::sceneOf({test::wall(10)});
-    const types::Sonar plain = pingOf(sonar(), geometry);
-    SonarConfig config = sonar();
+    const types::Sonar plain = ringingPing(ringingSonar(), geometry);
+    SonarConfig config = ringingSonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-3000, 25};
-    EXPECT_EQ(pingOf(config, geometry).bins, plain.bins) << "of nothing";
+    EXPECT_EQ(ringingPing(config, geometry).bins, plain.bins) << "of nothing";
     config.pulse->ring_down->level_db = 0;
-    const types::Sonar heard = pingOf(config, geometry);
+    const types::Sonar heard = ringingPing(config, geometry);
     EXPECT_GT(heard.bins[0], 0.7f);
     EXPECT_NEAR(heard.bins[100], plain.bins[100], 1e-6f * plain.bins[100]);
     const auto behind = test::sceneOf({test::wall(-10)});
@@ -55,7 +55,7 @@ TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
 
 TEST(RingDownTest, ThePlanSaysWhetherItIsAdded) {
     const auto geometry = test::sceneOf({test::wall(10)});
-    SonarConfig config = sonar();
+    SonarConfig config = ringingSonar();
     EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut("transmit ring-down")->reason, Reason::NotConfigured);
     config.pulse->ring_down = acoustics::RingDownConfig{0, 25};
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::RingDown));

@@ -16,20 +16,20 @@ struct Sampled {
     RenderOptions options = {};
 };
 
-Sampled sonarOf(int rows, int columns, int samples) {
+Sampled sampledSonar(int rows, int columns, int samples) {
     SonarConfig config =
         test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = rows, .columns = columns});
     config.device = "software";
     return {config, {.samples_per_pixel = samples}};
 }
 
-std::vector<float> binsOf(const Sampled& sonar, const types::GeometryPtr& geometry) {
+std::vector<float> sampledBins(const Sampled& sonar, const types::GeometryPtr& geometry) {
     return test::pingOf(sonar.config, test::snapshotOf(geometry), sonar.options).bins;
 }
 
 double energyOf(const Sampled& sonar, const types::GeometryPtr& geometry) {
     double sum = 0;
-    for (float bin : binsOf(sonar, geometry)) sum += bin;
+    for (float bin : sampledBins(sonar, geometry)) sum += bin;
     return sum;
 }
 
@@ -40,7 +40,7 @@ types::GeometryPtr screen(float top) {
 
 TEST(SamplesTest, OnAPlaneTheyAreThePixelsOfTwiceTheRowsAndColumns) {
     const auto bottom = test::sceneOf({test::ground(-5)});
-    const auto four = binsOf(sonarOf(64, 4, 4), bottom), finer = binsOf(sonarOf(128, 8, 1), bottom);
+    const auto four = sampledBins(sampledSonar(64, 4, 4), bottom), finer = sampledBins(sampledSonar(128, 8, 1), bottom);
     ASSERT_EQ(four.size(), finer.size());
     double difference = 0, sum = 0;
     for (size_t i = 0; i < four.size(); ++i) {
@@ -54,9 +54,9 @@ TEST(SamplesTest, OnAPlaneTheyAreThePixelsOfTwiceTheRowsAndColumns) {
 TEST(SamplesTest, AnEdgeAlongTheRowsIsFoundTwiceAsWell) {
     double four = 0, finer = 0;
     for (float top = 0.5f; top < 2.5f; top += 0.13f) {
-        const double truth = energyOf(sonarOf(2048, 4, 1), screen(top));
-        four += std::pow(energyOf(sonarOf(32, 8, 4), screen(top)) / truth - 1, 2);
-        finer += std::pow(energyOf(sonarOf(64, 16, 1), screen(top)) / truth - 1, 2);
+        const double truth = energyOf(sampledSonar(2048, 4, 1), screen(top));
+        four += std::pow(energyOf(sampledSonar(32, 8, 4), screen(top)) / truth - 1, 2);
+        finer += std::pow(energyOf(sampledSonar(64, 16, 1), screen(top)) / truth - 1, 2);
     }
     EXPECT_LT(four, finer / 2) << "mean squares";
 }

@@ -13,7 +13,7 @@ namespace {
 
 using test::sceneOf;
 
-constexpr double bin = 0.03;  // 20 us at 1500 m/s [m]
+constexpr double cloud_bin = 0.03;  // 20 us at 1500 m/s [m]
 
 class Sonar3dTaskTest : public test::TaskBench<Sonar3dTask, types::SnapshotPtr, types::DepthMapPtr> {
 protected:
@@ -50,8 +50,8 @@ TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
                 if (expected > 14) continue;  // the range cuts off a part of what such beams see
                 worst = std::max(worst, std::abs(map->distances[row * 60 + column] - expected));
             }
-        std::cout << "wall, yaw " << yaw << ": ranges at most " << worst << " m off, bins of " << bin << " m\n";
-        EXPECT_LT(worst, 0.55 * bin);
+        std::cout << "wall, yaw " << yaw << ": ranges at most " << worst << " m off, bins of " << cloud_bin << " m\n";
+        EXPECT_LT(worst, 0.55 * cloud_bin);
     }
 }
 
@@ -97,10 +97,10 @@ TEST_F(Sonar3dTaskTest, ASphereIsSeenAtTheRangeOfEachDirectionAndNothingBesideIt
                 ++met;
             }
         }
-    std::cout << "sphere: " << met << " ranges at most " << worst << " m off, bins of " << bin << " m\n";
+    std::cout << "sphere: " << met << " ranges at most " << worst << " m off, bins of " << cloud_bin << " m\n";
     EXPECT_GT(met, 1000);
     EXPECT_GT(beside, 8000);
-    EXPECT_LT(worst, 0.6 * bin);
+    EXPECT_LT(worst, 0.6 * cloud_bin);
 }
 
 TEST_F(Sonar3dTaskTest, RowsRunDownAndColumnsFromPortToStarboard) {
@@ -132,7 +132,7 @@ TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
     EXPECT_GT(cloud->points.size(), 500u);
     for (const glm::dvec3& p : cloud->points) {
         if (glm::distance(p, {3, -2, 4}) > 12) continue;  // beams that the range cuts off
-        EXPECT_NEAR(p.z, 0, 0.55 * bin);
+        EXPECT_NEAR(p.z, 0, 0.55 * cloud_bin);
     }
 }
 

@@ -17,13 +17,13 @@ namespace {
 using ::testing::Each;
 using ::testing::HasSubstr;
 
-SonarConfig fan() {
+SonarConfig oneFan() {
     SonarConfig config = test::sonarOf({.beams = 32, .width_deg = 100, .height_deg = 40, .bins = 400, .rows = 128});
     config.device = "software";
     return config;
 }
 
-std::vector<float> binsOf(const types::Snapshot& snapshot) { return test::pingOf(fan(), snapshot).bins; }
+std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::pingOf(oneFan(), snapshot).bins; }
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
 
@@ -34,20 +34,20 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
     return std::sqrt(error / std::inner_product(b.begin(), b.end(), b.begin(), 0.0));
 }
 
-types::Mesh wall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 100}); }
+types::Mesh farWall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 100}); }
 
 }  // namespace
 
 TEST(SonarRendererTest, SonarsSideBySideHearWhatEachHearsAlone) {
     const auto snapshot = test::snapshotOf(test::surfaces());
-    const std::vector<float> alone = binsOf(snapshot);
+    const std::vector<float> alone = binsSeen(snapshot);
     ASSERT_GT(energy(alone), 0);
     std::atomic<int> differing = 0;
     std::vector<std::thread> sonars;
     for (int i = 0; i < 3; ++i)
         sonars.emplace_back([&] {
             for (int made = 0; made < 4; ++made) {
-                SonarRenderer renderer(fan(), snapshot.geometry);
+                SonarRenderer renderer(oneFan(), snapshot.geometry);
                 types::Sonar ping;
                 for (int k = 0; k < 40; ++k) {
                     renderer.render(snapshot, ping);
@@ -61,7 +61,7 @@ TEST(SonarRendererTest, SonarsSideBySideHearWhatEachHearsAlone) {
 
 TEST(SonarRendererTest, AnotherThreadIsRefused) {
     const auto snapshot = test::snapshotOf(test::surfaces());
-    SonarRenderer renderer(fan(), snapshot.geometry);
+    SonarRenderer renderer(oneFan(), snapshot.geometry);
     std::string error;
     std::thread([&] {
         try {
@@ -75,12 +75,12 @@ TEST(SonarRendererTest, AnotherThreadIsRefused) {
 }
 
 TEST(SonarRendererTest, NothingInViewIsSilence) {
-    const types::Snapshot ahead = test::snapshotOf(test::sceneOf({wall()}));
-    EXPECT_GT(energy(binsOf(ahead)), 0);
-    EXPECT_THAT(binsOf(test::snapshotOf(std::make_shared<types::Geometry>())), Each(0)) << "empty";
-    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {20, 0, 0})), Each(0)) << "behind";
-    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {-50, 0, 0})), Each(0)) << "beyond the range";
-    EXPECT_THAT(binsOf(test::snapshotOf(ahead.geometry, {9.95, 0, 0})), Each(testing::Ge(0)))
+    const types::Snapshot ahead = test::snapshotOf(test::sceneOf({farWall()}));
+    EXPECT_GT(energy(binsSeen(ahead)), 0);
+    EXPECT_THAT(binsSeen(test::snapshotOf(std::make_shared<types::Geometry>())), Each(0)) << "empty";
+    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {20, 0, 0})), Each(0)) << "behind";
+    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {-50, 0, 0})), Each(0)) << "beyond the range";
+    EXPECT_THAT(binsSeen(test::snapshotOf(ahead.geometry, {9.95, 0, 0})), Each(testing::Ge(0)))
         << "nearer than range_min";
 }
 
@@ -88,7 +88,7 @@ TEST(SonarRendererTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
     const types::Mesh plate = test::quad({0.5, -1, -1}, {0, 2, 0}, {0, 0, 2});
     const types::Mesh target = test::quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
     const auto heard = [](const types::GeometryPtr& geometry, double range_min) {
-        SonarConfig config = fan();
+        SonarConfig config = oneFan();
         config.range_min = range_min;
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
@@ -110,28 +110,28 @@ TEST(SonarRendererTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
 TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHearsFiniteEchoes) {
     const auto ball = test::sceneOf({test::sphere(5, 32)});
     for (double x : {0.0, 4.0, 4.99, 5.0, 5.01})
-        EXPECT_THAT(binsOf(test::snapshotOf(ball, {x, 0, 0}, 0.3)),
+        EXPECT_THAT(binsSeen(test::snapshotOf(ball, {x, 0, 0}, 0.3)),
                     Each(testing::AllOf(testing::Ge(0), testing::Le(1e6f))))
             << x;
-    EXPECT_GT(energy(binsOf(test::snapshotOf(ball))), 0) << "the inside reflects";
+    EXPECT_GT(energy(binsSeen(test::snapshotOf(ball))), 0) << "the inside reflects";
 }
 
 TEST(SonarRendererTest, FacesTurnedAwayReflectTheSame) {
-    types::Mesh turned = wall();
+    types::Mesh turned = farWall();
     std::ranges::reverse(turned.indices);
-    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({turned}))), binsOf(test::snapshotOf(test::sceneOf({wall()}))));
+    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({turned}))), binsSeen(test::snapshotOf(test::sceneOf({farWall()}))));
 }
 
 TEST(SonarRendererTest, DoubledFacesAndTrianglesWithoutAreaAddNothing) {
-    types::Mesh doubled = wall(), degenerate = wall();
+    types::Mesh doubled = farWall(), degenerate = farWall();
     doubled.indices.insert(doubled.indices.end(), {0, 1, 2, 0, 2, 3});
     doubled.clusters[0].index_count = 12;
     degenerate.indices.insert(degenerate.indices.end(), {0, 0, 1, 0, 2, 2});
     degenerate.clusters[0].index_count = 12;
-    const auto bins = binsOf(test::snapshotOf(test::sceneOf({wall()})));
-    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({doubled}))), bins);
-    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({degenerate}))), bins);
-    EXPECT_EQ(binsOf(test::snapshotOf(test::sceneOf({wall(), wall()}))), bins) << "an object in the same place";
+    const auto bins = binsSeen(test::snapshotOf(test::sceneOf({farWall()})));
+    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({doubled}))), bins);
+    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({degenerate}))), bins);
+    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({farWall(), farWall()}))), bins) << "an object in the same place";
 }
 
 TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
@@ -139,8 +139,8 @@ TEST(SonarRendererTest, FarFromTheOriginOfTheWorldEchoesAreTheSame) {
     auto there = std::make_shared<types::Geometry>(*here);
     const glm::dvec3 offset(500'000, 4'500'000, -100);  // as in UTM
     for (types::Object& object : there->objects) object.world_from_object[3] += glm::dvec4(offset, 0);
-    const auto bins = binsOf(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
-    EXPECT_LT(difference(binsOf(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
+    const auto bins = binsSeen(test::snapshotOf(here, {0, 0, 0}, 0.1, 0.1));
+    EXPECT_LT(difference(binsSeen(test::snapshotOf(there, offset, 0.1, 0.1)), bins), 1e-6);
 }
 
 TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
@@ -164,8 +164,8 @@ TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
 }
 
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
-    const auto small = binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
-    EXPECT_LT(difference(binsOf(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small), 0.01);
+    const auto small = binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
+    EXPECT_LT(difference(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small), 0.01);
 }
 
 }  // namespace insonify::sonar

@@ -15,7 +15,7 @@ namespace insonify::sonar {
 namespace {
 
 /** A ping and what its bins show. */
-struct Told {
+struct Truths {
     types::Sonar ping;
     types::SonarTruth truth;
 
@@ -24,16 +24,16 @@ struct Told {
     }
 };
 
-Told toldOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
+Truths truthsOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
     SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
-    Told told;
+    Truths told;
     renderer.setTruth(told.ping, &told.truth);
     renderer.render(snapshot, told.ping);
     return told;
 }
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
-SonarConfig fan() {
+SonarConfig truthFan() {
     return test::sonarOf({.beams = 16, .width_deg = 80, .height_deg = 60, .bins = 200, .rows = 512, .columns = 4});
 }
 
@@ -71,7 +71,7 @@ std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
 /** A bottom 3 m below a level sonar: at slant range r it lies at the depression asin(3 / r), which is its grazing
  *  angle as well. A bin of 0.1 m and samples of 0.1 deg leave the mean within 3 mrad. */
 TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
-    const Told told = toldOf(GetParam().of(fan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
+    const Truths told = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
     double largest = 0;
     for (size_t beam = 0; beam < 16; ++beam)
         for (double r = 6.55; r < 19.9; r += 0.1) {  // below 6 m the aperture ends
@@ -92,7 +92,7 @@ TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
  *  the ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
 TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
     const auto scene = test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
-    const Told told = toldOf(GetParam().of(fan()), test::snapshotOf(scene));
+    const Truths told = truthsOf(GetParam().of(truthFan()), test::snapshotOf(scene));
     for (const size_t beam : {size_t{7}, size_t{8}}) {
         for (double r = 6.15; r < 15.1; r += 0.1) {
             EXPECT_EQ(told.truth.shadow[told.at(r, beam)], 1) << r;
@@ -109,7 +109,7 @@ TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
 }
 
 std::vector<SonarConfig> manyKinds() {
-    std::vector<SonarConfig> all(5, fan());
+    std::vector<SonarConfig> all(5, truthFan());
     all[1].beam_geometry = BeamGeometry::Conical;
     all[2].model = Model::Cerqueira2017;
     acoustics::BeamLaw law;
@@ -124,7 +124,7 @@ std::vector<SonarConfig> manyKinds() {
     return all;
 }
 
-types::Snapshot balls() {
+types::Snapshot scatteredBalls() {
     std::vector<types::Mesh> meshes = {test::ground(-3), test::wall(14)};
     std::vector<glm::dvec3> places(2);
     for (int i = 0; i < 8; ++i) {
@@ -135,7 +135,7 @@ types::Snapshot balls() {
 }
 
 TEST_P(SonarTruthTest, NotABinChanges) {
-    const types::Snapshot snapshot = balls();
+    const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         SonarRenderer renderer(GetParam().of(config), snapshot.geometry);
         types::Sonar alone, told, again;
@@ -151,11 +151,11 @@ TEST_P(SonarTruthTest, NotABinChanges) {
 }
 
 TEST_P(SonarTruthTest, ItIsTheSameOnAnyNumberOfThreads) {
-    const types::Snapshot snapshot = balls();
+    const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
-        const std::vector<uint32_t> one = bitsOf(toldOf(GetParam().of(config), snapshot, 1).truth);
+        const std::vector<uint32_t> one = bitsOf(truthsOf(GetParam().of(config), snapshot, 1).truth);
         for (const int threads : {2, 5})
-            EXPECT_EQ(one, bitsOf(toldOf(GetParam().of(config), snapshot, threads).truth)) << threads;
+            EXPECT_EQ(one, bitsOf(truthsOf(GetParam().of(config), snapshot, threads).truth)) << threads;
     }
 }
 
@@ -164,11 +164,11 @@ INSTANTIATE_TEST_SUITE_P(Ways, SonarTruthTest, testing::ValuesIn(ways),
 
 /** The published model counts what meets nothing in its first bin, where there is no object. */
 TEST(PublishedTruthTest, MissesAreNoObjects) {
-    SonarConfig config = ways[1].of(fan());
+    SonarConfig config = ways[1].of(truthFan());
     config.model = Model::Cerqueira2017;
     config.published = true;
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
-    const Told told = toldOf(config, snapshot);
+    const Truths told = truthsOf(config, snapshot);
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar alone;
     renderer.render(snapshot, alone);
@@ -180,13 +180,13 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
 
 /** A ball in one beam is heard by all others in their sidelobes, but seen by its own alone. */
 TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
-    SonarConfig config = ways[0].of(fan());
+    SonarConfig config = ways[0].of(truthFan());
     acoustics::BeamLaw law;
     law.width_deg = 5;
     config.beam_pattern.emplace().receive.azimuth = law;
     const double bearing = types::radians(2.5);  // the middle of beam 8
     const glm::dvec3 place(10 * std::cos(bearing), 10 * std::sin(bearing), 0);
-    const Told told = toldOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
+    const Truths told = truthsOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
     for (size_t beam = 0; beam < 16; ++beam) {
         const size_t at = told.at(9.85, beam);
         EXPECT_GT(told.ping.bins[at], 0) << beam;
@@ -218,11 +218,11 @@ struct Bench {
 };
 
 TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChosenIsTheSame) {
-    SonarConfig config = ways[0].of(fan());
+    SonarConfig config = ways[0].of(truthFan());
     config.quality = {};  // it is chosen, and looked after with coarser pings
     Bench alone(config), told(config);
     told.task.truth.connectTo(told.truths.port, framework::ConnPolicy::data());
-    types::Snapshot snapshot = balls();
+    types::Snapshot snapshot = scatteredBalls();
     for (int i = 0; i < 12; ++i) {
         snapshot.time = snapshot.time + types::Time{100'000};
         snapshot.sonar.position.x = 0.05 * i;
@@ -244,11 +244,11 @@ TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChose
 
 TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
     for (const Way& way : ways) {
-        Bench alone(way.of(fan())), to_truth(way.of(fan())), to_returns(way.of(fan()));
+        Bench alone(way.of(truthFan())), to_truth(way.of(truthFan())), to_returns(way.of(truthFan()));
         to_truth.task.truth.connectTo(to_truth.truths.port, framework::ConnPolicy::data());
         to_returns.task.returns.connectTo(to_returns.returns.port, framework::ConnPolicy::data());
         for (Bench* bench : {&alone, &to_truth, &to_returns}) {
-            ASSERT_TRUE(bench->pingOf(balls()));
+            ASSERT_TRUE(bench->pingOf(scatteredBalls()));
             std::vector<std::string> omitted;
             for (const types::Omission& omission : bench->task.plan()->omitted)
                 if (omission.name == "truth") omitted.push_back(omission.reason);
@@ -262,7 +262,7 @@ TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
 
 /** A plate square to the sound 9 m ahead, and a bottom below: the bottom is met first, the plate is stronger. */
 TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
-    Bench bench(ways[0].of(fan()));
+    Bench bench(ways[0].of(truthFan()));
     bench.task.returns.connectTo(bench.returns.port, framework::ConnPolicy::data());
     const auto scene = test::sceneOf({test::ground(-3), test::quad({9, -10, -0.5}, {0, 20, 0}, {0, 0, 1})});
     const auto ping = bench.pingOf(test::snapshotOf(scene));

@@ -17,11 +17,11 @@ using ::testing::Each;
 using ::testing::Ge;
 using ::testing::HasSubstr;
 
-SonarConfig fan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
+SonarConfig stiffFan(double field_of_view_deg = 60, int beams = 16, int bins = 200) {
     return test::sonarOf({.beams = beams, .width_deg = field_of_view_deg, .height_deg = 40, .bins = bins});
 }
 
-std::vector<float> binsOf(const SonarConfig& config, const types::GeometryPtr& geometry,
+std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr& geometry,
                           const RenderOptions& options = {}) {
     return test::pingOf(config, test::snapshotOf(geometry), options).bins;
 }
@@ -33,7 +33,7 @@ template <class Change>
 std::vector<float> heardWith(const Change& change) {
     std::vector<types::Mesh> meshes = wallAndBall();
     for (types::Mesh& mesh : meshes) change(mesh);
-    return binsOf(fan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
+    return stiffBins(stiffFan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ TEST(StiffCasesTest, NeitherTrianglesWithoutAreaNorNormalsWithoutLengthNorWindin
 
 /** A plate at each of 399 edges that are exact in binary. */
 TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
-    SonarConfig config = fan(10, 1, 400);
+    SonarConfig config = stiffFan(10, 1, 400);
     config.range = 50;
     config.speed_of_sound = 1250;  // 0.125 m a bin
     config.range_min = 0.05;
@@ -80,12 +80,12 @@ TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
 TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
     for (const double khz : {0.0, 1e4})
         for (const auto law : {acoustics::AbsorptionLaw::FrancoisGarrison, acoustics::AbsorptionLaw::AinslieMccolm}) {
-            SonarConfig config = fan();
+            SonarConfig config = stiffFan();
             config.water.emplace();
             config.absorption.emplace().frequency_khz = khz;
             config.absorption->law = law;
             EXPECT_THAT(configNotices(config), Contains(HasSubstr("outside its law's validity"))) << khz;
-            const std::vector<float> bins = binsOf(config, test::sceneOf({test::ground(-1)}));
+            const std::vector<float> bins = stiffBins(config, test::sceneOf({test::ground(-1)}));
             EXPECT_THAT(bins, Each(testing::AllOf(Ge(0), testing::Lt(INFINITY)))) << khz;
             EXPECT_GT(bins[35], 0) << khz;
         }
@@ -93,25 +93,25 @@ TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
 
 TEST(StiffCasesTest, TheNumberOfThreadsThatSumADrawnPingChangesNoBit) {
     for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
-        SonarConfig config = fan(130, 61, 300);
+        SonarConfig config = stiffFan(130, 61, 300);
         config.model = model;
         config.device = "software";
         config.deposit = Deposit::Cpu;
         const auto scene = test::surfaces();
-        const std::vector<float> alone = binsOf(config, scene, {.threads = 1});
+        const std::vector<float> alone = stiffBins(config, scene, {.threads = 1});
         EXPECT_THAT(alone, Contains(testing::Gt(0)));
         for (const int threads : {2, 3, 5, 8, 16})
-            EXPECT_EQ(binsOf(config, scene, {.threads = threads}), alone) << threads << " threads";
+            EXPECT_EQ(stiffBins(config, scene, {.threads = threads}), alone) << threads << " threads";
     }
 }
 
 TEST(StiffCasesTest, ASampleThatHeldAnotherPingKeepsNothingOfIt) {
     const auto scene = test::surfaces();
-    const SonarConfig small = fan(40, 5, 120), large = fan(130, 61, 300);
+    const SonarConfig small = stiffFan(40, 5, 120), large = stiffFan(130, 61, 300);
     types::Sonar ping;
     for (const SonarConfig& config : {large, small, large, small}) {
         SonarRenderer(config, scene).render(test::snapshotOf(scene), ping);
-        EXPECT_EQ(ping.bins, binsOf(config, scene));
+        EXPECT_EQ(ping.bins, stiffBins(config, scene));
     }
     SonarRenderer renderer(large, scene);
     renderer.render(test::snapshotOf(scene), ping);
@@ -120,12 +120,12 @@ TEST(StiffCasesTest, ASampleThatHeldAnotherPingKeepsNothingOfIt) {
 }
 
 TEST(StiffCasesTest, APictureLargerThanAnyDevicesIsRefusedInWords) {
-    SonarConfig config = fan(120, 4096);
+    SonarConfig config = stiffFan(120, 4096);
     config.quality.rows = 16384;
     config.quality.columns_per_beam = 256;
     config.visibility = Visibility::Gl;
     try {
-        binsOf(config, test::sceneOf({test::wall(10)}));
+        stiffBins(config, test::sceneOf({test::wall(10)}));
         FAIL() << "was drawn";
     } catch (const std::exception& error) {
         EXPECT_THAT(error.what(), HasSubstr("cannot draw"));

@@ -13,23 +13,23 @@ namespace {
 
 constexpr double range_max = 30;  // m
 
-using Random = std::mt19937_64;
+using Generator = std::mt19937_64;
 
-double uniform(Random& random, double low, double high) {
+double evenly(Generator& random, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-glm::dvec3 uniformVector(Random& random, double size) {
-    return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+glm::dvec3 uniformVector(Generator& random, double size) {
+    return {evenly(random, -size, size), evenly(random, -size, size), evenly(random, -size, size)};
 }
 
-glm::dmat4 uniformPlace(Random& random, double size) {
+glm::dmat4 uniformPlace(Generator& random, double size) {
     const glm::dmat4 shift = glm::translate(glm::dmat4(1), uniformVector(random, size));
-    return glm::rotate(shift, uniform(random, 0, 3), glm::normalize(uniformVector(random, 1)));
+    return glm::rotate(shift, evenly(random, 0, 3), glm::normalize(uniformVector(random, 1)));
 }
 
 /** A parallelogram of n x n cells, whose corners are moved off its plane by up to `rough` [m]. */
-types::Mesh cells(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, uint32_t n, Random& random,
+types::Mesh cells(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec3& b, uint32_t n, Generator& random,
                   double rough = 0) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -37,7 +37,7 @@ types::Mesh cells(const glm::dvec3& corner, const glm::dvec3& a, const glm::dvec
     for (uint32_t i = 0; i <= n; ++i)
         for (uint32_t j = 0; j <= n; ++j)
             positions.push_back(corner + a * (1.0 * i / n) + b * (1.0 * j / n) +
-                                normal * uniform(random, -rough, rough));
+                                normal * evenly(random, -rough, rough));
     for (uint32_t i = 0; i < n; ++i)
         for (uint32_t j = 0; j < n; ++j) {
             const uint32_t k = i * (n + 1) + j;
@@ -58,7 +58,7 @@ types::Mesh joined(const std::vector<types::Mesh>& meshes) {
 }
 
 /** Four walls and a bottom about the origin. */
-types::Mesh tank(uint32_t n, Random& random, double rough = 0) {
+types::Mesh tank(uint32_t n, Generator& random, double rough = 0) {
     const double x = 12, y = 9, z = 3;
     const glm::dvec3 corner(-x, -y, -z), ahead(2 * x, 0, 0), aside(0, 2 * y, 0), up(0, 0, 2 * z);
     return joined({cells(corner, ahead, up, n, random, rough), cells(corner + aside, ahead, up, n, random, rough),
@@ -67,7 +67,7 @@ types::Mesh tank(uint32_t n, Random& random, double rough = 0) {
 }
 
 /** Triangles anywhere, and some without area. */
-types::Mesh strewn(Random& random, int count, double size) {
+types::Mesh strewn(Generator& random, int count, double size) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
     for (int i = 0; i < count; ++i) {
@@ -100,7 +100,7 @@ types::GeometryPtr mirrors(std::vector<types::Mesh> meshes, std::vector<glm::dma
     return geometry;
 }
 
-SonarConfig bouncing(bool surface = false, int bounces = 2) {
+SonarConfig bouncingSonar(bool surface = false, int bounces = 2) {
     SonarConfig config;
     config.multipath.emplace().bounces = bounces;
     if (surface) config.multipath->surface.emplace();
@@ -126,8 +126,8 @@ void expectSame(const TargetWay& way, const TargetWay& tried, double tolerance) 
 }
 
 /** Returns the number of ways by two mirrors. */
-size_t expectAsTried(const Case& one, Random& random) {
-    TargetWays ways(bouncing(one.surface), *one.geometry);
+size_t expectAsTried(const Case& one, Generator& random) {
+    TargetWays ways(bouncingSonar(one.surface), *one.geometry);
     size_t twice = 0;
     for (int ping = 0; ping < 6; ++ping) {
         types::Snapshot snapshot = test::snapshotOf(one.geometry, uniformVector(random, one.size), 0.7 * ping, 0.2);
@@ -151,7 +151,7 @@ size_t expectAsTried(const Case& one, Random& random) {
 }
 
 TEST(TargetWaysTest, AreThoseOfAllSequencesOfTriangles) {
-    Random random(11);
+    Generator random(11);
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3));
     const Case cases[] = {
         {"strewn", mirrors({strewn(random, 40, 8)}), 6, 0},
@@ -191,7 +191,7 @@ struct Wall {
 };
 
 TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
-    Random random(3);
+    Generator random(3);
     types::Mesh half = halvedWall(), other_half = half;
     half.indices.resize(3);
     other_half.indices.erase(other_half.indices.begin(), other_half.indices.begin() + 3);
@@ -206,7 +206,7 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
             const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
             const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
             const auto geometry = mirrors(wall.meshes, std::vector(wall.meshes.size(), place));
-            TargetWays ways(bouncing(), *geometry);
+            TargetWays ways(bouncingSonar(), *geometry);
             ways.place(test::snapshotOf(geometry, inWorld({0, 1, 0.5})), range_max);
             const std::vector<TargetWay>& found = ways.waysTo(inWorld({0, -1, -0.5}));
             ASSERT_EQ(found.size(), 2u) << wall.name << ", turn " << turn;
@@ -216,14 +216,14 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
 }
 
 TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
-    Random random(5);
+    Generator random(5);
     const types::Mesh corner =
         joined({test::quad({4, -4, -4}, {0, 8, 0}, {0, 0, 8}), test::quad({-4, 4, -4}, {8, 0, 0}, {0, 0, 8})});
     for (int turn = 0; turn < 100; ++turn) {
         const glm::dmat4 place = turn == 0 ? glm::dmat4(1) : uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({corner}, {place});
-        TargetWays ways(bouncing(), *geometry);
+        TargetWays ways(bouncingSonar(), *geometry);
         ways.place(test::snapshotOf(geometry, inWorld({0, 0, 1})), range_max);
         const std::vector<TargetWay>& found = ways.waysTo(inWorld({2, 2, -1}));
         ASSERT_EQ(found.size(), 4u) << turn;
@@ -234,21 +234,21 @@ TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
 }
 
 TEST(TargetWaysTest, ATargetOnAMirrorHasNoWayByIt) {
-    Random random(6);
+    Generator random(6);
     for (int turn = 0; turn < 100; ++turn) {
         const glm::dmat4 place = uniformPlace(random, 20);
         const auto inWorld = [&](const glm::dvec3& point) { return glm::dvec3(place * glm::dvec4(point, 1)); };
         const auto geometry = mirrors({halvedWall()}, {place});
-        TargetWays ways(bouncing(), *geometry);
+        TargetWays ways(bouncingSonar(), *geometry);
         ways.place(test::snapshotOf(geometry, inWorld({0, 0, 0})), range_max);
         EXPECT_EQ(ways.waysTo(inWorld({4, 1, 0.3})).size(), 1u) << turn;
     }
 }
 
 TEST(TargetWaysTest, AreInTheOrderOfTheirMirrorsInTheScene) {
-    Random random(7);
+    Generator random(7);
     const auto geometry = mirrors({tank(3, random)});
-    TargetWays ways(bouncing(true), *geometry);
+    TargetWays ways(bouncingSonar(true), *geometry);
     types::Snapshot snapshot = test::snapshotOf(geometry, {-3, 1, 0.5});
     snapshot.water_surface = 2.5;
     ways.place(snapshot, range_max);
@@ -260,9 +260,9 @@ TEST(TargetWaysTest, AreInTheOrderOfTheirMirrorsInTheScene) {
 }
 
 TEST(TargetWaysTest, AllocateNothingAfterTheFirstPing) {
-    Random random(8);
+    Generator random(8);
     for (const auto& geometry : {mirrors({tank(6, random)}), mirrors({tank(1, random), test::sphere(1, 8)})}) {
-        TargetWays ways(bouncing(true), *geometry);
+        TargetWays ways(bouncingSonar(true), *geometry);
         types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 20});
         snapshot.water_surface = 2.8;
         snapshot.moved.reserve(1);

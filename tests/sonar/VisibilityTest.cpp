@@ -21,7 +21,7 @@ namespace {
 using test::pingOf;
 using types::radians;
 
-SonarConfig fan(Visibility visibility) {
+SonarConfig seenFan(Visibility visibility) {
     SonarConfig config =
         test::sonarOf({.beams = 50, .width_deg = 100, .height_deg = 50, .bins = 400, .rows = 256, .columns = 8});
     config.visibility = visibility;
@@ -30,11 +30,11 @@ SonarConfig fan(Visibility visibility) {
 }
 
 /** An object and one of its triangles; no object: nothing. */
-using Seen = std::pair<uint32_t, uint32_t>;
-constexpr Seen nothing{0xffffffff, 0};
+using SeenPart = std::pair<uint32_t, uint32_t>;
+constexpr SeenPart nothing{0xffffffff, 0};
 
 /** What each pixel of the frusta shows, drawn. */
-std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
+std::vector<SeenPart> seenIn(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     gpu::EglContext context("software");
     Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
     ThreadPool threads(1);
@@ -43,7 +43,7 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewF
     culler.place(snapshot);
     surface.cull();
     surface.draw();
-    std::vector<Seen> seen;
+    std::vector<SeenPart> seen;
     for (size_t i = 0; i < frusta.size(); ++i) {
         const size_t count = 2 * static_cast<size_t>(frusta[i].columns * frusta[i].rows);
         gpu::ReadBack read(surface.picture(i).bytes());
@@ -51,16 +51,16 @@ std::vector<Seen> drawn(const types::Snapshot& snapshot, const std::vector<ViewF
         const std::span words(static_cast<const uint32_t*>(read.wait()), count);
         const auto commands = surface.lists().commands(i);
         for (size_t pixel = 0; pixel < words.size(); pixel += 2)
-            seen.push_back(words[pixel] == 0 ? nothing : Seen{commands[words[pixel] - 1].object, words[pixel + 1]});
+            seen.push_back(words[pixel] == 0 ? nothing : SeenPart{commands[words[pixel] - 1].object, words[pixel + 1]});
     }
     return seen;
 }
 
 /** What rays through the same pixels' middles meet. */
-std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
+std::vector<SeenPart> met(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     RayVisibility visibility(*snapshot.geometry);
     visibility.place(snapshot);
-    std::vector<Seen> seen;
+    std::vector<SeenPart> seen;
     for (const ViewFrustum& frustum : frusta)
         for (int first = 0; first < frustum.rows * frustum.columns; first += tile_samples) {
             TileRays rays;
@@ -77,7 +77,7 @@ std::vector<Seen> met(const types::Snapshot& snapshot, const std::vector<ViewFru
             for (int i = 0; i < tile_samples && first + i < frustum.rows * frustum.columns; ++i)
                 seen.push_back(hits.command[i] == TileHits::nothing
                                    ? nothing
-                                   : Seen{visibility.commands()[hits.command[i]].object, hits.triangle[i]});
+                                   : SeenPart{visibility.commands()[hits.command[i]].object, hits.triangle[i]});
         }
     return seen;
 }
@@ -111,7 +111,7 @@ struct Scene {
     const char* name;
     types::Snapshot snapshot;
 };
-std::vector<Scene> scenes() {
+std::vector<Scene> seenScenes() {
     return {{"open, closed, mirrored, scaled, several of one mesh",
              test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05)},
             {"behind", test::snapshotOf(plainSurfaces(), {0, 0, 0}, 2.3, 0.05, 0)},
@@ -120,7 +120,7 @@ std::vector<Scene> scenes() {
 }
 
 /** Relative L2 of their difference. */
-double difference(const types::Sonar& a, const types::Sonar& b) {
+double relativeDifference(const types::Sonar& a, const types::Sonar& b) {
     double error = 0;
     for (size_t i = 0; i < a.bins.size(); ++i) error += std::pow(double{a.bins[i]} - b.bins[i], 2);
     return std::sqrt(error / std::inner_product(b.bins.begin(), b.bins.end(), b.bins.begin(), 0.0));
@@ -129,10 +129,10 @@ double difference(const types::Sonar& a, const types::Sonar& b) {
 }  // namespace
 
 TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
-    const SonarConfig config = fan(Visibility::Gl);
+    const SonarConfig config = seenFan(Visibility::Gl);
     const std::vector<ViewFrustum> frusta = makeFrusta(config, makeBeams(config));
-    for (const Scene& scene : scenes()) {
-        const std::vector<Seen> pixels = drawn(scene.snapshot, frusta), rays = met(scene.snapshot, frusta);
+    for (const Scene& scene : seenScenes()) {
+        const std::vector<SeenPart> pixels = seenIn(scene.snapshot, frusta), rays = met(scene.snapshot, frusta);
         ASSERT_EQ(pixels.size(), rays.size());
         size_t differ = 0, something = 0;
         for (size_t i = 0; i < pixels.size(); ++i) {
@@ -145,36 +145,36 @@ TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
 }
 
 TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
-    for (const Scene& scene : scenes())
+    for (const Scene& scene : seenScenes())
         for (Model model : {Model::Physical, Model::Cerqueira2017})
             for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical}) {
-                SonarConfig gl = fan(Visibility::Gl), cpu = fan(Visibility::Cpu);
+                SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
                 gl.quality.rows = cpu.quality.rows = 512;
                 gl.model = cpu.model = model;
                 gl.beam_geometry = cpu.beam_geometry = beams;
                 // In a mean, bins that few samples touch count like any other.
-                EXPECT_LT(difference(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
+                EXPECT_LT(relativeDifference(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
                           model == Model::Physical ? 0.03 : 0.16)
                     << scene.name << (model == Model::Physical ? ", physical" : ", cerqueira2017")
                     << (beams == BeamGeometry::Planar ? ", planar" : ", conical");
             }
-    SonarConfig other = fan(Visibility::Cpu);
+    SonarConfig other = seenFan(Visibility::Cpu);
     other.beam_height_deg = 40;
-    EXPECT_GT(difference(pingOf(other, scenes()[0].snapshot), pingOf(fan(Visibility::Gl), scenes()[0].snapshot)), 0.03);
+    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot), pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)), 0.03);
 }
 
 TEST(VisibilityTest, NormalMapsBendBothAlike) {
     const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
-    SonarConfig gl = fan(Visibility::Gl), cpu = fan(Visibility::Cpu);
+    SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
     const types::Sonar drawn_ping = pingOf(gl, snapshot), cast_ping = pingOf(cpu, snapshot);
     const types::Sonar flat = pingOf(cpu, test::snapshotOf(plainSurfaces(), {10, 0, -2}));
-    EXPECT_LT(difference(cast_ping, drawn_ping), 0.03);
-    EXPECT_GT(difference(flat, drawn_ping), 0.06);
+    EXPECT_LT(relativeDifference(cast_ping, drawn_ping), 0.03);
+    EXPECT_GT(relativeDifference(flat, drawn_ping), 0.06);
 }
 
 TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
     for (int columns : {1, 2, 3, 8, 512}) {  // the last: beams that several threads share
-        SonarConfig config = fan(Visibility::Cpu);
+        SonarConfig config = seenFan(Visibility::Cpu);
         config.quality.columns_per_beam = columns;
         config.beam_count = columns == 512 ? 2 : 50;
         const std::vector<float> alone = pingOf(config, movedScene(), {.threads = 1}).bins;
@@ -188,27 +188,27 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
 TEST(VisibilityTest, WhereASonarHasBeenBeforeHasNoPartInItsPing) {
     const types::GeometryPtr geometry = plainSurfaces();
     const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
-    SonarRenderer renderer(fan(Visibility::Cpu), geometry);
+    SonarRenderer renderer(seenFan(Visibility::Cpu), geometry);
     types::Sonar ping;
     for (const glm::dvec3& place : {glm::dvec3(-7.123, 3.21, 0.4), glm::dvec3(400, 1, 0)})
         renderer.render(test::snapshotOf(geometry, place, 0.1, 0.15, 0.05), ping);
     renderer.render(last, ping);
     EXPECT_GT(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0), 0);
-    EXPECT_EQ(ping.bins, pingOf(fan(Visibility::Cpu), last).bins);
+    EXPECT_EQ(ping.bins, pingOf(seenFan(Visibility::Cpu), last).bins);
 }
 
 TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     const types::Snapshot still = test::snapshotOf(plainSurfaces(), {0, 0, 0}, 0.1, 0.15, 0.05), moved = movedScene();
-    SonarRenderer renderer(fan(Visibility::Cpu), still.geometry);
+    SonarRenderer renderer(seenFan(Visibility::Cpu), still.geometry);
     types::Snapshot later = moved;
     later.geometry = still.geometry;
     types::Sonar before, after, again;
     renderer.render(still, before);
     renderer.render(later, after);
     renderer.render(still, again);
-    EXPECT_EQ(after.bins, pingOf(fan(Visibility::Cpu), moved).bins);
-    EXPECT_LT(difference(again, before), 1e-6) << "at its place again, by a tree of its own";
-    EXPECT_GT(difference(after, before), 0.05);
+    EXPECT_EQ(after.bins, pingOf(seenFan(Visibility::Cpu), moved).bins);
+    EXPECT_LT(relativeDifference(again, before), 1e-6) << "at its place again, by a tree of its own";
+    EXPECT_GT(relativeDifference(after, before), 0.05);
 }
 
 TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
@@ -217,7 +217,7 @@ TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
     geometry->meshes = {test::sphere(0.4f, 40)};
     for (const double x : {8, 264, 708})
         geometry->objects.push_back({"ball", 0, glm::translate(glm::dmat4(1), {x, 1, -0.5})});
-    const SonarConfig config = fan(Visibility::Cpu);
+    const SonarConfig config = seenFan(Visibility::Cpu);
     SonarRenderer renderer(config, geometry);
     // Places to either side of where the tree's origin changes, and to and fro.
     for (const double x : {0.3, 255.9, 256.1, 255.95, 256.2, 700.0, 0.3}) {
@@ -240,13 +240,13 @@ TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
     geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
     ASSERT_GT(geometry->triangleCount(), 4'000'000u);
     const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
-    EXPECT_LT(difference(pingOf(fan(Visibility::Cpu), snapshot), pingOf(fan(Visibility::Gl), snapshot)), 0.03);
+    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)), 0.03);
 }
 
 TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
     // One wide beam straight down on a flat bottom, as an altimeter has it: a plane that faces the sonar.
     for (double height_deg : {120.0, 170.0, 180.0}) {
-        SonarConfig config = fan(Visibility::Cpu);
+        SonarConfig config = seenFan(Visibility::Cpu);
         config.beam_count = 1;
         config.field_of_view_deg = 1;
         config.beam_height_deg = height_deg;
@@ -262,7 +262,7 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
 }
 
 TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
-    SonarConfig config = fan(Visibility::Gl);
+    SonarConfig config = seenFan(Visibility::Gl);
     config.beam_height_deg = 170;
     types::Diagnostics diagnostics;
     config.check(diagnostics);
@@ -279,7 +279,7 @@ TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
     const auto snapshot = test::snapshotOf(test::sceneOf(
         {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
     for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
-        SonarConfig config = fan(visibility);
+        SonarConfig config = seenFan(visibility);
         config.field_of_view_deg = 40;
         config.range_min = 0.45;
         const types::Sonar heard = pingOf(config, snapshot);

@@ -25,7 +25,7 @@ VolumeLayer layer(double strength_db, std::optional<double> top = {}, std::optio
     return {top, bottom, strength_db};
 }
 
-SonarConfig plainSonar() {
+SonarConfig clearSonar() {
     SonarConfig config =
         test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 40, .bins = 300, .rows = 512, .columns = 4});
     config.range_min = 1;
@@ -33,7 +33,7 @@ SonarConfig plainSonar() {
 }
 
 SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
-    SonarConfig config = plainSonar();
+    SonarConfig config = clearSonar();
     config.volume = std::move(volume);
     return config;
 }
@@ -116,7 +116,7 @@ TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
 
 TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}));
-    for (const SonarConfig& way : everyWay(plainSonar())) {
+    for (const SonarConfig& way : everyWay(clearSonar())) {
         SonarConfig silent = way, layered = way;
         silent.volume = {layer(-200)};
         layered.volume = {layer(-200, 0, 10)};

@@ -34,7 +34,7 @@ double passed(const types::Shell& shell, double cosine) {
     return std::pow(std::norm(responseOf(shell, cosine).transmitted), 2);
 }
 
-SonarConfig sonarOf(double width_deg, double height_deg, int beams, int bins = 300) {
+SonarConfig wallSonar(double width_deg, double height_deg, int beams, int bins = 300) {
     SonarConfig config = test::sonarOf(
         {.beams = beams, .width_deg = width_deg, .height_deg = height_deg, .bins = bins, .rows = 256, .columns = 8});
     config.visibility = Visibility::Cpu;
@@ -43,7 +43,7 @@ SonarConfig sonarOf(double width_deg, double height_deg, int beams, int bins = 3
 }
 
 /** Objects of which the first ones are shells, all else has a Lambert parameter of 0 dB. */
-types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, size_t shells, const types::Shell& shell = acrylic,
+types::GeometryPtr shellsOf(std::vector<types::Mesh> meshes, size_t shells, const types::Shell& shell = acrylic,
                            std::vector<glm::dvec3> positions = {}) {
     for (size_t i = 0; i < shells; ++i)
         for (types::Cluster& cluster : meshes[i].clusters) cluster.material = 1;
@@ -63,10 +63,10 @@ double energyOf(const types::Sonar& ping, uint32_t beam, double from, double to)
 }
 
 TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBothWays) {
-    const SonarConfig config = sonarOf(60, 0.5, 32);
-    const auto both = pingOf(config, snapshotOf(sceneOf({test::wall(10), test::wall(13)}, 1, sheet)));
-    const auto behind = pingOf(config, snapshotOf(sceneOf({test::wall(13)}, 0)));
-    const auto rigid = pingOf(config, snapshotOf(sceneOf({test::wall(10)}, 0)));
+    const SonarConfig config = wallSonar(60, 0.5, 32);
+    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(13)}, 1, sheet)));
+    const auto behind = pingOf(config, snapshotOf(shellsOf({test::wall(13)}, 0)));
+    const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
     for (uint32_t beam = 0; beam < 32; ++beam) {
         const double bearing = both.bearings[beam].rad, cosine = std::cos(bearing);
         const double half_beam = types::radians(60.0 / 64);
@@ -85,10 +85,10 @@ TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBoth
 }
 
 TEST(WallsTest, AWallBeforeABottomWeakensTheBottomBehindItAlone) {
-    const SonarConfig config = sonarOf(2, 60, 1);
+    const SonarConfig config = wallSonar(2, 60, 1);
     const types::Mesh bottom = test::ground(-4), screen = test::quad({9, -100, -100}, {0, 200, 0}, {0, 0, 98});
-    const auto alone = pingOf(config, snapshotOf(sceneOf({bottom}, 0)));
-    const auto seen = pingOf(config, snapshotOf(sceneOf({screen, bottom}, 1, sheet)));
+    const auto alone = pingOf(config, snapshotOf(shellsOf({bottom}, 0)));
+    const auto seen = pingOf(config, snapshotOf(shellsOf({screen, bottom}, 1, sheet)));
     // The screen stands from below up to 2 m under the sonar, at 9 m: it hides the bottom from 9.85 m on to where rays
     // pass over it, at 18 m along the ground.
     const double before = std::hypot(9, 4), over = std::hypot(18, 4);
@@ -104,8 +104,8 @@ TEST(WallsTest, AWallBeforeABottomWeakensTheBottomBehindItAlone) {
 /** The far side of a hollow body is met from within, at the same angle as the near one. */
 TEST(WallsTest, AHollowSphereHasBothItsSides) {
     const double radius = 0.9, distance = 10;
-    const SonarConfig config = sonarOf(12, 12, 1, 120);
-    const auto ping = pingOf(config, snapshotOf(sceneOf({test::sphere(radius, 256)}, 1, sheet, {{distance, 0, 0}})));
+    const SonarConfig config = wallSonar(12, 12, 1, 120);
+    const auto ping = pingOf(config, snapshotOf(shellsOf({test::sphere(radius, 256)}, 1, sheet, {{distance, 0, 0}})));
     std::vector<double> bins(ping.bin_count, 0);
     const double strength = 0.1 * std::norm(responseOf(sheet, 1).reflected);
     constexpr int steps = 400'000;
@@ -132,7 +132,7 @@ TEST(WallsTest, AHollowSphereHasBothItsSides) {
 }
 
 TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
-    const SonarConfig config = sonarOf(4, 4, 1, 150);
+    const SonarConfig config = wallSonar(4, 4, 1, 150);
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
     constexpr uint32_t around = 720;
@@ -145,8 +145,8 @@ TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
     const types::Mesh pipe = test::meshOf(positions, indices);
     types::Shell with_air = acrylic;
     with_air.has_air = true;
-    const auto water = pingOf(config, snapshotOf(sceneOf({pipe}, 1, acrylic, {{10, 0, 0}})));
-    const auto air = pingOf(config, snapshotOf(sceneOf({pipe}, 1, with_air, {{10, 0, 0}})));
+    const auto water = pingOf(config, snapshotOf(shellsOf({pipe}, 1, acrylic, {{10, 0, 0}})));
+    const auto air = pingOf(config, snapshotOf(shellsOf({pipe}, 1, with_air, {{10, 0, 0}})));
     EXPECT_GT(energyOf(water, 0, 10.8, 11.1), 0.01 * energyOf(water, 0, 8.9, 9.2));
     EXPECT_EQ(energyOf(water, 0, 9.5, 10.5), 0);
     EXPECT_EQ(energyOf(air, 0, 9.5, 15), 0);
@@ -155,9 +155,9 @@ TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
 
 TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
     for (const types::Shell& shell : {rubber, types::Shell{0.004, 1190, 2700, 1340, 5e-3, true}}) {
-        SonarConfig config = sonarOf(60, 20, 16), none = config;
+        SonarConfig config = wallSonar(60, 20, 16), none = config;
         none.max_walls = 0;
-        const auto scene = sceneOf({test::wall(10), test::wall(13)}, 1, shell);
+        const auto scene = shellsOf({test::wall(10), test::wall(13)}, 1, shell);
         EXPECT_EQ(pingOf(config, snapshotOf(scene)).bins, pingOf(none, snapshotOf(scene)).bins);
     }
 }
@@ -165,10 +165,10 @@ TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
 TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
     std::vector<types::Mesh> walls;
     for (int i = 0; i < 8; ++i) walls.push_back(test::wall(5 + 2.0f * static_cast<float>(i)));
-    const auto scene = sceneOf(walls, walls.size(), sheet);
+    const auto scene = shellsOf(walls, walls.size(), sheet);
     const double each = passed(sheet, 1);
     for (const int most : {0, 1, 4, 16}) {
-        SonarConfig config = sonarOf(2, 2, 1);
+        SonarConfig config = wallSonar(2, 2, 1);
         config.max_walls = most;
         const auto ping = pingOf(config, snapshotOf(scene));
         const double first = energyOf(ping, 0, 4.9, 5.2) * 25;
@@ -184,14 +184,14 @@ TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
 TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
     std::mt19937 random(5);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
-        SonarConfig config = sonarOf(8, 2, 8);
+        SonarConfig config = wallSonar(8, 2, 8);
         const bool all = effect == "all";
         if (all || effect == "pattern") config.beam_pattern.emplace().receive.azimuth.emplace().width_deg = 1.5;
         if (all || effect == "pulse") config.pulse.emplace().bandwidth_khz = 2;
         if (all || effect == "coherent") config.speckle.emplace().coherent = true;
         const glm::dvec3 place(std::uniform_real_distribution(0.0, 1.0)(random), 0, 0);
-        const auto behind = pingOf(config, snapshotOf(sceneOf({test::wall(-8), test::wall(13)}, 1, sheet), place));
-        const auto both = pingOf(config, snapshotOf(sceneOf({test::wall(8), test::wall(13)}, 1, sheet), place));
+        const auto behind = pingOf(config, snapshotOf(shellsOf({test::wall(-8), test::wall(13)}, 1, sheet), place));
+        const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(8), test::wall(13)}, 1, sheet), place));
         for (uint32_t beam = 0; beam < 8; ++beam) {
             const double share = passed(sheet, std::cos(both.bearings[beam].rad));
             const double there = energyOf(behind, beam, 11, 15);
@@ -201,8 +201,8 @@ TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
 }
 
 TEST(WallsTest, TheTruthNamesWhatIsBehind) {
-    const SonarConfig config = sonarOf(8, 2, 4);
-    const auto snapshot = snapshotOf(sceneOf({test::wall(8), test::wall(13)}, 1));
+    const SonarConfig config = wallSonar(8, 2, 4);
+    const auto snapshot = snapshotOf(shellsOf({test::wall(8), test::wall(13)}, 1));
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;
     types::SonarTruth truth;
@@ -227,11 +227,11 @@ TEST(WallsTest, TheTruthNamesWhatIsBehind) {
 
 TEST(WallsTest, ASmoothShellIsNoMirror) {
     const auto with = [](bool is_shell) {
-        const auto scene = std::make_shared<types::Geometry>(*sceneOf({test::wall(8), test::wall(-6)}, 1));
+        const auto scene = std::make_shared<types::Geometry>(*shellsOf({test::wall(8), test::wall(-6)}, 1));
         scene->materials[1].reflection = 1;
         scene->materials[1].roughness_slope = 0.1f;
         if (!is_shell) scene->materials[1].shell.reset();
-        SonarConfig plain = sonarOf(40, 10, 8), bouncing = plain;
+        SonarConfig plain = wallSonar(40, 10, 8), bouncing = plain;
         bouncing.multipath.emplace().bounces = 2;
         return std::pair(pingOf(plain, snapshotOf(scene)).bins, pingOf(bouncing, snapshotOf(scene)).bins);
     };
@@ -242,24 +242,24 @@ TEST(WallsTest, ASmoothShellIsNoMirror) {
 }
 
 TEST(WallsTest, WhyItIsLeftOutIsSaid) {
-    const auto scene = sceneOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
+    const auto scene = shellsOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {
         const RenderPlan plan = makeRenderPlan(config, *geometry);
         const LeftOut* what = plan.leftOut("thin walls");
         return what ? what->words(*what, plan.grid) : "";
     };
-    SonarConfig config = sonarOf(8, 2, 4);
+    SonarConfig config = wallSonar(8, 2, 4);
     EXPECT_EQ(why(config, scene), "");
     EXPECT_EQ(why(config, plain), "no material has a shell");
     config.max_walls = 0;
     EXPECT_EQ(why(config, scene), "max_walls is 0");
-    config = sonarOf(8, 2, 4);
+    config = wallSonar(8, 2, 4);
     config.frequency_khz.reset();
     EXPECT_THAT(why(config, scene), testing::StartsWith("no frequency_khz"));
-    config = sonarOf(8, 2, 4);
+    config = wallSonar(8, 2, 4);
     config.visibility = Visibility::Gl;
     EXPECT_THAT(why(config, scene), testing::HasSubstr("visibility: cpu"));
-    config = sonarOf(8, 2, 4);
+    config = wallSonar(8, 2, 4);
     config.motion_in_ping = true;
     EXPECT_THAT(why(config, scene), testing::HasSubstr("straight ways"));
 }

@@ -24,14 +24,14 @@ using types::radians;
 constexpr double target = 0.05;  ///< Where nothing is said.
 
 /** What became of a run. */
-struct Heard {
+struct HeardPings {
     std::vector<types::SonarPtr> pings;
     std::vector<std::string> notices;
     types::Plan plan;
 };
 
 template <class Task, class Config>
-Heard runOf(const Config& config, const std::vector<types::Snapshot>& snapshots) {
+HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snapshots) {
     Task task("sonar");
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
@@ -39,7 +39,7 @@ Heard runOf(const Config& config, const std::vector<types::Snapshot>& snapshots)
     task.ping.connectTo(out.port, framework::ConnPolicy::buffer(1));
     task.config.set(config);
     if (!task.configure() || !task.start()) throw std::runtime_error(task.lastError());
-    Heard run;
+    HeardPings run;
     for (const types::Snapshot& snapshot : snapshots) {
         in.port.write(std::make_shared<types::Snapshot>(snapshot));
         task.update();
@@ -51,7 +51,7 @@ Heard runOf(const Config& config, const std::vector<types::Snapshot>& snapshots)
 }
 
 /** rel_l2_tvg of each ping; a turning head is where its ping's bearing says. */
-std::vector<double> errorsOf(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots, const Heard& run,
+std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots, const HeardPings& run,
                              int columns_per_beam) {
     config.quality = {};
     config.quality.rows = 2048;
@@ -78,7 +78,7 @@ double nearlyAll(std::vector<double> errors) {
     return errors[errors.size() * 95 / 100];
 }
 
-std::string told(const Heard& run, const std::vector<double>& errors) {
+std::string told(const HeardPings& run, const std::vector<double>& errors) {
     std::string text =
         "now " + std::to_string(run.plan.rows) + " x " + std::to_string(run.plan.columns_per_beam) + "\n";
     for (const std::string& notice : run.notices) text += notice + "\n";
@@ -86,7 +86,7 @@ std::string told(const Heard& run, const std::vector<double>& errors) {
     return text;
 }
 
-sonar::SonarConfig fan() {
+sonar::SonarConfig movingFan() {
     sonar::SonarConfig config;
     config.range = 30;
     config.bin_count = 200;
@@ -128,8 +128,8 @@ std::vector<types::Snapshot> turnFromAWall(unsigned seed) {
 
 TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorKeepsToItsTarget) {
     const auto snapshots = turnFromAWall(3);
-    const Heard run = runOf<sonar::SonarTask>(fan(), snapshots);
-    const std::vector<double> errors = errorsOf(fan(), snapshots, run, 12);
+    const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
 }
 
@@ -138,8 +138,8 @@ TEST(MovingQualityTest, APassOverARoughFloorKeepsToItsTarget) {
     const auto snapshots = snapshotsOf(scene, 100, [](int i) {
         return Place{glm::dvec3(-35 + 0.4 * i, 2, 0.5 * std::sin(0.1 * i)), 0.2 * std::sin(0.05 * i)};
     });
-    const Heard run = runOf<sonar::SonarTask>(fan(), snapshots);
-    const std::vector<double> errors = errorsOf(fan(), snapshots, run, 12);
+    const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
 }
 
@@ -163,8 +163,8 @@ TEST(MovingQualityTest, AScanningHeadInAPoolKeepsToItsTarget) {
     const auto snapshots = snapshotsOf(pool(), 400, [](int i) {
         return Place{glm::dvec3(-1 + 0.002 * i, 0.5, -0.8), 0.3};
     });
-    const Heard run = runOf<sonar::ScanningSonarTask>(config, snapshots);
-    const std::vector<double> errors = errorsOf(config.beam(), snapshots, run, 64);
+    const HeardPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
+    const std::vector<double> errors = movingErrors(config.beam(), snapshots, run, 64);
     EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
 }
 

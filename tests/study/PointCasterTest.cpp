@@ -38,7 +38,7 @@ Errors errorsOf(const StudyScene& scene, int up, int across) {
             compare(half, mean, layout).rel_l2};
 }
 
-StudyScene sceneNamed(const std::string& name) {
+StudyScene studyNamed(const std::string& name) {
     for (const SceneMaker& scene : closedFormScenes())
         if (scene.name == name) return scene.make();
     throw std::invalid_argument(name);
@@ -47,7 +47,7 @@ StudyScene sceneNamed(const std::string& name) {
 class PointCasterTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(PointCasterTest, ItsErrorIsWhatItsHalvesTellAndFallsWithRays) {
-    const StudyScene scene = sceneNamed(GetParam());
+    const StudyScene scene = studyNamed(GetParam());
     const int across = std::max(1, 8 / scene.config.beam_count);
     const Errors coarse = errorsOf(scene, 8, across), fine = errorsOf(scene, 32, 4 * across);
     EXPECT_LT(fine.estimated, coarse.estimated / 3) << "16 times the tiles: 8 with independent tiles, 4 without";
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PointCasterTest,
                          [](const auto& scene) { return std::string(scene.param); });
 
 TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOthersOthers) {
-    const StudyScene scene = sceneNamed("shadow_screen");
+    const StudyScene scene = studyNamed("shadow_screen");
     const auto sums = [&](uint64_t seed) {
         return PointCaster(scene.snapshot).render(scene.snapshot.sonar, scene.config, 50, 3, seed);
     };

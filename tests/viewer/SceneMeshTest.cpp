@@ -9,7 +9,7 @@
 namespace insonify::viewer {
 namespace {
 
-struct Message {
+struct MeshMessage {
     nlohmann::json json;
     std::string data;
     template <class T>
@@ -20,7 +20,7 @@ struct Message {
     }
 };
 
-Message takenApart(const std::string& bytes) {
+MeshMessage meshTakenApart(const std::string& bytes) {
     uint32_t head[2];
     std::memcpy(head, bytes.data(), sizeof head);
     EXPECT_EQ(head[0], scene_kind);
@@ -49,7 +49,7 @@ types::Geometry scene(uint32_t large, uint32_t small) {
 }
 
 TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
-    const Message message = takenApart(sceneMessage(scene(4, 1), 1000, "scene.snapshot"));
+    const MeshMessage message = meshTakenApart(sceneMessage(scene(4, 1), 1000, "scene.snapshot"));
     const auto& mesh = message.json["meshes"][1];
     EXPECT_EQ(message.list<float>(mesh["positions"]), (std::vector<float>{0, 0, 0, 1, 1, 0, 2, 0, 0}));
     EXPECT_EQ(message.list<uint32_t>(mesh["indices"]), (std::vector<uint32_t>{0, 1, 2}));
@@ -62,7 +62,7 @@ TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
 }
 
 TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
-    const Message message = takenApart(sceneMessage(scene(100, 10), 115, "scene.snapshot"));
+    const MeshMessage message = meshTakenApart(sceneMessage(scene(100, 10), 115, "scene.snapshot"));
     EXPECT_EQ(message.json["triangles"], 120);
     EXPECT_EQ(message.json["left_out"], 1);
     EXPECT_EQ(message.json["objects"][0]["name"], "small");
@@ -75,7 +75,7 @@ TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
         geometry.meshes.push_back(strip(400));
         geometry.objects.push_back({"too many", static_cast<int>(geometry.meshes.size()) - 1, glm::dmat4(1)});
     }
-    const Message message = takenApart(sceneMessage(geometry, 520, "scene.snapshot"));
+    const MeshMessage message = meshTakenApart(sceneMessage(geometry, 520, "scene.snapshot"));
     EXPECT_EQ(message.json["left_out"], 50);
     EXPECT_EQ(message.json["meshes"].size(), 52u) << "objects have the numbers of their meshes";
     EXPECT_EQ(message.json["meshes"][2]["indices"]["count"], 0);
@@ -85,7 +85,7 @@ TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
 TEST(SceneMeshTest, LargeMeshesAreTheirOutlines) {
     types::Geometry geometry = scene(100, 10);
     geometry.meshes[0].coarse_indices = {1, 50, 100};
-    const Message message = takenApart(sceneMessage(geometry, 50, "scene.snapshot"));
+    const MeshMessage message = meshTakenApart(sceneMessage(geometry, 50, "scene.snapshot"));
     EXPECT_EQ(message.json["coarse"], true);
     EXPECT_EQ(message.json["meshes"][0]["indices"]["count"], 3);
     EXPECT_EQ(message.json["left_out"], 0);

@@ -25,7 +25,7 @@ std::string diagnosticsOf(const ViewerConfig& config) {
     return all;
 }
 
-ViewerConfig at(const std::string& address, const std::string& token = "") {
+ViewerConfig viewerAt(const std::string& address, const std::string& token = "") {
     ViewerConfig config;
     config.address = address;
     config.token = token;
@@ -33,12 +33,12 @@ ViewerConfig at(const std::string& address, const std::string& token = "") {
 }
 
 TEST(ViewerTaskTest, AnAddressThatOthersReachNeedsAToken) {
-    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(diagnosticsOf(at(local)), "") << local;
+    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(diagnosticsOf(viewerAt(local)), "") << local;
     for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
-        EXPECT_THAT(diagnosticsOf(at(open)), HasSubstr("token: is missing")) << open;
-        EXPECT_EQ(diagnosticsOf(at(open, "secret")), "") << open;
+        EXPECT_THAT(diagnosticsOf(viewerAt(open)), HasSubstr("token: is missing")) << open;
+        EXPECT_EQ(diagnosticsOf(viewerAt(open, "secret")), "") << open;
     }
-    EXPECT_THAT(diagnosticsOf(at("localhost", "secret")),
+    EXPECT_THAT(diagnosticsOf(viewerAt("localhost", "secret")),
                 HasSubstr("address: is 'localhost'; it must be a numeric address"));
 }
 
@@ -58,7 +58,7 @@ TEST(ViewerTaskTest, APortThatIsTakenIsOneClearDiagnostic) {
 
 TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearDiagnostic) {
     ViewerTask viewer("viewer");
-    viewer.config.set(at("203.0.113.7", "secret"));  // of an example
+    viewer.config.set(viewerAt("203.0.113.7", "secret"));  // of an example
     EXPECT_FALSE(viewer.configure());
     ASSERT_NE(viewer.configError(), nullptr);
     EXPECT_THAT(viewer.configError()->what(), HasSubstr("viewer.address: is 203.0.113.7, on which nothing can listen"));
@@ -161,7 +161,7 @@ TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
 // -- in a deployment --------------------------------------------------------------------------------------------------
 
 /** Says it and gives the answer to it. */
-nlohmann::json answerTo(Client& client, const std::string& request) {
+nlohmann::json replyTo(Client& client, const std::string& request) {
     client.say(request);
     while (const auto message = client.hear()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
@@ -174,12 +174,12 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
     Running running;
     Client client(running.port());
     ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
-    const auto done = answerTo(client, R"({"id":4,"call":"source.setLevel","arguments":["7.5"]})");
+    const auto done = replyTo(client, R"({"id":4,"call":"source.setLevel","arguments":["7.5"]})");
     EXPECT_EQ(done["id"], 4);
     EXPECT_EQ(done["result"], "");
     EXPECT_EQ(std::get<double>(running.deployment().task("source")->record().properties.at("level")), 7.5);
     const auto refused = [&](const std::string& call, const std::string& argument) {
-        return answerTo(client, R"({"call":")" + call + R"(","arguments":[")" + argument + "\"]}")["refused"]
+        return replyTo(client, R"({"call":")" + call + R"(","arguments":[")" + argument + "\"]}")["refused"]
             .get<std::string>();
     };
     EXPECT_THAT(refused("source.setLevel", "700"), HasSubstr("level: is 700"));
@@ -187,7 +187,7 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
     EXPECT_THAT(refused("sauce.setLevel", "7"), HasSubstr("no task sauce"));
     EXPECT_THAT(refused("source.stop", ""), HasSubstr("states of tasks"));
     EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not steer itself"));
-    EXPECT_THAT(answerTo(client, "nonsense")["refused"], "is no JSON object");
+    EXPECT_THAT(replyTo(client, "nonsense")["refused"], "is no JSON object");
 }
 
 /** The next text message with this op. */
@@ -337,16 +337,16 @@ TEST(ViewerTaskTest, APagePausesALockstepRunAndStepsIt) {
     ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
     const auto time = [&] { return running.deployment().status().now.microseconds; };
     ASSERT_TRUE(comesTrue([&] { return time() > 1'000'000; }));
-    EXPECT_THAT(answerTo(client, R"({"id":1,"step":true})")["refused"], "cannot step: the deployment is not paused");
-    EXPECT_EQ(answerTo(client, R"({"id":2,"pause":true})")["result"], "");
+    EXPECT_THAT(replyTo(client, R"({"id":1,"step":true})")["refused"], "cannot step: the deployment is not paused");
+    EXPECT_EQ(replyTo(client, R"({"id":2,"pause":true})")["result"], "");
     const int64_t paused = time();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(time(), paused);
-    EXPECT_EQ(answerTo(client, R"({"id":3,"step":true})")["result"], "");
+    EXPECT_EQ(replyTo(client, R"({"id":3,"step":true})")["result"], "");
     EXPECT_TRUE(comesTrue([&] { return time() > paused; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(time(), paused + 10'000);
-    EXPECT_EQ(answerTo(client, R"({"id":4,"pause":false})")["result"], "");
+    EXPECT_EQ(replyTo(client, R"({"id":4,"pause":false})")["result"], "");
     EXPECT_TRUE(comesTrue([&] { return time() > paused + 50'000; }));
 }
 

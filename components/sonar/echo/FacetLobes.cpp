@@ -308,8 +308,11 @@ private:
 
 }  // namespace
 
-std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength) {
-    return FacetLobes(mesh, world_from_mesh, wavelength).records();
+std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength,
+                                    const StraightEdges* edges) {
+    std::vector<FacetRecord> records = FacetLobes(mesh, world_from_mesh, wavelength).records();
+    for (size_t t = 0; edges && t < records.size(); ++t) records[t].axis.w = edges->encloses[t] ? 1.0f : 0.0f;
+    return records;
 }
 
 bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws) {
@@ -329,7 +332,12 @@ std::vector<FacetRecord> facetLobes(const types::Geometry& geometry, const Mater
     for (size_t i = 0; i < geometry.meshes.size(); ++i) {
         const types::Mesh& mesh = geometry.meshes[i];
         std::vector<FacetRecord> records(mesh.indices.size() / 3, FacetRecord{vec4(0), vec4(0), vec4(0)});
-        if (hasLobes(mesh, laws)) records = facetLobes(mesh, worldFromMesh(geometry, i), laws.wavelength.value_or(0));
+        if (hasLobes(mesh, laws)) {
+            const glm::dmat3 world_from_mesh = worldFromMesh(geometry, i);
+            std::optional<StraightEdges> edges;
+            if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);
+            records = facetLobes(mesh, world_from_mesh, laws.wavelength.value_or(0), edges ? &*edges : nullptr);
+        }
         all.insert(all.end(), records.begin(), records.end());
     }
     return all;

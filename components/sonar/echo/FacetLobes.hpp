@@ -4,6 +4,7 @@
 
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/echo/StraightEdges.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::sonar {
@@ -12,8 +13,10 @@ namespace insonify::sonar {
  *  mean square slope of the steps to the neighbours [1], that of diffraction at the length without curvature [1], and
  *  the curvature [1/m]. An edge of 60 deg or more is an edge, and no curve.
  *  @param world_from_mesh  turns and scales the mesh; the records have the metric of the world.
- *  @param wavelength  [m], 0: none is known, and nothing is diffracted. */
-std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength);
+ *  @param wavelength  [m], 0: none is known, and nothing is diffracted.
+ *  @param edges  the edges of the mesh that echo themselves; null: none do. */
+std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double wavelength,
+                                    const StraightEdges* edges = nullptr);
 
 /** Whether any triangle of a mesh has a material whose law has a lobe. */
 bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws);

@@ -206,7 +206,7 @@ double MaterialLaws::loudestLobe(double sample_angle) const {
         for (double cosine = 1; cosine > 1e-3; cosine *= 0.95)
             strongest = std::max(
                 strongest,
-                shared.lobeOverCosine(double{record.law.y}, {1 - cosine * cosine, 0, slope, slope, 0, 0}, cosine));
+                shared.lobeOverCosine(double{record.law.y}, {1 - cosine * cosine, 0, slope, slope, 0, 0, 0}, cosine));
     }
     return strongest;
 }

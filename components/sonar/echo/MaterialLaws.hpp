@@ -35,6 +35,7 @@ struct MaterialLaws {
     bool has_seabeds = false;               ///< A table is that of APL-UW TR 9407.
     bool has_matter = false;                ///< A table is that of a rough solid.
     bool lacks_frequency = false;           ///< There are seabeds, which follow Lambert's law for want of a frequency.
+    std::optional<double> sharp_turn;       ///< Edges of this turn and more echo themselves (3.12) [rad].
     std::string outside_validity;           ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;

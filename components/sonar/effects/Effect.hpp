@@ -127,6 +127,9 @@ public:
     virtual std::string takeOut(SonarConfig& /*config*/) const { return {}; }
 };
 
+/** Whether sonar and objects move while sound is under way. */
+bool followsMotion(const SonarConfig& config);
+
 /** Omits an effect, for Effect::plan(). */
 inline bool leaveOut(RenderPlan& plan, const LeftOut& what) {
     plan.left_out.push_back(what);

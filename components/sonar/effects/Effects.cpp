@@ -26,6 +26,7 @@ const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
 const Effect& pointTargets();
+const Effect& edgeDiffraction();
 const Effect& imperfections();
 const Effect& truth();
 
@@ -34,9 +35,9 @@ namespace {
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{
-        &absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),  &pulse(), &ringDown(),
-        &volume(),       &speckle(),     &multipath(),      &thinWalls(),     &slabs(), &refraction(),
-        &motionInPing(), &normalMaps(),  &pointTargets(),   &imperfections(), &truth()};
+        &absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
+        &volume(),       &speckle(),     &multipath(),      &thinWalls(),       &slabs(),         &refraction(),
+        &motionInPing(), &normalMaps(),  &pointTargets(),   &edgeDiffraction(), &imperfections(), &truth()};
 };
 
 List& list() {

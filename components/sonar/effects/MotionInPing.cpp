@@ -46,6 +46,8 @@ double dopplerCoupling(const SonarConfig& config) {
     return 1e-6 * *config.pulse->chirp_us * config.frequency_khz.value() / config.pulse->bandwidth_khz.value();
 }
 
+bool followsMotion(const SonarConfig& config) { return config.motion_in_ping; }
+
 MotionBound motionBound(const SonarConfig& config, const BinGrid& grid) {
     const double flight = 2 * grid.range_max / grid.speed_of_sound;
     const double seconds = std::max(flight, dopplerCoupling(config));

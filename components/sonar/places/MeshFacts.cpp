@@ -80,11 +80,14 @@ const std::vector<float>& MeshFacts::mapDensity() {
 MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws) {
     if (!hasLobes(*mesh_, laws)) return nullptr;
     const double wavelength = laws.wavelength.value_or(0);
-    std::array<double, 10> key{};
+    std::array<double, 11> key{};
     std::copy_n(&world_from_mesh[0].x, 9, key.begin());
     key[9] = wavelength;
+    key[10] = laws.sharp_turn.value_or(0);
+    const Edges edges = laws.sharp_turn ? this->edges(world_from_mesh, laws, *laws.sharp_turn) : nullptr;
     return facets_.of(key, [&] {
-        return std::make_shared<const std::vector<FacetRecord>>(facetLobes(*mesh_, world_from_mesh, wavelength));
+        return std::make_shared<const std::vector<FacetRecord>>(
+            facetLobes(*mesh_, world_from_mesh, wavelength, edges.get()));
     });
 }
 
@@ -93,6 +96,15 @@ MeshFacts::Curves MeshFacts::curves(const glm::dmat3& world_from_mesh) {
     std::copy_n(&world_from_mesh[0].x, 9, key.begin());
     return curves_.of(
         key, [&] { return std::make_shared<const std::vector<CurveRecord>>(facetCurves(*mesh_, world_from_mesh)); });
+}
+
+MeshFacts::Edges MeshFacts::edges(const glm::dmat3& world_from_mesh, const MaterialLaws& laws, double min_turn) {
+    if (!hasLobes(*mesh_, laws)) return nullptr;
+    std::array<double, 10> key{};
+    std::copy_n(&world_from_mesh[0].x, 9, key.begin());
+    key[9] = min_turn;
+    return edges_.of(
+        key, [&] { return std::make_shared<const StraightEdges>(straightEdges(*mesh_, world_from_mesh, min_turn)); });
 }
 
 }  // namespace insonify::sonar

@@ -7,6 +7,7 @@
 
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/echo/MaterialLaws.hpp"
+#include "components/sonar/echo/StraightEdges.hpp"
 #include "components/sonar/places/BoxTree.hpp"
 #include "components/sonar/places/SharedValues.hpp"
 #include "types/Geometry.hpp"
@@ -20,6 +21,7 @@ public:
     using Planes = std::shared_ptr<const std::vector<PlaneRecord>>;
     using Facets = std::shared_ptr<const std::vector<FacetRecord>>;
     using Curves = std::shared_ptr<const std::vector<CurveRecord>>;
+    using Edges = std::shared_ptr<const StraightEdges>;
 
     static constexpr size_t leaf_triangles = 4;  ///< Triangles below a leaf of triangles(), neighbours in the indices.
 
@@ -41,6 +43,9 @@ public:
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
     /** How each triangle bends, as facetCurves() finds it; empty where no part of the mesh is a smooth body. */
     Curves curves(const glm::dmat3& world_from_mesh);
+    /** The straight edges of at least a turn [rad], as straightEdges() finds them; null where no material of the mesh
+     *  has a lobe. */
+    Edges edges(const glm::dmat3& world_from_mesh, const MaterialLaws& laws, double min_turn);
 
     /** For each triangle, lengths in its map's coordinates per metre, the mean of all directions [1/m]; 0 where it has
      *  no area. The mesh must have uvs. */
@@ -53,8 +58,10 @@ private:
     Lazy<BoxTree> triangles_;
     Lazy<Planes> planes_;
     Lazy<std::vector<float>> map_density_;
-    SharedValues<std::array<double, 10>, const std::vector<FacetRecord>> facets_;  ///< By matrix and wavelength [m].
-    SharedValues<std::array<double, 9>, const std::vector<CurveRecord>> curves_;   ///< By matrix.
+    /** By matrix, wavelength [m] and turn of sharp edges [rad]. */
+    SharedValues<std::array<double, 11>, const std::vector<FacetRecord>> facets_;
+    SharedValues<std::array<double, 9>, const std::vector<CurveRecord>> curves_;  ///< By matrix.
+    SharedValues<std::array<double, 10>, const StraightEdges> edges_;             ///< By matrix and turn [rad].
 };
 
 }  // namespace insonify::sonar

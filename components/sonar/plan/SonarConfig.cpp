@@ -221,7 +221,10 @@ std::optional<bool> SonarConfig::choosesRays() const {
     return {};
 }
 
-bool SonarConfig::castsRays() const { return choosesRays().value_or(!gpu::EglContext::hasCard()); }
+bool SonarConfig::castsRays() const {
+    const std::optional<bool> chosen = choosesRays();
+    return chosen ? *chosen : !gpu::EglContext::hasCard();
+}
 
 void SonarConfig::requireDevice(const std::string& task) const {
     if (castsRays()) return;

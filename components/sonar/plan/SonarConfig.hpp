@@ -344,7 +344,8 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
                 "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
     visit(Field{"effects", "",
-                "numbers of effects of other libraries, by name (components/sonar/README.md, A new effect)"},
+                "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}`, echoes of straight edges, and "
+                "those of other libraries (components/sonar/README.md)"},
           self.effects);
     describeMoved(self, visit);
 }

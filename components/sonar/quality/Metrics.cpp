@@ -20,16 +20,16 @@ double percentile(std::vector<double> values, double share) {
 }
 
 /** Energies of one beam from the first compared bin on. */
-using Beam = std::vector<double>;
+using BeamBins = std::vector<double>;
 
 struct Comparison {
-    std::vector<Beam> got, reference;
+    std::vector<BeamBins> got, reference;
     int first_bin;
 };
 
 template <class T>
-std::vector<Beam> beamsOf(std::span<const T> energies, const Layout& layout, int first_bin) {
-    std::vector<Beam> beams;
+std::vector<BeamBins> beamsOf(std::span<const T> energies, const Layout& layout, int first_bin) {
+    std::vector<BeamBins> beams;
     for (int beam = 0; beam < layout.beams; ++beam) {
         const auto row = energies.subspan(static_cast<size_t>(beam * layout.bins + first_bin),
                                           static_cast<size_t>(layout.bins - first_bin));
@@ -38,7 +38,7 @@ std::vector<Beam> beamsOf(std::span<const T> energies, const Layout& layout, int
     return beams;
 }
 
-double total(const Beam& beam) {
+double total(const BeamBins& beam) {
     double sum = 0;
     for (const double e : beam) sum += e;
     return sum;
@@ -55,7 +55,7 @@ struct Squares {
     double relative() const { return error == 0 ? 0 : std::sqrt(error / reference); }
 };
 
-Squares squares(const Beam& got, const Beam& reference, int first_bin, double power) {
+Squares squares(const BeamBins& got, const BeamBins& reference, int first_bin, double power) {
     Squares result;
     for (size_t k = 0; k < got.size(); ++k) {
         const double weight = std::pow(first_bin + static_cast<double>(k) + 0.5, power);
@@ -83,7 +83,7 @@ void addNorms(const Comparison& c, Metrics& metrics) {
 
 void addLevels(const Comparison& c, Metrics& metrics) {
     double maximum = 0;
-    for (const Beam& beam : c.reference) maximum = std::max(maximum, *std::ranges::max_element(beam));
+    for (const BeamBins& beam : c.reference) maximum = std::max(maximum, *std::ranges::max_element(beam));
     const double floor = maximum * floor_ratio;
     std::vector<double> off;
     for (size_t b = 0; b < c.got.size(); ++b)
@@ -99,14 +99,14 @@ void addLevels(const Comparison& c, Metrics& metrics) {
     metrics.db_p95 = percentile(off, 0.95);
 }
 
-int firstReturn(const Beam& beam) {
+int firstReturn(const BeamBins& beam) {
     const double threshold = return_ratio * *std::ranges::max_element(beam);
     return static_cast<int>(std::ranges::find_if(beam, [&](double e) { return e > 0 && e >= threshold; }) -
                             beam.begin());
 }
 
 /** Bins between the first and the last return that are 20 dB below the mean around them. */
-std::vector<bool> shadow(const Beam& beam) {
+std::vector<bool> shadow(const BeamBins& beam) {
     std::vector<double> sums(beam.size() + 1);
     for (size_t k = 0; k < beam.size(); ++k) sums[k + 1] = sums[k] + beam[k];
     std::vector<bool> dark(beam.size());
@@ -170,9 +170,9 @@ double correlation(const Comparison& c) {
 }
 
 /** Levels of all bins, weakest first [dB]. */
-std::vector<double> sortedLevels(const std::vector<Beam>& beams, double floor) {
+std::vector<double> sortedLevels(const std::vector<BeamBins>& beams, double floor) {
     std::vector<double> levels;
-    for (const Beam& beam : beams)
+    for (const BeamBins& beam : beams)
         for (const double e : beam) levels.push_back(10 * std::log10(std::max(e, floor)));
     std::ranges::sort(levels);
     return levels;
@@ -180,7 +180,7 @@ std::vector<double> sortedLevels(const std::vector<Beam>& beams, double floor) {
 
 double levelDistance(const Comparison& c) {
     double maximum = 0;
-    for (const Beam& beam : c.reference) maximum = std::max(maximum, *std::ranges::max_element(beam));
+    for (const BeamBins& beam : c.reference) maximum = std::max(maximum, *std::ranges::max_element(beam));
     const double floor = std::max(maximum * floor_ratio, std::numeric_limits<double>::min());
     const std::vector<double> got = sortedLevels(c.got, floor), reference = sortedLevels(c.reference, floor);
     double sum = 0;

@@ -78,6 +78,19 @@ double PointTargets::inPhase(const TargetWay& way) const {
     return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
 }
 
+bool PointTargets::mayHear(const glm::dvec3& direction) const {
+    const auto angles = directionOf(direction);
+    if (!angles) return false;
+    const auto& pattern = plan_.directivity;
+    if (pattern && pattern->hasElevation()) {
+        const double along = pattern->sentElevation(angles->elevation) * pattern->heardElevation(angles->elevation);
+        if (along < pattern->floor()) return false;
+    } else if (std::abs(angles->elevation) > types::radians(plan_.config.beam_height_deg) / 2) {
+        return false;
+    }
+    return (pattern && pattern->hasAzimuth()) || plan_.beams.spans(angles->azimuth);
+}
+
 double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const auto& pattern = plan_.directivity;
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
@@ -175,6 +188,11 @@ size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, Ec
         heard += any ? 1 : 0;
     }
     return heard;
+}
+
+bool PointTargets::addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field) {
+    const auto echo = returnOf(way, way, strength_db);
+    return echo && spread(echo->range) && (field ? addTo(*field, *echo, 0) : addTo(ping, *echo));
 }
 
 }  // namespace insonify::sonar

@@ -46,6 +46,13 @@ public:
      * of this ping, null where they are straight. Allocates nothing where nothing reflects. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent);
 
+    /** Adds an echo that comes back the way it went, in the same place of the same ping, but for what hides it. Returns
+     *  whether any beam has it. */
+    bool addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field);
+
+    /** Whether any beam may hear a direction, a unit vector in the sonar's axes. Quick: false is certain. */
+    bool mayHear(const glm::dvec3& direction) const;
+
 private:
     /** One echo of a target: out one way, back another or the same. */
     struct Return {

@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <vector>
+
+#include "types/Geometry.hpp"
+
+namespace insonify::sonar {
+
+/** A face that ends at an edge. */
+struct EdgeFace {
+    glm::dvec3 inward;  ///< Unit vector across the edge into the face, in the axes of the world.
+    double width;       ///< Extent of the face's flat part along `inward` [m].
+    int material;       ///< Index into Geometry::materials.
+    bool is_enclosed;   ///< Whether StraightEdges::encloses holds for the flat part.
+};
+
+/** A straight edge, of which a mesh may have many pieces. */
+struct StraightEdge {
+    glm::dvec3 from, to;             ///< Ends, in the axes of the mesh [m].
+    std::array<EdgeFace, 2> faces;   ///< Both the same where the edge is that of a thin sheet.
+    std::array<uint32_t, 2> corner;  ///< First vertices at the places of both ends.
+};
+
+/** The straight, sharp edges of a mesh. */
+struct StraightEdges {
+    std::vector<StraightEdge> edges;
+    std::vector<uint8_t> encloses;  ///< For each triangle, 1 where its flat part ends at these edges alone, else 0.
+};
+
+/** Returns the edges at which the surface turns by at least an angle, and those with one face only (ACOUSTICS.md 3.12).
+ *  Pieces on one line between the same two flat parts are one edge, whatever the triangles are. Omits edges of three
+ *  or more faces, and edges that stand for a curve: at both ends they go on in the same flat part with a bend of less
+ *  than 60 deg.
+ *  @param world_from_mesh  turns and scales the mesh; angles and lengths are those of the world
+ *  @param min_turn  [rad], above 0 */
+StraightEdges straightEdges(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double min_turn);
+
+}  // namespace insonify::sonar
