@@ -170,6 +170,21 @@ void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to
     }
 }
 
+/** About the rays of a tile. */
+struct TileCone {
+    glm::vec3 axis;      ///< Unit, sonar axes.
+    float cosine, sine;  ///< Of half its angle.
+};
+
+TileCone coneAbout(const TileRays& rays) {
+    const auto ray = [&](int i) { return glm::normalize(glm::vec3(rays.x[i], rays.y[i], rays.z[i])); };
+    const glm::vec3 axis = glm::normalize(ray(0) + ray(tile_samples - 1));
+    float narrowest = 1;
+    for (int i = 0; i < tile_samples; ++i) narrowest = std::min(narrowest, glm::dot(axis, ray(i)));
+    const float half = std::clamp(narrowest - 1e-6f, -1.0f, 1.0f);
+    return {axis, half, std::sqrt(1 - half * half)};
+}
+
 }  // namespace
 
 /** An object that moves. */
@@ -185,7 +200,7 @@ struct RayVisibility::Mover {
     float cosine = -1, sine = 0;  ///< Of the angle under which the ball's half is seen; -1: the sonar is inside.
 
     void placeAt(const glm::dmat4& sonar_from_object);
-    bool mayMeet(const TileRays& rays) const;
+    bool mayMeet(const TileCone& rays) const;
     TreePart meaning(uint32_t geometry) const {
         const TreePart& part = mesh->parts()[geometry];
         return {first_command + part.command, part.first_triangle};
@@ -212,16 +227,12 @@ void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
     cosine = static_cast<float>(std::sqrt(1 - share * share));
 }
 
-/** Whether the cone about a tile's rays touches that about the ball. */
-bool RayVisibility::Mover::mayMeet(const TileRays& rays) const {
+/** Whether a cone of rays touches that about the ball. */
+bool RayVisibility::Mover::mayMeet(const TileCone& rays) const {
     if (!placed) return false;
     if (cosine < 0) return true;
-    const auto ray = [&](int i) { return glm::normalize(glm::vec3(rays.x[i], rays.y[i], rays.z[i])); };
-    const glm::vec3 axis = glm::normalize(ray(0) + ray(tile_samples - 1));
-    float narrowest = 1;
-    for (int i = 0; i < tile_samples; ++i) narrowest = std::min(narrowest, glm::dot(axis, ray(i)));
-    const float half = std::clamp(narrowest - 1e-6f, -1.0f, 1.0f), half_sine = std::sqrt(1 - half * half);
-    return glm::dot(axis, towards) >= half * cosine - half_sine * sine || half * sine + half_sine * cosine < 0;
+    return glm::dot(rays.axis, towards) >= rays.cosine * cosine - rays.sine * sine ||
+           rays.cosine * sine + rays.sine * cosine < 0;
 }
 
 /** The scene about one origin. */
@@ -348,10 +359,12 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::sp
 }
 
 void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
+    if (here_->movers.empty()) return;
+    const TileCone cone = coneAbout(rays);
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     for (const Mover& mover : here_->movers) {
-        if (!mover.mayMeet(rays)) continue;
+        if (!mover.mayMeet(cone)) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);
         intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
