@@ -55,30 +55,35 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     return action();
 }
 
-/** Commands that are in component libraries of their name. */
-constexpr const char* commands_of_libraries[] = {"dataset", "device", "study"};
+/** Component libraries with commands: that of their name, and another one. */
+struct LibraryCommands {
+    const char *library, *other;
+};
+constexpr LibraryCommands commands_of_libraries[] = {{"dataset", nullptr}, {"device", nullptr}, {"study", "fit"}};
 
 /** Answers with what to install, whatever stands after the command. */
-void addAbsent(CLI::App& app, Action& action, const std::string& name) {
-    CLI::App* command = app.add_subcommand(name, std::string(loader::findComponent(name)->gives) + " (not installed)");
+void addAbsent(CLI::App& app, Action& action, const std::string& name, const std::string& library) {
+    CLI::App* command =
+        app.add_subcommand(name, std::string(loader::findComponent(library)->gives) + " (not installed)");
     command->prefix_command()->set_help_flag();
-    command->callback([name, &action] {
-        action = [name]() -> int { throw types::ConfigError("", name, "is in " + loader::absence(name)); };
+    command->callback([name, library, &action] {
+        action = [name, library]() -> int { throw types::ConfigError("", name, "is in " + loader::absence(library)); };
     });
 }
 
 /** Adds the commands of libraries, for a first word that is none of the core's: of all, since help, completion and the
  *  answer to a wrong word name them. One that cannot be loaded is a notice, and an error for its own command alone. */
 void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) {
-    for (const char* name : commands_of_libraries) {
+    for (const auto& [name, other] : commands_of_libraries) {
         if (!loader::isPresent(name)) {
-            addAbsent(app, action, name);
+            addAbsent(app, action, name, name);
+            if (other) addAbsent(app, action, other, name);
             continue;
         }
         try {
             loader::load(name).entry<void(CLI::App&, Action&)>("insonify_add_command")(app, action);
         } catch (const types::ConfigError& error) {
-            if (word == name) throw;
+            if (word == name || (other && word == other)) throw;
             fmt::print(stderr, "notice: {}\n", error.diagnostics().front().text());
         }
     }

@@ -127,7 +127,7 @@ SonarAt sonarAt(const std::string& file, uint64_t ping) {
     throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
 }
 
-PingAt codedPingAt(const std::string& file, uint64_t ping) {
+PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count) {
     framework::Registry registry = coreTasks();
     const DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
     const Deployment whole(spec, registry);
@@ -135,14 +135,15 @@ PingAt codedPingAt(const std::string& file, uint64_t ping) {
     Deployment deployment(restrictedTo(spec, kept), registry);
     receiver::ReceiverTask& receiver = codingReceiverOf(deployment, file);
     PingReader reader("reader");
-    receiver.ping.connectTo(reader.ping, framework::ConnPolicy::data());
+    receiver.ping.connectTo(reader.ping, framework::ConnPolicy::circularBuffer(count));
     deployment.configure();
-    const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
+    const framework::RunResult result = deployment.run({.samples = ping + count - 1}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());
-    types::SonarPtr received;
-    if (!reader.ping.readNew(received))
+    PingsAt found{.pings = {}, .code = receiver.config->code.value_or(receiver::CodeConfig{})};
+    for (types::SonarPtr received; reader.ping.readNew(received);) found.pings.push_back(*received);
+    if (found.pings.empty())
         throw types::ConfigError(file, "tasks." + receiver.name(), "gave out no ping: nothing to study");
-    return {*received, receiver.config->code.value_or(receiver::CodeConfig{})};
+    return found;
 }
 
 }  // namespace insonify::deployer

@@ -41,12 +41,13 @@ struct SonarAt {
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
 SonarAt sonarAt(const std::string& file, uint64_t ping);
 
-/** A ping that a receiver gave out as codes, and by what law. */
-struct PingAt {
-    types::Sonar ping;
+/** Pings that a receiver gave out as codes, and by what law. */
+struct PingsAt {
+    std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
 };
-/** The same ping as the first receiver that gives out codes has it. Throws types::ConfigError where there is none. */
-PingAt codedPingAt(const std::string& file, uint64_t ping);
+/** At most `count` pings from number `ping` on, as the first receiver that gives out codes has them. Throws
+ *  types::ConfigError where there is none. */
+PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count);
 
 }  // namespace insonify::deployer

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "components/output/FanFile.hpp"
+#include "components/output/SideScanFile.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
 
@@ -29,6 +31,75 @@ std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
     return files;
 }
 
+std::vector<CodedPing> pingsOfOculus(const fs::path& file) {
+    std::vector<CodedPing> pings;
+    for (const device::OculusPing& ping : device::readOculusPings(file))
+        pings.push_back(codedPing(ping, fmt::format("recorded_{}", ping.number)));
+    return pings;
+}
+
+/** The law of codes with the bits that the largest of them takes. */
+receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types::Sonar>& pings) {
+    float largest = 255;
+    for (const types::Sonar& ping : pings)
+        for (const float bin : ping.bins) largest = std::max(largest, bin);
+    code.bits = std::min(16, static_cast<int>(std::ceil(std::log2(largest + 1))));
+    return code;
+}
+
+std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::CodeConfig& law) {
+    std::vector<types::Sonar> lines;
+    std::vector<LinePlace> places;
+    double frequency_khz = 0;
+    std::optional<glm::dvec3> before;
+    const auto recording = output::openSideScan(file);
+    for (auto line = recording->next(); line; line = recording->next()) {
+        frequency_khz = line->frequency_khz;
+        const glm::dvec3 here = line->record.sonar.position;
+        const bool is_placed = std::isfinite(here.x + here.y);
+        const double step = is_placed && before ? std::hypot(here.x - before->x, here.y - before->y) : 0;
+        if (is_placed) before = here;
+        places.push_back({line->record.altitude, (places.empty() ? 0 : places.back().along) + step});
+        lines.push_back(std::move(line->ping));
+    }
+    if (lines.empty()) throw types::ConfigError(file.string(), "", "holds no ping of a side-scan");
+    std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", places);
+    for (CodedPing& side : sides) side.law_known = false, side.frequency_khz = frequency_khz;
+    return sides;
+}
+
+std::vector<CodedPing> pingsOfFan(const fs::path& file, receiver::CodeConfig law) {
+    std::vector<CodedPing> pings;
+    const auto recording = output::openFan(file);
+    const std::optional<double> dynamic_range = recording->dynamicRange();
+    if (dynamic_range) law = {.law = receiver::CodeLaw::Log, .dynamic_range_db = *dynamic_range};
+    law.bits = output::FanFile::code_bits;
+    for (auto frame = recording->next(); frame; frame = recording->next()) {
+        pings.push_back(codedPing(frame->ping, law, fmt::format("recorded_{}", pings.size())));
+        pings.back().law_known = dynamic_range.has_value();
+        pings.back().frequency_khz = frame->frequency_khz;
+    }
+    if (pings.empty()) throw types::ConfigError(file.string(), "", "holds no ping of a sonar");
+    return pings;
+}
+
+bool isLineOfSideScan(const types::Sonar& ping) {
+    return ping.beam_count == 2 && ping.bearings.size() == 2 && ping.bearings[0].rad < -1.5 &&
+           ping.bearings[1].rad > 1.5;
+}
+
+std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeConfig& law) {
+    const receiver::CodeConfig code = log.law_known ? log.code : withBits(law, log.pings);
+    std::vector<CodedPing> pings;
+    if (isLineOfSideScan(log.pings.front()))
+        pings = codedLines(log.pings, code, "recorded");
+    else
+        for (const types::Sonar& ping : log.pings)
+            pings.push_back(codedPing(ping, code, fmt::format("recorded_{}", pings.size())));
+    for (CodedPing& ping : pings) ping.law_known = log.law_known, ping.frequency_khz = log.frequency_khz;
+    return pings;
+}
+
 }  // namespace
 
 double CodedPing::levelDb(float code) const {
@@ -44,7 +115,10 @@ CodedPing codedPing(const device::OculusPing& ping, std::string name) {
                     .bearings = ping.bearings,
                     .codes = {},
                     .bits = std::min(ping.bits, 16),
-                    .law = {.law = receiver::CodeLaw::Sqrt, .gamma = ping.gamma}};
+                    .law = {.law = receiver::CodeLaw::Sqrt, .gamma = ping.gamma},
+                    .resolution = ping.range_resolution,
+                    .speed_of_sound = ping.speed_of_sound,
+                    .frequency_khz = ping.frequency_hz / 1e3};
     for (size_t i = 0; i < ping.codes.size(); ++i) {
         const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[i % ping.bin_count]);
         coded.codes.push_back(static_cast<float>(ping.codes[i] / std::sqrt(gain) / ping.largestCode()));
@@ -59,7 +133,9 @@ CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, 
                     .bearings = {},
                     .codes = {},
                     .bits = code.bits,
-                    .law = code};
+                    .law = code,
+                    .resolution = ping.binStart(1),
+                    .speed_of_sound = static_cast<double>(ping.speed_of_sound)};
     const types::BeamArc arc(ping);  // neighbouring rows are neighbouring beams
     coded.beam_count = static_cast<uint32_t>(arc.beams.size());
     for (const uint32_t beam : arc.beams) {
@@ -71,17 +147,49 @@ CodedPing codedPing(const types::Sonar& ping, const receiver::CodeConfig& code, 
     return coded;
 }
 
-std::vector<CodedPing> recordedPings(const std::vector<std::string>& names) {
+std::vector<CodedPing> codedLines(const std::vector<types::Sonar>& lines, const receiver::CodeConfig& code,
+                                  const std::string& name, const std::vector<LinePlace>& places) {
+    std::vector<CodedPing> sides;
+    for (const double side : {-1.0, 1.0}) {
+        CodedPing picture{.name = name + (side < 0 ? "_starboard" : "_port"),
+                          .bin_count = lines.front().bin_count,
+                          .bits = code.bits,
+                          .law = code,
+                          .resolution = lines.front().binStart(1),
+                          .speed_of_sound = static_cast<double>(lines.front().speed_of_sound),
+                          .is_waterfall = true};
+        const auto largest = static_cast<float>((1 << code.bits) - 1);
+        for (size_t i = 0; i < lines.size(); ++i)
+            for (size_t beam = 0; beam < lines[i].beam_count; ++beam) {
+                const types::Sonar& line = lines[i];
+                if (line.bin_count != picture.bin_count || line.bearings[beam].rad * side <= 0) continue;
+                for (size_t bin = 0; bin < line.bin_count; ++bin)
+                    picture.codes.push_back(line.bins[beam * line.bin_count + bin] / largest);
+                if (!places.empty()) picture.places.push_back(places[i]);
+                picture.bearings.push_back(side * static_cast<double>(++picture.beam_count));
+            }
+        if (picture.beam_count > 0) sides.push_back(std::move(picture));
+    }
+    return sides;
+}
+
+std::vector<CodedPing> recordedPings(const std::vector<std::string>& names, const receiver::CodeConfig* law,
+                                     const ReadLog& readLog) {
+    const receiver::CodeConfig assumed = law ? *law : receiver::CodeConfig{.law = receiver::CodeLaw::Sqrt};
     std::vector<CodedPing> pings;
-    for (const fs::path& file : filesOf(names))
-        for (const device::OculusPing& ping : device::readOculusPings(file)) {
-            CodedPing coded = codedPing(ping, fmt::format("recorded_{}", ping.number));
+    for (const fs::path& file : filesOf(names)) {
+        const std::optional<LoggedPings> logged = readLog ? readLog(file) : std::nullopt;
+        for (CodedPing& coded : logged                       ? pingsOfLog(*logged, assumed)
+                                : output::openSideScan(file) ? pingsOfSideScan(file, assumed)
+                                : output::openFan(file)      ? pingsOfFan(file, assumed)
+                                                             : pingsOfOculus(file)) {
             coded.file = file.string();
             const auto isSame = [&](const CodedPing& other) {
                 return other.name == coded.name && other.codes == coded.codes;
             };
             if (std::ranges::none_of(pings, isSame)) pings.push_back(std::move(coded));
         }
+    }
     if (pings.empty()) throw types::ConfigError(names.front(), "--real", "is a folder without a file");
     return pings;
 }

@@ -17,10 +17,15 @@ namespace {
 constexpr int fan_height = 600, gap = 12;  // [pixels]
 using Out = std::back_insert_iterator<std::string>;
 
-/** Where each pixel of a fan of some half-opening comes from. */
+/** Where each pixel of a fan of some half-opening comes from; of a waterfall its lines beside each other. */
 class Fan {
 public:
     explicit Fan(const CodedPing& ping) : ping_(ping) {
+        if (ping.is_waterfall) {
+            half_ = 0;
+            width_ = static_cast<int>(ping.beam_count);
+            return;
+        }
         const auto [least, most] = std::ranges::minmax(ping.bearings);
         half_ = std::min(std::max(std::abs(least), std::abs(most)), 0.5 * std::numbers::pi);
         width_ = static_cast<int>(std::ceil(2 * fan_height * std::sin(half_))) + 2;
@@ -31,15 +36,20 @@ public:
     int width() const { return width_; }
 
     uint8_t at(int x, int y) const {
+        if (ping_.is_waterfall)
+            return grey(static_cast<size_t>(x), static_cast<size_t>(fan_height - 1 - y) * ping_.bin_count / fan_height);
         const double ahead = fan_height - y - 0.5, to_port = 0.5 * width_ - x - 0.5;
         const double share = std::hypot(ahead, to_port) / fan_height, bearing = std::atan2(to_port, ahead);
         if (share >= 1 || std::abs(bearing) > half_) return 0;
         const auto bin = static_cast<size_t>(share * static_cast<double>(ping_.bin_count));
-        return static_cast<uint8_t>(
-            std::lround(255.0 * static_cast<double>(std::clamp(ping_.code(beamAt(bearing), bin), 0.0f, 1.0f))));
+        return grey(beamAt(bearing), bin);
     }
 
 private:
+    uint8_t grey(size_t beam, size_t bin) const {
+        return static_cast<uint8_t>(
+            std::lround(255.0 * static_cast<double>(std::clamp(ping_.code(beam, bin), 0.0f, 1.0f))));
+    }
     size_t beamAt(double bearing) const {
         const auto above =
             std::ranges::lower_bound(order_, bearing, {}, [&](size_t beam) { return ping_.bearings[beam]; });

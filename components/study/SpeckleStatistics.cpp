@@ -10,7 +10,6 @@ namespace insonify::study {
 namespace {
 
 constexpr size_t patch = 16;              ///< Bins and beams of a patch, and of a block of the jackknife.
-constexpr double quarters_alike = 0.25;   ///< A quarter's mean amplitude may differ from the patch's by it [1].
 constexpr double clipped_at_most = 0.02;  ///< Of a patch, at code 0 or the largest [1].
 constexpr size_t fewest_blocks = 4;
 
@@ -59,7 +58,8 @@ struct Patch {
             for (size_t j = 0; j < size; ++j) sum += std::sqrt(all.values[place(from_i + i, from_j + j)]);
         return sum / static_cast<double>(size * size);
     }
-    bool isOneKind() const {
+    /** @param alike share of the patch's mean amplitude by which a quarter's may differ from it [1] */
+    bool isOneKind(double alike) const {
         size_t clipped = 0;
         for (size_t i = 0; i < patch; ++i)
             for (size_t j = 0; j < patch; ++j) clipped += all.clipped[place(i, j)];
@@ -67,7 +67,7 @@ struct Patch {
         const double mean = meanAmplitude(0, 0, patch);
         for (const size_t i : {size_t{0}, patch / 2})
             for (const size_t j : {size_t{0}, patch / 2})
-                if (std::abs(meanAmplitude(i, j, patch / 2) - mean) > quarters_alike * mean) return false;
+                if (std::abs(meanAmplitude(i, j, patch / 2) - mean) > alike * mean) return false;
         return mean > 0;
     }
     void divideInto(SpeckleField& field) const {
@@ -80,11 +80,11 @@ struct Patch {
     }
 };
 
-SpeckleField overPatches(const Intensities& all) {
+SpeckleField overPatches(const Intensities& all, double alike) {
     SpeckleField field = emptyField(all.beam_count, all.bin_count);
     for (size_t beam = 0; beam + patch <= all.beam_count; beam += patch)
         for (size_t bin = 0; bin + patch <= all.bin_count; bin += patch)
-            if (const Patch each{all, beam, bin}; each.isOneKind()) each.divideInto(field);
+            if (const Patch each{all, beam, bin}; each.isOneKind(alike)) each.divideInto(field);
     return field;
 }
 
@@ -197,8 +197,8 @@ SpeckleField overMeans(const types::Sonar& ping, const types::Sonar& means) {
     return field;
 }
 
-SpeckleField overPatches(const CodedPing& ping) { return overPatches(intensitiesOf(ping)); }
-SpeckleField overPatches(const types::Sonar& intensities) { return overPatches(intensitiesOf(intensities)); }
+SpeckleField overPatches(const CodedPing& ping, double alike) { return overPatches(intensitiesOf(ping), alike); }
+SpeckleField overPatches(const types::Sonar& intensities) { return overPatches(intensitiesOf(intensities), 0.25); }
 
 SpeckleField sliceOf(const SpeckleField& field, size_t slice) {
     SpeckleField part = field;

@@ -21,8 +21,9 @@ SpeckleField overMeans(const types::Sonar& ping, const types::Sonar& means);
 
 /** Over the mean of the 16 x 16 bins about each, where these are one kind of bottom: quarters of such a patch differ by
  *  a quarter at most, and 2 % of it at most is at code 0 or the largest. Other patches are NaN. A mean that is
- *  estimated from so few takes 2 over the number of independent bins in a patch off the scintillation index. */
-SpeckleField overPatches(const CodedPing& ping);
+ *  estimated from so few takes 2 over the number of independent bins in a patch off the scintillation index.
+ *  @param alike in place of the quarter: patches that differ more by their few scatterers are lost with it */
+SpeckleField overPatches(const CodedPing& ping, double alike = 0.25);
 SpeckleField overPatches(const types::Sonar& intensities);
 
 /** Echoes and noise have different shares at different ranges: a field is told of by eighths of the range. */

@@ -117,6 +117,7 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"nlohmann/", "device"},  {"snappy.h", "device"},
         {"ignition/", "gazebo"},  {"stb", "sdf"},
         {"gdal", "survey"},       {"opencv2/", "video"},
+        {"opencv2/", "study"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);

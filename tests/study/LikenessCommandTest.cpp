@@ -56,6 +56,46 @@ TEST(LikenessCommandTest, WithoutADeploymentItTellsOfTheRecordingsAlone) {
     EXPECT_EQ(json::parse(readFile(folder / "report/likeness.json"))["pings"].size(), 4u);
 }
 
+TEST(LikenessCommandTest, ALogOfCodesIsReadAsARecordingIs) {
+    const WallFolder folder;
+    writeFile(folder / "coded.yml",
+              codedWall() + "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}\n");
+    ASSERT_EQ(callInsonify(folder, {"run", "coded.yml", "--pings", "2", "--out", "run"}).code, 0);
+    Outcome outcome =
+        callInsonify(folder, {"study", "likeness", "coded.yml", "--real", "run/wall.0.log", "--out", "report"});
+    EXPECT_EQ(outcome.code, 1) << "without speckle there is no contrast to compare\n" << outcome.out << outcome.err;
+    const json report = json::parse(readFile(folder / "report/likeness.json"));
+    EXPECT_EQ(report["pings"][0]["name"], "recorded_0");
+    EXPECT_NEAR(report["pings"][1]["emd_codes"].get<double>(), 0, 1e-6)
+        << "the wall stands still: the same ping, the law from the log";
+    ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--out", "plain"}).code, 0);
+    outcome = callInsonify(folder, {"study", "likeness", "--real", "plain/wall.0.log", "--out", "report"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("has no stream of pings of codes"));
+}
+
+TEST(LikenessCommandTest, ASideScanIsAPictureOfItsLines) {
+    const std::string recording = insonify::test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
+    if (!fs::exists(recording))
+        GTEST_SKIP() << "NOT TESTED: the recording of a side-scan is not next to the repository";
+    const std::string floor = gltfOf({-200, -8, 200, 200, -8, 200, 200, -8, -200, -200, -8, -200}, {0, 1, 2, 0, 2, 3});
+    std::string text = replaced(replaced(codedWall(), ", gamma: 0.5", ""), "sonar::SonarTask", "sonar::SideScanTask");
+    text = replaced(replaced(text, "beam_count: 64\n", "frequency_khz: 600\n"), "      field_of_view_deg: 60\n", "");
+    text = replaced(replaced(text, "beam_height_deg: 10\n", "beam_height_deg: 60\n"), "range: 20", "range: 30");
+    const WallFolder folder(replaced(text, "bin_count: 128", "bin_count: 1024"), floor);
+    const Outcome outcome =
+        callInsonify(folder, {"study", "likeness", "wall.yml", "--real", recording, "--out", "report"});
+    EXPECT_EQ(outcome.code, 1) << "without noise it looks like no recording\n" << outcome.out << outcome.err;
+    const json report = json::parse(readFile(folder / "report/likeness.json"));
+    ASSERT_EQ(report["pings"].size(), 4u) << "starboard, the simulated one, two wrong forms";
+    EXPECT_EQ(report["pings"][0]["name"], "recorded_starboard");
+    EXPECT_EQ(report["pings"][1]["name"], "simulated");
+    EXPECT_NEAR(report["pings"][0]["contrast"].get<double>(), 0.35, 0.1)
+        << "of codes that go as amplitude, measured elsewhere";
+    EXPECT_NEAR(report["pings"][0]["range_correlation"].get<double>(), 0.13, 0.08);
+    EXPECT_NEAR(report["pings"][0]["saturated"].get<double>(), 0.03, 0.01);
+}
+
 TEST(LikenessCommandTest, WhatCannotBeComparedIsRefused) {
     const WallFolder folder;
     record(folder / "pings.raw");

@@ -9,6 +9,7 @@
 #include "components/study/CodedPing.hpp"
 #include "components/study/LikenessReport.hpp"
 #include "components/study/commands/StudyCommand.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::study {
 namespace {
@@ -58,13 +59,33 @@ bool printClaims(const LikenessResult& result) {
     return std::ranges::none_of(all, &Claim::fails);
 }
 
-int runStudy(const RecordingOptions& options, const FindPing& pingAt) {
-    const std::vector<CodedPing> recorded = recordedPings(options.real);
+/** What the deployment makes of a recording's kind: a ping, or as many lines of a side-scan as a waterfall has. */
+CodedPing simulatedLike(const CodedPing& recorded, const RecordingOptions& options, const FindPings& pingsAt) {
+    const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
+    const PingsAt found = pingsAt(options.deployment, options.ping, count);
+    if (!recorded.is_waterfall) return codedPing(found.pings.front(), found.code, "simulated");
+    for (CodedPing& side : codedLines(found.pings, found.code, "simulated"))
+        if (side.bearings.front() * recorded.bearings.front() > 0) {
+            side.name = "simulated";
+            return side;
+        }
+    throw types::ConfigError(options.deployment, "tasks",
+                             "have no side-scan with this side, which the recording is of");
+}
+
+/** Recorded pings of one kind: of a side-scan the starboard lines, or all that there are. */
+std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded) {
+    if (!recorded.front().is_waterfall) return recorded;
+    std::erase_if(recorded, [&](const CodedPing& ping) { return ping.name != recorded.front().name; });
+    return recorded;
+}
+
+int runStudy(const RecordingOptions& options, const FindPings& pingsAt, const ReadLog& readLog) {
+    std::optional<receiver::CodeConfig> law;
+    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1).code;
+    const std::vector<CodedPing> recorded = ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog));
     std::optional<CodedPing> simulated;
-    if (!options.deployment.empty()) {
-        const PingAt found = pingAt(options.deployment, options.ping);
-        simulated = codedPing(found.ping, found.code, "simulated");
-    }
+    if (law) simulated = simulatedLike(recorded.front(), options, pingsAt);
     const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
     command::OutputFolder folder(options.out, "study_likeness");
     folder.keep();
@@ -78,13 +99,14 @@ int runStudy(const RecordingOptions& options, const FindPing& pingAt) {
 
 }  // namespace
 
-void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt) {
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const ReadLog& readLog) {
     const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
     options->addTo(*command, "a YAML file whose receiver gives out codes; absent: what the recordings look like")
         ->required();
-    command->callback(
-        [options, pingAt, &action] { action = [options, pingAt] { return runStudy(*options, pingAt); }; });
+    command->callback([options, pingsAt, readLog, &action] {
+        action = [options, pingsAt, readLog] { return runStudy(*options, pingsAt, readLog); };
+    });
 }
 
 }  // namespace insonify::study

@@ -57,14 +57,14 @@ bool printClaims(const std::vector<Claim>& claims) {
     return std::ranges::none_of(claims, &Claim::fails);
 }
 
-std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real) {
+std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real, const ReadLog& readLog) {
     std::vector<SpeckleRow> rows;
     if (real.empty()) return rows;
-    const std::vector<CodedPing> pings = recordedPings(real);
+    const std::vector<CodedPing> pings = recordedPings(real, nullptr, readLog);
     for (size_t i = 0; i < pings.size(); ++i) {
         const CodedPing* next = i + 1 < pings.size() ? &pings[i + 1] : nullptr;
         const bool follows = next && next->file == pings[i].file && next->beam_count == pings[i].beam_count &&
-                             next->bin_count == pings[i].bin_count;
+                             next->bin_count == pings[i].bin_count && !next->is_waterfall;
         rows.push_back(speckleRow(pings[i], follows ? next : nullptr));
     }
     return rows;
@@ -77,8 +77,8 @@ SonarAt ownSonar() {
     return {scene.config, scene.snapshot};
 }
 
-int runStudy(const RecordingOptions& options, const FindSonar& sonarAt) {
-    std::vector<SpeckleRow> rows = recordedRows(options.real);
+int runStudy(const RecordingOptions& options, const FindSonar& sonarAt, const ReadLog& readLog) {
+    std::vector<SpeckleRow> rows = recordedRows(options.real, readLog);
     std::vector<Claim> claims = lawClaims();
     if (sonar::haveRays())
         for (const Claim& claim : coherentClaims()) claims.push_back(claim);
@@ -97,12 +97,13 @@ int runStudy(const RecordingOptions& options, const FindSonar& sonarAt) {
 
 }  // namespace
 
-void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
+void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt, const ReadLog& readLog) {
     const auto options = std::make_shared<RecordingOptions>();
     CLI::App* command = study.add_subcommand("speckle", "Statistics of speckle, simulated and recorded");
     options->addTo(*command, "a YAML file whose sonar and scene are studied; absent: a fan over a flat bottom");
-    command->callback(
-        [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
+    command->callback([options, sonarAt, readLog, &action] {
+        action = [options, sonarAt, readLog] { return runStudy(*options, sonarAt, readLog); };
+    });
 }
 
 }  // namespace insonify::study

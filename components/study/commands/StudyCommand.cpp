@@ -3,7 +3,8 @@
 
 namespace insonify::study {
 
-void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPing& pingAt) {
+void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPings& pingsAt,
+                const ReadLog& readLog) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
 #ifdef INSONIFY_EMBREE
@@ -11,15 +12,16 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
     addRaysStudy(*study, action, sonarAt);
     addMultipathStudy(*study, action);
 #endif
-    addLikenessStudy(*study, action, pingAt);
+    addLikenessStudy(*study, action, pingsAt, readLog);
     addOmissionStudy(*study, action, sonarAt);
-    addSpeckleStudy(*study, action, sonarAt);
+    addSpeckleStudy(*study, action, sonarAt, readLog);
     addStabilityStudy(*study, action);
 }
 
 CLI::Option* RecordingOptions::addTo(CLI::App& command, const std::string& deployment_help) {
     command.add_option("DEPLOYMENT", deployment, deployment_help);
-    CLI::Option* recordings = command.add_option("--real", real, "recordings of an Oculus: files, or folders of them");
+    CLI::Option* recordings =
+        command.add_option("--real", real, "recordings of a device, or logs: files, or folders of them");
     command.add_option("--out", out, "folder of the report");
     command.add_option("--ping", ping, "which ping of the deployment")->check(CLI::PositiveNumber);
     return recordings;

@@ -2,6 +2,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "components/receiver/ReceiverConfig.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "components/study/ErrorAnalysis.hpp"
+#include "components/study/FitChain.hpp"
+#include "components/study/FitReport.hpp"
 #include "types/Snapshot.hpp"
 #include "types/Sonar.hpp"
 
@@ -24,17 +27,34 @@ struct SonarAt {
 /** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
 using FindSonar = std::function<SonarAt(const std::string& deployment, uint64_t ping)>;
 
-/** A ping that a receiver gave out as codes, and by what law. */
-struct PingAt {
-    types::Sonar ping;
+/** Pings that a receiver gave out as codes, and by what law. */
+struct PingsAt {
+    std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
 };
-/** The ping number `ping`, from 1, of the first receiver of a deployment that gives out codes, all noise included.
- *  Throws types::ConfigError where there is none. */
-using FindPing = std::function<PingAt(const std::string& deployment, uint64_t ping)>;
+/** At most `count` pings from number `ping`, from 1, of the first receiver of a deployment that gives out codes, all
+ *  noise included. Throws types::ConfigError where there is none. */
+using FindPings = std::function<PingsAt(const std::string& deployment, uint64_t ping, size_t count)>;
+
+/** What makes a deployment's pings, and the names of its tasks. */
+struct ChainAt {
+    FitChain chain;
+    FitTasks tasks;
+};
+/** The chain of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where it is not complete. */
+using FindChain = std::function<ChainAt(const std::string& deployment, uint64_t ping)>;
+/** The text of a deployment with these settings, for a file in `folder`, with lines at its head. */
+using WriteDeployment =
+    std::function<std::string(const std::string& deployment, const std::vector<FitSetting>& settings,
+                              const std::filesystem::path& folder, const std::vector<std::string>& head)>;
 
 /** Adds the command `study` with its options to `app`; parsing it sets `action`. */
-void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPing& pingAt);
+void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPings& pingsAt,
+                const ReadLog& readLog);
+
+/** Adds the command `fit`. */
+void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, const WriteDeployment& write,
+            const ReadLog& readLog);
 
 /** Options of the studies that set simulated pings beside recorded ones. */
 struct RecordingOptions {
@@ -52,11 +72,11 @@ command::Json verdictsOf(const std::vector<Claim>& claims);
 
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
-void addLikenessStudy(CLI::App& study, command::Action& action, const FindPing& pingAt);
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const ReadLog& readLog);
 void addMultipathStudy(CLI::App& study, command::Action& action);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
-void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
+void addSpeckleStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt, const ReadLog& readLog);
 void addStabilityStudy(CLI::App& study, command::Action& action);
 
 }  // namespace insonify::study

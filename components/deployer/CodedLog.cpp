@@ -1,0 +1,63 @@
+#include "components/deployer/CodedLog.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "components/deployer/Pipeline.hpp"
+#include "components/deployer/Tasks.hpp"
+#include "components/log/Reader.hpp"
+
+namespace insonify::deployer {
+namespace {
+
+bool areCodes(const types::Sonar& ping) {
+    return std::ranges::all_of(ping.bins, [](float bin) { return bin >= 0 && bin <= 65535 && std::floor(bin) == bin; });
+}
+
+/** Pings of a stream; none where one of them is not of codes. */
+std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
+    std::vector<types::Sonar> pings;
+    for (const log::SampleRef& at : log.samples()) {
+        if (at.stream != stream) continue;
+        log.read(at, pings.emplace_back());
+        if (!areCodes(pings.back())) return {};
+    }
+    return pings;
+}
+
+/** The code of the receiver that writes a stream, as the log's own deployment has it. */
+void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
+    const std::string text = log.metadatum("insonify_deployment");
+    if (text.empty()) return;
+    try {
+        framework::Registry registry = coreTasks();
+        const framework::Deployment deployment(framework::DeploymentSpec::parse(text, log.path().string()), registry);
+        const auto* receiver =
+            dynamic_cast<const receiver::ReceiverTask*>(deployment.task(framework::splitPort(stream).first));
+        if (!receiver || !receiver->config->code) return;
+        coded.code = *receiver->config->code;
+        coded.law_known = text.find("law:") != std::string::npos;  // what an import does not know it does not write
+    } catch (const types::ConfigError&) {  // of a deployment whose files or libraries are elsewhere
+    }
+}
+
+}  // namespace
+
+std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
+    if (!log::isMcap(file) && file.extension() != ".log") return std::nullopt;
+    const auto log = log::openLog(file);
+    for (size_t i = 0; i < log->streams().size(); ++i) {
+        const log::Stream& stream = log->streams()[i];
+        if (!stream.holds<types::Sonar>()) continue;
+        CodedLog coded{.pings = codesOf(*log, i)};
+        if (coded.pings.empty()) continue;
+        takeLaw(*log, stream.name, coded);
+        if (const auto at = stream.metadata.find("insonify_frequency_khz"); at != stream.metadata.end())
+            std::from_chars(at->second.data(), at->second.data() + at->second.size(), coded.frequency_khz);
+        return coded;
+    }
+    throw types::ConfigError(file.string(), "", "has no stream of pings of codes, which are whole numbers");
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,390 @@
+#include "components/study/RecordingFit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "types/Angle.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::study {
+namespace {
+
+constexpr size_t rounds = 5, simulations = 3;
+constexpr size_t fewest_beams = 32, fewest_bins = 64;
+constexpr double z_interval = 1.96;  ///< Deviations of a normal law to either side of 95 %.
+
+void refuseUnusable(const std::vector<CodedPing>& recorded) {
+    if (recorded.empty()) throw types::ConfigError("", "--real", "holds no ping");
+    const CodedPing& first = recorded.front();
+    const auto refuse = [&](const std::string& why) { throw types::ConfigError(first.file, "", why); };
+    if (first.beam_count < fewest_beams || first.bin_count < fewest_bins)
+        refuse(fmt::format("has pings of {} beams and {} bins; a fit needs {} and {} at least", first.beam_count,
+                           first.bin_count, fewest_beams, fewest_bins));
+    size_t clipped = 0, zero = 0, all = 0;
+    for (const CodedPing& ping : recorded) {
+        if (ping.beam_count != first.beam_count || ping.bin_count != first.bin_count)
+            throw types::ConfigError(
+                ping.file, "",
+                fmt::format("has a ping of {} beams and {} bins, another one {} and {}; a fit needs pings of one shape",
+                            ping.beam_count, ping.bin_count, first.beam_count, first.bin_count));
+        for (const float code : ping.codes) ++all, clipped += code >= 1, zero += code <= 0;
+    }
+    const auto share = [&](size_t count) { return static_cast<double>(count) / static_cast<double>(all); };
+    if (share(zero) > 0.9)
+        refuse(fmt::format("has codes of 0 in {:.0f} % of its bins: nothing to fit", 100 * share(zero)));
+    if (share(clipped) > 0.5)
+        refuse(fmt::format("has the largest code in {:.0f} % of its bins: it is saturated", 100 * share(clipped)));
+}
+
+/** Fields instead of energies, with a beam and a pulse that neighbours share. */
+void prepare(const CodedPing& recorded, FitChain& chain) {
+    sonar::SonarConfig& sonar = chain.sonar;
+    if (!sonar.frequency_khz)
+        throw types::ConfigError(recorded.file, "", "states no frequency; give the deployment's sonar frequency_khz");
+    sonar.speckle.emplace().coherent = true;
+    chain.noise.speckle.reset();
+    chain.noise.additive.reset();
+    chain.noise.filter.reset();
+    if (!sonar.pulse) sonar.pulse.emplace().bandwidth_khz = sonar.speedOfSound() / (2 * recorded.resolution) * 1e-3;
+    if (chain.isSideScan()) return;
+    auto& azimuth =
+        sonar.beam_pattern ? sonar.beam_pattern->receive.azimuth : sonar.beam_pattern.emplace().receive.azimuth;
+    if (!azimuth) azimuth.emplace().weighting = acoustics::Weighting::Taylor;
+    if (!azimuth->width_deg) azimuth->width_deg = 2 * *sonar.beam_width_deg;
+    azimuth->aperture_m.reset();
+    if (!azimuth->weighting) azimuth->weighting = acoustics::Weighting::Uniform;
+}
+
+/** Scales bandwidth or duration: in both cases the length of the pulse. */
+double pulseLength(const acoustics::PulseConfig& pulse, double c) { return acoustics::Pulse(pulse, c).resolution(); }
+
+void setPulseLength(double length, double c, acoustics::PulseConfig& pulse) {
+    const double factor = length / pulseLength(pulse, c);
+    if (pulse.duration_us)
+        *pulse.duration_us *= factor;
+    else
+        *pulse.bandwidth_khz /= factor;
+}
+
+/** Square of an integral over the integral of the square, of what weighs a cell. */
+template <class Weight>
+double effectiveWidth(double reach, const Weight& weight) {
+    constexpr int steps = 4000;
+    double sum = 0, squares = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double w = weight(-reach + (i + 0.5) * 2 * reach / steps);
+        sum += w, squares += w * w;
+    }
+    return sum * sum / squares * 2 * reach / steps;
+}
+
+/** Area of a resolution cell, seen flat, for each metre of range [m]. */
+double cellPerMetre(const FitChain& chain) {
+    const sonar::SonarConfig& sonar = chain.sonar;
+    const acoustics::Pulse pulse(*sonar.pulse, sonar.speedOfSound());
+    if (chain.isSideScan())
+        return types::radians(sonar.beam_height_deg) *
+               effectiveWidth(6 * pulse.resolution(), [&](double r) { return pulse.response(r); });
+    const acoustics::BeamLaw& law = *sonar.beam_pattern->receive.azimuth;
+    const acoustics::BeamPattern beam(law);
+    return effectiveWidth(std::min(1.5, 6 * types::radians(*law.width_deg)), [&](double a) { return beam.power(a); }) *
+           effectiveWidth(6 * pulse.resolution(), [&](double r) { return pulse.response(r); });
+}
+
+/** The device's properties that speckle states, moved until simulated and recorded statistics agree. */
+class SpeckleFit {
+public:
+    SpeckleFit(const CodedPing& recorded, FitChain& chain)
+        : chain_(chain),
+          c_(chain.sonar.speedOfSound()),
+          bin_(recorded.resolution),
+          spacing_(types::radians(*chain.sonar.beam_width_deg)),
+          width_before_(chain.isSideScan() ? 0 : azimuth().width_deg.value()),
+          length_before_(pulseLength(*chain.sonar.pulse, c_)) {}
+
+    /** The first estimate, by theory. */
+    void begin(const SpeckleMoments& recorded) {
+        recorded_ = recorded;
+        beams_ = recorded.echo_beams.value, bins_ = recorded.echo_bins.value;
+        noise_beams_ = recorded.noise_beams.value, noise_bins_ = recorded.noise_bins.value;
+        inverse_ = recorded.texture.isKnown() ? std::max(0.0, recorded.texture.value * areaAt(recorded)) : 0;
+        apply();
+    }
+    /** A better one: targets move by what simulated statistics are off. */
+    void improve(const SpeckleMoments& recorded, const SpeckleMoments& simulated) {
+        recorded_ = recorded;
+        const auto move = [](double& target, const Measured& real, const Measured& made) {
+            if (real.isKnown() && made.isKnown()) target += real.value - made.value;
+        };
+        move(beams_, recorded.echo_beams, simulated.echo_beams);
+        move(bins_, recorded.echo_bins, simulated.echo_bins);
+        move(noise_beams_, recorded.noise_beams, simulated.noise_beams);
+        move(noise_bins_, recorded.noise_bins, simulated.noise_bins);
+        if (recorded.texture.isKnown() && simulated.texture.isKnown())
+            improveTexture(recorded, simulated.texture.value);
+        apply();
+    }
+
+    void addTo(std::vector<Finding>& findings) const;
+
+private:
+    acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
+    /** 1 / shape of the K law of the echoes where it was measured, and whether it is more than nothing. */
+    double texture() const { return inverse_ / areaAt(recorded_); }
+    double textureInterval() const { return z_interval * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations); }
+    bool isTextured() const { return recorded_.texture.isKnown() && texture() > textureInterval(); }
+    /** Whether neighbours share more than nothing. */
+    static bool shows(const Measured& measured) {
+        return measured.isKnown() && measured.value > z_interval * measured.error && measured.value > 0.02;
+    }
+    double areaAt(const SpeckleMoments& moments) const {
+        return cellPerMetre(chain_) * moments.range / (moments.echo_share * moments.echo_share);
+    }
+    double widthAt(double correlation) const {
+        acoustics::BeamLaw law = azimuth();
+        return argumentAt(correlation, types::degrees(0.3 * spacing_), types::degrees(30 * spacing_),
+                          [&](double width) {
+                              law.width_deg = width;
+                              return beamCorrelation(law, spacing_);
+                          });
+    }
+    double lengthAt(double correlation) const {
+        acoustics::PulseConfig pulse = *chain_.sonar.pulse;
+        return argumentAt(correlation, 0.5 * bin_, 30 * bin_, [&](double length) {
+            setPulseLength(length, c_, pulse);
+            return binCorrelation(pulse, bin_, c_);
+        });
+    }
+    static std::optional<double> filterAt(const Measured& recorded, double correlation) {
+        if (!shows(recorded) || correlation < 0.005) return std::nullopt;
+        return std::clamp(1 / std::sqrt(-std::log(std::min(correlation, 0.99))), 0.3, 16.0);
+    }
+    /** A step of the secant method. Patches of one kind show less texture than there is. */
+    void improveTexture(const SpeckleMoments& recorded, double made) {
+        const double area = areaAt(recorded), here = inverse_ / area;
+        const double way = here - texture_before_;
+        const bool has_slope = std::isfinite(made_before_) && std::abs(way) > 1e-3;
+        const double slope = has_slope ? std::clamp((made - made_before_) / way, 0.3, 1.2) : 0.6;
+        texture_before_ = here, made_before_ = made;
+        const double there = here + (recorded.texture.value - made) / slope;
+        inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there);
+    }
+    void apply() {
+        if (!chain_.isSideScan()) azimuth().width_deg = shows(recorded_.echo_beams) ? widthAt(beams_) : width_before_;
+        setPulseLength(shows(recorded_.echo_bins) ? lengthAt(bins_) : length_before_, c_, *chain_.sonar.pulse);
+        chain_.sonar.speckle->scatterers_per_m2.reset();
+        if (inverse_ > 0) chain_.sonar.speckle->scatterers_per_m2 = std::clamp(1 / inverse_, 1e-6, 1e9);
+        noise::FilterConfig filter;
+        if (!chain_.isSideScan()) filter.correlation_beams = filterAt(recorded_.noise_beams, noise_beams_);
+        filter.correlation_bins = filterAt(recorded_.noise_bins, noise_bins_);
+        chain_.noise.filter.reset();
+        if (filter.correlation_beams || filter.correlation_bins) chain_.noise.filter = filter;
+    }
+    /** An interval by those of the statistic, of recorded and simulated pings. */
+    template <class At>
+    static Fitted interval(double value, double statistic, const Measured& recorded, const At& at) {
+        const double off = z_interval * recorded.error * std::sqrt(1 + 1.0 / simulations);
+        const double a = at(statistic - off), b = at(statistic + off);
+        return {value, std::min(a, b), std::max(a, b)};
+    }
+
+    FitChain& chain_;
+    double c_, bin_, spacing_, width_before_, length_before_;  // [m/s, m, rad, deg, m]
+    SpeckleMoments recorded_;
+    double beams_ = 0, bins_ = 0, noise_beams_ = 0, noise_bins_ = 0;  ///< Statistics that the theory is to have [1].
+    double texture_before_ = 0, made_before_ = NAN;  ///< 1 / shape in the round before, and its statistic then [1].
+    double inverse_ = 0;                             ///< 1 / scatterers per area [m^2].
+};
+
+bool isWithin(const Fitted& fitted, double share) { return fitted.half() <= share * std::abs(fitted.value); }
+
+void SpeckleFit::addTo(std::vector<Finding>& findings) const {
+    const auto add = [&](const char* name, const char* unit, const Measured& measured, Fitted found, double share,
+                         const char* note, const char* why_not) {
+        const bool is_determined = shows(measured) && isWithin(found, share);
+        findings.push_back({name, unit, found, is_determined, is_determined ? note : why_not});
+    };
+    const double length = pulseLength(*chain_.sonar.pulse, c_);
+    if (chain_.isSideScan())
+        findings.push_back(
+            {"beam width", "deg", {}, false, "the lines of a side-scan are apart, so they share no speckle"});
+    else
+        add("beam width", "deg", recorded_.echo_beams,
+            interval(*azimuth().width_deg, beams_, recorded_.echo_beams, [&](double at) { return widthAt(at); }), 0.25,
+            "of the receiver in azimuth, from what neighbouring beams share of speckle",
+            "neighbouring beams share no more speckle than chance, or too few bins show echoes without clipping");
+    add("pulse length", "m", recorded_.echo_bins,
+        interval(length, bins_, recorded_.echo_bins, [&](double at) { return lengthAt(at); }), 0.25,
+        "range resolution at -3 dB, from what neighbouring bins share of speckle",
+        "neighbouring bins share no more speckle than chance: the pulse is shorter than a bin, or nothing shows it");
+    const double off = textureInterval();
+    const Fitted shapes{1 / texture(), 1 / (texture() + off), texture() > off ? 1 / (texture() - off) : 1e9};
+    findings.push_back({"scatterers per cell", "1", shapes, isTextured() && isWithin(shapes, 0.5),
+                        isTextured() ? fmt::format("shape of the K law at {:.3g} m", recorded_.range)
+                                     : "speckle is Rayleigh's within its error: more than can be counted"});
+    const auto noiseWidth = [&](const char* name, const Measured& measured, double statistic) {
+        const std::optional<double> found = filterAt(measured, statistic);
+        const auto at = [](double c) { return 1 / std::sqrt(-std::log(std::clamp(c, 1e-4, 0.99))); };
+        add(name, "1", measured, interval(found.value_or(0), statistic, measured, at), 0.5,
+            "of noise: where its correlation is 1/e",
+            measured.isKnown() ? "noise is independent from one to the next" : "too few bins show noise alone");
+    };
+    if (!chain_.isSideScan()) noiseWidth("noise over beams", recorded_.noise_beams, noise_beams_);
+    noiseWidth("noise over bins", recorded_.noise_bins, noise_bins_);
+}
+
+void addLevels(const LevelFit& fit, const FitChain& before, double range, std::vector<Finding>& findings) {
+    const auto add = [&](const char* name, const char* unit, const Fitted& found, double useful, const char* note,
+                         const char* why_not) {
+        const bool is_determined = found.half() <= useful;
+        findings.push_back({name, unit, found, is_determined, is_determined ? note : why_not});
+    };
+    const auto positive = [](const Fitted& found) {
+        return Fitted{std::max(0.0, found.value), std::max(0.0, found.low), std::max(0.0, found.high)};
+    };
+    add("full scale", "dB", fit.full_scale_db, 3, "level of the largest code with all gain, for the scene's sediment",
+        "no echo is bright enough, or the gain over range takes its place");
+    add("noise", "dB", fit.noise_db, 3, "mean intensity in a bin, relative to the source",
+        "no range shows noise by itself");
+    add("TVG logarithm", "dB", positive(fit.log_coefficient), 5, "per decade of range",
+        "the range is too short to tell it from the TVG slope; the gain over the whole range may be known");
+    add("TVG slope", "dB/m", positive(fit.db_per_m), 2.5 / range, "one way",
+        "the range is too short to tell it from the TVG logarithm; the gain over the whole range may be known");
+    add("TVG span", "dB", fit.tvg_span_db, 3, "gain at the end of the range above that at its tenth",
+        "echoes and noise over range are explained by several gains");
+    add("absorption", "dB/m", positive(fit.absorption_db_per_m), 1.5 / range, "one way",
+        "only echoes and noise, both at several ranges, tell it from the TVG");
+    if (fit.pitch_deg) {
+        add("pitch", "deg", *fit.pitch_deg, 5, "added to the mount, down is positive",
+            "height and elevation take its place");
+        if (!before.looks_abeam)
+            add("height", "m", *fit.height_m, 0.15 * range, "added to the sonar's place",
+                "pitch and elevation take its place");
+        findings.push_back(
+            {"elevation width", "deg", *fit.elevation_deg, isWithin(*fit.elevation_deg, 0.5),
+             isWithin(*fit.elevation_deg, 0.5) ? "one way, of the transmitter" : "height and pitch take its place"});
+    }
+    Finding source{
+        "source level", "dB", {}, false, "only its sum with the sediment's strength and the gain is in the codes"};
+    if (const auto& ambient = before.noise.ambient; ambient && ambient->wind_m_s && ambient->bandwidth_khz) {
+        noise::AmbientConfig at_0 = *ambient;
+        at_0.source_level_db = 0;
+        const double level = 10 * std::log10(noise::ambientIntensity(at_0)) - fit.noise_db.value;
+        source.found = {level, level - fit.noise_db.half(), level + fit.noise_db.half()};
+        source.note += fmt::format("; with the scene's sediment and the configured sea {:.1f} dB re 1 uPa m", level);
+    }
+    findings.push_back(source);
+    findings.push_back({"sediment",
+                        "dB",
+                        {},
+                        false,
+                        "only its sum with the source level and the gain is in the codes; the scene's is kept"});
+}
+
+/** The sidelobes of the beam; a Taylor weighting gets them. */
+void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::vector<Finding>& findings) {
+    constexpr double useful_db = 3;
+    acoustics::BeamLaw& law = *chain.sonar.beam_pattern->receive.azimuth;
+    const Measured level = sidelobesOf(recorded, *law.width_deg / *chain.sonar.beam_width_deg);
+    const double off = z_interval * level.error;
+    const bool is_determined = level.isKnown() && off <= useful_db;
+    findings.push_back({"sidelobe level",
+                        "dB",
+                        {level.value, level.value - off, level.value + off},
+                        is_determined,
+                        is_determined ? "highest of a beam, beside isolated targets"
+                                      : "no target stands far enough above what is around it"});
+    if (is_determined && law.weighting == acoustics::Weighting::Taylor)
+        law.sidelobe_db = std::clamp(level.value, -60.0, -14.0);
+}
+
+/** Recorded levels less what the model of levels is off from simulated ones, by slices, where echoes are most of them:
+ *  codes cut off more of speckle with few scatterers than of the exponential law of the model. */
+LevelBlocks corrected(LevelBlocks recorded, const std::vector<CodedPing>& simulated, const LevelFit& fit) {
+    constexpr double mostly_echo = 0.5;
+    constexpr size_t smoothed = 2;  ///< Slices to either side.
+    std::vector<LevelBlocks> each;
+    for (const CodedPing& ping : simulated) each.push_back(blocksOf(ping));
+    const LevelBlocks made = meanOf(each);
+    std::vector<double> sums(recorded.slices), counts(recorded.slices);
+    for (size_t block = 0; block < recorded.beam_blocks; ++block)
+        for (size_t slice = 0; slice < recorded.slices; ++slice) {
+            const double level = fit.modelled.at(block, slice);
+            if (fit.echoShare(level, recorded.ranges[slice]) < mostly_echo) continue;
+            sums[slice] += made.at(block, slice) - level, ++counts[slice];
+        }
+    for (size_t slice = 0; slice < recorded.slices; ++slice) {
+        double sum = 0, count = 0;
+        for (size_t i = slice - std::min(slice, smoothed); i <= std::min(slice + smoothed, recorded.slices - 1); ++i)
+            sum += sums[i], count += counts[i];
+        if (counts[slice] == 0) continue;
+        for (size_t block = 0; block < recorded.beam_blocks; ++block)
+            recorded.level[block * recorded.slices + slice] -= std::clamp(sum / count, -3.0, 3.0);
+    }
+    return recorded;
+}
+
+}  // namespace
+
+std::string Finding::text() const {
+    if (is_determined)
+        return fmt::format("{:.4g} ({:.4g} to {:.4g}) {}: {}", found.value, found.low, found.high, unit, note);
+    const bool has_interval = std::isfinite(found.low) && found.low < found.high;
+    const std::string interval = has_interval ? fmt::format(" ({:.4g} to {:.4g} {})", found.low, found.high, unit) : "";
+    return "not determined by this recording" + interval + ": " + note;
+}
+
+const Finding* RecordingFit::finding(const std::string& name) const {
+    const auto at = std::ranges::find(findings, name, &Finding::name);
+    return at == findings.end() ? nullptr : &*at;
+}
+
+RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain, bool rough,
+                          const std::function<void(const std::string&)>& progress) {
+    refuseUnusable(recorded);
+    if (recorded.front().is_waterfall != chain.looks_abeam)
+        throw types::ConfigError(recorded.front().file, "",
+                                 chain.looks_abeam ? "is no recording of a side-scan, which the deployment has"
+                                                   : "is a recording of a side-scan, which the deployment has not");
+    takeShape(recorded.front(), chain);
+    if (chain.looks_abeam) layLines(recorded.front(), chain);
+    const FitChain before = chain;
+    prepare(recorded.front(), chain);
+    const types::Sonar echoes = meanEchoes(chain);
+    if (std::ranges::none_of(echoes.bins, [](float bin) { return bin > 0; }))
+        throw types::ConfigError("", "scene", "gives the deployment's sonar no echo in the range of the recording");
+    std::vector<LevelBlocks> blocks;
+    for (const CodedPing& ping : recorded) blocks.push_back(blocksOf(ping));
+    const LevelBlocks measured = meanOf(blocks);
+    LevelBlocks levels = measured;
+    const double range = recorded.front().resolution * static_cast<double>(recorded.front().bin_count);
+
+    RecordingFit fit;
+    std::optional<Fitted> pitch, height, elevation;
+    SpeckleFit speckle(recorded.front(), chain);
+    for (size_t round = 0; round < rounds; ++round) {
+        const auto show = [&] { progress(fmt::format("round {} of {}: levels", round + 1, rounds)); };
+        fit.levels =
+            fitLevels(levels, recorded.front(), chain, {.rough = rough, .fits_scene = rough && round == 0}, show);
+        if (round == 0)
+            pitch = fit.levels.pitch_deg, height = fit.levels.height_m, elevation = fit.levels.elevation_deg;
+        chain = fit.levels.applied(chain);
+        fit.recorded = momentsOf(recorded, fit.levels, round + 2 == rounds);
+        if (round == 0) speckle.begin(fit.recorded);
+        progress(fmt::format("round {} of {}: speckle", round + 1, rounds));
+        fit.simulated_pings = simulatedPings(chain, simulations);
+        fit.simulated = momentsOf(fit.simulated_pings, fit.levels, false);
+        levels = corrected(measured, fit.simulated_pings, fit.levels);
+        if (round + 1 < rounds) speckle.improve(fit.recorded, fit.simulated);
+    }
+    fit.chain = chain;
+    fit.levels.pitch_deg = pitch, fit.levels.height_m = height, fit.levels.elevation_deg = elevation;
+    addLevels(fit.levels, before, range, fit.findings);
+    speckle.addTo(fit.findings);
+    if (!chain.isSideScan()) addSidelobes(recorded, fit.chain, fit.findings);
+    return fit;
+}
+
+}  // namespace insonify::study

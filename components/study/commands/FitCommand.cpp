@@ -1,0 +1,90 @@
+// insonify fit DEPLOYMENT --real FILES --out FITTED.yml
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "components/command/ProgressLine.hpp"
+#include "components/study/FitReport.hpp"
+#include "components/study/RecordingFit.hpp"
+#include "components/study/commands/StudyCommand.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FitOptions {
+    std::string deployment, out, scene_is = "known";
+    std::vector<std::string> real;
+    uint64_t ping = 1;
+    bool quiet = false;
+};
+
+/** Refuses a name that is no file in a folder that is there, before anything is computed. */
+void refuseUnwritable(const std::string& out) {
+    const fs::path path(out), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (fs::is_directory(path))
+        throw types::ConfigError(out, "--out", "is a folder; give the name of a file, FITTED.yml");
+    if (!fs::is_directory(folder))
+        throw types::ConfigError(out, "--out", "is in a folder that is not there: " + folder.string());
+    if (const std::string end = path.extension().string(); end != ".yml" && end != ".yaml")
+        throw types::ConfigError(out, "--out", "must end in .yml or .yaml");
+}
+
+void printFindings(const RecordingFit& fit) {
+    for (const Finding& finding : fit.findings) fmt::print("{:<20} {}\n", finding.name, finding.text());
+    fmt::print("{:<20} {:.1f} dB rms\n", "levels unexplained", fit.levels.rms_db);
+}
+
+int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeployment& write, const ReadLog& readLog) {
+    refuseUnwritable(options.out);
+    ChainAt at = chainAt(options.deployment, options.ping);
+    const receiver::CodeConfig law = at.chain.code();
+    const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog);
+    command::StudyProgress progress(!options.quiet);
+    const RecordingFit fit = fitRecording(recorded, std::move(at.chain), options.scene_is == "rough",
+                                          [&](const std::string& doing) { progress(doing); });
+    progress.end();
+    const std::vector<std::string> head{
+        "Fitted by insonify fit to " + fs::path(recorded.front().file).filename().string() +
+            fmt::format(": {} pings.", recorded.size()),
+        "Intervals are of 95 %. What is not determined by the recording holds a value with which all others agree."};
+    std::ofstream file(options.out, std::ios::binary);
+    if (!(file << write(options.deployment, settingsOf(fit, at.tasks), fs::absolute(options.out).parent_path(), head))
+             .flush())
+        throw types::ConfigError(options.out, "--out", "cannot be written");
+    const fs::path page = writePage(fit, recorded, options.out);
+    printFindings(fit);
+    fmt::print("deployment in {}, page in {}\n", options.out, page.string());
+    return 0;
+}
+
+}  // namespace
+
+void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, const WriteDeployment& write,
+            const ReadLog& readLog) {
+    const auto options = std::make_shared<FitOptions>();
+    CLI::App* command = app.add_subcommand("fit", "Finds the properties of a real sonar from its recordings");
+    command
+        ->add_option("DEPLOYMENT", options->deployment,
+                     "a YAML file with scene, sonar, noise and a receiver that gives out codes")
+        ->required();
+    command->add_option("--real", options->real, "recordings: files, or folders of them")->required();
+    command
+        ->add_option("--scene-is", options->scene_is,
+                     "known: levels follow from the scene; rough: it is a floor or a tank of about the right kind")
+        ->check(CLI::IsMember({"known", "rough"}));
+    command->add_option("--out", options->out, "the fitted deployment, FITTED.yml; a page and a picture are next to it")
+        ->required();
+    command->add_option("--ping", options->ping, "which ping of the deployment is where the recording was made")
+        ->check(CLI::PositiveNumber);
+    command->add_flag("--quiet", options->quiet, "no progress");
+    command->callback([options, chainAt, write, readLog, &action] {
+        action = [options, chainAt, write, readLog] { return runFit(*options, chainAt, write, readLog); };
+    });
+}
+
+}  // namespace insonify::study

@@ -1,0 +1,154 @@
+// `insonify fit` as a user calls it.
+#include <gmock/gmock.h>
+
+#include "tests/deployer/Wall.hpp"
+#include "tests/support/SpeckleRecording.hpp"
+
+using namespace insonify::deployer;
+using insonify::test::OculusMessage;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/** A flat floor 0.6 m below the sonar, noise, and a receiver that gives out codes. */
+std::string floorGltf() {
+    return gltfOf({-50, -0.6f, 50, 50, -0.6f, 50, 50, -0.6f, -50, -50, -0.6f, -50}, {0, 1, 2, 0, 2, 3});
+}
+
+const std::string fit_deployment = R"(schedule: lockstep
+tasks:
+  vehicle:
+    type: pose::TrajectoryTask
+    activity: {period: 0.1}
+    properties: {waypoints: [{time: 0, position: [0, 0, 0]}]}
+  scene:
+    type: scene::SceneTask
+    activity: {trigger: [pose]}
+    properties: {file: wall.gltf, mount: {pitch_deg: 35}}
+  sonar:
+    type: sonar::SonarTask
+    activity: {trigger: [snapshot]}
+    properties:
+      range: 2
+      beam_count: 256
+      bin_count: 700
+      field_of_view_deg: 60
+      beam_height_deg: 40
+      frequency_khz: 2100
+      quality: {rows: 128, columns_per_beam: 1}
+  noise:
+    type: noise::NoiseTask
+    activity: {trigger: [clean]}
+    properties: {ambient: {level_db: -60}}
+  receiver:
+    type: receiver::ReceiverTask
+    activity: {trigger: [intensity]}
+    properties: {output: code, code: {law: sqrt, gamma: 0.5}}
+connections:
+  - {from: vehicle.pose, to: scene.pose}
+  - {from: scene.snapshot, to: sonar.snapshot}
+  - {from: sonar.ping, to: noise.clean}
+  - {from: noise.noisy, to: receiver.intensity}
+)";
+
+struct FitFolder : WallFolder {
+    FitFolder() : WallFolder(fit_deployment, floorGltf()) {}
+    Outcome fit(const std::string& real, std::vector<std::string> more = {"--out", "fitted.yml"}) const {
+        std::vector<std::string> arguments = {"fit", "wall.yml", "--real", real};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return callInsonify(*this, std::move(arguments));
+    }
+    /** Pings of one code throughout, of 64 beams by 128 bins. */
+    void recordEven(const std::string& name, uint8_t code) const {
+        const auto bytes =
+            OculusMessage{.beams = 64, .bins = 128, .code = [code](size_t, size_t) { return code; }}.bytes();
+        writeFile(*this / name, std::string(bytes.begin(), bytes.end()));
+    }
+};
+
+/** The three pings of a real Oculus, or an empty name. */
+std::string realPings() {
+    const std::string file = insonify::test::sharedFile("sonar/oculus/three_pings_8bit.raw");
+    return fs::exists(file) ? file : "";
+}
+
+}  // namespace
+
+TEST(FitCommandTest, FittedToOnePingOfARealOculusAllClaimsOfLikenessHoldOnTheOthers) {
+    if (realPings().empty()) GTEST_SKIP() << "NOT TESTED: the recordings of an Oculus are not next to the repository";
+    const FitFolder folder;
+    const std::string all = readFile(realPings());
+    const size_t size = all.size() / 3;
+    for (size_t i = 0; i < 3; ++i)
+        writeFile(folder / ("ping_" + std::to_string(i) + ".raw"), all.substr(i * size, size));
+    Outcome outcome = folder.fit("ping_0.raw", {"--scene-is", "rough", "--out", "fitted.yml"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out,
+                AllOf(HasSubstr("full scale"), HasSubstr("source level         not determined by this recording: ")));
+    EXPECT_THAT(readFile(folder / "fitted.yml"),
+                AllOf(HasSubstr("# Fitted by insonify fit"), HasSubstr("# beam width: ")));
+    EXPECT_THAT(readFile(folder / "fitted.html"), AllOf(HasSubstr("fitted.png"), HasSubstr("Level over range")));
+    EXPECT_THAT(readFile(folder / "fitted.png").substr(1, 3), "PNG");
+    outcome = callInsonify(
+        folder, {"study", "likeness", "fitted.yml", "--real", "ping_1.raw", "ping_2.raw", "--out", "report"});
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
+}
+
+TEST(FitCommandTest, AFitIsTheSameEachTime) {
+    const FitFolder folder;
+    writeFile(folder / "speckle.raw", insonify::test::recordedSpeckle());
+    ASSERT_EQ(folder.fit("speckle.raw").code, 0);
+    const std::string first = readFile(folder / "fitted.yml");
+    ASSERT_EQ(folder.fit("speckle.raw").code, 0);
+    EXPECT_EQ(readFile(folder / "fitted.yml"), first);
+}
+
+TEST(FitCommandTest, WrongUseIsRefusedWithTheReasonAndNothingIsWritten) {
+    const FitFolder folder;
+    writeFile(folder / "speckle.raw", insonify::test::recordedSpeckle());
+    writeFile(folder / "text.raw", "no recording");
+    writeFile(folder / "empty.raw", "");
+    std::string without_noise = fit_deployment;
+    for (const char* line : {"  noise:\n    type: noise::NoiseTask\n    activity: {trigger: [clean]}\n    properties: "
+                             "{ambient: {level_db: -60}}\n",
+                             "  - {from: noise.noisy, to: receiver.intensity}\n"})
+        without_noise = replaced(without_noise, line, "");
+    writeFile(folder / "without_noise.yml", replaced(without_noise, "noise.clean}", "receiver.intensity}"));
+    folder.recordEven("zero.raw", 0);
+    folder.recordEven("saturated.raw", 255);
+    const auto small = OculusMessage{}.bytes();
+    writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
+    const std::vector<std::string> out = {"--out", "fitted.yml"};
+    struct Case {
+        std::vector<std::string> arguments;
+        std::string reason;
+    };
+    const std::vector<Case> cases = {
+        {{"fit", "wall.yml", "--real", "speckle.raw"}, "--out is required"},
+        {{"fit", "wall.yml", "--out", "fitted.yml"}, "--real is required"},
+        {{"fit", "wall.yml", "--real", "speckle.raw", "--scene-is", "flat", "--out", "fitted.yml"}, "flat"},
+        {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "nowhere/fitted.yml"},
+         "is in a folder that is not there: nowhere"},
+        {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "fitted.txt"}, "must end in .yml or .yaml"},
+        {{"fit", "nothing.yml", "--real", "speckle.raw", "--out", "fitted.yml"}, "nothing.yml"},
+        {{"fit", "without_noise.yml", "--real", "speckle.raw", "--out", "fitted.yml"},
+         "has no noise::NoiseTask before it"},
+        {{"fit", "wall.yml", "--real", "nothing.raw", "--out", "fitted.yml"}, "nothing.raw"},
+        {{"fit", "wall.yml", "--real", "text.raw", "--out", "fitted.yml"}, "text.raw"},
+        {{"fit", "wall.yml", "--real", "empty.raw", "--out", "fitted.yml"}, "empty.raw"},
+        {{"fit", "wall.yml", "--real", "small.raw", "--out", "fitted.yml"},
+         "pings of 3 beams and 2 bins; a fit needs 32 and 64"},
+        {{"fit", "wall.yml", "--real", "zero.raw", "--out", "fitted.yml"}, "codes of 0 in 100 % of its bins"},
+        {{"fit", "wall.yml", "--real", "saturated.raw", "--out", "fitted.yml"}, "it is saturated"},
+        {{"fit", "wall.yml", "--real", "small.raw", "speckle.raw", "--out", "fitted.yml"}, "a fit needs"},
+    };
+    for (const Case& each : cases) {
+        const Outcome outcome = callInsonify(folder, each.arguments);
+        EXPECT_EQ(outcome.code, 2) << each.reason << "\n" << outcome.out << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(each.reason));
+        EXPECT_FALSE(fs::exists(folder / "fitted.yml")) << each.reason;
+    }
+}
