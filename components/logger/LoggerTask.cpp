@@ -76,6 +76,27 @@ std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector
     return aliases;
 }
 
+/** How far readers of a log are off, because its pings have bin_duration in whole microseconds: the sonar of a port has
+ *  bins of another length. Empty: they are not, or that is not known. */
+std::string roundingText(const framework::InputPortBase& port, const types::Sonar& ping) {
+    const auto rounding = framework::upstreamValue(port, {"range_rounding"});
+    const auto range = framework::upstreamNumber(port, {"range"});
+    const double us = static_cast<double>(ping.bin_duration.microseconds), bins = ping.bin_count;
+    if (rounding != types::PropertyValue(std::string("exact")) || !range || us <= 0) return "";
+    const double off = std::abs(*range / (us * 1e-6 * ping.speed_of_sound) - bins);
+    const bool is_stale = off * us > 0.5 * bins * 1.001 && us > 1;  // a driver has set another range
+    if (off < 1e-6 || is_stale) return "";
+    return fmt::format(
+        "{} has bins of {:g} us, one way, in whole microseconds; a reader of bin_duration is off by {:.3g} "
+        "bins at the far edge. With range_rounding: sample the sonar's bins are whole microseconds",
+        framework::streamNameOf(port.channels().front()->source()).path(), us, off);
+}
+
+template <class T>
+std::string roundingText(const framework::InputPortBase& /*port*/, const T& /*sample*/) {
+    return "";
+}
+
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
@@ -267,6 +288,8 @@ void LoggerTask::updateHook() {
                 log::Metadata metadata = withNames(metadataOf(input), *types::carriedSample(sample));
                 thread_->declare(declaration(sampleOf(input), input.kept.name, std::move(metadata)));
                 input.kept.number = declared_++;
+                if (const std::string text = roundingText(input.port, *types::carriedSample(sample)); !text.empty())
+                    warn(text);
             }
             thread_->push(*input.kept.number, received, std::move(sample));
         }
