@@ -5,7 +5,6 @@
 
 #include "components/dds/SubscriberTask.hpp"
 #include "components/dds/TransformTask.hpp"
-#include "components/framework/ConfigReader.hpp"
 #include "components/framework/Timing.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/ros/Poses.hpp"
@@ -26,16 +25,6 @@ std::string whyNot(const Input& input, const TopicOut& topic) {
     if (canBe<Sample>(topic.type)) return "";
     const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
     return "is " + type + "; " + input.port.typeName() + " can be " + messagesOf<Sample>();
-}
-
-/** Where a port's sonar sits in the body; none: no scene says so. */
-std::optional<types::Mount> mountOf(const framework::InputPortBase& port) {
-    const auto value = framework::upstreamValue(port, {"mount"});
-    const std::string* const text = value ? std::get_if<std::string>(&*value) : nullptr;
-    types::Mount mount;
-    framework::ConfigReader reader("");
-    if (!text || !reader.readText(*text, "mount", mount)) return std::nullopt;
-    return mount;
 }
 
 /** Sends a sample as all topics of its input. */
@@ -103,7 +92,7 @@ ros::TFMessage PublisherTask::mounts() const {
     ros::TFMessage message;
     inputs_.forEach([&]<class Input>(const Input& input) {
         constexpr bool of_the_world = std::is_same_v<typename Input::Sample, types::PointCloud>;
-        const auto mount = of_the_world ? std::nullopt : mountOf(input.port);
+        const auto mount = of_the_world ? std::nullopt : framework::upstreamMount(input.port);
         for (const TopicOut& topic : config->topics) {
             const auto axes = axesOf(topic);
             const std::string frame = config->frameOf(topic);

@@ -34,6 +34,18 @@ std::vector<const TaskContext*> writersOf(const InputPortBase& port) {
     return writers;
 }
 
+/** Calls `use` with each task that a port's samples come from, nearest first, until it returns true. */
+template <class Use>
+void forEachUpstream(const InputPortBase& port, const Use& use) {
+    std::vector<const TaskContext*> waiting = writersOf(port);
+    for (size_t i = 0; i < waiting.size(); ++i) {
+        if (use(*waiting[i])) return;
+        for (const InputPortBase* input : waiting[i]->inputs())
+            for (const TaskContext* writer : writersOf(*input))
+                if (std::ranges::count(waiting, writer) == 0) waiting.push_back(writer);
+    }
+}
+
 }  // namespace
 
 std::optional<types::PropertyValue> valueAt(const types::TaskRecord& task, const std::string& path) {
@@ -46,22 +58,38 @@ std::optional<types::PropertyValue> valueAt(const types::TaskRecord& task, const
 }
 
 std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std::initializer_list<const char*> paths) {
-    std::vector<const TaskContext*> waiting = writersOf(port);
-    for (size_t i = 0; i < waiting.size(); ++i) {
-        const types::TaskRecord record = waiting[i]->record();
-        for (const char* path : paths)
-            if (auto value = valueAt(record, path)) return value;
-        for (const InputPortBase* input : waiting[i]->inputs())
-            for (const TaskContext* writer : writersOf(*input))
-                if (std::ranges::count(waiting, writer) == 0) waiting.push_back(writer);
-    }
-    return std::nullopt;
+    std::optional<types::PropertyValue> value;
+    forEachUpstream(port, [&](const TaskContext& task) {
+        const types::TaskRecord record = task.record();
+        return std::ranges::any_of(paths,
+                                   [&](const char* path) { return (value = valueAt(record, path)).has_value(); });
+    });
+    return value;
 }
 
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths) {
     const auto value = upstreamValue(port, paths);
     const double* const number = value ? std::get_if<double>(&*value) : nullptr;
     return number ? std::optional(*number) : std::nullopt;
+}
+
+std::optional<types::Mount> upstreamMount(const InputPortBase& port) {
+    const auto value = upstreamValue(port, {"mount"});
+    const std::string* const text = value ? std::get_if<std::string>(&*value) : nullptr;
+    types::Mount mount;
+    ConfigReader reader("");
+    return text && reader.readText(*text, "mount", mount) ? std::optional(mount) : std::nullopt;
+}
+
+std::vector<const OutputPortBase*> upstreamPoses(const InputPortBase& port) {
+    std::vector<const OutputPortBase*> poses;
+    forEachUpstream(port, [&](const TaskContext& task) {
+        for (const InputPortBase* input : task.inputs())
+            if (input->type() == typeid(types::Pose))
+                for (const auto& channel : input->channels()) poses.push_back(&channel->source());
+        return false;
+    });
+    return poses;
 }
 
 }  // namespace insonify::framework

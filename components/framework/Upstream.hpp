@@ -3,8 +3,10 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "components/framework/Port.hpp"
+#include "types/Mount.hpp"
 #include "types/TaskRecord.hpp"
 
 namespace insonify::framework {
@@ -18,5 +20,11 @@ std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std
 
 /** The same for a number. */
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
+
+/** The same for a property `mount`: where in its body the sensor is whose samples these are. */
+std::optional<types::Mount> upstreamMount(const InputPortBase& port);
+
+/** The output ports of poses that a port's samples depend on, nearest first. */
+std::vector<const OutputPortBase*> upstreamPoses(const InputPortBase& port);
 
 }  // namespace insonify::framework

@@ -72,11 +72,16 @@ struct McapStream {
 
 /** How samples become messages in an MCAP file: by default as dds::PublisherTask sends them. */
 struct McapConfig : ros::MessageOptions {
+    bool transforms = true;
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         MessageOptions::describe(self, visit);
+        visit(types::Field{"transforms", "",
+                           "/tf from poses, /tf_static from the mounts of the pings' sonars, /clock from the stamps of "
+                           "both"},
+              self.transforms);
         visit(types::Field{"streams", "", "topics and frames of single streams, by the stream's name: task.port"},
               self.streams);
     }

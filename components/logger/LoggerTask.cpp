@@ -56,13 +56,11 @@ void checkInput(const framework::InputPortBase& port, const std::string& stream,
         throw types::ConfigError("", port.path(), "logs " + stream + " a second time; connect it once");
 }
 
-/** Of the sonar whose pings an input takes [kHz]; none: it takes others, or that is not known. */
-template <class Input>
-std::optional<double> frequencyOf(const Input& input) {
-    if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>)
-        return framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"});
-    else
-        return std::nullopt;
+/** A JSON object. */
+std::string textOf(const types::Mount& mount) {
+    const glm::dvec3& p = mount.position;
+    return fmt::format(R"({{"position": [{}, {}, {}], "roll_deg": {}, "pitch_deg": {}, "yaw_deg": {}}})", p.x, p.y, p.z,
+                       mount.roll_deg, mount.pitch_deg, mount.yaw_deg);
 }
 
 /** Properties of the deployment by their other names, with what they are now. */
@@ -78,6 +76,27 @@ std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector
     return aliases;
 }
 
+/** How far readers of a log are off, because its pings have bin_duration in whole microseconds: the sonar of a port has
+ *  bins of another length. Empty: they are not, or that is not known. */
+std::string roundingText(const framework::InputPortBase& port, const types::Sonar& ping) {
+    const auto rounding = framework::upstreamValue(port, {"range_rounding"});
+    const auto range = framework::upstreamNumber(port, {"range"});
+    const double us = static_cast<double>(ping.bin_duration.microseconds), bins = ping.bin_count;
+    if (rounding != types::PropertyValue(std::string("exact")) || !range || us <= 0) return "";
+    const double off = std::abs(*range / (us * 1e-6 * ping.speed_of_sound) - bins);
+    const bool is_stale = off * us > 0.5 * bins * 1.001 && us > 1;  // a driver has set another range
+    if (off < 1e-6 || is_stale) return "";
+    return fmt::format(
+        "{} has bins of {:g} us, one way, in whole microseconds; a reader of bin_duration is off by {:.3g} "
+        "bins at the far edge. With range_rounding: sample the sonar's bins are whole microseconds",
+        framework::streamNameOf(port.channels().front()->source()).path(), us, off);
+}
+
+template <class T>
+std::string roundingText(const framework::InputPortBase& /*port*/, const T& /*sample*/) {
+    return "";
+}
+
 }  // namespace
 
 framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
@@ -88,6 +107,7 @@ framework::InputPortBase* LoggerTask::makeInput(const std::string& port, framewo
 std::vector<std::string> LoggerTask::notices() const {
     std::vector<std::string> all;
     if (inputs_.empty()) all.emplace_back("nothing is connected to it: the log will be empty");
+    all.insert(all.end(), frame_notices_.begin(), frame_notices_.end());
     if (health_.lost > 0)
         all.push_back(fmt::format("{} samples are in no file, of {} times that it could not be written; the last: {}",
                                   health_.lost, health_.outages, health_.failure));
@@ -124,10 +144,9 @@ log::Metadata LoggerTask::runMetadata() const {
     return metadata;
 }
 
-log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream, std::optional<double> frequency) {
+log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream) {
     log::Metadata metadata = runMetadata();
     if (!stream.model.empty()) metadata["rock_task_model"] = stream.model;
-    if (frequency) metadata["insonify_frequency_khz"] = fmt::format("{}", *frequency);
     if (declared_ == 0) metadata["insonify_deployment"] = environment().deployment_text;
     if (!environment().records) return metadata;
     std::string plans;
@@ -135,6 +154,56 @@ log::Metadata LoggerTask::streamMetadata(const framework::StreamName& stream, st
         if (!task.plan.empty()) plans += (plans.empty() ? "\"" : ", \"") + task.name + "\": " + task.plan;
     if (!plans.empty()) metadata["insonify_plan"] = "{" + plans + "}";
     return metadata;
+}
+
+std::string LoggerTask::bodyOf(const framework::InputPortBase& port) const {
+    std::set<std::string> logged;
+    inputs_.forEach([&]<class Input>(const Input& input) {
+        if (std::is_same_v<typename Input::Sample, types::Pose>) logged.insert(input.kept.name.path());
+    });
+    for (const framework::OutputPortBase* pose : framework::upstreamPoses(port))
+        if (std::string name = framework::streamNameOf(*pose).path(); logged.contains(name)) return name;
+    return "";
+}
+
+template <class Input>
+log::Metadata LoggerTask::metadataOf(const Input& input) {
+    log::Metadata metadata = streamMetadata(input.kept.name);
+    if constexpr (std::is_same_v<typename Input::Sample, types::Sonar>) {
+        if (const auto khz = framework::upstreamNumber(input.port, {"frequency_khz", "absorption.frequency_khz"}))
+            metadata["insonify_frequency_khz"] = fmt::format("{}", *khz);
+        const auto mount = framework::upstreamMount(input.port);
+        if (!mount) return metadata;
+        metadata["insonify_mount"] = textOf(*mount);
+        if (const std::string body = bodyOf(input.port); !body.empty()) metadata["insonify_body"] = body;
+    }
+    return metadata;
+}
+
+std::vector<std::string> LoggerTask::sharedFrames() const {
+    struct Claim {
+        std::string stream, place;
+    };
+    std::map<std::string, Claim> claims;
+    std::vector<std::string> shared;
+    inputs_.forEach([&]<class Input>(const Input& input) {
+        const auto mount =
+            std::is_same_v<typename Input::Sample, types::Sonar> ? framework::upstreamMount(input.port) : std::nullopt;
+        if (!mount) return;
+        const std::string stream = input.kept.name.path();
+        const auto given = config->mcap.streams.find(stream);
+        const bool is_given = given != config->mcap.streams.end() && given->second.frame_id;
+        const std::string frame = is_given ? *given->second.frame_id : config->mcap.frame_id;
+        const Claim own{stream, textOf(*mount) + bodyOf(input.port)};
+        const Claim& first = claims.emplace(frame, own).first->second;
+        if (first.place != own.place)
+            shared.push_back(
+                fmt::format("frame_id {} is the place of {} in /tf_static, not that of {}; give {} another "
+                            "under mcap.streams, and its poses a child_frame_id of their own if it is on "
+                            "another vehicle",
+                            frame, first.stream, stream, stream));
+    });
+    return shared;
 }
 
 std::filesystem::path LoggerTask::makePath(const std::string& file) const {
@@ -166,6 +235,8 @@ bool LoggerTask::configureHook() {
     removeSequels(path);
     log_ = log::createLog(path, config->mcap);
     rotation_.emplace(*config, *log_);
+    frame_notices_.clear();
+    if (path.extension() == ".mcap" && config->mcap.transforms) frame_notices_ = sharedFrames();
     if (logsProperties())
         properties_.emplace(log_->path().parent_path() / config->property_file, environment().deployment_text);
     configured_ = fixedValues();
@@ -214,10 +285,11 @@ void LoggerTask::updateHook() {
         if (!config->record || environment().rehearsing) return input.port.clear();
         for (typename Input::Carried sample{}; input.port.readNew(sample);) {
             if (!input.kept.number) {
-                log::Metadata metadata =
-                    withNames(streamMetadata(input.kept.name, frequencyOf(input)), *types::carriedSample(sample));
+                log::Metadata metadata = withNames(metadataOf(input), *types::carriedSample(sample));
                 thread_->declare(declaration(sampleOf(input), input.kept.name, std::move(metadata)));
                 input.kept.number = declared_++;
+                if (const std::string text = roundingText(input.port, *types::carriedSample(sample)); !text.empty())
+                    warn(text);
             }
             thread_->push(*input.kept.number, received, std::move(sample));
         }
@@ -247,7 +319,7 @@ void LoggerTask::cleanupHook() {
     } end{*this};
     inputs_.forEach([&](const auto& input) {
         if (input.kept.number) return;
-        declaration(sampleOf(input), input.kept.name, streamMetadata(input.kept.name, frequencyOf(input)))(*log_);
+        declaration(sampleOf(input), input.kept.name, metadataOf(input))(*log_);
         ++declared_;
     });
     log_->close();

@@ -27,8 +27,9 @@ namespace insonify::logger {
  *  the time at which they reached this task. Every stream carries the seed of the run in its metadata, and the plans
  * that the tasks had at its first sample, with which it is declared, the first one of the log the deployment as well;
  * streams without samples come at the end. One of truth has the names of the objects as well (`insonify_objects`, a
- * JSON list). The properties of all tasks go into `property_file` at each start; of several loggers that name one, the
- * first does it.
+ * JSON list); one of pings the mount of its sonar in the body and the stream of the body's poses (`insonify_mount`, a
+ * JSON object, `insonify_body`). The properties of all tasks go into `property_file` at each start; of several loggers
+ * that name one, the first does it.
  *
  *  The log of a shard is what `log cut` makes of the whole run's. It is not flushed before its end, for it is of use
  *  whole alone, and where an MCAP file is flushed depends on how fast the run is.
@@ -75,8 +76,15 @@ private:
     void followHealth();
     void recordProperties();            ///< What of all tasks' properties has changed since the last time.
     log::Metadata runMetadata() const;  ///< What all streams of the run carry.
-    /** Of the log's next stream, with the plans of the moment; `frequency` is its sonar's [kHz]. */
-    log::Metadata streamMetadata(const framework::StreamName& stream, std::optional<double> frequency);
+    /** Of the log's next stream, with the plans of the moment. */
+    log::Metadata streamMetadata(const framework::StreamName& stream);
+    /** With what is known of the sonar whose pings an input takes. */
+    template <class Input>
+    log::Metadata metadataOf(const Input& input);
+    /** The first stream of poses in the log that the pings of a port depend on; empty: none. */
+    std::string bodyOf(const framework::InputPortBase& port) const;
+    /** Frames to which different sonars lay claim in an MCAP file. */
+    std::vector<std::string> sharedFrames() const;
 
     framework::DynamicInputs<types::SampleTypes, Stream> inputs_{this};
     std::unique_ptr<log::Writer> log_;
@@ -84,6 +92,7 @@ private:
     std::optional<PropertyLog> properties_;
     uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
     std::optional<LogThread> thread_;
+    std::vector<std::string> frame_notices_;
     LogHealth health_;                                        ///< As reported.
     std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
     size_t declared_ = 0;                                     ///< Streams in the log.

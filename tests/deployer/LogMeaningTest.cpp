@@ -82,3 +82,20 @@ TEST_F(LogMeaningTest, TextOfManyBinsIsAnnouncedWithItsSize) {
     EXPECT_EQ(large.code, 0);
     EXPECT_THAT(large.err, HasSubstr("notice: x.csv gets a line for each bin, some 3 million, 0.1 GB"));
 }
+
+TEST(LogRoundingTest, BinsOfNoWholeMicrosecondsAreWarnedOfWhereALogIsWritten) {
+    const std::vector<std::string> exact = {"--pings",         "2", "--set", "sonar.range_rounding=exact", "--set",
+                                            "sonar.range=19.9"};
+    const WallFolder logged;
+    EXPECT_THAT(logged.run(exact).err, HasSubstr("a reader of bin_duration is off by 0.0629 bins"));
+    std::string text =
+        replaced(wall_deployment, "  log:\n    type: logger::LoggerTask\n    properties: {file: wall.0.log}\n", "");
+    for (const char* name : {"clean", "noisy", "pose"}) {
+        const size_t end = text.find(std::string("log.") + name), begin = text.rfind('\n', end);
+        text.erase(begin, text.find('\n', end) - begin);
+    }
+    const WallFolder unlogged(text);
+    const Outcome outcome = unlogged.run(exact);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("bin_duration")));
+}

@@ -76,9 +76,10 @@ def depth(m):
 found = {"types": {}, "counts": {}, "dropped": {}}
 velocities, attitudes, depths, truths, pings = [], [], [], [], []
 with AnyReader([pathlib.Path(sys.argv[1])]) as reader:
-    for connection in reader.connections:
+    wanted = [each for each in reader.connections if each.topic not in ("/clock", "/tf", "/tf_static")]
+    for connection in wanted:
         found["types"][connection.topic] = connection.msgtype
-    for connection, _, data in reader.messages():
+    for connection, _, data in reader.messages(wanted):
         m, topic = reader.deserialize(data, connection.msgtype), connection.topic
         taken = {SONAR: sonar, DVL: velocity, IMU: attitude, PRESSURE: depth, TRUTH: lambda odometry: odometry}[topic](m)
         if isinstance(taken, str):

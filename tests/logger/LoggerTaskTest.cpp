@@ -50,6 +50,54 @@ types::SonarPtr ping(int64_t time) {
     return sample;
 }
 
+/** A sonar as far as a logger asks it. */
+struct Described {
+    double range = 50;
+    std::string range_rounding = "exact";
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"range", "m"}, self.range);
+        visit(types::Field{"range_rounding"}, self.range_rounding);
+    }
+};
+struct DescribedSonar : framework::TaskContext {
+    explicit DescribedSonar(const Described& described) : TaskContext("sonar") {
+        config.set(described);
+        refreshRecord();
+    }
+    framework::Properties<Described> config{this};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
+};
+
+/** What a logger warns of pings of 1000 bins of 33 us. */
+std::vector<std::string> warningsOf(const Described& described) {
+    Bench bench;
+    DescribedSonar sonar(described);
+    std::vector<std::string> told;
+    bench.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    sonar.ping.connectTo(*bench.task.makeInput("ping", sonar.ping), ConnPolicy::buffer(8));
+    EXPECT_TRUE(bench.task.configure() && bench.task.start());
+    auto sample = std::make_shared<types::Sonar>();
+    sample->bin_duration = {33};
+    sample->speed_of_sound = 1500;
+    sample->resize(1000, 1);
+    for (int i = 0; i < 2; ++i) {
+        sonar.ping.write(sample);
+        bench.task.update();
+    }
+    bench.finish();
+    return told;
+}
+
+TEST(LoggerTaskTest, WhatReadersOfWholeMicrosecondsGetWrongIsWarnedOfOnce) {
+    EXPECT_THAT(warningsOf({}),
+                testing::ElementsAre(testing::HasSubstr("sonar.ping has bins of 33 us, one way, in whole microseconds; "
+                                                        "a reader of bin_duration is off by 10.1 bins")));
+    EXPECT_THAT(warningsOf({50, "sample"}), testing::IsEmpty());
+    EXPECT_THAT(warningsOf({49.5, "exact"}), testing::IsEmpty()) << "bins are whole microseconds";
+    EXPECT_THAT(warningsOf({80, "exact"}), testing::IsEmpty()) << "a driver has set another range than the property";
+}
+
 TEST(LoggerTaskTest, EverySampleIsLoggedUnderItsSourcesNameWithBothTimes) {
     Bench bench;
     Source<types::SonarPtr> sonar(bench.task, "sonar");

@@ -11,6 +11,7 @@
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "types/Mount.hpp"
 
 namespace insonify::logger {
 namespace {
@@ -136,6 +137,52 @@ TEST_F(McapLogTest, PingsMayBecomeEightBits) {
         ->forEach<types::Sonar>("sonar.port", [&](const types::Sonar& ping, const log::SampleRef&) {
             EXPECT_EQ(ping.bins, std::vector<float>(1600, 1));
         });
+}
+
+/** A sonar with its scene, as far as a logger asks them. */
+struct Mounted {
+    types::Mount mount;
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        visit(types::Field{"mount"}, self.mount);
+    }
+};
+struct MountedSonar : framework::TaskContext {
+    MountedSonar(const std::string& name, const types::Mount& mount) : TaskContext(name) {
+        config.set({mount});
+        refreshRecord();
+    }
+    framework::Properties<Mounted> config{this};
+    framework::InputPort<types::Pose> pose{this, "pose", ""};
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
+};
+
+TEST_F(McapLogTest, PingsHaveTheMountOfTheirSonarAndFramesOfTwoSonarsAreToldOf) {
+    MountedSonar left("left", {{0.1, 2, -3.5}, 0, 12.25, 90}), right("right", {{0.1, -2, -3.5}, 0, 0, 0});
+    for (MountedSonar* each : {&left, &right}) {
+        vehicle.port.connectTo(each->pose, ConnPolicy::buffer(8));
+        each->ping.connectTo(*task.makeInput(each->name(), each->ping), ConnPolicy::buffer(8));
+    }
+    for (const bool is_named : {false, true}) {
+        if (is_named) config.mcap.streams["right.ping"].frame_id = "right";
+        start();
+        vehicle.port.write(types::Pose{});
+        left.ping.write(pingAt(1));
+        right.ping.write(pingAt(1));
+        task.update();
+        finish();
+        const auto log = log::openLog(folder / "x.0.mcap");
+        EXPECT_EQ(log->find("left.ping")->metadata.at("insonify_mount"),
+                  R"({"position": [0.1, 2, -3.5], "roll_deg": 0, "pitch_deg": 12.25, "yaw_deg": 90})");
+        EXPECT_EQ(log->find("right.ping")->metadata.at("insonify_body"), "vehicle.port");
+        EXPECT_FALSE(log->find("vehicle.port")->metadata.contains("insonify_body"));
+        if (is_named)
+            EXPECT_THAT(task.notices(), testing::IsEmpty());
+        else
+            EXPECT_THAT(task.notices(), testing::ElementsAre(testing::HasSubstr(
+                                            "frame_id sonar is the place of left.ping in /tf_static, not that of "
+                                            "right.ping; give right.ping another under mcap.streams")));
+    }
 }
 
 TEST_F(McapLogTest, TheNameOfTheFileIsJudged) {

@@ -172,8 +172,6 @@ TEST(PlanTest, NoticesOfTheConfiguration) {
                "bin_count: "
                "667 there are 500 bins beyond it",
                [](SonarConfig& s) { s.range_min = s.range / 4; }},
-          Case{"off by 10.1 bins",
-               [](SonarConfig& s) { s.range = 50, s.bin_count = 1000, s.range_rounding = RangeRounding::Exact; }},
           Case{"speed of sound is 1700 m/s", [](SonarConfig& s) { s.speed_of_sound = 1700, s.range = 85; }},
           Case{"speed of sound is 340 m/s", [](SonarConfig& s) { s.speed_of_sound = 340, s.range = 17; }},
           Case{"10000 kHz (0.2 to 1000)",

@@ -350,12 +350,17 @@ TEST_F(TypingTest, ABrokenConnectionLeavesWhatIsBeingTyped) {
     EXPECT_TRUE(holds("title", "half done")) << held("title");
 }
 
-TEST_F(TypingTest, TheToolbarOfThePictureIsOneLineOfEachKindFrom1280Pixels) {
+TEST_F(TypingTest, ToolbarAndHeaderHaveOneLineOfEachKindFrom1280Pixels) {
     for (const int width : {1280, 1920}) {
         browser->size(width, 800);
         nextFrame();
         EXPECT_EQ(value("[...document.querySelectorAll('#sonar nav')].map((one) => one.offsetHeight < 32)"),
                   json({true, true}))
+            << width;
+        EXPECT_EQ(value("[...document.querySelectorAll('header > :not(#timelines)')].map((one) => "
+                        "one.getBoundingClientRect()).filter((box) => box.width > 0).every((box, i, all) => box.top < "
+                        "all[0].bottom && box.right <= innerWidth)"),
+                  true)
             << width;
     }
 }

@@ -109,11 +109,13 @@ void ChunkWriter::putMetadata(const std::string& name, const Texts& texts) {
     append(bytes);
 }
 
-void ChunkWriter::write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes) {
+void ChunkWriter::write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes,
+                        Counts counts) {
     if (!isOpen()) throw std::runtime_error(path().string() + ": the log is closed");
     chunk_first_ns_ = chunk_messages_ == 0 ? log_ns : std::min(chunk_first_ns_, log_ns);
     chunk_last_ns_ = chunk_messages_ == 0 ? log_ns : std::max(chunk_last_ns_, log_ns);
     ++chunk_messages_;
+    if (counts == Counts::Yes) ++chunk_counted_;
     index_.at(channel).push_back({log_ns, chunk_.size() - chunk_header_size});
     RecordWriter out(chunk_);
     out.begin(Op::Message);
@@ -129,7 +131,7 @@ void ChunkWriter::write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, 
 void ChunkWriter::openChunk() {
     chunk_.clear();
     chunk_.resize(chunk_header_size);
-    chunk_first_ns_ = chunk_last_ns_ = chunk_messages_ = 0;
+    chunk_first_ns_ = chunk_last_ns_ = chunk_messages_ = chunk_counted_ = 0;
     for (auto& entries : index_) entries.clear();
 }
 
@@ -176,7 +178,7 @@ void ChunkWriter::flush() {
         summary_.last_ns = std::max(summary_.last_ns, chunk_last_ns_);
     }
     summary_.messages += chunk_messages_;
-    kept_ += chunk_messages_;
+    kept_ += chunk_counted_;
     openChunk();
 }
 

@@ -47,8 +47,11 @@ public:
      *  65536th. */
     uint16_t addSchema(Schema schema);
     uint16_t addChannel(Channel channel);
+    /** Whether a message is among those of kept(). */
+    enum class Counts { Yes, No };
     /** Adds a message; times since 1970 [ns]. Throws std::runtime_error when the file is closed. */
-    void write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
+    void write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes,
+               Counts counts = Counts::Yes);
     void addMetadata(const std::string& name, const Texts& texts);
 
     void flush();  ///< Ends the chunk: its messages survive the end of this process.
@@ -102,7 +105,7 @@ private:
     std::vector<ChunkIndex> chunks_;
 
     std::vector<char> chunk_;  ///< Room for its header, then its records.
-    uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, chunk_messages_ = 0;
+    uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, chunk_messages_ = 0, chunk_counted_ = 0;
     std::vector<std::vector<IndexEntry>> index_;  ///< Of the chunk's messages, for each channel.
 };
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "components/log/TypeNames.hpp"
+#include "components/log/mcap/Transforms.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/ros/Samples.hpp"
 #include "components/ros/Stamps.hpp"
@@ -45,7 +46,7 @@ types::Time timeOf(uint64_t ns) { return {static_cast<int64_t>(ns / 1000)}; }
 bool isOfStream(const Texts& channel, const std::string& key) {
     static const std::set<std::string> of_messages = {"offered_qos_profiles", "topic_type_hash", "insonify_stream",
                                                       "insonify_type",        "insonify_order",  "insonify_frame",
-                                                      "insonify_world_frame"};
+                                                      "insonify_world_frame", frame_id_key};
     return channel.contains("insonify_stream") && !of_messages.contains(key);
 }
 
@@ -75,11 +76,20 @@ private:
 Reader::Reader(const std::filesystem::path& path, AtDamage at_damage)
     : log::Reader(path), file_(path), contents_(file_.contents(at_damage)) {
     gaps_ = contents_.gaps;
+    std::erase_if(contents_.messages, [&](const MessageRef& message) {
+        return contents_.channels.at(message.channel).metadata.contains(derived_key);
+    });
     std::map<uint16_t, size_t> numbers;
+    size_t place = 0;
     for (const auto& [number, channel] : contents_.channels) {
+        const size_t own_place = place++;
+        if (channel.metadata.contains(derived_key)) {
+            has_transforms_ = true;
+            continue;
+        }
         numbers[number] = streams_.size();
         channels_.push_back(number);
-        addStream(channel, contents_);
+        addStream(channel, own_place);
     }
     for (const MessageRef& message : contents_.messages)
         addSample(numbers.at(message.channel), timeOf(message.log_ns), timeOf(message.publish_ns), message.position);
@@ -87,14 +97,15 @@ Reader::Reader(const std::filesystem::path& path, AtDamage at_damage)
 
 Reader::~Reader() = default;
 
-void Reader::addStream(const Channel& channel, const Contents& contents) {
+void Reader::addStream(const Channel& channel, size_t place) {
+    const Contents& contents = contents_;
     const auto schema = contents.schemas.find(channel.schema);
     Stream& stream = streams_.emplace_back();
     stream.name = streamName(channel);
     stream.topic = channel.topic;
     stream.type = schema == contents.schemas.end() ? channel.encoding : schema->second.name;
     for (const Contents::Metadata& metadata : contents.metadata)
-        if (metadata.name == "insonify" && metadata.channels_before < streams_.size()) stream.metadata = metadata.texts;
+        if (metadata.name == "insonify" && metadata.channels_before <= place) stream.metadata = metadata.texts;
     if (streams_.size() > 1 && streams_.front().metadata.contains("insonify_deployment"))
         stream.metadata.erase("insonify_deployment");  // of the whole log, which its first stream carries
     for (const auto& [key, value] : channel.metadata)

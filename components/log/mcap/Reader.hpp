@@ -11,8 +11,8 @@ namespace insonify::log::mcap {
 bool isOfStream(const Texts& channel, const std::string& key);
 
 /** Reads an MCAP file. Messages of known types in CDR are samples; other channels are streams of a type that is not
- *  known. Streams are named as they were written, or topic /a/b is stream a.b; images and poses of others are taken as
- *  ours by default, poses as ENU (REP 103). */
+ *  known, except for those that Transforms wrote: these are omitted. Streams are named as they were written, or topic
+ * /a/b is stream a.b; images and poses of others are taken as ours by default, poses as ENU (REP 103). */
 class Reader final : public log::Reader {
 public:
     /** Throws ConfigError when it cannot be read or is no MCAP file. */
@@ -27,6 +27,8 @@ public:
     const Schema* schema(size_t stream) const;
     const Channel& channel(size_t stream) const;
     const MessageRef& message(const SampleRef& at) const { return contents_.messages[at.number]; }
+    /** Whether the file has topics that follow from its streams: /tf and others, which are no streams. */
+    bool hasTransforms() const { return has_transforms_; }
 
 private:
     class Decoder;
@@ -34,12 +36,14 @@ private:
     class TypedDecoder;
 
     void decode(const SampleRef& at, types::SampleRoom room) override;
-    void addStream(const Channel& channel, const Contents& contents);
+    /** @param place of the channel among all of the file. */
+    void addStream(const Channel& channel, size_t place);
     /** What a stream's messages are read as; null: not at all. */
     std::unique_ptr<Decoder> decoderFor(Stream& stream, const Channel& channel, const std::string& schema) const;
 
     File file_;
     Contents contents_;
+    bool has_transforms_ = false;
     std::vector<uint16_t> channels_;                  ///< Number of each stream's channel.
     std::vector<std::unique_ptr<Decoder>> decoders_;  ///< Of each stream; null: its type is not known.
     std::vector<char> bytes_;

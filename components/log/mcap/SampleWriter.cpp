@@ -55,6 +55,16 @@ std::string nameOf(E value) {
     return std::string(types::EnumNames<E>::names[static_cast<size_t>(value)]);
 }
 
+/** "/auv/sonar" of a topic with or without its slash. */
+std::string rooted(const std::string& topic) { return "/" + topic.substr(topic.starts_with('/')); }
+
+std::set<std::string> topicsOf(const McapConfig& config) {
+    std::set<std::string> topics;
+    for (const auto& [name, stream] : config.streams)
+        if (stream.topic) topics.insert(rooted(*stream.topic));
+    return topics;
+}
+
 }  // namespace
 
 bool isTopic(std::string_view name) {
@@ -69,7 +79,7 @@ bool isTopic(std::string_view name) {
 std::string SampleWriter::topicOf(const std::string& stream) const {
     const auto given = config_.streams.find(stream);
     if (given == config_.streams.end() || !given->second.topic) return usualTopic(stream);
-    return "/" + given->second.topic->substr(given->second.topic->starts_with('/'));
+    return rooted(*given->second.topic);
 }
 
 SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const Metadata& metadata) const {
@@ -87,7 +97,7 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
 }
 
 SampleWriter::SampleWriter(std::filesystem::path path, const McapConfig& config)
-    : config_(config), bag_(path), out_(std::move(path)) {
+    : config_(config), bag_(path), out_(std::move(path)), transforms_(out_, topicsOf(config)) {
     bag_.write(out_);
 }
 
@@ -122,9 +132,12 @@ size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata&
                        {"insonify_order", nameOf(config_.order)},
                        {"insonify_frame", nameOf(config_.frame)},
                        {"insonify_world_frame", nameOf(config_.world_frame)}};
+        const Options options = optionsOf(name, metadata);
+        if (std::is_same_v<Message, ros::ProjectedSonarImage>) texts.emplace(frame_id_key, options.frame_id);
         number = declare(&schema, {0, topicOf(name), "cdr", std::move(texts)}, metadata);
         options_.resize(number + 1);
-        options_[number] = optionsOf(name, metadata);
+        options_[number] = options;
+        if (config_.transforms) transforms_.follow(channels_[number], metadata);
     });
     return number;
 }
@@ -140,15 +153,19 @@ size_t SampleWriter::declare(const Schema* schema, Channel channel, const Metada
         if (known == schemas_.end()) known = schemas_.emplace(*schema, out_.addSchema(*schema)).first;
         channel.schema = known->second;
     }
-    return out_.addChannel(std::move(channel));
+    channels_.push_back(out_.addChannel(std::move(channel)));
+    return channels_.size() - 1;
 }
 
 size_t SampleWriter::addLike(const log::Reader& log, size_t number, const Metadata& more) {
     const Stream& stream = log.streams()[number];
     Metadata all = stream.metadata;
     all.insert(more.begin(), more.end());
-    if (const auto* same = dynamic_cast<const Reader*>(&log))
-        return declare(same->schema(number), same->channel(number), all);
+    if (const auto* same = dynamic_cast<const Reader*>(&log)) {
+        const size_t copied = declare(same->schema(number), same->channel(number), all);
+        if (same->hasTransforms()) transforms_.follow(channels_[copied], all);
+        return copied;
+    }
     if (stream.sample) return add(*stream.sample, stream.name, all);
     throw types::ConfigError(log.path(), stream.name, "holds " + stream.type + ", which has no message");
 }
@@ -173,33 +190,41 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
     } catch (const std::logic_error& error) {
         fail(stream, error.what());
     }
-    out_.write(static_cast<uint16_t>(stream), nanoseconds(received), exactNanoseconds(time), bytes_);
+    writeMessage(stream, nanoseconds(received), exactNanoseconds(time), bytes_);
+}
+
+void SampleWriter::writeMessage(size_t stream, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes) {
+    transforms_.before(channels_.at(stream), log_ns, publish_ns, bytes);
+    out_.write(channels_[stream], log_ns, publish_ns, bytes);
 }
 
 void SampleWriter::copy(size_t stream, log::Reader& log, const SampleRef& at) {
     const auto* const same = dynamic_cast<const Reader*>(&log);
     if (!same) return put(stream, at.received, at.time, log.sampleAt(at));
     const MessageRef& message = same->message(at);
-    out_.write(static_cast<uint16_t>(stream), message.log_ns, message.publish_ns, log.bytesOf(at));
+    writeMessage(stream, message.log_ns, message.publish_ns, log.bytesOf(at));
 }
 
 void SampleWriter::fail(size_t stream, const std::string& why) const {
     throw std::runtime_error(path().string() + ": a sample of " +
-                             out_.channels()[stream].metadata.at("insonify_stream") +
+                             out_.channels()[channels_[stream]].metadata.at("insonify_stream") +
                              " cannot be written as a message: " + why);
 }
 
 void SampleWriter::close() {
     if (std::exchange(closed_, true)) return;
+    if (out_.isOpen()) transforms_.finish();
     out_.close();
     bag_.write(out_);
 }
 
 void SampleWriter::next(std::filesystem::path path) {
+    if (out_.isOpen()) transforms_.finish();
     out_.close();
     out_.discard();
     if (out_.path() != path) bag_.add(out_.summary());  // else next() has failed before
     out_.next(std::move(path));
+    transforms_.nextFile();
     bag_.write(out_);
 }
 

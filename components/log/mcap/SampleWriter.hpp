@@ -7,6 +7,7 @@
 #include "components/log/Writer.hpp"
 #include "components/log/mcap/Bag.hpp"
 #include "components/log/mcap/ChunkWriter.hpp"
+#include "components/log/mcap/Transforms.hpp"
 #include "components/ros/Samples.hpp"
 
 namespace insonify::log::mcap {
@@ -18,7 +19,8 @@ bool isTopic(std::string_view name);
  *
  *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. What the first stream carries
  * goes into a record named "insonify", what others carry otherwise into their channels' metadata. Log time is when a
- * sample was received, publish time when it was true. */
+ *  sample was received, publish time when it was true. /tf, /tf_static and /clock follow from the samples, unless
+ *  `McapConfig::transforms` is false. */
 class SampleWriter final : public log::Writer {
 public:
     /** Throws as createLog, and ConfigError when the folder holds the metadata.yaml of another bag. */
@@ -45,6 +47,7 @@ public:
 private:
     /** @param metadata of the stream. */
     size_t declare(const Schema* schema, Channel channel, const Metadata& metadata);
+    void writeMessage(size_t stream, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
     [[noreturn]] void fail(size_t stream, const std::string& why) const;
 
     /** How samples become the messages of one channel. */
@@ -58,8 +61,10 @@ private:
     McapConfig config_;
     Bag bag_;
     ChunkWriter out_;
+    Transforms transforms_;
     bool closed_ = false;
-    std::vector<Options> options_;  ///< Of each channel.
+    std::vector<uint16_t> channels_;  ///< Of each stream.
+    std::vector<Options> options_;    ///< Of each stream.
     std::map<Schema, uint16_t> schemas_;
     Metadata metadata_;           ///< Of the record that all streams share.
     ros::MessageTypes messages_;  ///< Room to convert into.

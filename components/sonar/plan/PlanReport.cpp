@@ -25,13 +25,6 @@ std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
 }
 
 void noteRange(const SonarConfig& config, const BinGrid& grid, std::vector<std::string>& notices) {
-    const double read = static_cast<double>(grid.bin_duration_us) * 1e-6 * grid.speed_of_sound;
-    const double off = grid.range_max / read - grid.range_max / grid.bin_width;
-    if (config.range_rounding == RangeRounding::Exact && std::abs(off) > 1e-6)
-        notices.push_back(
-            fmt::format("Warning: bin_duration, one way, is {} us in whole microseconds; a reader of it is off by "
-                        "{:.3g} bins at the far edge",
-                        grid.bin_duration_us, std::abs(off)));
     const double longer = grid.range_max / config.range - 1;
     if (std::abs(longer) > 1e-9)
         notices.push_back(fmt::format("{}range reached is {:.6g} m, {:.2g} % more than {:g} m: bins last {} us one way",

@@ -25,14 +25,14 @@ TEST_F(PythonTest, McapAndRosbagsReadWhatWeWrite) {
     smallFile(folder_ / "x.0.mcap");
     EXPECT_EQ(
         says("read_mcap.py", (folder_ / "x.0.mcap").string()),
-        "profile ros2, by insonify, 5 messages, 1 chunks\n"
+        "profile ros2, by insonify, 10 messages, 1 chunks\n"
         "metadata insonify {'insonify_deployment': 'tasks:\\n  a: \"b\"\\n', 'insonify_seed': '7'}\n"
         "/sonar/ping marine_acoustic_msgs/msg/ProjectedSonarImage 10000001000 1000 [1.0, 4.0, 2.0, 5.0, 3.0, nan]\n"
         "/sonar/ping marine_acoustic_msgs/msg/ProjectedSonarImage 10000002000 2000 [1.0, 4.0, 2.0, 5.0, 3.0, nan]\n"
         "/sonar/ping marine_acoustic_msgs/msg/ProjectedSonarImage 10000003000 3000 [1.0, 4.0, 2.0, 5.0, 3.0, nan]\n"
         "/vehicle/pose nav_msgs/msg/Odometry 10000001000 1000 [0.1, -0.2, 0.3]\n"
         "/vehicle/pose nav_msgs/msg/Odometry 10000002000 2000 [0.1, -0.2, 0.3]\n"
-        "rosbags: 5 messages of /sonar/ping, /vehicle/pose in 0.002001 ms\n"
+        "rosbags: 10 messages of /clock, /sonar/ping, /tf, /vehicle/pose in 0.002001 ms\n"
         "rosbags: [1.0, 4.0, 2.0, 5.0, 3.0, nan] at 1000 ns\n");
 }
 
@@ -46,7 +46,7 @@ TEST_F(PythonTest, RosbagsReadsALogOfSeveralFiles) {
         }
     }
     EXPECT_THAT(says("read_mcap.py", (folder_ / "x.0.mcap").string()),
-                testing::HasSubstr("rosbags: 3 messages of /sonar/ping in 0.002001 ms\n"));
+                testing::HasSubstr("rosbags: 6 messages of /clock, /sonar/ping in 0.002001 ms\n"));
 }
 
 TEST_F(PythonTest, FilesOfOthersAreReadCompressedOrNot) {

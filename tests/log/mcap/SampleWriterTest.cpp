@@ -278,7 +278,7 @@ TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
     const std::string bag(bytes.begin(), bytes.end());
     EXPECT_THAT(bag, testing::HasSubstr("    - \"x.0.mcap\"\n    - \"x.1.mcap\"\n"));
     EXPECT_THAT(bag, testing::HasSubstr("  duration:\n    nanoseconds: 1999999000\n"));
-    EXPECT_THAT(bag, testing::HasSubstr("nanoseconds_since_epoch: 1000001000\n  message_count: 3\n"));
+    EXPECT_THAT(bag, testing::HasSubstr("nanoseconds_since_epoch: 1000001000\n  message_count: 6\n"));
     EXPECT_THAT(bag, testing::HasSubstr("name: \"/sonar/ping\"\n        type: marine_acoustic_msgs/msg/"));
 }
 

@@ -33,6 +33,8 @@ with open(path, "rb") as file:
     decoded = list(reader.iter_decoded_messages())
     assert len(decoded) == count
     for schema, channel, message, ros in sorted(decoded, key=lambda each: (each[1].topic, each[2].log_time)):
+        if channel.topic in ("/clock", "/tf", "/tf_static"):
+            continue
         print(channel.topic, schema.name, message.log_time, message.publish_time, value(ros))
 
 with AnyReader([path.parent], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as bag:
