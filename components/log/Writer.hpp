@@ -8,6 +8,7 @@
 #include "components/log/Reader.hpp"
 #include "components/log/Stream.hpp"
 #include "components/ros/Options.hpp"
+#include "types/RosNames.hpp"
 
 namespace insonify::log {
 
@@ -73,6 +74,7 @@ struct McapStream {
 /** How samples become messages in an MCAP file: by default as dds::PublisherTask sends them. */
 struct McapConfig : ros::MessageOptions {
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
+    types::RosNames names;                      ///< Namespace and frame prefix of the deployment; no key.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -164,7 +164,10 @@ bool LoggerTask::configureHook() {
     checkInputs();
     const std::filesystem::path path = makePath(config->file);
     removeSequels(path);
-    log_ = log::createLog(path, config->mcap);
+    log::McapConfig mcap = config->mcap;
+    mcap.names = environment().names;
+    mcap.names.remaps.clear();  // a log is no node
+    log_ = log::createLog(path, mcap);
     rotation_.emplace(*config, *log_);
     if (logsProperties())
         properties_.emplace(log_->path().parent_path() / config->property_file, environment().deployment_text);
