@@ -42,9 +42,9 @@ std::set<std::string> filesNamedIn(const std::string& text) {
 
 TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
     const std::set<std::string> expected = {
-        "CMakeLists.txt", "README.md",   "LICENSE",    "CHANGELOG.md", "types",         "components",
-        "shaders",        "deploy",      "tests",      "scripts",      ".ci",           ".git",
-        ".clang-format",  ".clang-tidy", ".gitignore", "out",          "pyproject.toml"};
+        "CMakeLists.txt", "README.md",     "LICENSE",     "CHANGELOG.md", "types", "components",
+        "shaders",        "deploy",        "tests",       "scripts",      ".ci",   ".git",
+        "ros2",           ".clang-format", ".clang-tidy", ".gitignore",   "out",   "pyproject.toml"};
     for (const auto& entry : std::filesystem::directory_iterator(insonify::test::source_dir)) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;
