@@ -4,7 +4,6 @@
 #include <dds/ddsi/ddsi_sertype.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 #include "components/dds/DiscoveryMessages.hpp"
@@ -12,6 +11,7 @@
 #include "components/dds/RawType.hpp"
 #include "components/ros/Cdr.hpp"
 #include "types/ConfigError.hpp"
+#include "types/RosNames.hpp"
 
 namespace insonify::dds {
 namespace {
@@ -41,19 +41,6 @@ std::vector<Gid<size>> gidsOf(const std::vector<Guid>& guids) {
 
 constexpr size_t longest_topic = 255;  ///< With "rt/", as in ROS 2.
 
-bool isWord(std::string_view word) {
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
-}
-
-/** "auv/sonar", "/auv/sonar" or "sonar". */
-bool areWords(std::string_view name) {
-    if (name.starts_with('/')) name.remove_prefix(1);
-    for (size_t slash = name.find('/'); slash != name.npos && isWord(name.substr(0, slash)); slash = name.find('/'))
-        name.remove_prefix(slash + 1);
-    return isWord(name);
-}
-
 /** "/auv" of "/auv/sonar", "/" of "sonar". */
 std::string namespaceOf(const std::string& node) {
     const size_t slash = node.rfind('/');
@@ -68,8 +55,9 @@ std::string ddsTopic(const std::string& ros_topic) {
 }
 
 std::string ddsType(std::string_view ros_type) {
-    const size_t end = ros_type.find('/'), begin = ros_type.rfind('/') + 1;
-    return std::string(ros_type.substr(0, end)) + "::msg::dds_::" + std::string(ros_type.substr(begin)) + "_";
+    std::string name;
+    for (const char c : ros_type.substr(0, ros_type.rfind('/'))) name += c == '/' ? "::" : std::string(1, c);
+    return name + "::dds_::" + std::string(ros_type.substr(ros_type.rfind('/') + 1)) + "_";
 }
 
 std::string rosType(const std::string& dds_type) {
@@ -84,12 +72,12 @@ std::string diagnosticOfTopic(const std::string& name) {
     if (ddsTopic(name).size() > longest_topic)
         return "has " + std::to_string(name.size()) + " characters; at most " + std::to_string(longest_topic - 3) +
                " are a topic's name";
-    if (areWords(name)) return "";
+    if (types::isRosName(name)) return "";
     return "is \"" + name + "\"; must be words of letters, digits and _, none beginning with a digit, as /auv/sonar";
 }
 
 std::string diagnosticOfNode(const std::string& name) {
-    if (areWords(name) && name.size() <= 255) return "";
+    if (types::isRosName(name) && name.size() <= 255) return "";
     return "is \"" + name +
            "\"; must be words of letters, digits and _, none beginning with a digit, as sonar or /auv/sonar";
 }

@@ -5,7 +5,9 @@
 
 #include "components/dds/Node.hpp"
 #include "components/ros/Options.hpp"
+#include "types/ConfigError.hpp"
 #include "types/Describe.hpp"
+#include "types/RosNames.hpp"
 
 namespace insonify::dds {
 
@@ -36,8 +38,19 @@ struct NodeConfig {
         if (const std::string diagnostic = node_name.empty() ? "" : diagnosticOfNode(node_name); !diagnostic.empty())
             diagnostics.push_back({"node_name", diagnostic});
     }
-    std::string nameOr(const std::string& task) const { return node_name.empty() ? task : node_name; }
+    /** The node's whole name. @param task that it has where no name is given */
+    std::string nameIn(const types::RosNames& names, const std::string& task) const {
+        return names.node(node_name.empty() ? task : node_name);
+    }
 };
+
+/** Throws types::ConfigError with what is wrong with a configuration once its names are those in the deployment. */
+template <class Config>
+void refuseWrong(const Config& named) {
+    types::Diagnostics diagnostics;
+    named.check(diagnostics);
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+}
 
 }  // namespace insonify::dds
 

@@ -21,15 +21,17 @@ namespace insonify::dds {
 struct TopicOptions {
     ros::MessageOptions messages;
     std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a pose names.
+    std::string frame_prefix;
 };
-inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic) {
-    TopicOptions options{{}, config.world_frame_id, topic.child_frame_id};
+inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix) {
+    TopicOptions options{{}, config.world_frame_id, topic.child_frame_id, frame_prefix};
     static_cast<ros::SonarOptions&>(options.messages) = topic.sonar;
     options.messages.world_frame = config.node.world_frame;
     if (topic.sonar.frame_id.empty())
         options.messages.frame_id = config.frame_id;
     else
         options.world_frame_id = topic.sonar.frame_id;
+    options.messages.frame_id = types::prefixed(frame_prefix, options.messages.frame_id);
     return options;
 }
 
@@ -49,8 +51,11 @@ concept Fills = requires(const T& sample, const ros::MessageOptions& options, Me
 template <class Message>
 void nameFrames(const TopicOptions& options, Message& message) {
     if constexpr (requires { message.header; }) nameFrame(message.header.frame_id, options.world_frame_id, "map");
-    if constexpr (requires { message.child_frame_id; })
+    if constexpr (requires { message.child_frame_id; }) {
         nameFrame(message.child_frame_id, options.child_frame_id, "base_link");
+        if (!options.frame_prefix.empty())
+            message.child_frame_id = types::prefixed(options.frame_prefix, message.child_frame_id);
+    }
     if constexpr (requires { message.transforms; })
         for (ros::TransformStamped& transform : message.transforms) nameFrames(options, transform);
 }
@@ -109,11 +114,13 @@ inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut
 template <class Sample>
 class Publication {
 public:
-    /** What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
+    /** @param frame_prefix of frames but those of the world
+     *  What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
      *  be made of a Sample, and as Writer. */
-    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, types::ThrottledWarning& drops)
+    Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix,
+                types::ThrottledWarning& drops)
         : topic_(topic.topic),
-          options_(optionsOf(config, topic)),
+          options_(optionsOf(config, topic, frame_prefix)),
           encode_(encoderOf<Sample>(topic.type)),
           writer_(writerOf(node, config, topic)),
           drops_(drops) {

@@ -66,6 +66,7 @@ struct PublisherConfig {
     Reliability reliability = Reliability::Reliable;
     int depth = 5;
     std::optional<StaticTransforms> tf_static;
+    bool parameter_services = false;
     NodeConfig node;
 
     template <class Self, class V>
@@ -81,6 +82,10 @@ struct PublisherConfig {
                     "tells where the frames of pings sit in the body, by the scene's mount; absent: not"},
               self.tf_static);
         visit(Field{"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
+        visit(
+            Field{"parameter_services", "",
+                  "whether nodes with rmw_cyclonedds_cpp may list, get, set and describe the properties of all tasks"},
+            self.parameter_services);
         NodeConfig::describe(self.node, visit);
     }
     std::string frameOf(const TopicOut& topic) const {
@@ -100,6 +105,14 @@ struct PublisherConfig {
                 shared.push_back("frame_id " + frame + " has x ahead on " + kinds[0] + " and z ahead on " + kinds[1] +
                                  ": give one of them another, for transforms");
         return shared;
+    }
+    /** With the names that topics and the node have in a deployment. @param task that sends */
+    PublisherConfig namedBy(const types::RosNames& names, const std::string& task) const {
+        PublisherConfig named = *this;
+        named.node.node_name = node.nameIn(names, task);
+        for (TopicOut& topic : named.topics) topic.topic = names.topic(topic.topic, named.node.node_name);
+        if (tf_static) named.tf_static->topic = names.topic(tf_static->topic, named.node.node_name);
+        return named;
     }
     void check(types::Diagnostics& diagnostics) const {
         node.check(diagnostics);

@@ -67,6 +67,13 @@ void PublisherTask::check(types::Diagnostics& diagnostics) const {
 
 std::vector<std::string> PublisherTask::notices() const {
     std::vector<std::string> notices = config->sharedFrames();
+    const std::string& space = environment().names.ros_namespace;
+    std::string outside;
+    for (const TopicOut& topic : config->topics)
+        if (!space.empty() && topic.topic.starts_with('/') && topic.topic != "/tf" && topic.topic != "/clock")
+            outside += (outside.empty() ? "" : ", ") + topic.topic;
+    if (!outside.empty())
+        notices.push_back("not in the namespace " + space + ", for the names begin with a slash: " + outside);
     std::ranges::move(drops_.summary(), std::back_inserter(notices));
     return notices;
 }
@@ -74,15 +81,20 @@ std::vector<std::string> PublisherTask::notices() const {
 bool PublisherTask::configureHook() {
     cleanupHook();  // what a configure that failed has left
     drops_.reset();
-    node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
-                  static_cast<size_t>(config->node.gid_size));
-    inputs_.forEach([this]<class Input>(Input& input) {
+    const types::RosNames& names = environment().names;
+    const PublisherConfig named = config->namedBy(names, name());
+    refuseWrong(named);
+    node_.emplace(domainId(named.node.domain), named.node.node_name, static_cast<size_t>(named.node.gid_size));
+    inputs_.forEach([&]<class Input>(Input& input) {
         using Sending = Publication<typename Input::Sample>;
-        for (const TopicOut& topic : config->topics)
+        for (const TopicOut& topic : named.topics)
             if (topic.port == input.port.name())
-                input.kept.publications.push_back(std::make_unique<Sending>(*node_, *config, topic, drops_));
+                input.kept.publications.push_back(
+                    std::make_unique<Sending>(*node_, named, topic, names.frame_prefix, drops_));
     });
-    if (config->tf_static) announceMounts();
+    if (named.tf_static) announceMounts(named.tf_static->topic);
+    if (named.parameter_services && environment().deployment)
+        parameters_.emplace(*node_, named.node.node_name, name(), *environment().deployment);
     takeFrequencies();
     node_->announce();
     return true;
@@ -95,11 +107,11 @@ ros::TFMessage PublisherTask::mounts() const {
         const auto mount = of_the_world ? std::nullopt : framework::upstreamMount(input.port);
         for (const TopicOut& topic : config->topics) {
             const auto axes = axesOf(topic);
-            const std::string frame = config->frameOf(topic);
+            const std::string frame = environment().names.frame(config->frameOf(topic));
             const bool is_told =
                 std::ranges::count(message.transforms, frame, &ros::TransformStamped::child_frame_id) > 0;
             if (topic.port != input.port.name() || !mount || !axes || is_told) continue;
-            message.transforms.push_back({{ros::toRos(now()), config->tf_static->frame_id},
+            message.transforms.push_back({{ros::toRos(now()), environment().names.frame(config->tf_static->frame_id)},
                                           frame,
                                           ros::toTransform(*mount, config->node.world_frame, *axes)});
         }
@@ -107,10 +119,10 @@ ros::TFMessage PublisherTask::mounts() const {
     return message;
 }
 
-void PublisherTask::announceMounts() {
+void PublisherTask::announceMounts(const std::string& topic) {
     using Message = ros::TFMessage;
     const Quality quality{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
-    tf_static_.emplace(*node_, ddsTopic(config->tf_static->topic), Message::type_name, Message::type_hash, quality);
+    tf_static_.emplace(*node_, ddsTopic(topic), Message::type_name, Message::type_hash, quality);
     node_->addWriter(tf_static_->handle());
     Bytes bytes;
     ros::encode(mounts(), bytes);
@@ -143,6 +155,7 @@ void PublisherTask::updateHook() {
 
 void PublisherTask::cleanupHook() {
     inputs_.forEach([](auto& input) { input.kept.publications.clear(); });
+    parameters_.reset();
     tf_static_.reset();
     node_.reset();
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/dds/Node.hpp"
+#include "components/dds/ParameterServer.hpp"
 #include "components/dds/Publication.hpp"
 #include "components/dds/PublisherConfig.hpp"
 #include "components/framework/DynamicPorts.hpp"
@@ -21,6 +22,8 @@ namespace insonify::dds {
  *  topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
  *  `world_frame`. With `tf_static` the frames of pings are told with the mount of the scene from which they come, to
  *  who comes later as well. The frequency of a ping is its sonar's, unless a topic names another.
+ *
+ *  With `parameter_services` the node has the properties of all tasks as parameters: see ParameterServer.hpp.
  *
  *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
  *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning
@@ -50,12 +53,13 @@ private:
     void cleanupHook() override;
     /** Where the frames of all pings sit. */
     ros::TFMessage mounts() const;
-    void announceMounts();
+    void announceMounts(const std::string& topic);
     void takeFrequencies();
 
     types::ThrottledWarning drops_{"message", "dropped"};
     std::optional<Node> node_;
     std::optional<Writer> tf_static_;
+    std::optional<ParameterServer> parameters_;
     uint64_t known_changes_ = 0;  ///< Of the tasks' records, when the frequencies were taken.
     framework::DynamicInputs<types::SampleTypes, Topics> inputs_{this};
 };

@@ -48,6 +48,13 @@ struct SubscriberConfig {
               self.depth);
         NodeConfig::describe(self.node, visit);
     }
+    /** With the names that topics and the node have in a deployment. @param task that reads */
+    SubscriberConfig namedBy(const types::RosNames& names, const std::string& task) const {
+        SubscriberConfig named = *this;
+        named.node.node_name = node.nameIn(names, task);
+        for (TopicIn& topic : named.topics) topic.topic = names.topic(topic.topic, named.node.node_name);
+        return named;
+    }
     void check(types::Diagnostics& diagnostics) const {
         node.check(diagnostics);
         if (topics.empty()) diagnostics.push_back({"topics", "is empty; must hold a topic"});

@@ -1,5 +1,6 @@
 #include "components/dds/SubscriberTask.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace insonify::dds {
@@ -22,11 +23,13 @@ bool SubscriberTask::configureHook() {
     drops_.reset();
     odd_.reset();
     outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // of a configure that failed
-    node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
-                  static_cast<size_t>(config->node.gid_size));
-    outputs_.forEach([this](auto& output) {
-        output.kept.subscription = std::make_unique<Subscription>(*node_, *config, *entryOf(output.port.name()), drops_, odd_,
-                                                                  [this] { arrived_.raise(); });
+    const SubscriberConfig named = config->namedBy(environment().names, name());
+    refuseWrong(named);
+    node_.emplace(domainId(named.node.domain), named.node.node_name, static_cast<size_t>(named.node.gid_size));
+    outputs_.forEach([&](auto& output) {
+        const auto entry = std::ranges::find(named.topics, output.port.name(), &TopicIn::port);
+        output.kept.subscription =
+            std::make_unique<Subscription>(*node_, named, *entry, drops_, odd_, [this] { arrived_.raise(); });
     });
     node_->announce();
     return true;

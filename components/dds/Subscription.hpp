@@ -14,8 +14,8 @@ namespace insonify::dds {
 /** The poses of one topic, those that can be used. */
 class Subscription {
 public:
-    /** `arrived` as in Reader. Messages that are dropped are counted in `drops`, poses whose quaternion is not near unit
-     *  length in `odd`; both outlive this. */
+    /** `arrived` as in Reader. Messages that are dropped are counted in `drops`, poses whose quaternion is not near
+     * unit length in `odd`; both outlive this. */
     Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, types::ThrottledWarning& drops,
                  types::ThrottledWarning& odd, std::function<void()> arrived);
 

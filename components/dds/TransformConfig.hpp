@@ -46,6 +46,8 @@ struct TransformConfig {
         visit(Field{"reliability", "", "of what moves; reliable hears no best-effort writers"}, self.reliability);
         NodeConfig::describe(self.node, visit);
     }
+    /** With the names that topics, frames and the node have in a deployment. @param task that reads */
+    TransformConfig namedBy(const types::RosNames& names, const std::string& task) const;
     void check(types::Diagnostics& diagnostics) const;
 };
 

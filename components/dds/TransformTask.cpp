@@ -7,14 +7,14 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int max_transforms_at_once = 1000;            ///< Messages of a topic in one cycle: then others have their turn.
-constexpr int depth = 1000;                  ///< Messages of all senders that wait to be taken.
-constexpr size_t largest = size_t{1} << 20;  ///< Of a message [B].
-constexpr types::Time chain_patience{2'000'000};   ///< With a chain that is not whole.
+constexpr int max_transforms_at_once = 1000;      ///< Messages of a topic in one cycle: then others have their turn.
+constexpr int depth = 1000;                       ///< Messages of all senders that wait to be taken.
+constexpr size_t largest = size_t{1} << 20;       ///< Of a message [B].
+constexpr types::Time chain_patience{2'000'000};  ///< With a chain that is not whole.
 constexpr types::Time static_period{100'000};
 
 std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, const Quality& quality,
-                                 std::function<void()> arrived) {
+                                        std::function<void()> arrived) {
     auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name, ros::TFMessage::type_hash,
                                          quality, std::move(arrived), largest);
     node.addReader(made->handle());
@@ -39,6 +39,14 @@ types::Pose poseOf(const ros::TransformTree::Placed& placed, const std::string& 
 }  // namespace
 
 TransformConfig::TransformConfig() = default;
+
+TransformConfig TransformConfig::namedBy(const types::RosNames& names, const std::string& task) const {
+    TransformConfig named = *this;
+    named.node.node_name = node.nameIn(names, task);
+    for (std::string* each : {&named.topic, &named.static_topic}) *each = names.topic(*each, named.node.node_name);
+    for (FrameOut& frame : named.frames) frame.frame_id = names.frame(frame.frame_id);
+    return named;
+}
 
 void TransformConfig::check(types::Diagnostics& diagnostics) const {
     node.check(diagnostics);
@@ -68,18 +76,21 @@ bool TransformTask::configureHook() {
     tree_ = {};
     moving_.reset();  // of a configure that failed
     fixed_.reset();
-    node_.emplace(domainId(config->node.domain), config->node.nameOr(name()),
-                  static_cast<size_t>(config->node.gid_size));
-    moving_ = transformReader(*node_, config->topic, {.reliability = config->reliability, .depth = depth},
-                       [this] { arrived_.raise(); });
-    fixed_ =
-        transformReader(*node_, config->static_topic, {.depth = depth, .transient_local = true}, [this] { arrived_.raise(); });
+    const TransformConfig named = config->namedBy(environment().names, name());
+    refuseWrong(named);
+    node_.emplace(domainId(named.node.domain), named.node.node_name, static_cast<size_t>(named.node.gid_size));
+    moving_ = transformReader(*node_, named.topic, {.reliability = config->reliability, .depth = depth},
+                              [this] { arrived_.raise(); });
+    fixed_ = transformReader(*node_, named.static_topic, {.depth = depth, .transient_local = true},
+                             [this] { arrived_.raise(); });
     node_->announce();
     return true;
 }
 
 bool TransformTask::startHook() {
-    outputs_.forEach([this](auto& output) { output.kept = {entryOf(output.port.name())->frame_id, {}, {}, 0, {}}; });
+    outputs_.forEach([this](auto& output) {
+        output.kept = {environment().names.frame(entryOf(output.port.name())->frame_id), {}, {}, 0, {}};
+    });
     return true;
 }
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 
+#include "components/deployer/RosArguments.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
@@ -136,7 +137,10 @@ int runCommandLine(int argc, char** argv) {
     addCompletionCommand(app, action);
     addManCommand(app, action);
 
-    const int code = guarded(app, action, argc, argv);
+    std::vector<std::string> words = withRosWords({argv, argv + argc});
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    const int code = guarded(app, action, static_cast<int>(words.size()), arguments.data());
     if (flushed()) return code;
     fmt::print(stderr, "insonify: the standard output cannot be written\n");
     return code == done ? failed : code;

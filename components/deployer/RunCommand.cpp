@@ -14,6 +14,7 @@
 #include "components/command/ProgressLine.hpp"
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/DeploymentFile.hpp"
+#include "components/deployer/RosArguments.hpp"
 #include "components/deployer/ShardRun.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Summary.hpp"
@@ -51,6 +52,12 @@ void RunOptions::addTo(CLI::App& command) {
     command.add_option("--seed", seed, "seeds every task with a hash of N and its name (0: as the file says)")
         ->type_name("N")
         ->check(refuseUnlessWhole);
+    command
+        .add_option("--ros-args", ros,
+                    "as of ROS 2, up to -- or the end: -r FROM:=TO, -r __ns:=/auv2, -r __node:=x, "
+                    "-p TASK.PROPERTY:=VALUE, --params-file FILE")
+        ->type_name("...")
+        ->allow_extra_args(false);
     command.add_option("--summary", summary, "writes the summary as JSON")->type_name("FILE");
     command.add_flag("--quiet", quiet, "no progress, no notices, no summary");
 }
@@ -58,6 +65,7 @@ void RunOptions::addTo(CLI::App& command) {
 framework::DeploymentSpec loadSpec(const RunOptions& options) {
     framework::DeploymentSpec spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
     for (const std::string& assignment : options.set) spec.set(assignment);
+    applyRosArguments(options.ros, spec);
     return spec;
 }
 

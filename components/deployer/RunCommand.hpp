@@ -18,6 +18,7 @@ struct RunOptions {
     std::string out;                 ///< Folder for what the run writes; empty: a fresh one.
     std::string summary;             ///< File for the summary in JSON; empty: none.
     std::vector<std::string> set;    ///< "task.property.path=value"
+    std::vector<std::string> ros;    ///< The words after `--ros-args`.
     std::vector<std::string> calls;  ///< "task.operation=argument,...", made in this order once all is configured.
     framework::RunLimits limits;
     std::optional<uint64_t> seed;  ///< None or 0: tasks keep the seeds of the file.
@@ -30,7 +31,7 @@ struct RunOptions {
     void addTo(CLI::App& command);
 };
 
-/** The deployment as written, with the `--set` laid over it. */
+/** The deployment as written, with `--set` and `--ros-args` laid over it, in this order. */
 framework::DeploymentSpec loadSpec(const RunOptions& options);
 
 /** Makes and runs a deployment as asked, tells how it went, and gives the exit code. Throws types::ConfigError, with

@@ -151,7 +151,7 @@ void ConfigReader::report(const YAML::Node& node, const std::string& path, const
         origin = {from.file, from.path + path.substr(covered.size()), from.mark};
     }
     if (node.IsDefined() && !node.Mark().is_null()) origin.mark = node.Mark();
-    if (origin.file.empty() || origin.file == set_origin || origin.mark.is_null())
+    if (origin.file.empty() || origin.isOption() || origin.mark.is_null())
         diagnostics_.push_back({origin.path, message, origin.file});
     else
         diagnostics_.push_back({origin.path, message, origin.file, origin.mark.line + 1, origin.mark.column + 1});

@@ -16,9 +16,11 @@ namespace insonify::framework {
 
 /** Where a value was written that is not from the file at hand. */
 struct Origin {
-    std::string file;                           ///< set_origin: nowhere, it was given with `--set`.
+    std::string file;                           ///< Or an option of the command line, set_origin for one.
     std::string path;                           ///< Its path there.
     YAML::Mark mark = YAML::Mark::null_mark();  ///< Its place there.
+
+    bool isOption() const { return file.starts_with("--"); }
 };
 using Origins = std::map<std::string, Origin>;  ///< By path; what lies below is from there as well.
 inline constexpr const char* set_origin = "--set";

@@ -98,6 +98,7 @@ void Deployment::makeEnvironment(std::filesystem::path output_folder, uint64_t s
     environment_->lockstep = spec_.lockstep;
     environment_->deployment_text = spec_.text;
     environment_->seed = seed;
+    environment_->names = spec_.names;
     environment_->warn = [this](const std::string& text) { warn(text); };
     environment_->deployment = this;
     // The executor's, once it is there.

@@ -107,11 +107,16 @@ struct ConnectionKeys {
     }
 };
 
+constexpr const char *wanted_namespace =
+                         "; must be words of letters, digits and _, none beginning with a digit, as auv1",
+                     *wanted_prefix = "; must be words of letters, digits and _ without a leading slash, as auv1";
+
 struct DocumentKeys {
     Schedule schedule = Schedule::Lockstep;
     double start_time = 1, watchdog = 10;
     uint64_t seed = 1;
     bool lock_memory = false;
+    std::string ros_namespace, frame_prefix;
     std::vector<std::string> libraries;
     YAML::Node tasks{YAML::NodeType::Undefined};
     YAML::Node connections{YAML::NodeType::Undefined};
@@ -123,11 +128,20 @@ struct DocumentKeys {
         visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
               self.watchdog);
         visit(Field{"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
+        visit(Field{"namespace", "", "of ROS 2 topics and nodes whose names have no leading slash, /auv1"},
+              self.ros_namespace);
+        visit(Field{"frame_prefix", "", "before ROS 2 frames but those of the world, auv1 for auv1/base_link"},
+              self.frame_prefix);
         visit(Field{"libraries", "", "shared objects with more task types"}, self.libraries);
         visit(Field{"tasks", "", "by name"}, self.tasks);
         visit(Field{"connections", "", "from, to, policy"}, self.connections);
     }
     void check(types::Diagnostics& diagnostics) const {
+        types::RosNames names;
+        if (!names.setNamespace(ros_namespace))
+            diagnostics.push_back({"namespace", "is " + ros_namespace + wanted_namespace});
+        if (!names.setFramePrefix(frame_prefix))
+            diagnostics.push_back({"frame_prefix", "is " + frame_prefix + wanted_prefix});
         if (!tasks.IsDefined() || tasks.size() == 0)
             diagnostics.push_back({"tasks", "is empty; a deployment needs a task"});
     }
@@ -233,6 +247,8 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     spec.watchdog = keys.watchdog;
     spec.lock_memory = keys.lock_memory;
     spec.libraries = keys.libraries;
+    spec.names.setNamespace(keys.ros_namespace);
+    spec.names.setFramePrefix(keys.frame_prefix);
     readTasks(reader, keys.tasks, spec);
     readConnections(reader, keys.connections, spec);
     spec.diagnostics = reader.diagnostics();
@@ -273,9 +289,9 @@ std::string DeploymentSpec::aliasOf(const std::string& path) const {
 }
 
 std::vector<std::string> DeploymentSpec::taskNames() const {
-    std::vector<std::string> names;
-    for (const TaskSpec& task : tasks) names.push_back(task.name);
-    return names;
+    std::vector<std::string> all;
+    for (const TaskSpec& task : tasks) all.push_back(task.name);
+    return all;
 }
 
 std::vector<std::string> DeploymentSpec::unused() const {
@@ -304,15 +320,40 @@ std::vector<std::string> DeploymentSpec::unused() const {
 }
 
 void DeploymentSpec::set(const std::string& assignment) {
-    const auto refuse = [&](const std::string& why) { diagnostics.push_back({assignment, why, "--set"}); };
     const size_t equals = assignment.find('=');
-    const auto [name, property] = splitPort(assignment.substr(0, equals));
-    if (equals == std::string::npos || property.empty()) return refuse("must be task.property=value");
-    TaskSpec* changed = task(name);
-    if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
+    const std::string property = assignment.substr(0, equals);
+    const Origin origin{set_origin, assignment};
+    const auto refuse = [&](const std::string& why) { diagnostics.push_back({assignment, why, set_origin}); };
+    if (equals == std::string::npos) return refuse("must be task.property=value");
     if (equals + 1 == assignment.size()) return refuse("has no value; null takes the property out");
     try {
-        PropertySources(*this).set(*changed, property, parseValue(assignment.substr(equals + 1)));
+        set(property, parseValue(assignment.substr(equals + 1)), origin);
+    } catch (const types::ConfigError& error) {
+        refuse(error.diagnostics().front().message);
+    }
+}
+
+void DeploymentSpec::set(const std::string& property, const YAML::Node& value, const Origin& origin) {
+    const auto refuse = [&](const std::string& why) {
+        types::Diagnostic diagnostic{origin.path, why, origin.file};
+        if (!origin.mark.is_null())
+            diagnostic = {origin.path, why, origin.file, origin.mark.line + 1, origin.mark.column + 1};
+        diagnostics.push_back(diagnostic);
+    };
+    const std::string written = value.IsScalar() ? value.Scalar() : "";
+    if (property == "namespace" || property == "frame_prefix") {
+        const bool is_namespace = property == "namespace";
+        if (!(value.IsNull() || value.IsScalar()) ||
+            !(is_namespace ? names.setNamespace(written) : names.setFramePrefix(written)))
+            refuse("is " + written + (is_namespace ? wanted_namespace : wanted_prefix));
+        return;
+    }
+    const auto [name, rest] = splitPort(property);
+    if (rest.empty()) return refuse("must be task.property=value");
+    TaskSpec* changed = task(name);
+    if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
+    try {
+        PropertySources(*this).set(*changed, rest, value, origin);
     } catch (const types::ConfigError& error) {
         refuse(error.diagnostics().front().message);
     }

@@ -9,6 +9,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/ConnPolicy.hpp"
+#include "types/RosNames.hpp"
 
 namespace insonify::framework {
 
@@ -61,6 +62,7 @@ struct DeploymentSpec {
     double watchdog = 10;                ///< In realtime, how long a cycle may take before it is reported [s].
     bool lock_memory = false;            ///< In realtime, all memory stays resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
+    types::RosNames names;               ///< What ROS 2 names become in it.
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
     Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
@@ -81,8 +83,11 @@ struct DeploymentSpec {
     /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
     /** `task.property.path=value`, the value in YAML: a layer over the file. Of a block only what it names is changed;
-     *  null takes a property out. Diagnostics go to `diagnostics`. */
+     *  null takes a property out. `namespace=auv1` and `frame_prefix=auv1` are those of the deployment. Diagnostics go
+     *  to `diagnostics`. */
     void set(const std::string& assignment);
+    /** The same for `task.property.path` and a value from elsewhere, whose file and place diagnostics name. */
+    void set(const std::string& property, const YAML::Node& value, const Origin& origin);
 };
 
 /** "camera.image" -> {"camera", "image"}: split at the first dot; the second is empty when there is none. */

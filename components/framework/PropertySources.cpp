@@ -206,7 +206,7 @@ YAML::Node PropertySources::set(const YAML::Node& base, const YAML::Node& over, 
     return merged;
 }
 
-void PropertySources::set(TaskSpec& task, const std::string& property, const YAML::Node& value) {
+void PropertySources::set(TaskSpec& task, const std::string& property, const YAML::Node& value, const Origin& from) {
     const auto replace = [&](TaskSpec& owner, const std::string& path, const YAML::Node& by, const Origin& origin) {
         owner.properties.reset(changedAt(owner.properties, path, [&](const YAML::Node& base) {
             return set(base, by, fullPath(owner, path), origin);
@@ -214,11 +214,13 @@ void PropertySources::set(TaskSpec& task, const std::string& property, const YAM
     };
     if (task.ignores(property))
         throw types::ConfigError("", "", "is one of the task's ignored_properties, which nothing takes");
-    const Origin origin{set_origin, fullPath(task, "")};
+    const bool has_place = from.file != set_origin;
+    const Origin origin{from.file, has_place ? "" : fullPath(task, ""), from.mark};
     const YAML::Node block = changedAt(YAML::Node(), property, [&](const YAML::Node&) { return value; });
     std::vector<Moved> moved;
     const YAML::Node rest = withoutAliases(task, block, "", origin, moved);
-    if (moved.empty()) return replace(task, property, value, {set_origin, fullPath(task, property)});
+    if (moved.empty())
+        return replace(task, property, value, has_place ? from : Origin{set_origin, fullPath(task, property)});
     for (const auto& entry : rest) lay(task, entry.first.Scalar(), entry.second, below(origin, entry.first));
     for (const Moved& one : moved) {
         const auto [owner, path] = splitPort(one.target);

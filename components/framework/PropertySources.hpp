@@ -19,8 +19,9 @@ public:
     /** Of the deployment and its property files. */
     void apply();
     /** Of `--set`, as a live setter has it: blocks are merged, all else takes the place of what is there, null takes it
-     *  out. */
-    void set(TaskSpec& task, const std::string& property, const YAML::Node& value);
+     *  out. @param from where the value stands; with `--set` it has no place but its path in the deployment */
+    void set(TaskSpec& task, const std::string& property, const YAML::Node& value,
+             const Origin& from = {set_origin, ""});
 
 private:
     /** A value that goes to another place than where it stands. */

@@ -14,6 +14,7 @@
 #include "types/ConfigError.hpp"
 #include "types/DeploymentControl.hpp"
 #include "types/Plan.hpp"
+#include "types/RosNames.hpp"
 #include "types/TaskRecord.hpp"
 #include "types/Time.hpp"
 
@@ -45,6 +46,7 @@ struct Environment {
     bool rehearsing = false;
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;                             ///< Of the run (`--seed`), 0 when not given.
+    types::RosNames names;                         ///< Namespace and frame prefix of the deployment.
     std::function<void(const std::string&)> warn;  ///< Tells the user at once; empty outside of a deployment.
     /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
      *  outside of a deployment. */

@@ -196,7 +196,7 @@ YAML::Node Wiring::withoutUnknown(const TaskContext& task, const TaskSpec& spec,
 void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed) {
     const std::string path = spec.path() + ".properties.seed";
     const auto origin = spec_.origins.find(path);
-    const bool is_set = origin != spec_.origins.end() && origin->second.file == set_origin;
+    const bool is_set = origin != spec_.origins.end() && origin->second.isOption();
     const YAML::Node written = child(spec.properties, "seed");
     if (written.IsDefined() && !written.IsNull() && (seed == 0 || is_set)) return;
     const uint64_t own = seedOf(seed != 0 ? seed : spec_.seed, task.name());

@@ -8,6 +8,7 @@
 #include "components/log/Reader.hpp"
 #include "components/log/Stream.hpp"
 #include "components/ros/Options.hpp"
+#include "types/RosNames.hpp"
 
 namespace insonify::log {
 
@@ -74,6 +75,7 @@ struct McapStream {
 struct McapConfig : ros::MessageOptions {
     bool transforms = true;
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
+    types::RosNames names;                      ///< Namespace and frame prefix of the deployment; no key.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -233,7 +233,10 @@ bool LoggerTask::configureHook() {
     checkInputs();
     const std::filesystem::path path = makePath(config->file);
     removeSequels(path);
-    log_ = log::createLog(path, config->mcap);
+    log::McapConfig mcap = config->mcap;
+    mcap.names = environment().names;
+    mcap.names.remaps.clear();  // a log is no node
+    log_ = log::createLog(path, mcap);
     rotation_.emplace(*config, *log_);
     frame_notices_.clear();
     if (path.extension() == ".mcap" && config->mcap.transforms) frame_notices_ = sharedFrames();

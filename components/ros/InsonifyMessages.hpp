@@ -15,6 +15,8 @@ namespace insonify::ros {
  */
 struct SonarTruth {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarTruth";
+    static constexpr const char* summary =
+        "What the bins of a ping show. Lists of numbers are beam-first: bin k of beam b is at b * bin_count + k.";
     static constexpr const char* type_hash = "RIHS01_82a4e12b239a23aa77bc5f78474dcd49c5fb906d7be1576282b6c1400131ecc5";
     Header header;
     int64_t bin_duration_us = 0;
@@ -44,7 +46,8 @@ struct SonarTruth {
         visit(Field{"share", "1", "of that object in the energy"}, self.share);
         visit(Field{"hits", "1", "samples"}, self.hits);
         visit(Field{"grazing", "rad"}, self.grazing);
-        visit(Field{"path", "1", "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall"}, self.path);
+        visit(Field{"path", "1", "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall"},
+              self.path);
         visit(Field{"shadow", "", "1: nothing heard though nearer than the last echo"}, self.shadow);
     }
 };
@@ -52,6 +55,8 @@ struct SonarTruth {
 /** Where the beams of a ping are met: a number for each beam; NaN: there is none. */
 struct SonarReturns {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarReturns";
+    static constexpr const char* summary =
+        "Where the beams of a ping meet something: a number for each beam, NaN where nothing is met.";
     static constexpr const char* type_hash = "RIHS01_886f7d15e37c56383d9cf3ff5d14971d9f7b1f4966719de81bed57380e1a6c41";
     Header header;
     std::vector<double> bearings;
@@ -80,6 +85,8 @@ struct SonarReturns {
  * sample_count + i]. */
 struct SonarElements {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarElements";
+    static constexpr const char* summary =
+        "Complex baseband of the elements of a straight array: sample i of element m is at m * sample_count + i.";
     static constexpr const char* type_hash = "RIHS01_4eccd6f1ed32d36fa56a2a55210b36158a616926e5e197ef069d433b385c33c7";
     Header header;
     double sound_speed = 0;
@@ -111,6 +118,8 @@ struct SonarElements {
 /** What a driver asks of a sonar. What is NaN, or 0 of a count, stays as it is. */
 struct SonarSettings {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarSettings";
+    static constexpr const char* summary =
+        "What a driver asks of a sonar. NaN, or 0 of a count, leaves a setting as it is.";
     static constexpr const char* type_hash = "RIHS01_9825b87f8b15ebda7ee51d90fbeca98dc442c3244fa4a81f841a6f71c4c44fb0";
     Header header;
     double range = 0;

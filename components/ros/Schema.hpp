@@ -43,6 +43,20 @@ std::string definitionOf() {
     return text;
 }
 
+/** The text of a `.msg` file: what the message is, and its fields with their units and meanings. */
+template <Message T>
+std::string fileOf() {
+    std::string text = "# " + std::string(T::summary) + "\n# Made by ros_messages from components/ros.\n";
+    T value{};
+    auto line = [&]<class F>(const types::Field& field, F&) {
+        const std::string name = field.unit, unit = name.empty() || name == "1" ? "" : "[" + name + "]";
+        const std::string note = unit + (!unit.empty() && *field.doc ? " " : "") + field.doc;
+        text += fieldType<F>() + " " + field.name + (note.empty() ? "" : "  # " + note) + "\n";
+    };
+    T::describe(value, line);
+    return text;
+}
+
 /** Definitions that others need, each once, in the order in which they are met. */
 class Definitions {
 public:

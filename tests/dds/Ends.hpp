@@ -23,7 +23,9 @@ inline TopicOut topicOut(const std::string& port, const std::string& topic, Mess
 /** A publisher with one port, which the test writes. */
 template <class Carried>
 struct Publishing {
-    Publishing(std::vector<TopicOut> topics, const std::function<void(PublisherConfig&)>& change = {}) {
+    Publishing(std::vector<TopicOut> topics, const std::function<void(PublisherConfig&)>& change = {},
+               const types::RosNames& names = {}) {
+        task.environment().names = names;
         PublisherConfig config;
         config.topics = std::move(topics);
         if (change) change(config);
@@ -45,7 +47,8 @@ struct Publishing {
 /** A subscriber with one port, which the test reads; works by itself once released. */
 struct Subscribing {
     explicit Subscribing(const std::string& topic, PoseType type = PoseType::Odometry,
-                         const std::function<void(SubscriberConfig&)>& change = {}) {
+                         const std::function<void(SubscriberConfig&)>& change = {}, const types::RosNames& names = {}) {
+        task.environment().names = names;
         SubscriberConfig config;
         config.topics.resize(1);
         config.topics[0].topic = topic;

@@ -300,3 +300,74 @@ TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
     config.check(diagnostics);
     EXPECT_EQ(diagnostics.size(), 5u) << textOf(diagnostics);
 }
+
+TEST_F(PublisherTaskTest, InANamespaceTopicsAndFramesAreThoseOfTheVehicle) {
+    types::RosNames names;
+    names.setNamespace("auv1");
+    names.setFramePrefix("auv1");
+    names.remaps = {{"publisher", "there", "/remapped"}, {"other", "sonar", "/never"}};
+    types::Pose pose;
+    pose.time = framework::wallClock();
+    {
+        Publishing<types::Pose> publishing({topicOut("in", "odometry", message_type<ros::Odometry>),
+                                            topicOut("in", "there", message_type<ros::PoseStamped>),
+                                            topicOut("in", "/tf", message_type<ros::TFMessage>)},
+                                           {}, names);
+        const auto send = [&] { publishing.send(pose); };
+        const auto odometry = heard<ros::Odometry>("/auv1/odometry", send);
+        EXPECT_EQ(odometry.header.frame_id, "map");
+        EXPECT_EQ(odometry.child_frame_id, "auv1/base_link");
+        EXPECT_EQ(heard<ros::PoseStamped>("/remapped", send).header.frame_id, "map");
+        const auto transforms = heard<ros::TFMessage>("/tf", send);
+        ASSERT_EQ(transforms.transforms.size(), 1u);
+        EXPECT_EQ(transforms.transforms[0].header.frame_id, "map");
+        EXPECT_EQ(transforms.transforms[0].child_frame_id, "auv1/base_link");
+        EXPECT_THAT(publishing.task.notices(), testing::IsEmpty()) << "/tf is shared";
+        pose.source_frame = "auv1/hull";  // of a sender that has the prefix already
+        EXPECT_EQ(heard<ros::Odometry>("/auv1/odometry", send).child_frame_id, "auv1/hull");
+    }
+    Publishing<types::SonarPtr> publishing(
+        {topicOut("in", "sonar", message_type<ros::ProjectedSonarImage>),
+         topicOut("in", "/scan", message_type<ros::LaserScan>)},
+        [](PublisherConfig& config) { config.frame_id = "fls"; }, names);
+    const auto send = [&] { publishing.send(pingOf(16, 50)); };
+    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/auv1/sonar", send).header.frame_id, "auv1/fls");
+    EXPECT_EQ(heard<ros::LaserScan>("/scan", send).header.frame_id, "auv1/fls");
+    EXPECT_THAT(publishing.task.notices(),
+                testing::Contains("not in the namespace /auv1, for the names begin with a slash: /scan"));
+}
+
+TEST_F(PublisherTaskTest, RemapsThatLeadToOneTopicAreRefused) {
+    types::RosNames names;
+    names.remaps = {{"", "/a", "/b"}};
+    PublisherTask task("publisher");
+    task.environment().names = names;
+    PublisherConfig config;
+    config.topics = {topicOut("in", "/a", message_type<ros::Clock>), topicOut("in", "/b", message_type<ros::Clock>)};
+    task.config.set(config);
+    EXPECT_FALSE(task.configure());
+    ASSERT_TRUE(task.configError());
+    EXPECT_THAT(textOf(task.configError()->diagnostics()), HasSubstr("topics[1].topic is /b a second time"));
+}
+
+TEST_F(PublisherTaskTest, TheMountIsToldBetweenFramesWithTheirPrefix) {
+    PublisherTask task("publisher");
+    Sonar sonar;
+    task.environment().names.setFramePrefix("auv1");
+    PublisherConfig config;
+    config.topics = {topicOut("in", "/scan", message_type<ros::LaserScan>)};
+    config.tf_static.emplace();
+    task.config.set(config);
+    sonar.ping.connectTo(*task.makeInput("in", sonar.ping), framework::ConnPolicy::buffer(8));
+    ASSERT_TRUE(task.configure());
+    const Quality latched{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};
+    Reader reader(node, "rt/tf_static", ros::TFMessage::type_name, "", latched, {});
+    Bytes bytes;
+    uint64_t sender = 0;
+    ASSERT_TRUE(comesTrue([&] { return reader.take(bytes, sender); }));
+    ros::TFMessage message;
+    ros::decode(std::span<const char>(bytes), message);
+    ASSERT_EQ(message.transforms.size(), 1u);
+    EXPECT_EQ(message.transforms[0].header.frame_id, "auv1/base_link");
+    EXPECT_EQ(message.transforms[0].child_frame_id, "auv1/sonar");
+}

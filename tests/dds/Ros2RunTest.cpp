@@ -1,9 +1,13 @@
 // deploy/ros2_fls.yml, deploy/ros2_tf.yml and what is wrong with others, as a user sees it.
 #include <gmock/gmock.h>
 
+#include <random>
+#include <set>
+
+#include "components/dds/DiscoveryMessages.hpp"
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/SonarMessages.hpp"
+#include "components/ros/Messages.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -20,6 +24,29 @@ protected:
     const std::string fls = test::sourceFile("deploy/ros2_fls.yml");
     const std::string tf = test::sourceFile("deploy/ros2_tf.yml");
 
+    /** The commands that a launch file would run, with its arguments: "one_vehicle.launch.py deployment:=x.yml". */
+    std::vector<std::vector<std::string>> launched(const std::string& words) {
+        const std::string script = test::sourceFile("tests/dds/launch_commands.py ") + folder.path().string() + " ";
+        const std::string answer =
+            pythonSays(script + test::sourceFile("ros2/insonify_bringup/launch/" + words), folder / "answer");
+        auto commands = json::parse(answer, nullptr, false);
+        EXPECT_FALSE(commands.is_discarded()) << answer;
+        if (commands.is_discarded()) return {};
+        return commands.get<std::vector<std::vector<std::string>>>();
+    }
+    /** The first message of a topic that comes. */
+    template <class Message>
+    Message heard(const std::string& topic) {
+        Node node(domainId({}), "listener", 16);
+        Reader reader(node, ddsTopic(topic), Message::type_name, "", {}, {});
+        Bytes bytes;
+        uint64_t sender = 0;
+        Message message;
+        const bool came = comesTrue([&] { return reader.take(bytes, sender); });
+        EXPECT_TRUE(came) << topic;
+        if (came) ros::decode(std::span<const char>(bytes), message);
+        return message;
+    }
     Outcome check(const std::string& yaml) {
         writeFile(folder / "x.yml", yaml);
         return callInsonify(folder, {"check", "x.yml"});
@@ -146,4 +173,192 @@ TEST_F(Ros2RunTest, ADomainThatCannotBeJoinedIsOneError) {
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("cannot be joined"));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+}
+
+TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveTopicsAndFramesOfTheirOwn) {
+    const auto commands = launched("two_vehicles.launch.py auv1:=" + fls);
+    ASSERT_EQ(commands.size(), 2u);
+    std::vector<TestFolder> folders(4);
+    std::vector<Process> running;
+    for (size_t i = 0; i < 2; ++i) {
+        const std::string name = "/auv" + std::to_string(i + 1);
+        writeFile(folders[2 * i] / "vehicle.yml", vehicle);
+        running.emplace_back(insonifyWords({"run", "vehicle.yml", "--out", "out", "--ros-args", "-r",
+                                            "/auv/odometry:=" + name + "/odometry"}),
+                             folders[2 * i].path());
+        std::vector<std::string> words(commands[i].begin() + 1, commands[i].end());
+        ASSERT_EQ(commands[i][0], "insonify");
+        words.insert(words.begin() + 1, {"--set", patience});
+        running.emplace_back(insonifyWords(words), folders[2 * i + 1].path());
+    }
+    for (const std::string name : {"auv1", "auv2"}) {
+        EXPECT_EQ(heard<ros::ProjectedSonarImage>("/" + name + "/sonar").header.frame_id, name + "/sonar_z_forward");
+        EXPECT_EQ(heard<ros::LaserScan>("/" + name + "/sonar/scan").header.frame_id, name + "/sonar");
+    }
+    heard<ros::Clock>("/clock");
+    heard<ros::Clock>("/auv2/clock");
+    for (const Process& process : running) process.signal(SIGINT);
+    for (const Process& process : running) {
+        const Outcome outcome = process.wait();
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+    }
+}
+
+TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
+    writeFile(folder / "record.yml",
+              "tasks:\n"
+              "  poses: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {file: " +
+                  test::sourceFile("deploy/scenes/harbour_pass.csv") +
+                  "}}\n"
+                  "  scene: {type: scene::SceneTask, properties: {file: " +
+                  test::sourceFile("deploy/scenes/harbour.glb") +
+                  "}}\n"
+                  "  receiver: {type: sonar::SonarTask, properties: {range: 20, beam_count: 16, bin_count: 50, "
+                  "quality: {rows: 16}}}\n"
+                  "  log: {type: logger::LoggerTask, properties: {file: x.0.log}}\n"
+                  "connections:\n"
+                  "  - {from: poses.pose, to: scene.pose}\n"
+                  "  - {from: scene.snapshot, to: receiver.snapshot}\n"
+                  "  - {from: poses.pose, to: log.pose, policy: {type: buffer, size: 8}}\n"
+                  "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 8}}\n");
+    const Outcome recorded = callInsonify(folder, {"run", "record.yml", "--out", "out", "--pings", "100"});
+    ASSERT_EQ(recorded.code, 0) << recorded.err;
+    auto commands = launched("replay.launch.py log:=out/x.0.log deployment:=" + fls + " namespace:=auv3");
+    ASSERT_EQ(commands.size(), 1u);
+    commands[0].erase(commands[0].begin());
+    const Process replay(insonifyWords(commands[0]), folder.path());
+    const auto image = heard<ros::ProjectedSonarImage>("/auv3/sonar");
+    EXPECT_EQ(image.image.beam_count, 16u);
+    replay.signal(SIGINT);
+    const Outcome outcome = replay.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST_F(Ros2RunTest, NodesHaveTheNamesThatTheArgumentsGive) {
+    const Process sonar(insonifyWords({"run", fls, "--out", "out", "--ros-args", "-r", "__ns:=/auv7", "-r", "__node:=x",
+                                       "-r", "odometry:=/pose"}),
+                        folder.path());
+    using Info = ParticipantEntitiesInfo<16>;
+    Node node(domainId({}), "listener", 16);
+    Reader reader(node, "ros_discovery_info", Info::type_name, "",
+                  {.reliability = Reliability::Reliable, .depth = 100, .transient_local = true}, {});
+    std::set<std::string> names;
+    Bytes bytes;
+    uint64_t sender = 0;
+    EXPECT_TRUE(comesTrue([&] {
+        Info info;
+        while (reader.take(bytes, sender)) {
+            ros::decode(std::span<const char>(bytes), info);
+            for (const auto& each : info.node_entities_info_seq)
+                names.insert(each.node_namespace + "/" + each.node_name);
+        }
+        return names.contains("/auv7/x") && names.contains("/auv7/x_poses");
+    })) << testing::PrintToString(names);
+    EXPECT_TRUE(says(folder, "/pose")) << "it waits for poses there";
+    sonar.signal(SIGINT);
+    EXPECT_EQ(sonar.wait().code, 0);
+}
+
+TEST_F(Ros2RunTest, FilesOfParametersHoldForTheNodesThatTheyName) {
+    const auto told = [&](const std::string& node) {
+        writeFile(folder / "p.yaml", node + ":\n  ros__parameters: {sonar: {range: -1}}\n");
+        const Outcome outcome = callInsonify(folder, {"run", fls, "--ros-args", "--params-file", "p.yaml"});
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+        return outcome.err;
+    };
+    for (const char* fits : {"/**", "/auv/insonify", "/auv/insonify_poses", "/auv/*", "/auv/**", "/*/insonify",
+                             "/**/insonify", "auv/insonify"})
+        EXPECT_THAT(told(fits), HasSubstr("p.yaml:2:36: sonar.range: is -1 m")) << fits;
+    for (const char* other : {"/*", "/insonify", "insonify", "/auv2/*", "/auv/insonify/x", "/auv/insonif", "/*/*/*"})
+        EXPECT_THAT(told(other), HasSubstr("p.yaml: is of no node of the deployment, but of " + std::string(other) +
+                                           "; nodes: /auv/insonify_poses, /auv/insonify; /** fits all"));
+    writeFile(folder / "p.yaml", "/auv:\n  insonify:\n    ros__parameters: {sonar: {range: -1}}\n");
+    EXPECT_THAT(callInsonify(folder, {"run", fls, "--ros-args", "--params-file", "p.yaml"}).err,
+                HasSubstr("p.yaml:3:38: sonar.range: is -1 m"));
+    for (const auto& [words, message] :
+         {std::pair("-p insonify:sonar.range:=-1", "-p sonar.range: is -1 m"),
+          std::pair("-p other:sonar.range:=-1", "there is no node other; nodes: /auv/insonify_poses, /auv/insonify"),
+          std::pair("-r other:__node:=x", "there is no such node; nodes: /auv/insonify_poses, /auv/insonify")}) {
+        const std::string both = words;
+        const size_t space = both.find(' ');
+        const Outcome outcome =
+            callInsonify(folder, {"run", fls, "--ros-args", both.substr(0, space), both.substr(space + 1)});
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_THAT(outcome.err, HasSubstr(message));
+    }
+}
+
+TEST_F(Ros2RunTest, ParametersAndRvizOfTheBringupFitTheExample) {
+    const auto commands = launched("one_vehicle.launch.py rviz:=true deployment:=" + fls);
+    ASSERT_EQ(commands.size(), 2u);
+    std::vector<std::string> words(commands[0].begin() + 1, commands[0].end());
+    words.insert(words.begin() + 1, {"--out", "out", "--duration", "0.1"});
+    const Outcome outcome = callInsonify(folder, words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string rviz = readFile(test::sourceFile("ros2/insonify_bringup/config/insonify.rviz"));
+    const std::string deployment = readFile(fls);
+    EXPECT_THAT(deployment, HasSubstr("namespace: auv "));
+    for (const char* topic : {"odometry", "sonar/scan", "sonar/image"}) {
+        EXPECT_THAT(rviz, HasSubstr("Value: /auv/" + std::string(topic) + ","));
+        EXPECT_THAT(deployment, HasSubstr("topic: " + std::string(topic) + ","));
+        EXPECT_THAT(commands[1], testing::Contains("/auv/" + std::string(topic) + ":=" + topic));
+    }
+}
+
+TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
+    if (!Peer::available())
+        GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
+    writeFile(
+        folder / "x.yml",
+        "schedule: realtime\nnamespace: auv\ntasks:\n"
+        "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {file: " +
+            test::sourceFile("deploy/scenes/harbour_pass.csv") + "}}\n" +
+            "  scene: {type: scene::SceneTask, properties: {pose_timeout: 60, file: " +
+            test::sourceFile("deploy/scenes/harbour.glb") + "}}\n" +
+            "  sonar: {type: sonar::SonarTask, properties: {range: 20, beam_count: 16, bin_count: 50, "
+            "quality: {rows: 16}}}\n"
+            "  ros: {type: dds::PublisherTask, properties: {parameter_services: true, topics: [{port: ping, topic: "
+            "sonar, type: sensor_msgs/PointCloud2}]}}\n"
+            "connections:\n"
+            "  - {from: vehicle.pose, to: scene.pose}\n"
+            "  - {from: scene.snapshot, to: sonar.snapshot}\n"
+            "  - {from: sonar.ping, to: ros.ping}\n");
+    const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
+    {  // what is no request gets no answer, and ends nothing
+        Node node(domainId({}), "stranger", 16);
+        Writer writer(node, "rq/auv/ros/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", "", {});
+        EXPECT_TRUE(comesTrue([&] { return writer.hasReaders(); }));
+        std::mt19937 random(1);
+        for (size_t size = 4; size < 200; ++size) {
+            Bytes bytes{0, 1, 0, 0};
+            while (bytes.size() < size) bytes.push_back(static_cast<char>(random() % 4 == 0 ? random() % 256 : 0));
+            writer.write(bytes);
+        }
+    }
+    Peer peer("parameters /auv/ros sonar.range 15");
+    const json found = peer.result();
+    run.signal(SIGINT);
+    const Outcome outcome = run.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_FALSE(found.is_null());
+    EXPECT_EQ(found["list"][1], json({"sonar"}));
+    for (const std::string name : found["list"][0]) EXPECT_TRUE(name.starts_with("sonar.")) << name;
+    EXPECT_THAT(found["list"][0].get<std::vector<std::string>>(),
+                testing::IsSupersetOf({"sonar.range", "sonar.quality"}));
+    EXPECT_EQ(found["types"][0], json({3}));
+    const json& range = found["descriptors"][0][0];
+    EXPECT_EQ(range["name"], "sonar.range");
+    EXPECT_EQ(range["type"], 3);
+    EXPECT_THAT(range["description"].get<std::string>(), HasSubstr("[m]"));
+    EXPECT_FALSE(range["read_only"]);
+    EXPECT_LT(range["floating_point_range"][0]["from_value"], range["floating_point_range"][0]["to_value"]);
+    EXPECT_EQ(found["descriptors"][0][1]["type"], 0);
+    EXPECT_EQ(found["before"][0][0]["double_value"], 20);
+    EXPECT_EQ(found["before"][0][1]["type"], 0);
+    EXPECT_EQ(found["results"][0][0], json({{"successful", true}, {"reason", ""}}));
+    EXPECT_THAT(found["results"][0][1]["reason"].get<std::string>(), HasSubstr("must be a finite number"));
+    EXPECT_EQ(found["results"][0][2],
+              json({{"successful", false}, {"reason", "nobody.at_home: is no property of a task"}}));
+    EXPECT_EQ(found["after"][0][0]["double_value"], 15);
 }

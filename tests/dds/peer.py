@@ -4,6 +4,7 @@
     peer.py node SECONDS WRITERS                nodes, and writers with their types and hashes, once a node has so many
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
     peer.py transforms SPEED [ODOM]             sends where base_link is, forever: see there; ODOM 0 leaves a link out
+    peer.py parameters NODE NAME VALUE          asks the services of a node's parameters, sets one [a double]
     peer.py odometry TOPIC COUNT HERTZ [FLAW]  sends poses along x; FLAW nan, back, zero or bytes spoils every second
 
 Who listens says `met` at the first image without a stamp, and does not count those. With --greet, who sends sends such an
@@ -16,13 +17,14 @@ import signal
 import struct
 import sys
 import time
+import types
 
 import messages
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import array, uint8
+from cyclonedds.idl.types import array, int64, sequence, uint8, uint64
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -208,7 +210,55 @@ def transforms(speed, odom=1):
         time.sleep(0.02)
 
 
+def struct_of(typename, fields):
+    body = {"__annotations__": dict(fields)}
+    return dataclasses.dataclass(types.new_class("Struct", (IdlStruct,), {"typename": typename}, lambda space: space.update(body)))
+
+
+def ask(participant, node, service, kind, request, response, *words):
+    """Calls a service as rmw_cyclonedds_cpp does: who asks and a number come first, and come back so."""
+    who_asks = [("who", uint64), ("number", int64)]
+    asked = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Request_", who_asks + request)
+    said = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Response_", who_asks + response)
+    topics = [Topic(participant, f"rq{node}/{service}Request", asked), Topic(participant, f"rr{node}/{service}Reply", said)]
+    writer, reader = DataWriter(participant, topics[0], qos=DEEP), DataReader(participant, topics[1], qos=DEEP)
+    while not writer.get_matched_subscriptions() or not reader.get_matched_publications():
+        time.sleep(0.01)
+    who, number = 0x0123456789ABCDEF, 40 + len(service)
+    time.sleep(0.2)  # it has to know our reader as well
+    writer.write(asked(who, number, *words))
+    while True:
+        for answer in reader.take(N=10):
+            if isinstance(answer, said) and (answer.who, answer.number) == (who, number):
+                return [plain(getattr(answer, field.name)) for field in dataclasses.fields(answer)[2:]]
+        time.sleep(0.01)
+
+
+def parameters(node, name, value):
+    participant = DomainParticipant(DOMAIN)
+    ready()
+    texts, one = sequence[str], messages.ParameterValue
+    task = name.split(".")[0]
+    get = lambda: ask(participant, node, "get_parameters", "GetParameters", [("names", texts)], [("values", sequence[one])],
+                      [name, "nobody.at_home"])
+    found = {"list": ask(participant, node, "list_parameters", "ListParameters", [("prefixes", texts), ("depth", uint64)],
+                         [("names", texts), ("tasks", texts)], [task], 0)}
+    found["types"] = ask(participant, node, "get_parameter_types", "GetParameterTypes", [("names", texts)],
+                         [("types", sequence[uint8])], [name])
+    found["descriptors"] = ask(participant, node, "describe_parameters", "DescribeParameters", [("names", texts)],
+                               [("descriptors", sequence[messages.ParameterDescriptor])], [name, "nobody.at_home"])
+    found["before"] = get()
+    wanted = [messages.Parameter(name, one(type=3, double_value=float(value))),
+              messages.Parameter(name, one(type=4, string_value="far")),
+              messages.Parameter("nobody.at_home", one(type=1))]
+    found["results"] = ask(participant, node, "set_parameters", "SetParameters", [("all", sequence[messages.Parameter])],
+                           [("results", sequence[messages.SetParametersResult])], wanted)
+    found["after"] = get()
+    return found
+
+
 if __name__ == "__main__":
     DOMAIN = int(__import__("os").environ.get("ROS_DOMAIN_ID", "0"))
     work, *words = (word for word in sys.argv[1:] if word != "--greet")
-    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry, "transforms": transforms}[work](*words)))
+    print(json.dumps({"listen": listen, "node": node, "image": image, "odometry": odometry,
+                      "transforms": transforms, "parameters": parameters}[work](*words)))

@@ -22,7 +22,7 @@ const std::string reference = "components/sonar/ACOUSTICS.md";
 /** The files of the project, those of the user's top level among them, with one of the extensions. */
 std::vector<Source> projectFiles(const std::vector<std::string>& extensions) {
     std::vector<Source> all;
-    for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts"})
+    for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts", "ros2"})
         for (Source& source : sourcesIn(folder, extensions)) all.push_back(std::move(source));
     for (const auto& entry : fs::directory_iterator(insonify::test::source_dir))
         if (std::ranges::count(extensions, entry.path().extension().string())) all.push_back(readSource(entry.path()));

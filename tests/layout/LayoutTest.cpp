@@ -51,6 +51,7 @@ TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
                                             "deploy",
                                             "tests",
                                             "scripts",
+                                            "ros2",
                                             ".ci",
                                             ".git",
                                             ".clang-format",

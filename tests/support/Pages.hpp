@@ -128,7 +128,7 @@ inline std::vector<Page> allPages() {
         if (file.extension() == ".md") paths.insert(fs::relative(file, root).generic_string());
     };
     for (const auto& entry : fs::directory_iterator(root)) add(entry.path());
-    for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts"})
+    for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts", "ros2"})
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) add(entry.path());
     std::vector<Page> pages;
     for (const std::string& path : paths) pages.push_back(readPage(path));

@@ -61,7 +61,7 @@ std::string rooted(const std::string& topic) { return "/" + topic.substr(topic.s
 std::set<std::string> topicsOf(const McapConfig& config) {
     std::set<std::string> topics;
     for (const auto& [name, stream] : config.streams)
-        if (stream.topic) topics.insert(rooted(*stream.topic));
+        if (stream.topic) topics.insert(rooted(config.names.topic(*stream.topic)));
     return topics;
 }
 
@@ -78,8 +78,8 @@ bool isTopic(std::string_view name) {
 
 std::string SampleWriter::topicOf(const std::string& stream) const {
     const auto given = config_.streams.find(stream);
-    if (given == config_.streams.end() || !given->second.topic) return usualTopic(stream);
-    return rooted(*given->second.topic);
+    if (given == config_.streams.end() || !given->second.topic) return config_.names.ros_namespace + usualTopic(stream);
+    return rooted(config_.names.topic(*given->second.topic));
 }
 
 SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const Metadata& metadata) const {
@@ -88,11 +88,12 @@ SampleWriter::Options SampleWriter::optionsOf(const std::string& stream, const M
     if (options.frequency_khz == 0 && frequency != metadata.end())
         std::from_chars(frequency->second.data(), frequency->second.data() + frequency->second.size(),
                         options.frequency_khz);
-    const auto given = config_.streams.find(stream);
-    if (given == config_.streams.end()) return options;
-    if (given->second.frame_id) options.frame_id = *given->second.frame_id;
-    options.world_frame_id = given->second.frame_id;
-    options.child_frame_id = given->second.child_frame_id;
+    if (const auto given = config_.streams.find(stream); given != config_.streams.end()) {
+        if (given->second.frame_id) options.frame_id = *given->second.frame_id;
+        options.world_frame_id = given->second.frame_id;
+        options.child_frame_id = given->second.child_frame_id;
+    }
+    options.frame_id = config_.names.frame(options.frame_id);
     return options;
 }
 
@@ -180,8 +181,10 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
         constexpr bool of_the_world = std::is_same_v<T, types::Pose> || std::is_same_v<T, types::PointCloud>;
         if constexpr (of_the_world && requires { message.header; })
             if (options.world_frame_id) message.header.frame_id = *options.world_frame_id;
-        if constexpr (requires { message.child_frame_id; })
+        if constexpr (requires { message.child_frame_id; }) {
             if (options.child_frame_id) message.child_frame_id = *options.child_frame_id;
+            if (!message.child_frame_id.empty()) message.child_frame_id = config_.names.frame(message.child_frame_id);
+        }
         ros::encode(message, bytes_);
         time = sampleTime(*held, time);
     };

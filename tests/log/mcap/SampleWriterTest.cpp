@@ -104,6 +104,32 @@ TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
     EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
 }
 
+TEST(SampleWriterTest, ANamespaceAndAFramePrefixHoldForTopicsAndFrames) {
+    const Folder folder;
+    McapConfig config;
+    config.names.setNamespace("auv1");
+    config.names.setFramePrefix("auv1");
+    config.streams = {{"a.ping", {"near", "link", {}}}, {"b.ping", {"/far", {}, {}}}, {"b.pose", {{}, "odom", {}}}};
+    {
+        SampleWriter log(folder / "x.mcap", config);
+        for (const char* stream : {"a.ping", "b.ping"})
+            log.write(log.addStream<types::Sonar>(stream), {2}, smallPing(1));
+        for (const char* stream : {"a.pose", "b.pose"})
+            log.write(log.addStream<types::Pose>(stream), {2}, smallPose(1));
+    }
+    const Reader raw(folder / "x.mcap");
+    EXPECT_EQ(raw.channel(0).topic, "/auv1/near");
+    EXPECT_EQ(raw.channel(1).topic, "/far");
+    EXPECT_EQ(raw.channel(2).topic, "/auv1/a/pose");
+    const auto log = openLog(folder / "x.mcap");
+    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "a.ping").at(0).header.frame_id, "auv1/link");
+    EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "b.ping").at(0).header.frame_id, "auv1/sonar");
+    const auto pose = messagesOf<ros::Odometry>(*log, "a.pose").at(0);
+    EXPECT_EQ(pose.header.frame_id, "world");
+    EXPECT_EQ(pose.child_frame_id, "auv1/body");
+    EXPECT_EQ(messagesOf<ros::Odometry>(*log, "b.pose").at(0).header.frame_id, "odom");
+}
+
 TEST(SampleWriterTest, AFrequencyIsReadWhateverNumbersTheHostHas) {
     const test::CommaLocale german;
     if (!german.isThere()) GTEST_SKIP() << german.why();

@@ -1,0 +1,6 @@
+cmake_minimum_required(VERSION 3.16)
+project(rosidl_peer CXX)
+set(CMAKE_CXX_STANDARD 20)
+find_package(insonify_msgs REQUIRED)
+add_executable(rosidl_peer ${SOURCE})
+target_link_libraries(rosidl_peer ${insonify_msgs_TARGETS})
