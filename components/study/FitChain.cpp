@@ -117,6 +117,23 @@ types::Sonar meanEchoes(const FitChain& chain) {
     return stacked(lines, chain.side);
 }
 
+std::optional<double> floorBelow(const FitChain& chain) {
+    FitChain down = chain;
+    sonar::SonarConfig& sonar = down.sonar;
+    sonar.range *= 20;
+    sonar.bin_count = 2000;
+    sonar.bearings_deg = {0};
+    sonar.beam_count = 1;
+    sonar.beam_width_deg = sonar.beam_height_deg = 4;
+    sonar.beam_pattern.reset();
+    sonar.volume = {};
+    down.snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+    const types::Sonar ping = meanEchoes(down);
+    const auto echo = std::ranges::find_if(ping.bins, [](float bin) { return bin > 0; });
+    if (echo == ping.bins.end()) return std::nullopt;
+    return sonar.range * static_cast<double>(echo - ping.bins.begin()) / sonar.bin_count;
+}
+
 std::vector<CodedPing> simulatedPings(const FitChain& chain, size_t count) {
     sonar::SonarRenderer renderer(chain.sonar, chain.snapshot.geometry);
     noise::Noise noise(chain.noise);

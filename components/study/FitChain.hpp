@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "components/noise/NoiseConfig.hpp"
@@ -35,6 +36,9 @@ void takeShape(const CodedPing& recorded, FitChain& chain);
 /** Mean intensities of echoes over all speckle, without noise and absorption, relative to the source [1]. Of a
  * side-scan the beams are some of its lines. */
 types::Sonar meanEchoes(const FitChain& chain);
+
+/** Distance from the chain's sonar to its scene straight down, by a narrow beam [m]; none within 20 times its range. */
+std::optional<double> floorBelow(const FitChain& chain);
 
 /** Pings of the chain as an instrument gives them out, speckle and noise included: one from each of `count` places
  *  side by side, so far apart that they share no speckle; of a side-scan one of all lines. */

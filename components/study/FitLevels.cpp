@@ -222,6 +222,7 @@ public:
         return sum;
     }
     double range() const { return range_; }
+    const FitChain& chain() const { return chain_; }
 
 private:
     std::vector<double> overBeams(const LevelBlocks& blocks) const {
@@ -260,17 +261,29 @@ Values fitInner(const LevelModel& model, Values values, int evaluations, int rou
     return whole(values.data());
 }
 
+/** Places of the sonar over its scene from which the fit of the scene may begin: pitch [deg] and height [m], both
+ *  relative to the chain's. */
+std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double range) {
+    std::vector<std::array<double, 2>> all{{0, 0}};
+    const std::optional<double> floor = floorBelow(chain);
+    if (!floor || chain.isSideScan()) return all;
+    const glm::dvec3 axis = chain.snapshot.sonar.orientation * glm::dvec3(1, 0, 0);
+    const double down = types::degrees(std::asin(std::clamp(-axis.z, -1.0, 1.0)));
+    for (const double share : {0.15, 0.3, 0.5})
+        for (const double depression : {15.0, 30.0, 50.0}) all.push_back({depression - down, share * range - *floor});
+    return all;
+}
+
 /** The best pitch, height and beam in elevation, each with the best level parameters. */
 Values fitScene(LevelModel& model, Values values, const std::function<void()>& progress) {
     values.resize(all_parameters);
     values[elevation] = std::log(elevation_before);
     Values best = values;
     double least = std::numeric_limits<double>::infinity();
-    const auto cost = [&](const double* x) {
-        Values tried = best;
-        std::copy(x, x + 3, tried.begin() + pitch);
+    const auto costAt = [&](Values tried, bool anew) {
         if (std::abs(tried[elevation] - std::log(elevation_before)) > 2.5 || std::abs(tried[pitch]) > 60) return 1e9;
         model.look(tried);
+        if (anew) std::ranges::copy(model.start(), tried.begin());
         tried = fitInner(model, tried, 150, 1);
         progress();
         const double found = model.cost(tried);
@@ -279,6 +292,13 @@ Values fitScene(LevelModel& model, Values values, const std::function<void()>& p
             best = tried;
         }
         return found;
+    };
+    for (const auto& [turn, rise] : beginnings(model.chain(), model.range()))
+        costAt({0, 0, 0, 0, 0, turn, rise, std::log(elevation_before)}, true);
+    const auto cost = [&](const double* x) {
+        Values tried = best;
+        for (size_t i = 0; i < 3; ++i) tried[pitch + i] = x[i];
+        return costAt(tried, false);
     };
     minimum({best[pitch], best[height], best[elevation]}, {8, -0.1 * model.range(), 0.4}, 60, 2, cost);
     model.look(best);
