@@ -15,7 +15,8 @@
 namespace insonify::study {
 namespace {
 
-/** Sideways, from ping to ping [m]: far beyond the length of an aperture. */
+/** From ping to ping, and from line to line where the recording has no places [m]: far beyond the length of an
+ * aperture. */
 constexpr double sideways = 0.37;
 
 /** Median distance of neighbouring beams [deg]. */
@@ -63,7 +64,8 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
     const auto known = std::ranges::find_if(recorded.places, [](const LinePlace& place) { return place.altitude > 0; });
     double altitude = known == recorded.places.end() ? height : known->altitude;
     for (size_t i = 0; i < recorded.beam_count; ++i) {
-        const LinePlace place = i < recorded.places.size() ? recorded.places[i] : LinePlace{};
+        const LinePlace place =
+            i < recorded.places.size() ? recorded.places[i] : LinePlace{.along = sideways * static_cast<double>(i)};
         if (place.altitude > 0) altitude = place.altitude;
         types::Pose& line = chain.lines.emplace_back(at);
         line.position += ahead * place.along;
@@ -135,7 +137,9 @@ std::optional<double> floorBelow(const FitChain& chain) {
 }
 
 std::vector<CodedPing> simulatedPings(const FitChain& chain, size_t count) {
-    sonar::SonarRenderer renderer(chain.sonar, chain.snapshot.geometry);
+    sonar::SonarConfig config = chain.sonar;
+    if (chain.isSideScan()) config.quality.columns_per_beam = 256, config.quality.rows = 4;
+    sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
     noise::Noise noise(chain.noise);
     receiver::Receiver receiver(chain.receiver);
     types::Sonar clean, noisy, received;

@@ -22,6 +22,8 @@ void refuseUnusable(const std::vector<CodedPing>& recorded) {
     if (first.beam_count < fewest_beams || first.bin_count < fewest_bins)
         refuse(fmt::format("has pings of {} beams and {} bins; a fit needs {} and {} at least", first.beam_count,
                            first.bin_count, fewest_beams, fewest_bins));
+    if (first.bits != 8 && first.bits != 16)
+        refuse(fmt::format("has codes of {} bits; the receiver of a deployment gives out 8 or 16", first.bits));
     size_t clipped = 0, zero = 0, all = 0;
     for (const CodedPing& ping : recorded) {
         if (ping.beam_count != first.beam_count || ping.bin_count != first.bin_count)
@@ -48,7 +50,10 @@ void prepare(const CodedPing& recorded, FitChain& chain) {
     chain.noise.additive.reset();
     chain.noise.filter.reset();
     if (!sonar.pulse) sonar.pulse.emplace().bandwidth_khz = sonar.speedOfSound() / (2 * recorded.resolution) * 1e-3;
-    if (chain.isSideScan()) return;
+    if (chain.isSideScan()) {
+        sonar.pulse->window = acoustics::PulseWindow::Hann;  // a sinc reaches over all bins
+        return;
+    }
     auto& azimuth =
         sonar.beam_pattern ? sonar.beam_pattern->receive.azimuth : sonar.beam_pattern.emplace().receive.azimuth;
     if (!azimuth) azimuth.emplace().weighting = acoustics::Weighting::Taylor;
