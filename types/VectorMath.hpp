@@ -4,8 +4,10 @@
 #include <cstdint>
 
 // A function in versions for processors with vectors of 512, 256 and 128 bits, of which the best is taken. Without
-// contraction (-ffp-contract=off) all give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+// contraction (-ffp-contract=off) all give the same bits. Not with sanitizers, whose code would run before they are
+// ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define INSONIFY_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #else
 #define INSONIFY_VECTOR_CLONES
