@@ -256,8 +256,8 @@ void ParameterServer::work() {
                     service->answer(bytes, reply);
                     reply.insert(reply.begin() + encapsulation, who.begin(), who.end());
                     service->replies.write(reply);
-                } catch (const ros::CdrError&) {
-                    continue;  // no request of this dialect
+                } catch (const std::exception&) {
+                    continue;  // no request of this dialect, or one that cannot be answered: who asked waits in vain
                 }
     }
 }

@@ -11,7 +11,7 @@ void McapConfig::check(types::Diagnostics& diagnostics) const {
         if (!stream.topic) continue;
         const std::string topic = "/" + stream.topic->substr(stream.topic->starts_with('/'));
         const std::string path = "streams." + name + ".topic";
-        if (!mcap::isTopic(topic))
+        if (!types::isRosName(topic))
             diagnostics.push_back({path, "is \"" + *stream.topic + "\"; must be words of letters, digits and _, none " +
                                              "beginning with a digit, as /auv/sonar"});
         else if (const auto [other, is_new] = streams_by_topic.emplace(topic, name); !is_new)

@@ -33,11 +33,6 @@ uint64_t exactNanoseconds(types::Time time) try {
     return static_cast<uint64_t>(time.microseconds) * 1000;
 }
 
-bool isWord(std::string_view word) {
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
-    return !word.empty() && !std::isdigit(static_cast<unsigned char>(word[0])) && std::ranges::all_of(word, fits);
-}
-
 uint64_t nanoseconds(types::Time time) { return static_cast<uint64_t>(std::max<int64_t>(time.microseconds, 0)) * 1000; }
 
 /** Adds what a stream has otherwise than the record that all share; an empty text stands for what it has not. The
@@ -66,15 +61,6 @@ std::set<std::string> topicsOf(const McapConfig& config) {
 }
 
 }  // namespace
-
-bool isTopic(std::string_view name) {
-    while (name.starts_with('/')) {
-        const size_t end = std::min(name.find('/', 1), name.size());
-        if (!isWord(name.substr(1, end - 1))) return false;
-        name.remove_prefix(end);
-    }
-    return name.empty();
-}
 
 std::string SampleWriter::topicOf(const std::string& stream) const {
     const auto given = config_.streams.find(stream);
@@ -183,7 +169,9 @@ void SampleWriter::put(size_t stream, types::Time received, types::Time time, ty
             if (options.world_frame_id) message.header.frame_id = *options.world_frame_id;
         if constexpr (requires { message.child_frame_id; }) {
             if (options.child_frame_id) message.child_frame_id = *options.child_frame_id;
-            if (!message.child_frame_id.empty()) message.child_frame_id = config_.names.frame(message.child_frame_id);
+            if (const types::RosNames& names = config_.names; !names.frame_prefix.empty())
+                message.child_frame_id =
+                    names.frame(message.child_frame_id.empty() ? "base_link" : message.child_frame_id);
         }
         ros::encode(message, bytes_);
         time = sampleTime(*held, time);

@@ -12,9 +12,6 @@
 
 namespace insonify::log::mcap {
 
-/** Whether ROS takes it for a topic: "/auv/sonar". */
-bool isTopic(std::string_view name);
-
 /** Writes samples into an MCAP file as ROS 2 messages, with metadata.yaml beside it for `ros2 bag`.
  *
  *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. What the first stream carries
@@ -63,8 +60,8 @@ private:
     ChunkWriter out_;
     Transforms transforms_;
     bool closed_ = false;
-    std::vector<uint16_t> channels_;  ///< Of each stream.
-    std::vector<Options> options_;    ///< Of each stream.
+    std::vector<uint16_t> channels_;  ///< For each stream.
+    std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;
     Metadata metadata_;           ///< Of the record that all streams share.
     ros::MessageTypes messages_;  ///< Room to convert into.

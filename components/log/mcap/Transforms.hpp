@@ -50,7 +50,7 @@ private:
         ros::WorldFrame world = ros::WorldFrame::Enu;
     };
     struct Poses {
-        std::string name, child;  ///< Of the stream, and of the frame that it places; empty: none yet.
+        std::string name, child;  ///< Names of the stream and of the frame that it places; empty: none yet.
         std::optional<uint64_t> last_ns;
     };
     enum class AtEnd { Yes, No };
@@ -68,7 +68,7 @@ private:
 
     ChunkWriter& out_;
     std::set<std::string> taken_;
-    std::map<std::string, uint16_t> schemas_, channels_;  ///< Of the messages and topics here.
+    std::map<std::string, uint16_t> schemas_, channels_;  ///< Numbers by message and by topic.
     std::map<uint16_t, Pings> pings_;                     ///< By channel.
     std::map<uint16_t, Poses> poses_;
     std::map<std::string, uint16_t> owners_;  ///< Channel that places a frame.

@@ -105,6 +105,16 @@ TEST_F(TransformsTest, AreNotWrittenWhereTheyAreNotWanted) {
     EXPECT_EQ(copy.contents().channels.size(), 2u) << "a cut has what its log has";
 }
 
+TEST_F(TransformsTest, AFramePrefixIsBeforeABodyWithoutAName) {
+    McapConfig config;
+    ASSERT_TRUE(config.names.setFramePrefix("auv1"));
+    {
+        SampleWriter log(path, config);
+        log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, poseOf(1, "", ""));
+    }
+    EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("map auv1/base_link"));
+}
+
 TEST_F(TransformsTest, ATopicOfAStreamStaysThatStreams) {
     McapConfig config;
     config.streams["vehicle.pose"].topic = "/tf";
