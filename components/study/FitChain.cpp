@@ -53,14 +53,10 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
     types::Pose at = chain.snapshot.sonar;
     const glm::dvec3 ahead = at.orientation * glm::dvec3(1, 0, 0);
     at.orientation = at.orientation * glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+    const std::optional<double> floor = floorBelow(chain);
+    if (!floor) throw types::ConfigError("", "scene", "has no floor below the deployment's sonar");
+    const double height = *floor;
     chain.snapshot.sonar = at;
-    const types::Sonar first = meanEchoes(chain);
-    const auto bins =
-        first.bins.begin() + static_cast<long>(beamOf(first, recorded.bearings.front()) * first.bin_count);
-    const auto echo = std::find_if(bins, bins + first.bin_count, [](float bin) { return bin > 0; });
-    if (echo == bins + first.bin_count)
-        throw types::ConfigError("", "scene", "gives the deployment's sonar no echo in the range of the recording");
-    const double height = static_cast<double>(echo - bins) * recorded.resolution;
     const auto known = std::ranges::find_if(recorded.places, [](const LinePlace& place) { return place.altitude > 0; });
     double altitude = known == recorded.places.end() ? height : known->altitude;
     for (size_t i = 0; i < recorded.beam_count; ++i) {
@@ -123,7 +119,7 @@ std::optional<double> floorBelow(const FitChain& chain) {
     FitChain down = chain;
     sonar::SonarConfig& sonar = down.sonar;
     sonar.range *= 20;
-    sonar.bin_count = 2000;
+    sonar.bin_count = 20000;
     sonar.bearings_deg = {0};
     sonar.beam_count = 1;
     sonar.beam_width_deg = sonar.beam_height_deg = 4;

@@ -265,8 +265,9 @@ Values fitInner(const LevelModel& model, Values values, int evaluations, int rou
  *  relative to the chain's. */
 std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double range) {
     std::vector<std::array<double, 2>> all{{0, 0}};
+    if (chain.isSideScan()) return all;
     const std::optional<double> floor = floorBelow(chain);
-    if (!floor || chain.isSideScan()) return all;
+    if (!floor) return all;
     const glm::dvec3 axis = chain.snapshot.sonar.orientation * glm::dvec3(1, 0, 0);
     const double down = types::degrees(std::asin(std::clamp(-axis.z, -1.0, 1.0)));
     for (const double share : {0.15, 0.3, 0.5})

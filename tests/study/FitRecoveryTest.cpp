@@ -125,7 +125,7 @@ TEST_P(FitRecoveryTest, FindsThePropertiesOfASimulatedSonar) {
     if (shape->is_determined) {
         EXPECT_NEAR(ratio, 1, 0.2) << shape->text();
     } else {
-        EXPECT_EQ(GetParam(), 15) << shape->text();
+        EXPECT_GT(GetParam(), 4) << shape->text();
     }
 }
 
@@ -206,6 +206,8 @@ TEST(RecordingFitTest, WhatStatesNothingIsRefusedWithTheReason) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FitRecoveryTest, testing::Values(2, 3, 4, 15));
+// Those behind the figures on the page of studies.
+INSTANTIATE_TEST_SUITE_P(DISABLED_More, FitRecoveryTest, testing::Range(2u, 30u));
 
 }  // namespace
 }  // namespace insonify::study
