@@ -13,7 +13,7 @@ std::string prefixed(const std::string& prefix, const std::string& name);
 
 /** A topic that has another name: `-r node:from:=to` of ROS. */
 struct TopicRemap {
-    std::string node;  ///< Of which node, without its namespace; empty: of all.
+    std::string node;  ///< Name of the node that has it, without its namespace; empty: all nodes have it.
     std::string from, to;
 };
 

@@ -81,8 +81,10 @@ void ObjectGroup::check(types::Diagnostics& diagnostics) const {
     checkSpan("pitch_deg", pitch_deg, false, diagnostics);
     checkSpan("yaw_deg", yaw_deg, false, diagnostics);
     checkSpan("count", count, false, diagnostics);
-    for (const auto& [name, span] : {std::pair{"roll_deg", &roll_deg}, {"pitch_deg", &pitch_deg}, {"yaw_deg", &yaw_deg}})
-        if (any_turn && !span->empty()) diagnostics.push_back({name, "is given beside any_turn; one tells the turn"});
+    for (const auto& [name, span] :
+         {std::pair{"roll_deg", &roll_deg}, {"pitch_deg", &pitch_deg}, {"yaw_deg", &yaw_deg}})
+        if (any_turn && !span->empty())
+            diagnostics.push_back({name, "is given beside any_turn; only one may set the turn"});
     if (ground && !z.empty()) diagnostics.push_back({"ground", "is given beside z; one tells the height"});
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int max_transforms_at_once = 1000;      ///< Messages of a topic in one cycle: then others have their turn.
 constexpr int depth = 1000;                       ///< Messages of all senders that wait to be taken.
-constexpr size_t largest = size_t{1} << 20;       ///< Of a message [B].
+constexpr size_t largest = size_t{1} << 20;       ///< Size of a message [B].
 constexpr types::Time chain_patience{2'000'000};  ///< With a chain that is not whole.
 constexpr types::Time static_period{100'000};
 

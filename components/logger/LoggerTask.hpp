@@ -76,7 +76,7 @@ private:
     void followHealth();
     void recordProperties();            ///< What of all tasks' properties has changed since the last time.
     log::Metadata runMetadata() const;  ///< What all streams of the run carry.
-    /** Of the log's next stream, with the plans of the moment. */
+    /** Metadata of the log's next stream, with the current plans. */
     log::Metadata streamMetadata(const framework::StreamName& stream);
     /** With what is known of the sonar whose pings an input takes. */
     template <class Input>

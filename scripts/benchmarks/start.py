@@ -21,9 +21,9 @@ def measure(arguments):
         if process.returncode != 0:
             fail("insonify " + arguments[0], process.returncode)
         peak = max(peak, usage.ru_maxrss / 1024)
-    told = subprocess.run([INSONIFY, *arguments], env=os.environ | {"LD_DEBUG": "libs"}, stderr=subprocess.PIPE,
+    loaded = subprocess.run([INSONIFY, *arguments], env=os.environ | {"LD_DEBUG": "libs"}, stderr=subprocess.PIPE,
                           stdout=subprocess.DEVNULL, text=True)
-    return {"median_ms": statistics.median(times), "peak_mb": peak, "libraries": told.stderr.count("calling init: ")}
+    return {"median_ms": statistics.median(times), "peak_mb": peak, "libraries": loaded.stderr.count("calling init: ")}
 
 
 def measure_start(_options):

@@ -74,7 +74,7 @@ std::vector<Piece> lineOf(Vec from, Vec to, int count) {
 /** Far fields D of backscatter, u_s = D exp(i (k r + pi / 4)) / sqrt(2 pi k r), of sound that comes from directions. */
 using Fields = std::vector<Complex>;
 
-/** Of a soft strip: the single layer on it vanishes with the incident wave, i/4 int H0 q = -u_i. */
+/** Field of a soft strip: the single layer on it vanishes with the incident wave, i/4 int H0 q = -u_i. */
 Fields softStrip(double k, double width, const std::vector<double>& from) {
     const std::vector<Piece> pieces = lineOf({-width / 2, 0}, {width / 2, 0}, static_cast<int>(k * width * 2.5) + 40);
     const size_t n = pieces.size();
@@ -110,7 +110,7 @@ Fields softStrip(double k, double width, const std::vector<double>& from) {
     return fields;
 }
 
-/** Of a rigid square cylinder about the origin: u / 2 - int u dG/dn = u_i on it. */
+/** Field of a rigid square cylinder about the origin: u / 2 - int u dG/dn = u_i on it. */
 Fields rigidSquare(double k, double width, const std::vector<double>& from) {
     const double h = width / 2;
     std::vector<Piece> pieces;

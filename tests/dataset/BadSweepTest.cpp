@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [least, most]"},
         BadSweep{"TwoTurns",
                  grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], yaw_deg: [0, 9], any_turn: true}\n",
-                 "sweep.yml:3:56: objects[0].yaw_deg: is given beside any_turn; one tells the turn"},
+                 "sweep.yml:3:56: objects[0].yaw_deg: is given beside any_turn; only one may set the turn"},
         BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
                  "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",

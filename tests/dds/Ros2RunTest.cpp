@@ -260,7 +260,7 @@ TEST_F(Ros2RunTest, NodesHaveTheNamesThatTheArgumentsGive) {
 }
 
 TEST_F(Ros2RunTest, FilesOfParametersHoldForTheNodesThatTheyName) {
-    const auto told = [&](const std::string& node) {
+    const auto errorWith = [&](const std::string& node) {
         writeFile(folder / "p.yaml", node + ":\n  ros__parameters: {sonar: {range: -1}}\n");
         const Outcome outcome = callInsonify(folder, {"run", fls, "--ros-args", "--params-file", "p.yaml"});
         EXPECT_EQ(outcome.code, 2);
@@ -269,10 +269,11 @@ TEST_F(Ros2RunTest, FilesOfParametersHoldForTheNodesThatTheyName) {
     };
     for (const char* fits : {"/**", "/auv/insonify", "/auv/insonify_poses", "/auv/*", "/auv/**", "/*/insonify",
                              "/**/insonify", "auv/insonify"})
-        EXPECT_THAT(told(fits), HasSubstr("p.yaml:2:36: sonar.range: is -1 m")) << fits;
+        EXPECT_THAT(errorWith(fits), HasSubstr("p.yaml:2:36: sonar.range: is -1 m")) << fits;
     for (const char* other : {"/*", "/insonify", "insonify", "/auv2/*", "/auv/insonify/x", "/auv/insonif", "/*/*/*"})
-        EXPECT_THAT(told(other), HasSubstr("p.yaml: is of no node of the deployment, but of " + std::string(other) +
-                                           "; nodes: /auv/insonify_poses, /auv/insonify; /** fits all"));
+        EXPECT_THAT(errorWith(other),
+                    HasSubstr("p.yaml: is of no node of the deployment, but of " + std::string(other) +
+                              "; nodes: /auv/insonify_poses, /auv/insonify; /** fits all"));
     writeFile(folder / "p.yaml", "/auv:\n  insonify:\n    ros__parameters: {sonar: {range: -1}}\n");
     EXPECT_THAT(callInsonify(folder, {"run", fls, "--ros-args", "--params-file", "p.yaml"}).err,
                 HasSubstr("p.yaml:3:38: sonar.range: is -1 m"));

@@ -55,7 +55,7 @@ TEST(MetadataTest, TheLabelsAreWhatBlueOsReads) {
     for (const auto& [key, link] : links.items()) EXPECT_THAT(link.get<std::string>(), HasSubstr("https://")) << key;
     ASSERT_TRUE(tags.is_array() && !tags.empty());
     for (const json& tag : tags) EXPECT_TRUE(std::regex_match(tag.get<std::string>(), std::regex("[a-z0-9-]+"))) << tag;
-    // Of the types that BlueOS's store sorts by.
+    // One of the types by which BlueOS's store sorts.
     EXPECT_THAT((std::set<std::string>{"device-integration", "example", "theme", "tool", "other"}),
                 testing::Contains(all["type"]));
 }

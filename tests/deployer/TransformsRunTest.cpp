@@ -42,10 +42,11 @@ protected:
     }
     /** What follow_transforms.py finds. */
     static json followed(const WallFolder& folder, const std::string& bag) {
-        const std::string told = pythonSays(
-            test::sourceFile("tests/deployer/follow_transforms.py") + " " + (folder / bag).string(), folder / "told");
-        if (told.starts_with("{")) return json::parse(told);
-        ADD_FAILURE() << told;
+        const std::string answer =
+            pythonSays(test::sourceFile("tests/deployer/follow_transforms.py") + " " + (folder / bag).string(),
+                       folder / "followed.txt");
+        if (answer.starts_with("{")) return json::parse(answer);
+        ADD_FAILURE() << answer;
         return {{"pings", json::array()}};
     }
     /** Whether each ping's frame is where pose and mount have the sonar. @param toWorld from Rock's axes. */

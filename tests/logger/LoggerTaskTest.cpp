@@ -73,8 +73,8 @@ struct DescribedSonar : framework::TaskContext {
 std::vector<std::string> warningsOf(const Described& described) {
     Bench bench;
     DescribedSonar sonar(described);
-    std::vector<std::string> told;
-    bench.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    std::vector<std::string> notices;
+    bench.task.environment().warn = [&](const std::string& text) { notices.push_back(text); };
     sonar.ping.connectTo(*bench.task.makeInput("ping", sonar.ping), ConnPolicy::buffer(8));
     EXPECT_TRUE(bench.task.configure() && bench.task.start());
     auto sample = std::make_shared<types::Sonar>();
@@ -86,7 +86,7 @@ std::vector<std::string> warningsOf(const Described& described) {
         bench.task.update();
     }
     bench.finish();
-    return told;
+    return notices;
 }
 
 TEST(LoggerTaskTest, WhatReadersOfWholeMicrosecondsGetWrongIsWarnedOfOnce) {

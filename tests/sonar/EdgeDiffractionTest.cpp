@@ -28,7 +28,7 @@ using std::numbers::pi;
 using testing::HasSubstr;
 using types::radians;
 
-constexpr double wavelength = 0.01;  ///< Of the sonars here [m].
+constexpr double wavelength = 0.01;  ///< Wavelength of the sonars here [m].
 constexpr double sharp = pi / 3;     ///< The default turn [rad].
 
 /** One beam of 40 by 40 deg at 100 kHz in water of 1000 m/s, bins of 2 cm, with the effect. */

@@ -26,10 +26,10 @@ struct Truths {
 
 Truths truthsOf(const SonarConfig& config, const types::Snapshot& snapshot, int threads = 0) {
     SonarRenderer renderer(config, snapshot.geometry, {.threads = threads});
-    Truths told;
-    renderer.setTruth(told.ping, &told.truth);
-    renderer.render(snapshot, told.ping);
-    return told;
+    Truths labelled;
+    renderer.setTruth(labelled.ping, &labelled.truth);
+    renderer.render(snapshot, labelled.ping);
+    return labelled;
 }
 
 /** 16 beams of 5 deg, 200 bins of 0.1 m, 60 deg high. */
@@ -71,40 +71,40 @@ std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
 /** A bottom 3 m below a level sonar: at slant range r it lies at the depression asin(3 / r), which is its grazing
  *  angle as well. A bin of 0.1 m and samples of 0.1 deg leave the mean within 3 mrad. */
 TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
-    const Truths told = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
+    const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
     double largest = 0;
     for (size_t beam = 0; beam < 16; ++beam)
         for (double r = 6.55; r < 19.9; r += 0.1) {  // below 6 m the aperture ends
-            const size_t at = told.at(r, beam);
-            ASSERT_EQ(told.truth.object[at], 0) << beam << " " << r;
-            EXPECT_EQ(told.truth.share[at], 1);
-            EXPECT_GE(told.truth.hits[at], 1u);
+            const size_t at = labelled.at(r, beam);
+            ASSERT_EQ(labelled.truth.object[at], 0) << beam << " " << r;
+            EXPECT_EQ(labelled.truth.share[at], 1);
+            EXPECT_GE(labelled.truth.hits[at], 1u);
             const double angle = std::asin(3 / r);
-            EXPECT_NEAR(told.truth.grazing[at], angle, 0.003) << r;
-            EXPECT_NEAR(told.truth.elevation[at], -angle, 0.003) << r;
-            largest = std::max(largest, std::abs(static_cast<double>(told.truth.grazing[at]) - angle));
+            EXPECT_NEAR(labelled.truth.grazing[at], angle, 0.003) << r;
+            EXPECT_NEAR(labelled.truth.elevation[at], -angle, 0.003) << r;
+            largest = std::max(largest, std::abs(static_cast<double>(labelled.truth.grazing[at]) - angle));
         }
     RecordProperty("largest_rad", std::to_string(largest));
-    EXPECT_THAT(told.truth.path, testing::Each(0));
+    EXPECT_THAT(labelled.truth.path, testing::Each(0));
 }
 
 /** A plate on the bottom, 5 m ahead and 2 m high, hides what lies between 5.83 m (its foot, straight ahead) and where
  *  the ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
 TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
     const auto scene = test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
-    const Truths told = truthsOf(GetParam().of(truthFan()), test::snapshotOf(scene));
+    const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(scene));
     for (const size_t beam : {size_t{7}, size_t{8}}) {
         for (double r = 6.15; r < 15.1; r += 0.1) {
-            EXPECT_EQ(told.truth.shadow[told.at(r, beam)], 1) << r;
-            EXPECT_EQ(told.truth.object[told.at(r, beam)], -1) << r;
+            EXPECT_EQ(labelled.truth.shadow[labelled.at(r, beam)], 1) << r;
+            EXPECT_EQ(labelled.truth.object[labelled.at(r, beam)], -1) << r;
         }
         for (double r = 15.55; r < 19.9; r += 0.1) {
-            EXPECT_EQ(told.truth.shadow[told.at(r, beam)], 0) << r;
-            EXPECT_EQ(told.truth.object[told.at(r, beam)], 0) << r;
+            EXPECT_EQ(labelled.truth.shadow[labelled.at(r, beam)], 0) << r;
+            EXPECT_EQ(labelled.truth.object[labelled.at(r, beam)], 0) << r;
         }
-        EXPECT_EQ(told.truth.object[told.at(5.25, beam)], 1);
-        EXPECT_EQ(told.truth.shadow[told.at(5.25, beam)], 0);
-        EXPECT_EQ(told.truth.shadow[told.at(2.05, beam)], 1) << "water before the first echo is silent as well";
+        EXPECT_EQ(labelled.truth.object[labelled.at(5.25, beam)], 1);
+        EXPECT_EQ(labelled.truth.shadow[labelled.at(5.25, beam)], 0);
+        EXPECT_EQ(labelled.truth.shadow[labelled.at(2.05, beam)], 1) << "water before the first echo is silent as well";
     }
 }
 
@@ -138,13 +138,13 @@ TEST_P(SonarTruthTest, NotABinChanges) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         SonarRenderer renderer(GetParam().of(config), snapshot.geometry);
-        types::Sonar alone, told, again;
+        types::Sonar alone, labelled, again;
         types::SonarTruth truth;
         renderer.render(snapshot, alone);
-        renderer.setTruth(told, &truth);
-        renderer.render(snapshot, told);
+        renderer.setTruth(labelled, &truth);
+        renderer.render(snapshot, labelled);
         renderer.render(snapshot, again);
-        EXPECT_EQ(alone.bins, told.bins);
+        EXPECT_EQ(alone.bins, labelled.bins);
         EXPECT_EQ(alone.bins, again.bins);
         EXPECT_THAT(truth.object, testing::Contains(5));
     }
@@ -168,14 +168,14 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
     config.model = Model::Cerqueira2017;
     config.published = true;
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::quad({8, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
-    const Truths told = truthsOf(config, snapshot);
+    const Truths labelled = truthsOf(config, snapshot);
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar alone;
     renderer.render(snapshot, alone);
-    EXPECT_EQ(alone.bins, told.ping.bins);
-    EXPECT_GT(told.ping.bins[0], 0);
-    EXPECT_EQ(told.truth.object[0], -1);
-    EXPECT_EQ(told.truth.object[told.at(8.05, 8)], 0);
+    EXPECT_EQ(alone.bins, labelled.ping.bins);
+    EXPECT_GT(labelled.ping.bins[0], 0);
+    EXPECT_EQ(labelled.truth.object[0], -1);
+    EXPECT_EQ(labelled.truth.object[labelled.at(8.05, 8)], 0);
 }
 
 /** A ball in one beam is heard by all others in their sidelobes, but seen by its own alone. */
@@ -186,11 +186,11 @@ TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
     config.beam_pattern.emplace().receive.azimuth = law;
     const double bearing = types::radians(2.5);  // the middle of beam 8
     const glm::dvec3 place(10 * std::cos(bearing), 10 * std::sin(bearing), 0);
-    const Truths told = truthsOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
+    const Truths labelled = truthsOf(config, test::snapshotOf(test::sceneOf({test::sphere(0.2f, 32)}, 0, {place})));
     for (size_t beam = 0; beam < 16; ++beam) {
-        const size_t at = told.at(9.85, beam);
-        EXPECT_GT(told.ping.bins[at], 0) << beam;
-        EXPECT_EQ(told.truth.object[at], beam == 8 ? 0 : -1) << beam;
+        const size_t at = labelled.at(9.85, beam);
+        EXPECT_GT(labelled.ping.bins[at], 0) << beam;
+        EXPECT_EQ(labelled.truth.object[at], beam == 8 ? 0 : -1) << beam;
     }
 }
 
@@ -220,17 +220,17 @@ struct Bench {
 TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChosenIsTheSame) {
     SonarConfig config = ways[0].of(truthFan());
     config.quality = {};  // it is chosen, and looked after with coarser pings
-    Bench alone(config), told(config);
-    told.task.truth.connectTo(told.truths.port, framework::ConnPolicy::data());
+    Bench alone(config), labelled(config);
+    labelled.task.truth.connectTo(labelled.truths.port, framework::ConnPolicy::data());
     types::Snapshot snapshot = scatteredBalls();
     for (int i = 0; i < 12; ++i) {
         snapshot.time = snapshot.time + types::Time{100'000};
         snapshot.sonar.position.x = 0.05 * i;
-        const auto ping = alone.pingOf(snapshot), same = told.pingOf(snapshot);
+        const auto ping = alone.pingOf(snapshot), same = labelled.pingOf(snapshot);
         ASSERT_TRUE(ping && same);
         EXPECT_EQ(ping->bins, same->bins) << i;
         types::SonarTruthPtr truth;
-        ASSERT_TRUE(told.truths.port.readNew(truth));
+        ASSERT_TRUE(labelled.truths.port.readNew(truth));
         EXPECT_EQ(truth->time, same->time);
         EXPECT_EQ(truth->diagnostic(), nullptr);
         EXPECT_THAT(truth->objects, testing::SizeIs(10));
@@ -239,7 +239,7 @@ TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChose
             ASSERT_EQ(ping->bins[at] > 0, truth->object[at] >= 0) << "the truth of other samples, ping " << i;
     }
     EXPECT_EQ(alone.task.truth.written(), 0u);
-    EXPECT_EQ(told.task.returns.written(), 0u);
+    EXPECT_EQ(labelled.task.returns.written(), 0u);
 }
 
 TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {

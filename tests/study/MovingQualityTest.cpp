@@ -51,8 +51,8 @@ HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snaps
 }
 
 /** rel_l2_tvg of each ping; a turning head is where its ping's bearing says. */
-std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots, const HeardPings& run,
-                             int columns_per_beam) {
+std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots,
+                                 const HeardPings& run, int columns_per_beam) {
     config.quality = {};
     config.quality.rows = 2048;
     config.quality.columns_per_beam = columns_per_beam;
@@ -78,7 +78,7 @@ double nearlyAll(std::vector<double> errors) {
     return errors[errors.size() * 95 / 100];
 }
 
-std::string told(const HeardPings& run, const std::vector<double>& errors) {
+std::string summaryOf(const HeardPings& run, const std::vector<double>& errors) {
     std::string text =
         "now " + std::to_string(run.plan.rows) + " x " + std::to_string(run.plan.columns_per_beam) + "\n";
     for (const std::string& notice : run.notices) text += notice + "\n";
@@ -130,7 +130,7 @@ TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorKeepsToItsTarget) {
     const auto snapshots = turnFromAWall(3);
     const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
 
 TEST(MovingQualityTest, APassOverARoughFloorKeepsToItsTarget) {
@@ -140,7 +140,7 @@ TEST(MovingQualityTest, APassOverARoughFloorKeepsToItsTarget) {
     });
     const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
 
 /** A basin of 10 x 8 x 3 m and a tyre's worth of a ball on its floor. */
@@ -165,7 +165,7 @@ TEST(MovingQualityTest, AScanningHeadInAPoolKeepsToItsTarget) {
     });
     const HeardPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
     const std::vector<double> errors = movingErrors(config.beam(), snapshots, run, 64);
-    EXPECT_LE(nearlyAll(errors), 2 * target) << told(run, errors);
+    EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
 
 }  // namespace

@@ -286,8 +286,8 @@ private:
     std::vector<Side> sides_;
     std::vector<uint32_t> order_;  ///< Sides by their lines.
     std::vector<Stretch> stretches_;
-    std::vector<int> materials_;                           ///< Of each triangle.
-    std::map<uint32_t, std::vector<uint32_t>> triangles_;  ///< Of each flat part.
+    std::vector<int> materials_;                           ///< Material of each triangle.
+    std::map<uint32_t, std::vector<uint32_t>> triangles_;  ///< Triangles of each flat part.
 };
 
 }  // namespace

@@ -173,7 +173,7 @@ void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to
 /** About the rays of a tile. */
 struct TileCone {
     glm::vec3 axis;      ///< Unit, sonar axes.
-    float cosine, sine;  ///< Of half its angle.
+    float cosine, sine;  ///< Cosine and sine of half its angle.
 };
 
 TileCone coneAbout(const TileRays& rays) {

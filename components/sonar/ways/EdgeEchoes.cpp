@@ -30,7 +30,7 @@ struct SeenEdge {
     const PlacedEdge& edge;
     glm::dvec3 along;     ///< Unit.
     double length, foot;  ///< The edge's, and where along its line the sonar is [m].
-    double aside;         ///< Of the sonar from the line [m].
+    double aside;         ///< Distance of the sonar from the line [m].
     double strength;      ///< (R D / 2 pi)^2 [1].
 
     glm::dvec3 at(double place) const { return edge.from + place * along; }

@@ -14,9 +14,9 @@ namespace insonify::sonar {
 struct PlacedEdge {
     glm::dvec3 from{0}, to{0};           ///< [m]
     std::array<glm::dvec3, 2> inward{};  ///< Unit, across the edge into each face.
-    std::array<double, 2> widths{};      ///< Of the faces across the edge [m].
+    std::array<double, 2> widths{};      ///< Widths of the faces, across the edge [m].
     std::array<bool, 2> are_enclosed{};  ///< Whether edges have the faces' sidelobes (ACOUSTICS.md 3.12).
-    double reflection = 0;               ///< Of the sound pressure, the mean of both faces, signed [1].
+    double reflection = 0;               ///< Coefficient of the sound pressure, the mean of both faces, signed [1].
     double square_slope = 0;             ///< Mean square slope of the faces' relief [1].
     double wavelength = 0;               ///< [m]
 
@@ -39,7 +39,7 @@ void appendEdgeEchoes(const PlacedEdge& edge, const glm::dvec3& sonar, double sp
 /** Adds the echoes of a scene's straight edges to pings. */
 class EdgeEchoes {
 public:
-    /** Of a plan whose laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
+    /** @param plan one whose laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
     EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
     /** Once the bins are filled, or `field` is, where there is one. Returns the number of edges that any beam hears. */
@@ -59,9 +59,9 @@ private:
     Sightlines sightlines_;
     std::vector<std::shared_ptr<const StraightEdges>> of_meshes_;
     std::vector<OwnEdge> edges_;
-    std::vector<glm::dmat4> still_, places_;  ///< Of the objects: in the geometry, and in the ping.
-    std::vector<EdgeEcho> echoes_;            ///< Of one edge.
-    double spacing_;                          ///< Of the beams [rad].
+    std::vector<glm::dmat4> still_, places_;  ///< Places of the objects in the geometry, and in the ping.
+    std::vector<EdgeEcho> echoes_;            ///< Echoes of one edge.
+    double spacing_;                          ///< Angle between beams [rad].
 };
 
 }  // namespace insonify::sonar

@@ -10,7 +10,7 @@ ONE = Path(__file__).resolve().parent / "one_vehicle.launch.py"
 
 
 def vehicle(name, clock):
-    # A relative name of the clock is in the vehicle's namespace: only one node may tell the time on /clock.
+    # A relative name of the clock is in the vehicle's namespace: only one node may publish the time on /clock.
     arguments = {"namespace": name, "frame_prefix": name, "clock": clock, "deployment": LaunchConfiguration(name)}
     return IncludeLaunchDescription(PythonLaunchDescriptionSource(str(ONE)), launch_arguments=arguments.items())
 
