@@ -67,7 +67,7 @@ TEST(BackscatterCommandTest, AMaterialIsARoughSolidWithItsSources) {
     EXPECT_EQ(steel["parameters"]["density_kg_m3"], 7850);
     EXPECT_EQ(steel["parameters"]["shear_speed_m_s"], 3230);
     EXPECT_NEAR(steel["parameters"]["roughness_um"], 14.8, 0.1);
-    EXPECT_EQ(steel["sources"]["density_and_speeds"], "Selfridge 1985");
+    EXPECT_EQ(steel["sources"]["density_and_speeds"], "ASTM E494 2015, density Haynes 2014");
     EXPECT_THAT(steel["sources"]["roughness"].get<std::string>(), HasSubstr("Moody 1944"));
     EXPECT_LT(steel["strength_db"][0], -25) << "a mirror beside its highlight";
     EXPECT_GT(steel["strength_db"][1], 20) << "its highlight";
