@@ -6,6 +6,7 @@
 
 #include "types/Geometry.hpp"
 #include "types/Pose.hpp"
+#include "types/Transmission.hpp"
 
 namespace insonify::types {
 
@@ -35,6 +36,7 @@ struct Snapshot {
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
     std::vector<PointTarget> targets;
+    std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that this one may hear; none is null.
     std::shared_ptr<const std::vector<std::string>> target_names;  ///< Of each of `targets`; may be null without any.
     std::optional<double> water_surface;                           ///< World z of the surface [m].
 };

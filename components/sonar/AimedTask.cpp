@@ -56,11 +56,11 @@ bool AimedTask::takeGiven() {
     types::SnapshotPtr sample;
     types::Pose given;
     if (!given_pose.readNew(given) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
-    begun_ = now();
-    aimed_ = *sample;
-    aimed_.sonar = given;
-    aimed_.time = given.time;
-    used_ = std::move(given);
+    taken_.begun = now();
+    taken_.scene = *sample;
+    taken_.scene.sonar = given;
+    taken_.scene.time = given.time;
+    taken_.used = std::move(given);
     return true;
 }
 
@@ -99,9 +99,9 @@ bool AimedTask::takeAsked() {
         error(std::string("settings: ") + refused.what());
         return false;
     }
-    aim(*sample);
-    aimed_.time = std::max(aimed_.time, asked.time);
-    used_.time = aimed_.time;
+    takeScene(*sample);
+    taken_.scene.time = std::max(taken_.scene.time, asked.time);
+    taken_.used.time = taken_.scene.time;
     return true;
 }
 
@@ -110,27 +110,27 @@ bool AimedTask::takeNext() {
     if (settings.connected()) return takeAsked();
     types::SnapshotPtr sample;
     if (!snapshot.takeNext(sample)) return false;
-    aim(*sample);
+    takeScene(*sample);
     return true;
 }
 
-void AimedTask::aim(const types::Snapshot& scene) {
-    begun_ = now();
-    aimed_ = scene;
-    if (activity().realtime() && aimed_.max_extrapolation > 0) {
-        aimed_.sonar = types::extrapolatePose(aimed_.sonar, begun_, aimed_.max_extrapolation);
-        aimed_.time = aimed_.sonar.time;
+void AimedTask::takeScene(const types::Snapshot& scene) {
+    taken_.begun = now();
+    taken_.scene = scene;
+    if (activity().realtime() && taken_.scene.max_extrapolation > 0) {
+        taken_.scene.sonar = types::extrapolatePose(taken_.scene.sonar, taken_.begun, taken_.scene.max_extrapolation);
+        taken_.scene.time = taken_.scene.sonar.time;
     }
-    used_ = aimed_.sonar;
+    taken_.used = taken_.scene.sonar;
 }
 
 const char* AimedTask::refusal() {
-    if (!aimed_.geometry) return "the snapshot has no geometry";
-    if (const char* why = normalisePose(aimed_.sonar)) return why;
-    if (activity().realtime() && (aimed_.time - now()).seconds() > 1)
+    if (!taken_.scene.geometry) return "the snapshot has no geometry";
+    if (const char* why = normalisePose(taken_.scene.sonar)) return why;
+    if (activity().realtime() && (taken_.scene.time - now()).seconds() > 1)
         return "the snapshot's time is ahead of the clock by more than a second";
-    followSnapshot(aimed_);
-    return steer(aimed_);
+    followSnapshot(taken_.scene);
+    return steer(taken_.scene);
 }
 
 }  // namespace insonify::sonar

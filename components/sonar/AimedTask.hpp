@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
@@ -69,9 +70,19 @@ protected:
     bool takeNext();
     /** Evaluates it; why it is refused, null where it is not. */
     const char* refusal();
-    types::Snapshot& aimed() { return aimed_; }
-    const types::Pose& usedPose() const { return used_; }  ///< The sonar in aimed(), as it came.
-    types::Time begun() const { return begun_; }           ///< When it was taken.
+    types::Snapshot& aimed() { return taken_.scene; }
+    const types::Snapshot& aimed() const { return taken_.scene; }
+    const types::Pose& usedPose() const { return taken_.used; }  ///< The sonar in aimed(), as it came.
+    types::Time begun() const { return taken_.begun; }           ///< When it was taken.
+    /** What a ping is of. */
+    struct Taken {
+        types::Snapshot scene;
+        types::Pose used;
+        types::Time begun;
+    };
+    const Taken& taken() const { return taken_; }
+    /** Swaps what the next ping is of with another, for a ping that is rendered later than it is taken. */
+    void swapTaken(Taken& other) { std::swap(taken_, other); }
 
     void stopHook() override { before_.reset(); }
 
@@ -85,8 +96,8 @@ private:
     void followSnapshot(const types::Snapshot& scene);
     /** The next of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
-    /** The scene of a snapshot, in realtime with its sonar where it is by now, as far as it may be carried on. */
-    void aim(const types::Snapshot& scene);
+    /** Takes the scene of a snapshot, in realtime with its sonar where it is by now, as far as it may be carried on. */
+    void takeScene(const types::Snapshot& scene);
     void applySettings(const types::SonarSettings& asked);
     /** The next settings, in realtime the newest, in the newest snapshot's scene; they wait until there is one. */
     bool takeAsked();
@@ -97,9 +108,7 @@ private:
     types::RecurringDiagnostic jumps_;
     double shortest_ = std::numeric_limits<double>::infinity();
     PeriodMeter period_;
-    types::Snapshot aimed_;
-    types::Pose used_;
-    types::Time begun_;
+    Taken taken_;
 };
 
 }  // namespace insonify::sonar

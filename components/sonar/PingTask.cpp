@@ -10,7 +10,9 @@
 
 #include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
+#include "components/sonar/fan/SentPower.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/ways/Waveform.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::sonar {
@@ -40,6 +42,9 @@ std::vector<std::string> PingTask::notices() const {
             "Warning: pings {:.3g} s apart are ambiguous in range, sound takes {:.3g} s to {:.4g} m and back; each "
             "is rendered by itself",
             shortestPeriod(), echoTime(), grid().range_max));
+    if (cut_off_ > 0)
+        all.push_back(fmt::format("the last {} of others listened to its echoes when the run stopped: not written",
+                                  cut_off_ == 1 ? "ping that hears pulses" : "pings that hear pulses"));
     return all;
 }
 
@@ -67,7 +72,12 @@ bool PingTask::configureHook() {
     if (elements.connected() && !rendersOnce())
         throw types::ConfigError("", name() + ".elements",
                                  "is connected; a sonar that renders a ping in many parts tells no signals");
+    if (others.connected() && !sonarConfig().crosstalk)
+        throw types::ConfigError("", name() + ".others",
+                                 "is connected; the sonar does not hear other sonars: give it `crosstalk: {}`, or "
+                                 "leave the connection out");
     sonarConfig().requireDevice(name());
+    radiation_ = transmission.connected() ? std::make_shared<SentPower>(locatedConfig()) : nullptr;
     renderer_.reset();
     plan_.reset();
     resetAim();
@@ -75,11 +85,75 @@ bool PingTask::configureHook() {
 }
 
 void PingTask::updateHook() {
-    if (!takeNext()) return;
-    if (const char* why = refusal()) return error(why);
+    if (others.connected()) return listen();
+    if (takeNext() && begin()) complete();
+}
+
+bool PingTask::begin() {
+    if (const char* why = refusal()) {
+        error(why);
+        return false;
+    }
     if (state() == framework::TaskState::RunTimeError) recover();
+    if (radiation_) transmission.write(pulseSent());
+    return true;
+}
+
+types::TransmissionPtr PingTask::pulseSent() const {
+    const SonarConfig config = sonarConfig();
+    const Waveform form = waveformOf(config, grid());
+    auto sent = std::make_shared<types::Transmission>();
+    sent->time = aimed().time;
+    sent->sonar = aimed().sonar;
+    sent->radiation = radiation_;
+    if (config.crosstalk && config.crosstalk->source_level_db)
+        sent->source_level_db = *config.crosstalk->source_level_db;
+    sent->frequency_khz = form.frequency_khz;
+    sent->bandwidth_khz = form.bandwidth_khz;
+    sent->duration = form.duration;
+    return sent;
+}
+
+void PingTask::complete() {
     environment().rehearsing ? rehearse() : render();
     goOn();
+}
+
+void PingTask::hearOthers() {
+    types::TransmissionPtr sent;
+    while (others.readNew(sent)) others_heard_.add(sent);
+}
+
+void PingTask::listen() {
+    hearOthers();
+    if (listening_ && (now() - listening_->scene.time).seconds() >= echoTime()) endListening();
+    if (!takeNext()) return;
+    if (listening_) endListening();  // the next ping cuts it off
+    if (!begin()) return;
+    if (!activity().realtime()) {
+        listening_ = taken();
+        return;
+    }
+    const types::Time heard = lastEcho(), ready = heard - types::Time::fromSeconds(1.2 * render_seconds_ + 1e-3);
+    if (ready > now() && !activity().sleepUntil(ready)) return;
+    hearOthers();
+    others_heard_.give(aimed(), grid().range_max, grid().speed_of_sound);
+    complete();
+}
+
+void PingTask::endListening() {
+    swapTaken(*listening_);
+    others_heard_.give(aimed(), grid().range_max, grid().speed_of_sound);
+    complete();
+    swapTaken(*listening_);
+    listening_.reset();
+}
+
+void PingTask::stopHook() {
+    AimedTask::stopHook();
+    cut_off_ += listening_ ? 1 : 0;
+    listening_.reset();
+    others_heard_.clear();
 }
 
 void PingTask::rehearse() {
@@ -90,6 +164,7 @@ void PingTask::rehearse() {
 }
 
 std::string PingTask::indivisible() const {
+    if (others.connected()) return "others: pulses of other sonars are heard, which a shard does not have";
     if (!sonarConfig().choosesQuality()) return {};
     return "quality: is chosen from the pings before, which a shard does not have; give rows and columns_per_beam, "
            "such "
@@ -153,6 +228,7 @@ void PingTask::render() {
     const auto start = std::chrono::steady_clock::now();
     const bool heard = renderPing(*renderer_, aimed(), *sample);
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+    render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
         for (const LeftOut& what : renderer_->leftOut()) {
@@ -198,11 +274,10 @@ void PingTask::writeElements(const types::Sonar& sample) {
     elements.write(signals);
 }
 
-bool PingTask::waitForLastEcho() {
-    if (!activity().realtime()) return true;
-    const types::Time heard{std::max(aimed().time, begun()).microseconds +
-                            static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
-    return activity().sleepUntil(heard);
+types::Time PingTask::lastEcho() const {
+    return {std::max(aimed().time, begun()).microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
 }
+
+bool PingTask::waitForLastEcho() { return !activity().realtime() || activity().sleepUntil(lastEcho()); }
 
 }  // namespace insonify::sonar

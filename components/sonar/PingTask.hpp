@@ -7,6 +7,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/sonar/AimedTask.hpp"
+#include "components/sonar/OthersHeard.hpp"
 #include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/quality/QualityKeeper.hpp"
@@ -14,6 +15,7 @@
 #include "types/SonarElements.hpp"
 #include "types/SonarReturns.hpp"
 #include "types/SonarTruth.hpp"
+#include "types/Transmission.hpp"
 
 namespace insonify::sonar {
 
@@ -49,6 +51,12 @@ public:
     framework::OutputPort<types::SonarReturnsPtr> returns{
         this, "returns", "first and strongest return of each beam; computed only when connected"};
 
+    framework::OutputPort<types::TransmissionPtr> transmission{
+        this, "transmission", "the pulse of each ping as it is sent, for the port `others` of other sonars"};
+    framework::InputPort<types::TransmissionPtr> others{
+        this, "others", "pulses of other sonars, which a sonar with `crosstalk` hears; connect with a buffer",
+        framework::Need::Optional};
+
     framework::OutputPort<types::SonarElementsPtr> elements{
         this, "elements",
         "complex signals of the array's elements, of a sonar with `elements`; computed only when connected"};
@@ -83,9 +91,20 @@ protected:
     bool propertiesHook() override { return configureHook(); }
     void updateHook() override;
     void errorHook() override { updateHook(); }
+    void stopHook() override;
     void cleanupHook() override { renderer_.reset(); }
 
 private:
+    /** Takes the next ping, if there is one, and sends its pulse. Returns whether it can be rendered. */
+    bool begin();
+    types::TransmissionPtr pulseSent() const;
+    /** Renders what has been begun, and goes on. */
+    void complete();
+    void hearOthers();
+    /** Takes pings whose rendering waits until all pulses of others have arrived. */
+    void listen();
+    /** Renders the ping that is listened to, with what arrived meanwhile. */
+    void endListening();
     void render();
     /** Does what later pings depend on. */
     void rehearse();
@@ -93,7 +112,9 @@ private:
     std::shared_ptr<types::SonarTruth> takeTruth();
     void writeElements(const types::Sonar& sample);
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
-    /** In realtime, until the last echo of this ping's range is back; false: the task is to stop. */
+    /** In realtime, when the last echo of this ping's range is back. */
+    types::Time lastEcho() const;
+    /** In realtime, until then; false: the task is to stop. */
     bool waitForLastEcho();
     /** Makes the renderer, or gives it the geometry of the next ping. */
     void prepareRenderer();
@@ -110,6 +131,11 @@ private:
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
+    std::shared_ptr<const types::Radiation> radiation_;  ///< Its transmitter's.
+    OthersHeard others_heard_;
+    std::optional<Taken> listening_;  ///< The ping that is listened to.
+    double render_seconds_ = 0;     ///< Of the last ping [s].
+    uint64_t cut_off_ = 0;          ///< Pings that were still listened to at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;

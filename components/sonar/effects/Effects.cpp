@@ -28,6 +28,7 @@ const Effect& normalMaps();
 const Effect& pointTargets();
 const Effect& edgeDiffraction();
 const Effect& imperfections();
+const Effect& crosstalk();
 const Effect& truth();
 
 namespace {
@@ -37,7 +38,7 @@ struct List {
     std::vector<const Effect*> all{
         &absorption(),   &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
         &volume(),       &speckle(),     &multipath(),      &thinWalls(),       &slabs(),         &refraction(),
-        &motionInPing(), &normalMaps(),  &pointTargets(),   &edgeDiffraction(), &imperfections(), &truth()};
+        &motionInPing(), &normalMaps(),  &pointTargets(),   &edgeDiffraction(), &imperfections(), &crosstalk(), &truth()};
 };
 
 List& list() {

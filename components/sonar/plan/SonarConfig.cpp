@@ -62,7 +62,10 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
 /** Of ways that are bent, what follows straight ones alone. */
 void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
-    const std::string name = config.isCoherent() ? "speckle" : config.tracesPaths() ? "multipath" : "";
+    const std::string name = config.isCoherent()      ? "speckle"
+                             : config.tracesPaths() ? "multipath"
+                             : config.crosstalk     ? "crosstalk"
+                                                    : "";
     if (!name.empty() && (bends || config.motion_in_ping))
         diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
                                          (bends ? "water.profile" : "motion_in_ping")});
@@ -209,7 +212,9 @@ std::optional<double> SonarConfig::targetError() const {
 
 std::string SonarConfig::needsRays() const {
     if (isCoherent()) return "speckle";
-    return tracesPaths() ? "multipath" : motion_in_ping ? "motion_in_ping" : "";
+    if (tracesPaths()) return "multipath";
+    if (motion_in_ping) return "motion_in_ping";
+    return crosstalk && crosstalk->echoes ? "crosstalk.echoes" : "";
 }
 
 std::optional<bool> SonarConfig::choosesRays() const {

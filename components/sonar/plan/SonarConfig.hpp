@@ -8,6 +8,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
 #include "components/acoustics/Water.hpp"
+#include "components/sonar/plan/CrosstalkConfig.hpp"
 #include "components/sonar/plan/ImperfectionsConfig.hpp"
 #include "types/Describe.hpp"
 
@@ -223,6 +224,7 @@ struct SonarConfig {
     std::optional<MultipathConfig> multipath;
     int32_t max_walls = 4;
     std::optional<ImperfectionsConfig> imperfections;
+    std::optional<CrosstalkConfig> crosstalk;
     std::map<std::string, std::map<std::string, double>> effects;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
@@ -343,6 +345,9 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     visit(Field{"imperfections", "",
                 "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
+    visit(Field{"crosstalk", "",
+                "pulses of the sonars that are connected to port `others` are heard; absent: nothing may be connected"},
+          self.crosstalk);
     visit(Field{"effects", "",
                 "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}`, echoes of straight edges, and "
                 "those of other libraries (components/sonar/README.md)"},

@@ -1,7 +1,8 @@
-// In place of CastEchoes.cpp and PathEchoes.cpp where the build is without Embree.
+// In place of CastEchoes.cpp, PathEchoes.cpp and ForeignEchoes.cpp where the build is without Embree.
 #include <stdexcept>
 
 #include "components/sonar/EchoRenderer.hpp"
+#include "components/sonar/ways/ForeignEchoes.hpp"
 #include "components/sonar/ways/PathEchoes.hpp"
 
 namespace insonify::sonar {
@@ -13,5 +14,7 @@ std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryP
 }
 
 std::unique_ptr<PingEffect> makePathEchoes(const RenderPlan&, const types::Geometry&) { return nullptr; }
+
+std::unique_ptr<ForeignEchoes> makeForeignEchoes(const RenderPlan&) { return nullptr; }
 
 }  // namespace insonify::sonar

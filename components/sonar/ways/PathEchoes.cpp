@@ -8,12 +8,14 @@
 #include <numbers>
 
 #include "components/sonar/echo/BinLevels.hpp"
-#include "components/sonar/echo/Estimators.hpp"
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/field/ScattererLattice.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
+#include "components/sonar/ways/PathCells.hpp"
+#include "components/sonar/ways/SharedBins.hpp"
+#include "components/sonar/ways/WayPatterns.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -22,25 +24,9 @@ namespace {
 using std::numbers::pi;
 
 constexpr int max_bounces = MultipathConfig::max_bounces;
-constexpr int pattern_steps = 2048;
 constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
-
-/** Adds energies to bins that all threads share. */
-#define HAVE_PHYSICAL
-struct SharedBins : Bins {
-    using Bins::Bins;
-    void addToBin(uint cell, uint bin, double amount, double) const {
-        if (!(amount > 0)) return;
-        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
-        if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
-    }
-    uint64_t* by_way = nullptr;  ///< Further sums, of echoes by the way at hand; null where no truth is recorded.
-    static constexpr std::memory_order relaxed = std::memory_order_relaxed;
-#include "shaders/deposit.glsl"
-};
-#undef HAVE_PHYSICAL
 
 /** The mirrors that a ray has met, in its order. */
 struct Chain {
@@ -68,105 +54,6 @@ struct Chain {
         return way;
     }
 };
-
-/** The directions of a rectangle of samples of a tile. */
-struct Angles {
-    glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit, and its derivatives [1].
-    double width, height, lean;                     ///< [rad], [rad], dazimuth / delevation of its sides [1].
-    double size, weighted;  ///< Solid angle, and the same by the pattern of both ways, in cells at elevation 0 [1].
-    int cell;
-
-    Angles(const CastView& view, const CastTile& tile, int sample, int merged);
-};
-
-Angles::Angles(const CastView& cast, const CastTile& tile, int sample, int merged) {
-    const AngularView& view = cast.cells;
-    const TileShape::Extent at = cast.shape.at[sample], covered = cast.shape.size[merged];
-    const int column = tile.first_column + at.columns;
-    const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + at.rows);
-    const auto across = static_cast<size_t>(covered.columns), up = static_cast<size_t>(covered.rows);
-    const AngularView::Elevation& e = view.elevations[low + up];
-    const bool cones = view.conical;
-    const AngularView::Direction a =
-        cones ? AngularView::azimuthOf(view.bearings[left + across], e) : view.azimuths[left + across];
-    const auto edge = [&](size_t i) { return cones ? coneAzimuth(view.bearings[i], e.angle) : view.bearings[i]; };
-    cell = view.beam_of[static_cast<size_t>(column)];
-    middle = {e.cosine * a.cosine, e.cosine * a.sine, e.sine};
-    per_azimuth = {-e.cosine * a.sine, e.cosine * a.cosine, 0};
-    per_elevation = {-e.sine * a.cosine, -e.sine * a.sine, e.cosine};
-    width = edge(left + 2 * across) - edge(left);
-    height = view.height(low / 2, up);
-    lean = cones && std::abs(a.sine) < 0.997 ? a.sine / a.cosine * e.sine / e.cosine : 0;
-    size = width * (view.elevations[low + 2 * up].sine - view.elevations[low].sine) / view.cell();
-    weighted = width * (view.elevations[low + 2 * up].weighted - view.elevations[low].weighted) / view.cell();
-}
-
-/** Inverse ranges: of a way there and back that is half along a direction to a plane and half from there to a focus,
- *  with what it changes by with the direction. */
-struct HalfWay {
-    double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
-    double back;                                          ///< Distance from the plane to the focus [m].
-    glm::dvec3 from_focus;                                ///< Unit.
-};
-
-HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const Angles& at) {
-    const double g = glm::dot(plane.normal, at.middle) / plane.distance, r = 1 / g;
-    const glm::dvec3 place = r * at.middle, from = place - focus;
-    HalfWay way;
-    way.back = glm::length(from);
-    way.from_focus = from / way.back;
-    const double range = 0.5 * (r + way.back), along = 1 + glm::dot(way.from_focus, at.middle);
-    const auto change = [&](const glm::dvec3& turn) {
-        const double of_range = -r * r * glm::dot(plane.normal, turn) / plane.distance;
-        return -0.5 * (along * of_range + r * glm::dot(way.from_focus, turn)) / (range * range);
-    };
-    way.inverse = 1 / range;
-    way.per_azimuth = change(at.per_azimuth);
-    way.per_elevation = change(at.per_elevation);
-    const double side = glm::dot(plane.normal, focus) - plane.distance;
-    const bool same_side = side * plane.distance < 0;
-    way.nearest = 2 / glm::length(same_side ? plane.image(focus) : focus);
-    return way;
-}
-
-/** Power of the beam pattern on the way out and on the way back (ACOUSTICS.md 5.9), and the cells that receive it. */
-class WayPatterns {
-public:
-    explicit WayPatterns(const RenderPlan& plan);
-
-    /** A direction in sonar axes. */
-    struct Way {
-        double azimuth = 0;  ///< As cells have it: of cones their bearing [rad].
-        double sine = 0;     ///< Sine of the elevation [1].
-        bool heard = false;  ///< Not behind a straight array.
-    };
-    Way wayOf(const glm::dvec3& direction) const;
-    /** Power that is sent along one way and heard along another, over what the cell that hears it makes of it in
-     *  azimuth [1]. */
-    double power(const Way& sent, const Way& heard) const;
-    /** Whether both are within one beam. */
-    bool inOneBeam(const Way& a, const Way& b) const;
-    /** Calls use(cell) for each azimuth cell that a way lies in. */
-    template <class Use>
-    void eachCell(const Way& way, const Use& use) const {
-        plan_.cells.eachAt(way.azimuth, use);
-    }
-
-private:
-    double elevation(const std::vector<double>& table, double sine) const;
-    double sentAzimuth(double azimuth) const;
-
-    const RenderPlan& plan_;
-    bool conical_, has_azimuth_;
-    double reach_, beam_width_;
-    std::vector<double> sent_, heard_;  ///< Powers in elevation, over its sine from -reach_ on [1].
-    std::vector<double> azimuths_;      ///< Power that is sent, over azimuths from -pi on [1].
-};
-
-/** A quantum of the sums [sr]. */
-double quantumOf(const CastPing& ping) {
-    return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
-}
 
 class PathEchoes final : public PingEffect {
 public:
@@ -197,52 +84,6 @@ private:
     std::vector<float> direct_;       ///< [cell][bin], in pings whose truth is recorded; empty where fields are summed.
     bool records_truth_ = false;
 };
-
-WayPatterns::WayPatterns(const RenderPlan& plan)
-    : plan_(plan),
-      conical_(plan.features.has(Feature::Conical)),
-      has_azimuth_(plan.has(Pass::Beamform)),
-      reach_(std::sin(types::radians(plan.sampled.beam_height_deg) / 2)),
-      beam_width_(has_azimuth_ ? plan.directivity->halfPowerAzimuth() : types::radians(plan.config.beamWidthDeg())) {
-    const bool patterned = plan.directivity && plan.directivity->hasElevation();
-    for (int i = 0; i <= pattern_steps; ++i) {
-        const double angle = std::asin(reach_ * (2.0 * i / pattern_steps - 1));
-        sent_.push_back(patterned ? plan.directivity->sentElevation(angle) : 1);
-        heard_.push_back(patterned ? plan.directivity->heardElevation(angle) : 1);
-        if (has_azimuth_) azimuths_.push_back(plan.directivity->sentAzimuth(pi * (2.0 * i / pattern_steps - 1)));
-    }
-}
-
-WayPatterns::Way WayPatterns::wayOf(const glm::dvec3& direction) const {
-    return {beamAzimuthOf(direction, conical_), direction.z, !conical_ || direction.x >= 0};
-}
-
-double WayPatterns::elevation(const std::vector<double>& table, double sine) const {
-    const double at = 0.5 * pattern_steps * (1 + sine / reach_);
-    if (!(at >= 0 && at <= pattern_steps)) return 0;
-    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
-    const double part = at - static_cast<double>(i);
-    return table[i] * (1 - part) + table[i + 1] * part;
-}
-
-double WayPatterns::sentAzimuth(double azimuth) const {
-    if (!has_azimuth_) return plan_.cells.spans(azimuth) ? 1 : 0;
-    const double at = 0.5 * pattern_steps * (1 + std::remainder(azimuth, 2 * pi) / pi);
-    const auto i = std::min(static_cast<size_t>(at), size_t{pattern_steps - 1});
-    const double part = at - static_cast<double>(i);
-    return azimuths_[i] * (1 - part) + azimuths_[i + 1] * part;
-}
-
-double WayPatterns::power(const Way& sent, const Way& heard) const {
-    if (!sent.heard || !heard.heard) return 0;
-    const double here = sentAzimuth(heard.azimuth);
-    return here > 0 ? elevation(sent_, sent.sine) * elevation(heard_, heard.sine) * sentAzimuth(sent.azimuth) / here
-                    : 0;
-}
-
-bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {
-    return std::abs(std::remainder(a.azimuth - b.azimuth, 2 * pi)) < beam_width_;
-}
 
 /** Follows the rays of one tile after another. */
 class PathEchoes::Tracer {
@@ -281,17 +122,16 @@ private:
     /** Sends a ray on from the mirror that it has met; drops one that has met none in reach. */
     void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
     void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
-    MirrorPlane planeOf(const TileHits& hits, int i) const;
     void castOn();
     uint32_t openBack() const;
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
-    void deposit(const Angles& at, int i, double open);
-    LobeSlopes lobeSlopes(const Angles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
+    void deposit(const CellAngles& at, int i, double open);
+    LobeSlopes lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
                           double range) const;
-    MaterialLaws::Bistatic section(const Angles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
-    void depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open);
-    Footprint footprint(const Angles& at, int i, const HalfWay& way, double size) const;
+    MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
+    void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
+    Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
     void recordWay(int i, bool twice) {
         if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
@@ -332,16 +172,6 @@ bool PathEchoes::Tracer::begin(const CastTile& tile) {
     return rays_.towards.active;
 }
 
-MirrorPlane PathEchoes::Tracer::planeOf(const TileHits& hits, int i) const {
-    const PlacedRun& run = scene_.ranges[hits.command[i]];
-    const PlaneRecord& plane = run.planes[hits.triangle[i]];
-    const glm::dvec3 n(plane.normal), p(plane.point), normal = turned(run, plane.normal);
-    const double distance =
-        glm::dot(n, p - glm::dvec3(run.eye[0], run.eye[1], run.eye[2])) + static_cast<double>(plane.normal.w);
-    const double length = glm::length(normal);
-    return {normal / length, distance / length};
-}
-
 void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
                                  bool tilts) {
     Chain& chain = chains_[static_cast<size_t>(i)];
@@ -355,7 +185,7 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
     const double reflected = this->reflected(hits.command[i]);
-    const MirrorPlane plane = planeOf(hits, i);
+    const MirrorPlane plane = planeMet(scene_, hits, i);
     const double cosine = std::abs(glm::dot(plane.normal, way));
     if (reflected == 0 || !(cosine > edge_on)) return drop(i);
     chain.names[k] = uint64_t{hits.command[i]} << 32 | hits.triangle[i];
@@ -399,7 +229,7 @@ uint32_t PathEchoes::Tracer::openBack() const {
         const glm::dvec3 at = met(i);
         const double range = glm::length(at),
                      mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
-        const MirrorPlane plane = planeOf(hits_, i);
+        const MirrorPlane plane = planeMet(scene_, hits_, i);
         const bool same_side = glm::dot(plane.normal, towards(i)) * glm::dot(plane.normal, at) > 0;
         if (!same_side || !(mean < reaching_back * rules_.bins.range_max) || !(range > RayVisibility::nearest))
             continue;
@@ -434,12 +264,12 @@ void PathEchoes::Tracer::hear(const CastTile& tile) {
         }
         const int merged = sameFrom(i);
         const uint32_t of_these = open >> i & ((1u << merged) - 1);
-        deposit(Angles(view_, tile, i, merged), i, static_cast<double>(std::popcount(of_these)) / merged);
+        deposit(CellAngles(view_, tile, i, merged), i, static_cast<double>(std::popcount(of_these)) / merged);
         i += merged;
     }
 }
 
-Footprint PathEchoes::Tracer::footprint(const Angles& at, int i, const HalfWay& way, double size) const {
+Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     // No way by a mirror is shorter than the direct one, nor longer than that and the way to the sonar's image.
     const double image = glm::length(chains_[static_cast<size_t>(i)].image(glm::dvec3(0)));
@@ -448,9 +278,9 @@ Footprint PathEchoes::Tracer::footprint(const Angles& at, int i, const HalfWay& 
                               run.near_limit, 1 / (1 / run.far_limit + image), near_edge_, far_edge_, size);
 }
 
-void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
+void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
-    const MirrorPlane seen = planeOf(hits_, i);
+    const MirrorPlane seen = planeMet(scene_, hits_, i);
     const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(seen.normal);
     const MirrorPlane plane{normal, seen.distance + glm::dot(normal, focus)};
     const double facing = glm::dot(plane.normal, at.middle);
@@ -466,7 +296,7 @@ void PathEchoes::Tracer::deposit(const Angles& at, int i, double open) {
 }
 
 /** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
-LobeSlopes PathEchoes::Tracer::lobeSlopes(const Angles& at, int i, const MirrorPlane& plane,
+LobeSlopes PathEchoes::Tracer::lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane,
                                           const glm::dvec3& direction, double range) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     if (!run.facets || !rules_.laws.hasLobe(run.material)) return {};
@@ -482,7 +312,7 @@ LobeSlopes PathEchoes::Tracer::lobeSlopes(const Angles& at, int i, const MirrorP
 }
 
 /** What a cell gives back of sound that comes directly and goes by the mirrors, or the other way round. */
-MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, const MirrorPlane& plane,
+MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, const MirrorPlane& plane,
                                                    const HalfWay& way) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     const double direct = std::abs(glm::dot(plane.normal, way.from_focus));
@@ -499,7 +329,7 @@ MaterialLaws::Bistatic PathEchoes::Tracer::section(const Angles& at, int i, cons
 
 /** Out directly and back by the mirrors, and the other way round, which is the same but for where it is sent and
  *  heard. */
-void PathEchoes::Tracer::depositOnce(const Angles& at, int i, const MirrorPlane& plane, double open) {
+void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
     const HalfWay way = halfWay(plane, chain.image(glm::dvec3(0)), at);
     const MaterialLaws::Bistatic given = section(at, i, plane, way);

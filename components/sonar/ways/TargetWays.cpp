@@ -149,6 +149,8 @@ void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
     stops[chain.size() + 1] = point;
     for (size_t k = 0; k <= chain.size(); ++k)
         if (!sightlines_.isOpen(stops[k], stops[k + 1])) return;
+    const glm::dvec3 first = stops[chain.size()] - point;
+    way.from_point = first / std::max(glm::length(first), std::numeric_limits<double>::min());
     addOnce(way);
 }
 

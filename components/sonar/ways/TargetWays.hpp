@@ -15,6 +15,7 @@ struct TargetWay {
 
     double length = 0;        ///< [m]
     glm::dvec3 direction{0};  ///< From the sonar, unit, its axes [1].
+    glm::dvec3 from_point{0};  ///< From the point to where the way leads first, unit, world axes [1].
     double power = 1;         ///< What its mirrors leave of the sound [1].
     int reflections = 0;      ///< In mirrors [1].
     bool by_surface = false;  ///< One of them is the water surface.

@@ -1,0 +1,36 @@
+#pragma once
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "types/Snapshot.hpp"
+
+namespace insonify::sonar {
+
+/** The pulses of other sonars that one sonar has been sent, for as long as they may reach it. */
+class OthersHeard {
+public:
+    static constexpr double memory = 10;  ///< For which a pulse is kept, sound's way over 15 km [s].
+
+    void add(types::TransmissionPtr sent) {
+        if (sent && sent->radiation) sent_.push_back(std::move(sent));
+    }
+    void clear() { sent_.clear(); }
+
+    /** Gives a snapshot the pulses of which anything may arrive within the range of its sonar, and forgets old ones.
+     *  @param range  of the sonar [m]
+     *  @param speed_of_sound  [m/s] */
+    void give(types::Snapshot& scene, double range, double speed_of_sound) {
+        std::erase_if(sent_, [&](const auto& sent) { return (scene.time - sent->time).seconds() > memory; });
+        scene.transmissions.clear();
+        for (const auto& sent : sent_) {
+            const double half = glm::distance(sent->sonar.position, scene.sonar.position) / 2,
+                         offset = speed_of_sound * (sent->time - scene.time).seconds() / 2;
+            if (offset + half <= range && offset + half + range >= 0) scene.transmissions.push_back(sent);
+        }
+    }
+
+private:
+    std::vector<types::TransmissionPtr> sent_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,85 @@
+#include <cmath>
+#include <numbers>
+
+#include "components/sonar/effects/Effect.hpp"
+#include "components/sonar/ways/DirectSound.hpp"
+#include "components/sonar/ways/ForeignEchoes.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr const char* crosstalk_name = "crosstalk";
+
+std::string unheardPulses(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no pulse of another sonar arrives at the first ping";
+}
+
+/** The pulses of other sonars that a snapshot names, which a plan does not know. */
+class CrosstalkInPings final : public PingEffect {
+public:
+    CrosstalkInPings(const RenderPlan& plan, const types::Geometry& geometry)
+        : direct_(plan, geometry),
+          echoes_(plan.config.crosstalk->echoes && plan.casts_rays ? makeForeignEchoes(plan) : nullptr) {}
+
+    void takeQuality() override {
+        if (echoes_) echoes_->takeQuality();
+    }
+    void takeScene(const types::Geometry& geometry) override { direct_.takeScene(geometry); }
+    void begin(const PingStart& start) override {
+        snapshot_ = &start.snapshot;
+        pinged_ = true;
+        heard_ = 0;
+        if (echoes_) echoes_->begin(start.snapshot);
+    }
+    bool followsRays() const override { return echoes_ != nullptr; }
+    void followRays(const CastPing& ping, std::span<const CastTile> tiles) override {
+        if (!snapshot_->transmissions.empty()) echoes_->follow(ping, tiles);
+    }
+    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override {
+        return !snapshot_->transmissions.empty() && echoes_->addEnergies(ping, cell, bins);
+    }
+    void addToBins(types::Sonar& ping) override {
+        if (!snapshot_->transmissions.empty()) heard_ = direct_.add(*snapshot_, ping);
+    }
+    size_t heard() const override { return heard_; }
+    std::optional<LeftOut> leftOut() const override {
+        if (!pinged_ || heard_ > 0) return {};
+        return LeftOut{.effect = crosstalk_name, .reason = Reason::Other, .words = unheardPulses};
+    }
+
+private:
+    DirectSound direct_;
+    std::unique_ptr<ForeignEchoes> echoes_;         ///< Null where surfaces scatter nothing to the sonar.
+    const types::Snapshot* snapshot_ = nullptr;     ///< Of the ping.
+    size_t heard_ = 0;                              ///< Transmissions of the last ping that came directly [1].
+    bool pinged_ = false;
+};
+
+/** The pulses of other sonars (ACOUSTICS.md 5.29). */
+class Crosstalk final : public Effect {
+public:
+    void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
+        if (config.crosstalk && config.model == Model::Cerqueira2017)
+            diagnostics.push_back({"crosstalk", "is given with model: cerqueira2017; it belongs to physical"});
+    }
+    bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
+        return plan.config.crosstalk || leaveOut(plan, {crosstalk_name, Reason::NotConfigured});
+    }
+    std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
+        return std::make_unique<CrosstalkInPings>(plan, geometry);
+    }
+    std::string takeOut(SonarConfig& config) const override {
+        if (!config.crosstalk) return {};
+        config.crosstalk.reset();
+        return crosstalk_name;
+    }
+};
+
+}  // namespace
+
+const Effect& crosstalk() {
+    static const Crosstalk effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

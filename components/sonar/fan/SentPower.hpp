@@ -1,0 +1,25 @@
+#pragma once
+#include <optional>
+
+#include "components/sonar/fan/BeamFan.hpp"
+#include "components/sonar/fan/Directivity.hpp"
+#include "types/Transmission.hpp"
+
+namespace insonify::sonar {
+
+/** Where the transmitter of a configured sonar radiates: by its `beam_pattern.transmit`, else evenly over fan and
+ *  aperture. */
+class SentPower final : public types::Radiation {
+public:
+    /** @throws types::ConfigError as Directivity does */
+    explicit SentPower(const SonarConfig& config);
+    double towards(const glm::dvec3& direction) const override;
+
+private:
+    bool conical_;
+    double half_height_;  ///< [rad]
+    Fan beams_;
+    std::optional<Directivity> pattern_;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,90 @@
+#include "components/sonar/ways/DirectSound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <numbers>
+
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+
+DirectSound::DirectSound(const RenderPlan& plan, const types::Geometry& geometry)
+    : plan_(plan), receiver_(plan) {
+    takeScene(geometry);
+    if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
+}
+
+void DirectSound::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
+
+double DirectSound::heardBy(const Beam& beam, const BeamAngles& from, double range) const {
+    const auto& pattern = plan_.directivity;
+    const double off = std::remainder(from.azimuth - beam.centre, 2 * std::numbers::pi);
+    const double across = pattern && pattern->hasAzimuth()
+                              ? pattern->heardAzimuth(from.azimuth, beam.centre, pattern->zoneAt(range))
+                              : off >= beam.low - beam.centre && off < beam.high - beam.centre;
+    const double along = pattern && pattern->hasElevation()
+                             ? pattern->heardElevation(from.elevation)
+                             : std::abs(from.elevation) <= types::radians(plan_.config.beam_height_deg) / 2;
+    return across * along;
+}
+
+bool DirectSound::spread(double range, double length) {
+    const BinGrid& grid = plan_.grid;
+    const double reach = length > 0 ? length / 2 : pulse_ ? pulse_->reach() : 0;
+    const double first = std::max(0.0, binAt(range - reach, grid.bin_width));
+    const double last = std::min(grid.bin_count - 1.0, binAt(range + reach, grid.bin_width));
+    shares_.clear();
+    if (!(first <= last)) return false;
+    first_bin_ = static_cast<size_t>(first);
+    for (double k = first; k <= last; ++k) {
+        const double low = k * grid.bin_width - range, high = low + grid.bin_width;
+        if (length > 0)
+            shares_.push_back(std::max(0.0, std::min(high, reach) - std::max(low, -reach)) / grid.bin_width);
+        else
+            shares_.push_back(pulse_ ? pulse_->mean(low, high) : 1);
+    }
+    return true;
+}
+
+bool DirectSound::addWay(const types::Transmission& sent, const Reception& received, const TargetWay& way,
+                         types::Sonar& ping) {
+    const double range = received.offset + way.length / 2;
+    if (!(range >= plan_.grid.range_min) || !spread(range, received.length)) return false;
+    const bool conical = plan_.features.has(Feature::Conical);
+    if (conical && way.direction.x < 0) return false;
+    const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * way.from_point);
+    const double intensity = received.level * power * way.power * std::exp(-received.absorption * way.length) /
+                             (way.length * way.length);
+    const BeamAngles from = beamAnglesOf(way.direction, conical);
+    bool heard = false;
+    for (size_t beam = 0; intensity > 0 && beam < plan_.beams.size(); ++beam) {
+        const double gain = heardBy(plan_.beams[beam], from, way.length);
+        if (!(gain > 0)) continue;
+        heard = true;
+        float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
+        for (size_t i = 0; i < shares_.size(); ++i)
+            bins[i] = static_cast<float>(std::min(double{bins[i]} + intensity * gain * shares_[i],
+                                                  double{std::numeric_limits<float>::max()}));
+    }
+    return heard;
+}
+
+size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
+    size_t heard = 0;
+    // A way may take as long as the pulse was sent before the ping.
+    double earliest = 0;
+    for (const auto& sent : snapshot.transmissions)
+        earliest = std::max(earliest, -receiver_.receptionOf(*sent, snapshot.time).offset);
+    if (!snapshot.transmissions.empty()) ways_->place(snapshot, plan_.grid.range_max + earliest);
+    for (const auto& sent : snapshot.transmissions) {
+        const Reception received = receiver_.receptionOf(*sent, snapshot.time);
+        bool any = false;
+        for (const TargetWay& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received, way, ping);
+        heard += any ? 1 : 0;
+    }
+    return heard;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,38 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "components/sonar/ways/PointTargets.hpp"
+#include "components/sonar/ways/TargetWays.hpp"
+#include "components/sonar/ways/Waveform.hpp"
+
+namespace insonify::sonar {
+
+/** The pulses of other sonars that come straight, or by mirrors, to a sonar: the one-way sonar equation
+ *  (ACOUSTICS.md 5.29). */
+class DirectSound {
+public:
+    /** Plan and geometry outlive it; the plan has `crosstalk`. */
+    DirectSound(const RenderPlan& plan, const types::Geometry& geometry);
+    void takeScene(const types::Geometry& geometry);
+
+    /** Adds the snapshot's transmissions to a ping whose beams are sorted. Returns the number of transmissions that any
+     *  beam hears. */
+    size_t add(const types::Snapshot& snapshot, types::Sonar& ping);
+
+private:
+    bool addWay(const types::Transmission& sent, const Reception& received, const TargetWay& way, types::Sonar& ping);
+    /** Fills shares_ for bins from first_bin_ on. Returns whether there are any. */
+    bool spread(double range, double length);
+    /** Power with which a beam hears a direction of the sonar's axes [1]. */
+    double heardBy(const Beam& beam, const BeamAngles& from, double range) const;
+
+    const RenderPlan& plan_;
+    Receiver receiver_;
+    std::optional<TargetWays> ways_;
+    std::optional<PulseMeans> pulse_;
+    std::vector<double> shares_;  ///< Mean of the response in each bin [1].
+    size_t first_bin_ = 0;
+};
+
+}  // namespace insonify::sonar

@@ -1,0 +1,30 @@
+#pragma once
+#include <atomic>
+
+#include "components/sonar/echo/Estimators.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+/** Adds energies to bins that all threads share. */
+#define HAVE_PHYSICAL
+struct SharedBins : Bins {
+    using Bins::Bins;
+    void addToBin(uint cell, uint bin, double amount, double) const {
+        if (!(amount > 0)) return;
+        std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+    }
+    uint64_t* by_way = nullptr;  ///< Further sums, of echoes by the way at hand; null where no truth is recorded.
+    static constexpr std::memory_order relaxed = std::memory_order_relaxed;
+#include "shaders/deposit.glsl"
+};
+#undef HAVE_PHYSICAL
+
+/** A quantum of the sums [sr]. */
+double quantumOf(const CastPing& ping) {
+    return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
+}
+
+}  // namespace
+}  // namespace insonify::sonar

@@ -1,0 +1,320 @@
+// The pulses of other sonars against the one-way sonar equation, and their echoes against an integral over the sea
+// floor, both worked out here (ACOUSTICS.md 5.29).
+#include <gmock/gmock.h>
+
+#include <complex>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "components/acoustics/BeamPattern.hpp"
+#include "components/acoustics/Pulse.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/ways/Waveform.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
+#include "types/Angle.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using std::numbers::pi;
+using test::openWater;
+using test::pingOf;
+
+/** Power that is sent in each direction. */
+class Beacon final : public types::Radiation {
+public:
+    explicit Beacon(std::function<double(const glm::dvec3&)> power) : power_(std::move(power)) {}
+    double towards(const glm::dvec3& direction) const override { return power_(direction); }
+
+private:
+    std::function<double(const glm::dvec3&)> power_;
+};
+
+types::TransmissionPtr sentFrom(
+    glm::dvec3 place, double delay_s, std::function<double(const glm::dvec3&)> power = [](auto&) { return 1.0; }) {
+    auto sent = std::make_shared<types::Transmission>();
+    sent->time = types::Time{1'000'000 + static_cast<int64_t>(std::llround(delay_s * 1e6))};
+    sent->sonar.position = place;
+    sent->radiation = std::make_shared<Beacon>(std::move(power));
+    return sent;
+}
+
+SonarConfig hearing(SonarConfig config, bool echoes = false) {
+    config.visibility = Visibility::Cpu;
+    config.crosstalk.emplace().echoes = echoes;
+    return config;
+}
+
+acoustics::BeamLaw lawOf(double width_deg) {
+    acoustics::BeamLaw law;
+    law.width_deg = width_deg;
+    return law;
+}
+
+double decibelsOf(double ratio) { return 10 * std::log10(ratio); }
+
+double totalOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+
+types::Snapshot openWaterWith(types::TransmissionPtr sent) {
+    types::Snapshot snapshot = test::snapshotOf(openWater());
+    snapshot.transmissions = {std::move(sent)};
+    return snapshot;
+}
+
+/** Random places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at the level
+ *  of the one-way sonar equation. */
+TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
+    std::mt19937 random(5);
+    const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    int heard = 0;
+    for (int trial = 0; trial < 60; ++trial) {
+        SonarConfig config =
+            hearing(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
+        config.absorption.emplace().db_per_m = between(0, 0.3);
+        config.crosstalk->source_level_db = between(180, 220);
+        config.beam_pattern.emplace();
+        config.beam_pattern->receive.azimuth = lawOf(between(3, 12));
+        config.beam_pattern->transmit.elevation = lawOf(between(10, 30));
+        const double azimuth = between(-0.7, 0.7), elevation = between(-0.2, 0.2), distance = between(3, 60);
+        const glm::dvec3 direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                   std::sin(elevation));
+        const double delay = between(-0.5, 0.5) * distance / 1000;
+        auto sent = std::make_shared<types::Transmission>(*sentFrom(distance * direction, delay, [&](const auto& to) {
+            EXPECT_NEAR(glm::distance(to, -direction), 0, 1e-9);
+            return 0.25;
+        }));
+        sent->source_level_db = between(180, 220);
+        const auto ping = pingOf(config, openWaterWith(sent));
+        const double range = 500 * (sent->time - types::Time{1'000'000}).seconds() + distance / 2;
+        const auto bin = static_cast<size_t>(range / 0.1);
+        const acoustics::BeamPattern receive(*config.beam_pattern->receive.azimuth);
+        for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
+            const double power = receive.power(azimuth - ping.bearings[beam].rad, 0);
+            if (bin >= ping.bin_count || power < 1e-4) continue;
+            const double expected = sent->source_level_db - *config.crosstalk->source_level_db + decibelsOf(0.25) +
+                                    decibelsOf(power) - 20 * std::log10(distance) -
+                                    *config.absorption->db_per_m * distance;
+            EXPECT_NEAR(decibelsOf(double{ping.bins[beam * ping.bin_count + bin]}), expected, 0.01) << trial;
+            ++heard;
+        }
+        for (size_t i = 0; i < ping.bins.size(); ++i)  // in that bin alone
+            ASSERT_TRUE(i % ping.bin_count == bin || ping.bins[i] == 0) << trial << " " << i;
+    }
+    EXPECT_GT(heard, 200);
+}
+
+TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
+    SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
+    config.frequency_khz = 700;
+    config.pulse.emplace().bandwidth_khz = 2;
+    config.pulse->window = acoustics::PulseWindow::Hann;
+    const auto ping = pingOf(config, openWaterWith(sentFrom({20, 0, 0}, 0.003)));
+    const acoustics::Pulse pulse(*config.pulse, 1000);
+    for (size_t k = 80; k < 160; ++k) {
+        const double low = 0.1 * static_cast<double>(k) - 11.5;
+        EXPECT_NEAR(double{ping.bins[k]} * 400, pulse.mean(low, low + 0.1), 2e-3) << k;
+    }
+}
+
+TEST(CrosstalkTest, APulseIsNotHeardBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
+    const SonarConfig config = hearing(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
+    const auto heardFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
+        types::Snapshot snapshot = test::snapshotOf(scene);
+        const double alone = totalOf(pingOf(config, snapshot));
+        snapshot.transmissions = {sentFrom(place, delay)};
+        return totalOf(pingOf(config, snapshot)) - alone;
+    };
+    EXPECT_NEAR(heardFrom({20, 0, 0}, 0), 1.0 / 400, 1e-6);
+    EXPECT_EQ(heardFrom({20, 0, 0}, 0, test::sceneOf({test::wall(10)})), 0);
+    EXPECT_NEAR(heardFrom({20, 0, 0}, 0, test::sceneOf({test::wall(25)})), 1.0 / 400, 1e-6);
+    EXPECT_EQ(heardFrom({20, 0, 0}, -0.021), 0);  // it has passed
+    EXPECT_EQ(heardFrom({20, 0, 0}, 0.041), 0);   // the sonar no longer listens
+    EXPECT_GT(heardFrom({20, 0, 0}, 0.039), 0);
+    EXPECT_EQ(heardFrom({-20, 0, 0}, 0), 0);
+    EXPECT_EQ(heardFrom({0, 20, 0}, 0), 0);
+    EXPECT_EQ(heardFrom({20, 0, 8}, 0), 0);
+}
+
+/** The surface's image of the sender, 6 m above it. */
+TEST(CrosstalkTest, ThePulseComesByWayOfTheSurfaceAsWell) {
+    SonarConfig config = test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
+    config = hearing(config);
+    config.multipath.emplace().surface.emplace();
+    types::Snapshot snapshot = openWaterWith(sentFrom({16, 0, 0}, 0.01, [](const glm::dvec3& to) {
+        return to.z > 0.1 ? 0.5 : 1.0;  // towards the surface it is weaker
+    }));
+    snapshot.water_surface = 6;
+    const auto ping = pingOf(config, snapshot);
+    const double straight = 16, reflected = 20;
+    EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + straight / 2) / 0.1)]} * straight * straight, 1, 1e-5);
+    EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + reflected / 2) / 0.1)]} * reflected * reflected, 0.5, 1e-5);
+}
+
+/** A matched filter on sampled chirps: the energy that it passes, relative to its own pulse of the same level. */
+double filteredEnergy(const Waveform& own, const Waveform& sent) {
+    constexpr double rate = 2e6;
+    const auto chirp = [&](const Waveform& form) {
+        std::vector<std::complex<double>> all(static_cast<size_t>(form.duration * rate));
+        for (size_t i = 0; i < all.size(); ++i) {
+            const double t = static_cast<double>(i) / rate - form.duration / 2;
+            const double offset = 1e3 * (form.frequency_khz - own.frequency_khz);
+            all[i] = std::polar(1.0, 2 * pi * (offset * t + 0.5e3 * form.bandwidth_khz / form.duration * t * t));
+        }
+        return all;
+    };
+    const auto filter = chirp(own), pulse = chirp(sent);
+    double energy = 0;
+    for (auto shift = -static_cast<std::ptrdiff_t>(filter.size()); shift < std::ssize(pulse); ++shift) {
+        std::complex<double> sum = 0;
+        const auto from = std::max<std::ptrdiff_t>(0, -shift);
+        const auto to = std::min(std::ssize(filter), std::ssize(pulse) - shift);
+        for (auto i = from; i < to; ++i)
+            sum += std::conj(filter[static_cast<size_t>(i)]) * pulse[static_cast<size_t>(i + shift)];
+        energy += std::norm(sum) / std::norm(static_cast<double>(filter.size()));
+    }
+    return energy / rate;  // [s], of a peak of 1
+}
+
+TEST(CrosstalkTest, AMatchedFilterPassesAsMuchOfAnotherChirpAsMismatchOfSays) {
+    const Waveform own{700, 40, 1.5e-3};
+    for (const Waveform& sent : {Waveform{700, 40, 2.5e-3}, Waveform{720, 40, 1.5e-3}, Waveform{715, 60, 1e-3},
+                                 Waveform{700, 30, 3e-3}, Waveform{690, 25, 2e-3}}) {
+        const double cell = 0.5 * 1500 * filteredEnergy(own, own);  // of the own pulse, in slant range
+        const Mismatch mismatch = mismatchOf(own, sent, cell, 300, 1500);
+        const double passed = 0.5 * 1500 * filteredEnergy(own, sent);
+        EXPECT_NEAR(decibelsOf(mismatch.intensity * mismatch.length / passed), 0, 0.5)
+            << sent.frequency_khz << " " << sent.bandwidth_khz;
+    }
+    EXPECT_EQ(mismatchOf(own, own, 0.02, 40, 1500).length, 0);
+    const Mismatch far = mismatchOf(own, {900, 40, 1.5e-3}, 0.02, 40, 1500);
+    EXPECT_NEAR(decibelsOf(far.intensity), -40 + decibelsOf(0.02 / far.length), 1e-9);
+}
+
+TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsThatItLasts) {
+    SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
+    config.frequency_khz = 700;
+    config.pulse.emplace().bandwidth_khz = 50;  // without chirp_us it lasts 1 ms
+    auto sent = std::make_shared<types::Transmission>(*sentFrom({20, 0, 0}, 0));
+    sent->frequency_khz = 725, sent->bandwidth_khz = 50, sent->duration = 2e-3;
+    const auto ping = pingOf(config, openWaterWith(sent));
+    std::vector<size_t> heard;
+    for (size_t k = 0; k < ping.bin_count; ++k)
+        if (ping.bins[k] > 0) heard.push_back(k);
+    ASSERT_EQ(heard.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
+    EXPECT_EQ(heard.front(), 92u);
+    // Half of its band is heard, of twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
+    EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1, 1e-4);
+}
+
+/** What a sonar hears of its own pulse, once more from a twin at its place. Fields of coherent speckle add with a phase
+ *  of their own, so there the sum over the ping doubles. */
+TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
+    for (const bool patterned : {false, true}) {
+        SonarConfig config =
+            test::sonarOf({.beams = 8, .width_deg = 80, .height_deg = 60, .bins = 300, .rows = 512, .columns = 8});
+        config.visibility = Visibility::Cpu;
+        config.frequency_khz = 300;
+        config.absorption.emplace().db_per_m = 0.1;
+        config.crosstalk.emplace();
+        if (patterned) {
+            config.beam_pattern.emplace();
+            config.beam_pattern->receive.azimuth = lawOf(6);
+            config.beam_pattern->receive.elevation = lawOf(30);
+            config.pulse.emplace().bandwidth_khz = 2;
+        }
+        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-5, 200)}, -10));
+        const auto own = pingOf(config, snapshot);
+        types::Snapshot with_twin = snapshot;
+        with_twin.transmissions = {sentFrom({-0.003, 0, 0}, 0)};  // not at a distance of 0, and behind the sonar
+        const auto both = pingOf(config, with_twin);
+        for (uint32_t beam = 1; beam < 7; ++beam)
+            for (size_t k = 110; k < 280; k += 5) {
+                const auto five = [&](const types::Sonar& ping) {
+                    const float* bins = &ping.bins[beam * ping.bin_count + k];
+                    return std::accumulate(bins, bins + 5, 0.0);
+                };
+                EXPECT_NEAR(five(both) / five(own), 2, 0.03) << patterned << beam << " " << k;
+            }
+        config.speckle.emplace().coherent = true;
+        const auto evened = [](const types::Sonar& ping) {
+            double sum = 0;
+            for (size_t i = 0; i < ping.bins.size(); ++i)
+                sum += double{ping.bins[i]} * std::pow(static_cast<double>(i % ping.bin_count), 5);
+            return sum;
+        };
+        EXPECT_NEAR(evened(pingOf(config, with_twin)) / evened(pingOf(config, snapshot)), 2, 0.25) << patterned;
+    }
+}
+
+/** Level ground of Lambert's law, by an integral over its points. */
+TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGround) {
+    SonarConfig config = hearing(
+        test::sonarOf({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}), true);
+    const auto scene = test::sceneOf({test::ground(-4, 400)}, -20);
+    types::Snapshot snapshot = test::snapshotOf(scene);
+    const auto own = pingOf(config, snapshot);
+    const glm::dvec3 sender(-3, 2.5, 3);
+    const double delay = 0.012;
+    const auto power = [](const glm::dvec3& to) { return to.z < 0 ? 1 + 0.5 * to.x : 0; };
+    snapshot.transmissions = {sentFrom(sender, delay, power)};
+    const auto both = pingOf(config, snapshot);
+    std::vector<double> expected(own.bin_count);
+    constexpr double step = 0.02;
+    for (double x = step / 2; x < 60; x += step)
+        for (double y = -40 + step / 2; y < 40; y += step) {
+            const glm::dvec3 at(x, y, -4);
+            const double r = glm::length(at), back = glm::distance(at, sender);
+            const double elevation = std::asin(4 / r);
+            if (std::abs(std::atan2(y, x)) > pi / 6 || elevation > pi / 3) continue;
+            const auto bin = static_cast<size_t>((500 * delay + (r + back) / 2) / 0.1);
+            if (bin >= expected.size()) continue;
+            const double scattered = 0.01 * (4 / r) * (7 / back);
+            expected[bin] += power((at - sender) / back) * scattered * step * step / (r * r * back * back);
+        }
+    for (size_t k = 130; k < 290; ++k) {
+        double sum = 0, truth = 0;
+        for (size_t j = k - 2; j <= k + 2; ++j) {
+            sum += double{both.bins[j]} - double{own.bins[j]};
+            truth += expected[j];
+        }
+        EXPECT_NEAR(decibelsOf(sum / truth), 0, 0.1) << k;
+    }
+}
+
+TEST(CrosstalkTest, ASenderBehindASurfaceOrOnItsFarSideLightsNothing) {
+    const SonarConfig config =
+        hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
+    const auto alone = pingOf(config, snapshot);
+    snapshot.transmissions = {sentFrom({5, 0, -6}, 0)};
+    EXPECT_EQ(pingOf(config, snapshot).bins, alone.bins);
+    snapshot.geometry = test::sceneOf({test::ground(-4, 400), test::quad({1, -50, -3}, {60, 0, 0}, {0, 100, 0})});
+    const auto roofed = pingOf(config, snapshot);
+    snapshot.transmissions = {sentFrom({10, 0, -3.5}, 0)};
+    EXPECT_EQ(pingOf(config, snapshot).bins, roofed.bins);
+}
+
+/** Senders at extreme places and times: what is heard is finite. */
+TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
+    const SonarConfig config =
+        hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+    types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
+    for (const glm::dvec3 place : {glm::dvec3(0), glm::dvec3(1e-9, 0, 0), glm::dvec3(1e9, 0, 0), glm::dvec3(5, 0, -4),
+                                   glm::dvec3(5, 0, -4 + 1e-6)})
+        for (const double delay : {-1e4, -0.03, 0.0, 0.03, 1e4}) {
+            auto loud = std::make_shared<types::Transmission>(*sentFrom(place, delay));
+            loud->source_level_db = 400;
+            snapshot.transmissions = {loud, sentFrom(place, delay)};
+            SonarConfig quiet = config;
+            quiet.crosstalk->source_level_db = -300;
+            for (const float bin : pingOf(quiet, snapshot).bins) ASSERT_TRUE(std::isfinite(bin) && bin >= 0);
+        }
+}
+
+}  // namespace
+}  // namespace insonify::sonar
