@@ -117,7 +117,10 @@ std::vector<std::string> LoggerTask::notices() const {
     return all;
 }
 
-bool LoggerTask::heals() const { return activity().realtime() && environment().wall_clock; }
+bool LoggerTask::heals() const {
+    const framework::Environment& run = environment();
+    return run.deployment && !run.lockstep && run.wall_clock;  // before the start, when no cycle has been released yet
+}
 
 void LoggerTask::followHealth() {
     const LogHealth before = std::exchange(health_, thread_->health());

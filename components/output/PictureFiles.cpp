@@ -83,8 +83,13 @@ void writePng(const std::filesystem::path& file, const types::Image& picture) {
     const std::unique_ptr<std::FILE, Close> stream(std::fopen(file.c_str(), "wb"));
     if (!stream) fail(file, std::strerror(errno));
     const auto row_size = static_cast<png_int_32>(picture.row_size);
-    if (!png_image_write_to_stdio(&png, stream.get(), 0, picture.image.data(), row_size, nullptr))
-        fail(file, errno ? std::strerror(errno) : png.message);
+    if (png_image_write_to_stdio(&png, stream.get(), 0, picture.image.data(), row_size, nullptr) &&
+        std::fflush(stream.get()) == 0)
+        return;
+    const std::string reason = errno ? std::strerror(errno) : png.message;
+    std::error_code kept;  // half of a picture helps nobody
+    if (std::filesystem::is_regular_file(file, kept)) std::filesystem::remove(file, kept);
+    fail(file, reason);
 }
 
 PictureFiles::PictureFiles(const RecordingConfig& config, const std::filesystem::path& folder) : folder_(folder) {

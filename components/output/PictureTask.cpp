@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "components/output/SamplePictureTask.hpp"
 #include "components/output/ScanMosaicTask.hpp"
@@ -21,13 +22,25 @@ bool PictureTask::configureHook() {
 bool PictureTask::startHook() {
     pings_ = 0;
     const PictureConfig& config = pictureConfig();
-    if (config.file || config.video) writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")));
+    health_ = {};
+    const bool heals = environment().deployment && !environment().lockstep;
+    if (config.file || config.video)
+        writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")),
+                                                  heals ? AtPictureFailure::Count : AtPictureFailure::Throw);
     return true;
 }
 
 void PictureTask::updateHook() {
     types::SonarPtr sample;
     if (ping.readNew(sample)) take(*sample);
+}
+
+void PictureTask::followHealth() {
+    const PictureHealth before = std::exchange(health_, writer_->health());
+    if (health_.fails && state() != framework::TaskState::RunTimeError)
+        error(health_.failure + "; pictures are lost until one can be written");
+    else if (!health_.fails && before.fails && state() == framework::TaskState::RunTimeError)
+        recover();
 }
 
 void PictureTask::take(const types::Sonar& sample) {
@@ -40,6 +53,7 @@ void PictureTask::take(const types::Sonar& sample) {
         show(sample);
     else
         painter_->skip(sample);
+    if (writer_) followHealth();
 }
 
 std::string PictureTask::indivisible() const {
@@ -70,7 +84,10 @@ void PictureTask::paint(const types::Sonar& sample, types::Image& picture) try {
 }
 
 void PictureTask::stopHook() {
-    if (const auto writer = std::move(writer_)) writer->close();
+    const auto writer = std::move(writer_);
+    if (!writer) return;
+    writer->close();
+    health_ = writer->health();
 }
 
 void PictureTask::cleanupHook() { painter_.reset(); }

@@ -23,7 +23,8 @@ namespace insonify::output {
  *
  *  A picture is made only when somebody is connected to `image` or a file is configured, and of one ping in `every`;
  *  it carries the ping's time. Files are numbered by picture from 0 at each start, and written by a thread of their
- *  own; one that cannot be written ends the task in Exception. */
+ *  own. One that cannot be written ends the task in Exception; in realtime it is RunTimeError until one can be written
+ *  again, and the pictures between are counted. */
 class PictureTask : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -32,6 +33,7 @@ public:
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
     std::string indivisible() const override;
+    std::vector<std::string> notices() const override { return health_.notices(); }
 
 protected:
     bool configureHook() override;
@@ -39,6 +41,7 @@ protected:
     void updateHook() override;
     void stopHook() override;
     void cleanupHook() override;
+    void errorHook() override { updateHook(); }
     /** Makes the picture of a ping, or lets the painter take note of it. */
     void take(const types::Sonar& sample);
 
@@ -48,12 +51,14 @@ private:
     /** Whether a picture shows its own ping alone. */
     virtual bool showsOne() const { return false; }
     void show(const types::Sonar& sample);
+    void followHealth();
     void paint(const types::Sonar& sample, types::Image& picture);
 
     std::unique_ptr<Painter> painter_;
     std::unique_ptr<PictureWriter> writer_;
     framework::SamplePool<types::Image> pool_;
     uint64_t pings_ = 0;
+    PictureHealth health_;  ///< As it was last looked at.
 };
 
 /** Shows pings as the Picture does, which is a Painter that needs nothing but them. */

@@ -2,7 +2,13 @@
 
 namespace insonify::output {
 
-PictureWriter::PictureWriter(PictureFiles files) : files_(std::move(files)), thread_([this] { loop(); }) {}
+std::vector<std::string> PictureHealth::notices() const {
+    if (lost == 0) return {};
+    return {"Warning: " + std::to_string(lost) + " pictures are in no file; the last: " + failure};
+}
+
+PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)
+    : files_(std::move(files)), at_failure_(at_failure), thread_([this] { loop(); }) {}
 
 PictureWriter::~PictureWriter() { end(); }
 
@@ -33,6 +39,27 @@ void PictureWriter::end() {
     if (thread_.joinable()) thread_.join();
 }
 
+PictureHealth PictureWriter::health() {
+    std::lock_guard lock(mutex_);
+    return health_;
+}
+
+void PictureWriter::put(const types::Image* picture) {
+    std::string failure;
+    try {
+        picture ? files_.write(*picture) : files_.close();
+    } catch (const std::exception& error) {
+        if (at_failure_ == AtPictureFailure::Throw) throw;
+        failure = error.what();
+    }
+    if (at_failure_ == AtPictureFailure::Throw) return;
+    std::lock_guard lock(mutex_);
+    if (picture || !failure.empty()) health_.fails = !failure.empty();
+    if (failure.empty()) return;
+    ++health_.lost;
+    health_.failure = std::move(failure);
+}
+
 void PictureWriter::loop() try {
     std::unique_lock lock(mutex_);
     while (true) {
@@ -43,11 +70,11 @@ void PictureWriter::loop() try {
         --count_;
         lock.unlock();
         changed_.notify_all();
-        files_.write(*picture);
+        put(picture.get());
         lock.lock();
     }
     lock.unlock();
-    files_.close();
+    put(nullptr);
 } catch (...) {
     std::lock_guard lock(mutex_);
     error_ = std::current_exception();

@@ -1,6 +1,7 @@
 #include "components/output/SamplePictureTask.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace insonify::output {
 
@@ -14,7 +15,11 @@ template <class Picture>
 bool SamplePictureTask<Picture>::startHook() {
     samples_ = 0;
     picture_->clear();
-    if (config->file || config->video) writer_ = std::make_unique<PictureWriter>(PictureFiles(*config, outputPath("")));
+    health_ = {};
+    const bool heals = environment().deployment && !environment().lockstep;
+    if (config->file || config->video)
+        writer_ = std::make_unique<PictureWriter>(PictureFiles(*config, outputPath("")),
+                                                  heals ? AtPictureFailure::Count : AtPictureFailure::Throw);
     return true;
 }
 
@@ -24,6 +29,16 @@ void SamplePictureTask<Picture>::updateHook() {
         picture_->add(sample);
         if (++samples_ % config->every == 0 && (image.connected() || writer_)) show();
     }
+    if (writer_) followHealth();
+}
+
+template <class Picture>
+void SamplePictureTask<Picture>::followHealth() {
+    const PictureHealth before = std::exchange(health_, writer_->health());
+    if (health_.fails && state() != framework::TaskState::RunTimeError)
+        error(health_.failure + "; pictures are lost until one can be written");
+    else if (!health_.fails && before.fails && state() == framework::TaskState::RunTimeError)
+        recover();
 }
 
 template <class Picture>
@@ -39,7 +54,10 @@ void SamplePictureTask<Picture>::show() {
 
 template <class Picture>
 void SamplePictureTask<Picture>::stopHook() {
-    if (const auto writer = std::move(writer_)) writer->close();
+    const auto writer = std::move(writer_);
+    if (!writer) return;
+    writer->close();
+    health_ = writer->health();
 }
 
 template class SamplePictureTask<SoundingMap>;

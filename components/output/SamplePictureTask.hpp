@@ -43,15 +43,20 @@ public:
     framework::InputPort<Sample> input{this, Picture::port, "what is shown"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
+    std::vector<std::string> notices() const override { return health_.notices(); }
+
 private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
     void stopHook() override;
+    void errorHook() override { updateHook(); }
     void show();
+    void followHealth();
 
     std::unique_ptr<Picture> picture_;
     std::unique_ptr<PictureWriter> writer_;
+    PictureHealth health_;  ///< As it was last looked at.
     framework::SamplePool<types::Image> pool_;
     uint64_t samples_ = 0;
 };

@@ -56,6 +56,7 @@ void ScanMosaicTask::describeMap(std::string& text) const {
 
 std::vector<std::string> ScanMosaicTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
+    std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
     if (held_ + left_out_ > 0) {
         std::string map;
         describeMap(map);

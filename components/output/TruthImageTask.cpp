@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace insonify::output {
 
 bool TruthImageTask::startHook() {
@@ -26,6 +29,7 @@ void TruthImageTask::show(const types::Sonar& sample) {
 
 std::vector<std::string> TruthImageTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
+    std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
     if (left_out_ > 0) notices.push_back(fmt::format("Warning: {} pings not shown for want of their truth", left_out_));
     return notices;
 }

@@ -13,6 +13,7 @@ bool XtfTask::startHook() {
     next_ = {};
     has_pose_ = false;
     without_pose_ = 0;
+    lost_ = 0;
     last_ = {};
     aligner_.clear(config->timeout);
     file_.emplace(outputPath(config->file));
@@ -36,7 +37,21 @@ void XtfTask::write(const types::Sonar& line) {
     last_ = line.time;
     appendXtfPing(format_, line, next_, bytes_);
     ++next_.number;
-    file_->append(bytes_);
+    put();
+}
+
+void XtfTask::put() {
+    if (!file_) return void(++lost_);
+    try {
+        file_->append(bytes_);
+    } catch (const std::exception& failure) {
+        if (!environment().deployment || environment().lockstep) throw;
+        // What half a ping has left would spoil what comes after it.
+        file_.reset();
+        ++lost_;
+        failure_ = failure.what();
+        error(failure_ + "; the file ends here, and further pings are lost");
+    }
 }
 
 void XtfTask::stopHook() {
@@ -49,6 +64,8 @@ std::vector<std::string> XtfTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
     if (without_pose_ > 0)
         notices.push_back("Warning: " + std::to_string(without_pose_) + " pings of " + config->file + " have no pose");
+    if (lost_ > 0)
+        notices.push_back("Warning: " + std::to_string(lost_) + " pings are not in " + config->file + ": " + failure_);
     return notices;
 }
 

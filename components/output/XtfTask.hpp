@@ -33,7 +33,8 @@ struct XtfConfig {
 /** Writes the lines of a side-scan sonar as an XTF file: see Xtf.hpp.
  *
  *  In: `ping`; `pose`, the sonar in the world, of which the one at the ping's time counts, or the last before it;
- *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is told of. */
+ *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is told of. In
+ *  realtime a file that cannot be written ends there: RunTimeError, and pings are counted. */
 class XtfTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -50,12 +51,15 @@ private:
     bool startHook() override;
     void updateHook() override;
     void stopHook() override;
+    void errorHook() override { updateHook(); }
     void write(const types::Sonar& line);
+    void put();
 
     XtfFormat format_;
     XtfPing next_;
     bool has_pose_ = false;
-    uint64_t without_pose_ = 0;
+    uint64_t without_pose_ = 0, lost_ = 0;
+    std::string failure_;
     types::Time last_;
     std::optional<ByteFile> file_;
     std::vector<char> bytes_;

@@ -2,6 +2,7 @@
 // and of square cylinders by integral equations (ACOUSTICS.md 3.12).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <iostream>
