@@ -1,6 +1,10 @@
 // What goes wrong with what a run writes.
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <regex>
+#include <thread>
+
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -35,6 +39,36 @@ TEST(RunFailureTest, AFullDiskIsExitCode1AndWhatWasFlushedIsKept) {
     const Outcome told = callInsonify(folder, {"log", "info", "out/wall.0.log", "--json"});
     EXPECT_EQ(told.code, 0) << told.err;
     EXPECT_GT(json::parse(told.out)["streams"][0]["count"], 100);
+}
+
+/** Log and pictures go to a disk that is full for the first second. */
+TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
+    std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
+    text = replaced(text, "  log:\n", "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n  log:\n");
+    const WallFolder folder(text + "  - {from: noise.noisy, to: fan.ping}\n");
+    fs::create_directory(folder / "out");
+    const std::vector<fs::path> full{folder / "out/wall.0.log", folder / "out/fan_000000.png", folder / "out/fan_000001.png"};
+    for (const fs::path& file : full) fs::create_symlink("/dev/full", file);
+    Process run({insonify::test::program("insonify"), "run", "wall.yml", "--out", "out", "--duration", "3.5", "--summary",
+                 "summary.json"},
+                folder.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    for (const fs::path& file : full) fs::remove(file);
+    const Outcome outcome = run.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("No space left on device; samples are lost until a file can be written"));
+    EXPECT_THAT(outcome.err, HasSubstr("log: records again, in "));
+    EXPECT_THAT(outcome.err, HasSubstr("fan: Warning: 2 pictures are in no file; the last: cannot write "));
+    EXPECT_TRUE(fs::exists(folder / "out/fan_000002.png"));
+    const json summary = json::parse(readFile(folder / "summary.json"));
+    EXPECT_GE(summary["pings"], 30);
+    const json info = json::parse(callInsonify(folder, {"log", "info", "out/wall.0.log", "--json"}).out);
+    std::smatch lost;
+    ASSERT_TRUE(std::regex_search(outcome.err, lost, std::regex("log: ([0-9]+) samples are in no file")));
+    uint64_t in_file = 0;
+    for (const json& stream : info["streams"]) in_file += stream["count"].get<uint64_t>();
+    EXPECT_GT(in_file, 10u);
+    EXPECT_GE(in_file + std::stoul(lost[1]), 3 * summary["pings"].get<uint64_t>());  // clean, noisy and pose
 }
 
 namespace {
