@@ -43,8 +43,8 @@ std::vector<std::string> PingTask::notices() const {
             "is rendered by itself",
             shortestPeriod(), echoTime(), grid().range_max));
     if (cut_off_ > 0)
-        all.push_back(fmt::format("the last {} of others listened to its echoes when the run stopped: not written",
-                                  cut_off_ == 1 ? "ping that hears pulses" : "pings that hear pulses"));
+        all.push_back(fmt::format("the last {} listened when the run stopped: not written",
+                                  cut_off_ == 1 ? "ping that hears others" : "pings that hear others"));
     return all;
 }
 
@@ -95,11 +95,11 @@ bool PingTask::begin() {
         return false;
     }
     if (state() == framework::TaskState::RunTimeError) recover();
-    if (radiation_) transmission.write(pulseSent());
+    if (radiation_) transmission.write(ownTransmission());
     return true;
 }
 
-types::TransmissionPtr PingTask::pulseSent() const {
+types::TransmissionPtr PingTask::ownTransmission() const {
     const SonarConfig config = sonarConfig();
     const Waveform form = waveformOf(config, grid());
     auto sent = std::make_shared<types::Transmission>();
@@ -164,7 +164,7 @@ void PingTask::rehearse() {
 }
 
 std::string PingTask::indivisible() const {
-    if (others.connected()) return "others: pulses of other sonars are heard, which a shard does not have";
+    if (others.connected()) return "others: pings of other sonars are heard, which a shard does not have";
     if (!sonarConfig().choosesQuality()) return {};
     return "quality: is chosen from the pings before, which a shard does not have; give rows and columns_per_beam, "
            "such "

@@ -52,9 +52,9 @@ public:
         this, "returns", "first and strongest return of each beam; computed only when connected"};
 
     framework::OutputPort<types::TransmissionPtr> transmission{
-        this, "transmission", "the pulse of each ping as it is sent, for the port `others` of other sonars"};
+        this, "transmission", "each ping as it is sent, for the port `others` of other sonars"};
     framework::InputPort<types::TransmissionPtr> others{
-        this, "others", "pulses of other sonars, which a sonar with `crosstalk` hears; connect with a buffer",
+        this, "others", "pings of other sonars, which a sonar with `crosstalk` hears; connect with a buffer",
         framework::Need::Optional};
 
     framework::OutputPort<types::SonarElementsPtr> elements{
@@ -97,7 +97,7 @@ protected:
 private:
     /** Takes the next ping, if there is one, and sends its pulse. Returns whether it can be rendered. */
     bool begin();
-    types::TransmissionPtr pulseSent() const;
+    types::TransmissionPtr ownTransmission() const;
     /** Renders what has been begun, and goes on. */
     void complete();
     void hearOthers();

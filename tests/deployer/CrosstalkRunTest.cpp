@@ -126,5 +126,5 @@ TEST_F(CrosstalkRunTest, WhatIsConnectedWronglyIsRefused) {
     EXPECT_THAT(outcome.err, testing::HasSubstr("visibility: is gl with crosstalk.echoes, which needs rays"));
     outcome = run(pair, {"--pings", "4", "--shard", "1/2"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("pulses of other sonars are heard, which a shard does not have"));
+    EXPECT_THAT(outcome.err, testing::HasSubstr("pings of other sonars are heard, which a shard does not have"));
 }

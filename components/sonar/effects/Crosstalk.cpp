@@ -10,8 +10,8 @@ namespace {
 
 constexpr const char* crosstalk_name = "crosstalk";
 
-std::string unheardPulses(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "no pulse of another sonar arrives at the first ping";
+std::string unheardPings(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "no ping of another sonar arrives at the first ping";
 }
 
 /** The pulses of other sonars that a snapshot names, which a plan does not know. */
@@ -44,7 +44,7 @@ public:
     size_t heard() const override { return heard_; }
     std::optional<LeftOut> leftOut() const override {
         if (!pinged_ || heard_ > 0) return {};
-        return LeftOut{.effect = crosstalk_name, .reason = Reason::Other, .words = unheardPulses};
+        return LeftOut{.effect = crosstalk_name, .reason = Reason::Other, .words = unheardPings};
     }
 
 private:

@@ -14,7 +14,7 @@ struct CrosstalkConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"echoes", "", "surfaces scatter the pulses of others to this sonar too; false: direct paths alone"},
+        visit(Field{"echoes", "", "surfaces scatter the pings of others to this sonar too; false: direct paths alone"},
               self.echoes);
         visit(Field{"source_level_db", "dB re 1 uPa m",
                     "of this sonar, for those that hear it and for what it hears; absent: all are equally loud", -300,

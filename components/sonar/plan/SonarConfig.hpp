@@ -346,7 +346,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
                 "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
     visit(Field{"crosstalk", "",
-                "pulses of the sonars that are connected to port `others` are heard; absent: nothing may be connected"},
+                "pings of the sonars that are connected to port `others` are heard; absent: nothing may be connected"},
           self.crosstalk);
     visit(Field{"effects", "",
                 "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}`, echoes of straight edges, and "

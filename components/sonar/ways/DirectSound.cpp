@@ -11,9 +11,8 @@
 namespace insonify::sonar {
 
 DirectSound::DirectSound(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), receiver_(plan) {
+    : plan_(plan), receiver_(plan), shape_(echoShapeOf(plan)) {
     takeScene(geometry);
-    if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
 }
 
 void DirectSound::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
@@ -32,7 +31,7 @@ double DirectSound::heardBy(const Beam& beam, const BeamAngles& from, double ran
 
 bool DirectSound::spread(double range, double length) {
     const BinGrid& grid = plan_.grid;
-    const double reach = length > 0 ? length / 2 : pulse_ ? pulse_->reach() : 0;
+    const double reach = length > 0 ? length / 2 : shape_ ? shape_->reach() : 0;
     const double first = std::max(0.0, binAt(range - reach, grid.bin_width));
     const double last = std::min(grid.bin_count - 1.0, binAt(range + reach, grid.bin_width));
     shares_.clear();
@@ -43,7 +42,7 @@ bool DirectSound::spread(double range, double length) {
         if (length > 0)
             shares_.push_back(std::max(0.0, std::min(high, reach) - std::max(low, -reach)) / grid.bin_width);
         else
-            shares_.push_back(pulse_ ? pulse_->mean(low, high) : 1);
+            shares_.push_back(shape_ ? shape_->mean(low, high) : 1);
     }
     return true;
 }
@@ -55,7 +54,7 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
     const bool conical = plan_.features.has(Feature::Conical);
     if (conical && way.direction.x < 0) return false;
     const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * way.from_point);
-    const double intensity = received.level * power * way.power * std::exp(-received.absorption * way.length) /
+    const double intensity = received.level * power * way.power * std::exp(-received.loss * way.length) /
                              (way.length * way.length);
     const BeamAngles from = beamAnglesOf(way.direction, conical);
     bool heard = false;

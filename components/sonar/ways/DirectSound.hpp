@@ -2,9 +2,11 @@
 #include <optional>
 #include <vector>
 
-#include "components/sonar/ways/PointTargets.hpp"
+#include "components/sonar/echo/EchoShape.hpp"
+#include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/ways/TargetWays.hpp"
 #include "components/sonar/ways/Waveform.hpp"
+#include "types/Sonar.hpp"
 
 namespace insonify::sonar {
 
@@ -30,7 +32,7 @@ private:
     const RenderPlan& plan_;
     Receiver receiver_;
     std::optional<TargetWays> ways_;
-    std::optional<PulseMeans> pulse_;
+    std::optional<EchoShape> shape_;
     std::vector<double> shares_;  ///< Mean of the response in each bin [1].
     size_t first_bin_ = 0;
 };

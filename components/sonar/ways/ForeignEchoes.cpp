@@ -159,7 +159,7 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, c
         std::abs(way.per_elevation + way.per_azimuth * at.lean) * stretch * at.height,
         nearest > nearest_bin ? 1 / nearest : 1 / nearest_bin, 1 / nearest_bin, 0, ping.rules.edges.front(),
         ping.rules.edges[static_cast<size_t>(ping.rules.bins.bin_count)], at.size);
-    const double absorbed = std::exp(2 * sender.received.absorption * (range - half));
+    const double absorbed = std::exp(2 * sender.received.loss * (range - half));
     SharedBins(ping.rules, sums_[sender.sums].data())
         .depositCell(cell, static_cast<uint>(at.cell),
                      ping.rules.strength_scale * power * (given.diffuse + given.lobe) * absorbed * range * range * range /

@@ -7,48 +7,13 @@
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
-#include "components/sonar/echo/RangeResponse.hpp"
 #include "components/sonar/field/EchoField.hpp"
 #include "types/Angle.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::sonar {
-namespace {
-
-/** Steps of the table over the width of h [1]. */
-constexpr double steps_per_width = 256;
-
-}  // namespace
-
-PulseMeans::PulseMeans(const acoustics::Pulse& pulse) : reach_(pulse.extent(RangeResponse::floor_db)) {
-    if (!pulse.peakSidelobeDb()) {
-        tone_ = pulse;
-        return;
-    }
-    step_ = pulse.resolution() / steps_per_width;
-    const auto steps = static_cast<size_t>(std::ceil(reach_ / step_)) + 1;
-    integral_.push_back(0);
-    for (size_t i = 0; i <= steps; ++i) {
-        response_.push_back(pulse.response(static_cast<double>(i) * step_));
-        if (i > 0) integral_.push_back(integral_.back() + step_ * (response_[i - 1] + response_[i]) / 2);
-    }
-}
-
-double PulseMeans::integralTo(double distance) const {
-    const double at = std::min(std::abs(distance), reach_) / step_;
-    const auto i = static_cast<size_t>(at);
-    const double rest = at - static_cast<double>(i), slope = response_[i + 1] - response_[i];
-    return std::copysign(integral_[i] + step_ * rest * (response_[i] + rest * slope / 2), distance);
-}
-
-double PulseMeans::mean(double low, double high) const {
-    if (tone_) return tone_->mean(low, high);
-    return (integralTo(high) - integralTo(low)) / (high - low);
-}
-
 PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geometry)
-    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()) {
-    if (plan.has(Pass::Pulse)) pulse_.emplace(acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound));
+    : plan_(plan), absorption_(makeAbsorption(plan.config).intensityPerMetre()), shape_(echoShapeOf(plan)) {
     means_.reserve(static_cast<size_t>(plan.grid.bin_count));
     takeScene(geometry);
 }
@@ -118,13 +83,13 @@ std::complex<double> PointTargets::phaseIn(const Beam& beam, const Return& echo)
 
 bool PointTargets::spread(double range) {
     const BinGrid& grid = plan_.grid;
-    const double reach = pulse_ ? pulse_->reach() : 0;
+    const double reach = shape_ ? shape_->reach() : 0;
     const double first = std::max(0.0, binAt(range - reach, grid.bin_width));
     const double last = std::min(grid.bin_count - 1.0, binAt(range + reach, grid.bin_width));
     means_.clear();
     first_bin_ = static_cast<size_t>(first);
     for (double k = first; k <= last; ++k)
-        means_.push_back(pulse_ ? pulse_->mean(k * grid.bin_width - range, (k + 1) * grid.bin_width - range) : 1);
+        means_.push_back(shape_ ? shape_->mean(k * grid.bin_width - range, (k + 1) * grid.bin_width - range) : 1);
     return !means_.empty();
 }
 
@@ -168,7 +133,7 @@ std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types
 }
 
 size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
-    ways_->place(snapshot, plan_.grid.range_max + (pulse_ ? pulse_->reach() : 0));
+    ways_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
     size_t heard = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
     for (size_t i = 0; i < snapshot.targets.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "components/acoustics/Pulse.hpp"
+#include "components/sonar/echo/EchoShape.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
@@ -14,24 +14,6 @@
 namespace insonify::sonar {
 
 class EchoField;
-
-/** What a pulse leaves of an echo in a bin, quickly: the mean of h over it, by an integral that is made once. */
-class PulseMeans {
-public:
-    explicit PulseMeans(const acoustics::Pulse& pulse);
-
-    /** Mean of h between two distances from the echo [m]. */
-    double mean(double low, double high) const;
-    double reach() const { return reach_; }  ///< Beyond it nothing is left [m].
-
-private:
-    double integralTo(double distance) const;
-
-    std::optional<acoustics::Pulse> tone_;  ///< A box, which no table holds.
-    double reach_, step_ = 0;               ///< [m]
-    std::vector<double> response_;          ///< h at steps from 0 on [1].
-    std::vector<double> integral_;          ///< From 0 to there, of straight lines between the steps [m].
-};
 
 /** Adds the point targets of a scene to pings: the active sonar equation at each target's own place, with the pattern
  *  of each beam there and the pulse about its own range (ACOUSTICS.md 5.14). What stands before a target hides it. */
@@ -80,7 +62,7 @@ private:
     const RenderPlan& plan_;
     std::optional<TargetWays> ways_;
     double absorption_;  ///< Two-way, of intensity [1/m].
-    std::optional<PulseMeans> pulse_;
+    std::optional<EchoShape> shape_;
     std::vector<double> means_;  ///< Of h, for bins from first_bin_ on [1].
     size_t first_bin_ = 0;
 };

@@ -58,7 +58,7 @@ Receiver::Receiver(const RenderPlan& plan)
       cell_(hasPulse(plan.config) ? acoustics::Pulse(*plan.config.pulse, plan.grid.speed_of_sound).cellLength()
                                   : plan.grid.bin_width),
       summed_cell_(plan.has(Pass::Pulse) ? cell_ : plan.grid.bin_width),
-      absorption_(makeAbsorption(plan.config).intensityPerMetre() / 2) {}
+      loss_(makeAbsorption(plan.config).intensityPerMetre() / 2) {}
 
 Reception Receiver::receptionOf(const types::Transmission& sent, const types::Time& own_time) const {
     const CrosstalkConfig& config = *plan_.config.crosstalk;
@@ -66,7 +66,7 @@ Reception Receiver::receptionOf(const types::Transmission& sent, const types::Ti
         mismatchOf(own_, waveformOf(sent, own_), cell_, config.rejection_db, plan_.grid.speed_of_sound);
     const bool knows_levels = config.source_level_db && std::isfinite(sent.source_level_db);
     const double louder_db = knows_levels ? sent.source_level_db - *config.source_level_db : 0;
-    return {std::pow(10, louder_db / 10) * mismatch.intensity, mismatch.length, absorption_,
+    return {std::pow(10, louder_db / 10) * mismatch.intensity, mismatch.length, loss_,
             0.5 * plan_.grid.speed_of_sound * (sent.time - own_time).seconds()};
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <optional>
 
-#include "components/acoustics/Pulse.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "types/Transmission.hpp"
 
@@ -35,7 +34,7 @@ Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, doub
 struct Reception {
     double level;     ///< Intensity on the axis at 1 m, relative to the sonar's own [1].
     double length;    ///< Of the box that its filter makes of the pulse [m]; 0: the pulse is as its own.
-    double absorption;  ///< One way, of intensity [1/m].
+    double loss;      ///< By absorption, one way, of intensity [1/m].
     double offset;    ///< Slant range that the delay between the two pulses amounts to: c (t - t_own) / 2 [m].
 };
 
@@ -53,7 +52,7 @@ private:
     const RenderPlan& plan_;
     Waveform own_;
     double cell_, summed_cell_;  ///< Of the pulse itself, and summedCell() [m].
-    double absorption_;          ///< One way, of intensity [1/m].
+    double loss_;                ///< By absorption, one way, of intensity [1/m].
 };
 
 }  // namespace insonify::sonar
