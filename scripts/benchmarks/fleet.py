@@ -62,10 +62,10 @@ def measure_fleet(options):
             _, few, _ = run(count, hears, "lockstep", ["--pings", "10"])
             summary, many, memory = run(count, hears, "lockstep", ["--pings", str(10 + options.pings)])
             live, _, _ = run(count, hears, "realtime", ["--duration", str(options.realtime_seconds)])
-            sonars = [live["tasks"][f"sonar{i}"] for i in range(count)]
+            noises = [live["tasks"][f"noise{i}"] for i in range(count)]  # a sonar has cycles that only listen
             results[f"{count}{', hearing each other' if hears else ''}"] = {
                 "ms_per_ping": 1e3 * (many - few) / (options.pings * count), "mb": memory,
-                "realtime_pings": sum(sonar["cycles"] for sonar in sonars), "sent": count * options.realtime_seconds / PERIOD}
+                "realtime_pings": sum(noise["cycles"] for noise in noises), "sent": count * options.realtime_seconds / PERIOD}
     return results
 
 
