@@ -80,7 +80,7 @@ std::string Heard::text() const {
             words.push_back(fmt::format("{} in partition {}", name->topic, name->partition));
     if (!words.empty()) return fmt::format("heard are {}", fmt::join(words, ", "));
     if (is_anybody_there_) return fmt::format("nobody offers any that ends in {}", ending_);
-    return "no program of Gazebo's is heard: is one running, on this machine or in its network, and GZ_IP alike?";
+    return "no program of Gazebo's is heard: is Gazebo running, on this machine or in its network?";
 }
 
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard) {
@@ -97,7 +97,8 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
     Announcement announcement{*kind, message.process_uuid(), {}};
     if (*kind != Announcement::Kind::Offer && *kind != Announcement::Kind::Withdrawal) return announcement;
     const bool is_whole = message.pub().has_msg_pub() || message.pub().has_srv_pub();
-    if (!is_whole || message.pub().scope() == wire::Discovery::Publisher::PROCESS) return {};
+    if (!is_whole || !message.pub().address().starts_with("tcp://")) return {};
+    if (message.pub().scope() == wire::Discovery::Publisher::PROCESS) return {};
     announcement.publication = publicationOf(message.pub());
     if (*kind == Announcement::Kind::Offer) heard.add(announcement.publication);
     return announcement;

@@ -130,6 +130,9 @@ TEST_F(TransportTest, DamagedDatagramsAreDropped) {
     for (size_t size = 0; size < whole.size(); ++size)
         EXPECT_FALSE(readDatagram(whole.substr(0, size), "ours", heard).has_value()) << size;
     EXPECT_FALSE(readDatagram(whole + "x", "ours", heard).has_value());
+    std::string other = whole;
+    other.replace(other.find("tcp://"), 6, "ipc://");
+    EXPECT_FALSE(readDatagram(other, "ours", heard).has_value()) << "an address of another kind";
     EXPECT_FALSE(readDatagram(std::string(2, '\0'), "ours", heard).has_value()) << "nobody's";
 }
 
