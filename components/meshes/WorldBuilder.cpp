@@ -121,6 +121,8 @@ std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Sha
                 return {scaled(meshes_.shape("cone", look, unitCone), {c.radius, c.radius, c.length})};
             },
             [&](const CapsuleShape& c) -> Placings {
+                if (!(static_cast<float>(c.radius) > 0) || !std::isfinite(static_cast<float>(c.radius + c.length)))
+                    return ++flat_visuals_, Placings{};
                 return {meshes_.shape(fmt::format("capsule {} {}", c.radius, c.length), look,
                                       [&] { return capsule(c.radius, c.length); })};
             },

@@ -133,6 +133,11 @@ TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
     addBox(bad, "nan", nan);
     addBox(bad, "flat", 0);
     setVector(*addBox(bad, "moved").mutable_pose()->mutable_position(), 0, 1 / 0.0, 0);
+    for (const double radius : {0.0, 1 / 0.0}) {
+        wire::Geometry& capsule = *addBox(bad, "capsule").mutable_geometry();
+        capsule.set_type(wire::Geometry::CAPSULE);
+        capsule.mutable_capsule()->set_radius(radius);
+    }
     addBox(bad, "none").clear_geometry();
     addBox(bad, "text").mutable_geometry()->set_type(wire::Geometry::POLYLINE);
     wire::Geometry& mesh = *addBox(bad, "mesh").mutable_geometry();
@@ -149,11 +154,12 @@ TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
                     "visual bad::negative::visual is left out: its size is -1; must not be negative",
                     "visual bad::nan::visual is left out: its size is nan; must not be negative",
                     "visual bad::moved::visual is left out: its pose is not finite, or its orientation has no length",
+                    "link bad::capsule is there twice; the second is bad::capsule_2 here",
                     "visual bad::none::visual is left out: it has no geometry",
                     "visual bad::text::visual is left out: its geometry is not one of those that are drawn",
                     "visual bad::mesh::visual is left out: its scale is not finite",
                     "visual bad::plane::visual is left out: its normal or size is not finite",
-                    "visuals left out, their size is zero in some direction or not finite: 1",
+                    "visuals left out, their size is zero in some direction or not finite: 3",
                     "the scene has no triangles: an empty sea"));
 }
 
