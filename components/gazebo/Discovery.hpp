@@ -11,7 +11,7 @@ namespace insonify::gazebo {
 // Version 10 of this protocol is spoken by ignition-transport 8 to 11 and gz-transport 12 to 15.
 
 inline constexpr uint32_t discovery_version = 10;
-/** Of programs that count what topics lose (GZ_TRANSPORT_TOPIC_STATISTICS), whom others do not hear. */
+/** Programs with GZ_TRANSPORT_TOPIC_STATISTICS count lost messages and speak this version. Others ignore them. */
 inline constexpr uint32_t statistics_version = 110;
 
 /** A topic or a service that a program offers. */
@@ -33,13 +33,13 @@ struct Announcement {
     Publication publication;  ///< Of an offer or a withdrawal.
 };
 
-/** Programs of which a datagram says nothing for so long have gone [s]. They send one each second. */
+/** A program has gone when no datagram of it has come for this time [s]. It sends one each second. */
 inline constexpr double silence_s = 3;
 
-/** What topics and services there are, for one who does not find his. */
+/** The topics and services that are there, for messages to a user whose own is not. */
 class Heard {
 public:
-    /** Of topics, those that end so are kept: "/pose/info". */
+    /** Keeps the names of topics that end like this: "/pose/info". */
     explicit Heard(std::string ending) : ending_(std::move(ending)) {}
     void add(const Publication& publication);
     void addVersion(uint32_t version);
@@ -53,15 +53,15 @@ private:
     bool is_anybody_there_ = false;
 };
 
-/** Reads a datagram; none: it is damaged, of `own_process`, of another version, which `heard` keeps, or of no use to
- * who listens. */
+/** Reads a datagram. None: it is damaged, of `own_process`, of no use to a listener, or of another version, which
+ *  `heard` keeps. */
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard);
 
 /** Asks who offers a topic or a service. */
 std::string askDatagram(const std::string& process, const std::string& topic);
 std::string aliveDatagram(const std::string& process);
 std::string goodbyeDatagram(const std::string& process);
-/** Tells the publisher of a topic that `node` of `process` takes its messages, or no longer does. */
+/** Informs the publisher of a topic that `node` of `process` takes its messages, or no longer does. */
 std::string connectionDatagram(const std::string& process, const std::string& node, const Publication& publication,
                                bool begins);
 

@@ -26,7 +26,7 @@ public:
         std::string bytes;
         bool is_from_here = false;  ///< From this machine.
     };
-    /** Of those that have come, none: all are read. Does not wait. */
+    /** Returns the next datagram that has come; none where all are read. Does not wait. */
     std::optional<Datagram> receive() const;
 
 private:
@@ -39,7 +39,7 @@ private:
     std::vector<uint32_t> addresses_;  ///< Of this machine, in the order of networks.
 };
 
-/** This machine's address for who is at "tcp://ADDRESS:PORT". */
+/** Returns this machine's address in the network of "tcp://ADDRESS:PORT". */
 std::string addressTowards(const std::string& endpoint, const TransportOptions& options);
 
 }  // namespace insonify::gazebo

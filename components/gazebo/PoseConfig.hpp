@@ -48,7 +48,7 @@ struct PoseConfig {
         visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
     }
     void check(types::Diagnostics& diagnostics) const;
-    /** Of the entities' poses. */
+    /** Returns the topic of the entities' poses. */
     std::string poseTopic() const { return pose_topic.empty() ? "/world/" + world + "/pose/info" : pose_topic; }
 };
 

@@ -19,7 +19,7 @@ namespace insonify::gazebo {
  * task; with a period it takes what has come by then. While the simulation stands still there is no pose; one that is
  * reset begins anew. What comes into the world later, or goes from it, is a warning: the scene is as it was.
  *
- *  What is dropped is counted: a warning tells it at the first and then every ten seconds at most, a notice the sum at
+ *  What is dropped is counted: a warning at the first and then every ten seconds at most, a notice with the sum at
  *  the end. Refused in lockstep, whose time does not wait for messages. */
 class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies> {
 public:

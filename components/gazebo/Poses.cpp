@@ -66,7 +66,7 @@ FoundEntity findEntity(const PoseMessage& message, const std::string& name) {
         }
     if (count == 1) return found;
     if (count == 0) return {nullptr, "no entity of that name"};
-    return {nullptr, "several entities of that name, of which those in models are told in their parents"};
+    return {nullptr, "several entities of that name; those inside models have poses in their parents' frames"};
 }
 
 }  // namespace insonify::gazebo

@@ -139,7 +139,8 @@ private:
         }
     }
 
-    /** Said anew with each offer: the publisher sends nothing to who has not told, and a datagram may be lost. */
+    /** Sent anew with each offer: a publisher sends messages only to programs that have asked, and a datagram may be
+     *  lost. */
     void connect(const Publication& publication, bool begins) const {
         multicast_.send(connectionDatagram(process_, node_, publication, begins));
     }

@@ -31,7 +31,7 @@ public:
 
     /** Whether somebody publishes the topic at this place in the list. For any thread. */
     bool hasPublisher(size_t topic) const;
-    /** What is heard of topics that end like the first one of the list, for who waits in vain. For any thread. */
+    /** Lists the topics that are there and end like the first of the list. For any thread. */
     std::string heard() const;
 
 private:

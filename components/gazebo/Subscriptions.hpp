@@ -59,7 +59,7 @@ public:
     const std::vector<std::string>& topics() const { return topics_; }
     const std::string& partition() const { return options_.partition; }
     bool hasPublisher(size_t topic) const { return subscriber_->hasPublisher(topic); }
-    /** What is heard of topics like the first, for who waits in vain. */
+    /** Lists the topics that are there and end like the first. */
     std::string heard() const { return subscriber_->heard(); }
 
 private:

@@ -1,4 +1,4 @@
-// What comes by UDP and TCP where Gazebo tells of its world: datagrams, poses, scenes.
+// What comes by UDP and TCP from Gazebo: datagrams, poses, scenes.
 #include <cmath>
 
 #include "components/gazebo/Discovery.hpp"

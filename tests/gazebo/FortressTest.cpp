@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 class FortressTest : public OwnPartition {};
 
-/** A crate on a floor, as Fortress's scene broadcaster tells of them. */
+/** A crate on a floor, as Fortress's scene broadcaster describes them. */
 bool fillScene(ignition::msgs::Scene& scene) {
     for (const char* name : {"floor", "crate"}) {
         ignition::msgs::Model& model = *scene.add_model();

@@ -29,7 +29,7 @@ inline void setPose(ignition::msgs::Pose& pose, const std::string& name, double 
     pose.mutable_orientation()->set_z(std::sin(yaw / 2));
 }
 
-/** A world's poses, as Gazebo's scene broadcaster tells them: models and, within them, their links. */
+/** A world's poses, as Gazebo's scene broadcaster sends them: models and, within them, their links. */
 class FortressWorld {
 public:
     explicit FortressWorld(const std::string& topic = "/world/sea/pose/info")
