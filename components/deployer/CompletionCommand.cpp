@@ -129,7 +129,8 @@ int printMan(const CLI::App& app) {
     fmt::print(
         ".SH EXIT STATUS\n0: done. 1: failed while running. 2: wrong usage, file or configuration.\n"
         ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device that draws: a number, software or auto.\n"
-        ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH\nFolders in which the models of a world are looked "
+        ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, "
+        "IGN_GAZEBO_RESOURCE_PATH\nFolders in which the models of a world are looked "
         "for.\n");
     return 0;
 }

@@ -19,7 +19,9 @@ void addNeeded(const YAML::Node& node, std::set<std::string>& names) {
         for (const auto& element : node) addNeeded(element, names);
     if (node.IsMap())
         for (const auto& entry : node) {
-            if (entry.first.IsScalar() && entry.first.Scalar() == "bathymetry") names.insert("survey");
+            const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+            if (key == "bathymetry") names.insert("survey");
+            if (key == "gazebo") names.insert("gazebo");
             addNeeded(entry.second, names);
         }
     if (node.IsDefined() && node.IsScalar())

@@ -1,9 +1,16 @@
-// The component library gazebo: what a deployment loads that names a type of this namespace.
+// The component library gazebo: what a deployment loads that names a type of this namespace, or a world of Gazebo's as
+// its scene.
 #include "components/gazebo/PoseTask.hpp"
+#include "components/gazebo/World.hpp"
 #include "components/loader/Interface.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;
 
 extern "C" void insonify_register(insonify::framework::Registry& registry) {
     insonify::gazebo::registerTasks(registry);
+}
+
+extern "C" void insonify_read_world(const insonify::scene::GazeboConfig& config, const std::filesystem::path& folder,
+                                    insonify::scene::Scene& scene) {
+    scene = insonify::gazebo::readWorld(config, folder);
 }

@@ -45,10 +45,10 @@ struct PoseConfig {
                     "axes of Gazebo's world: as_is, those of the scene, as where both read one SDF file; enu or ned, "
                     "where x of the scene is north"},
               self.world_frame);
-        visit(Field{"partition", "", "of Gazebo's transport; empty: IGN_PARTITION"}, self.partition);
+        visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
     }
     void check(types::Diagnostics& diagnostics) const;
-    /** Of the entities' poses. */
+    /** Returns the topic of the entities' poses. */
     std::string poseTopic() const { return pose_topic.empty() ? "/world/" + world + "/pose/info" : pose_topic; }
 };
 

@@ -1,8 +1,24 @@
 #include "components/gazebo/PoseTask.hpp"
 
+#include <algorithm>
+
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
+namespace {
+
+constexpr double patience = 5;  ///< Before it is said that nobody offers a topic [s].
+
+/** "crate, lid and 3 more". */
+std::string listOf(const std::vector<std::string>& names) {
+    constexpr size_t most = 5;
+    const size_t shown = std::min(names.size(), most);
+    std::string text;
+    for (size_t i = 0; i < shown; ++i) text += (i > 0 ? ", " : "") + names[i];
+    return names.size() > shown ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
+}
+
+}  // namespace
 
 using Order = types::SenderClock::Order;
 
@@ -33,13 +49,13 @@ std::vector<std::string> PoseTask::notices() const {
 
 bool PoseTask::configureHook() {
     drops_.reset();
-    inbox_ = std::make_shared<Inbox>([this] { arrived_.raise(); });
+    subscriptions_.reset();
+    inbox_ = std::make_unique<Inbox>([this] { arrived_.raise(); });
     try {
-        subscriptions_ = std::make_unique<Subscriptions>(*config, inbox_);
+        subscriptions_ = std::make_unique<Subscriptions>(*config, *inbox_);
     } catch (const types::ConfigError& error) {
-        inbox_->close();
         const types::Diagnostic& first = error.diagnostics().front();
-        throw types::ConfigError("", name() + "." + first.path, first.message);
+        throw types::ConfigError("", name() + (first.path.empty() ? "" : "." + first.path), first.message);
     }
     return true;
 }
@@ -47,15 +63,39 @@ bool PoseTask::configureHook() {
 bool PoseTask::startHook() {
     inbox_->take();  // what came before the start
     clocks_.assign(subscriptions_->topics().size(), {});
+    started_ = now();
+    is_silence_reported_ = false;
     return true;
 }
 
 void PoseTask::updateHook() {
     for (Arrived& message : inbox_->take()) take(message);
+    warnOfSilence();
     if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
 }
 
+void PoseTask::warnOfSilence() {
+    if (is_silence_reported_ || (now() - started_).seconds() < patience) return;
+    is_silence_reported_ = true;
+    for (size_t i = 0; i < subscriptions_->topics().size(); ++i)
+        if (!subscriptions_->hasPublisher(i))
+            warn("nobody publishes " + subscriptions_->topics()[i] + " in partition " + subscriptions_->partition() +
+                 "; " + subscriptions_->heard());
+}
+
+void PoseTask::report(const WorldWatch::Change& change) {
+    if (!change.came.empty())
+        warn("world " + config->world + " has more by now than the scene, which does not show it: " +
+             listOf(change.came) + "; start again to take the world as it is");
+    if (!change.went.empty())
+        warn("world " + config->world +
+             " has less by now than the scene, which still shows it: " + listOf(change.went));
+}
+
 void PoseTask::take(Arrived& message) {
+    if (!message.diagnostic.empty())
+        return drops_.add(subscriptions_->topics()[message.topic] + ": " + message.diagnostic);
+    if (!message.change.isEmpty()) report(message.change);
     types::Time time = now();
     if (message.stamp) {
         const auto reading = clocks_[message.topic].read(*message.stamp, now());

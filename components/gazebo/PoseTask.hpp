@@ -17,9 +17,9 @@ namespace insonify::gazebo {
  *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every message that is
  *  newer than the one before is a pose, stamped by the simulation's time carried over to ours. A message wakes the
  * task; with a period it takes what has come by then. While the simulation stands still there is no pose; one that is
- * reset begins anew.
+ * reset begins anew. What comes into the world later, or goes from it, is a warning: the scene is as it was.
  *
- *  What is dropped is counted: a warning tells it at the first and then every ten seconds at most, a notice the sum at
+ *  What is dropped is counted: a warning at the first and then every ten seconds at most, a notice with the sum at
  *  the end. Refused in lockstep, whose time does not wait for messages. */
 class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies> {
 public:
@@ -36,12 +36,17 @@ private:
     void cleanupHook() override;
 
     void take(Arrived& message);
+    /** Warns once where nobody has offered a topic for a while. */
+    void warnOfSilence();
+    void report(const WorldWatch::Change& change);
     void write(Placed& placed, types::Time time);
 
-    std::shared_ptr<Inbox> inbox_;
-    std::unique_ptr<Subscriptions> subscriptions_;
-    std::vector<types::SenderClock> clocks_;  ///< By topic.
+    std::unique_ptr<Inbox> inbox_;
+    std::unique_ptr<Subscriptions> subscriptions_;  ///< Puts into the inbox, so it goes first.
+    std::vector<types::SenderClock> clocks_;        ///< By topic.
     types::ThrottledWarning drops_{"message", "dropped"};
+    types::Time started_;
+    bool is_silence_reported_ = false;
 };
 
 /** Makes the tasks of this folder known to deployments. */

@@ -1,28 +1,40 @@
 #pragma once
-#include <ignition/msgs/odometry.pb.h>
-#include <ignition/msgs/pose_v.pb.h>
-
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "types/Pose.hpp"
+#include "types/Time.hpp"
 #include "types/WorldFrame.hpp"
 
 namespace insonify::gazebo {
 
-/** In our axes. What the message does not tell is unknown; the time stays 0. */
-types::Pose poseOf(const ignition::msgs::Pose& message, types::WorldFrame frame);
-/** With the velocities, which the message has in the body. */
-types::Pose poseOf(const ignition::msgs::Odometry& message, types::WorldFrame frame);
+/** The poses in a message Pose_V: a world's models and, among them, all of their links, by their names. */
+struct PoseMessage {
+    struct Entity {
+        std::string name;
+        types::Pose pose;  ///< In our axes; without a time. What the message does not have is unknown.
+    };
+    std::optional<types::Time> stamp;  ///< Of the simulation; none: it has none, or one that is out of bounds.
+    std::vector<Entity> entities;
+};
+/** None: these are no bytes of a Pose_V. */
+std::optional<PoseMessage> readPoses(std::string_view message, types::WorldFrame frame);
 
-/** Time of the simulation; none: the message has no stamp, or one that is out of bounds. */
-std::optional<types::Time> stampOf(bool has_header, const ignition::msgs::Header& header);
+/** The pose in a message Odometry, with velocities, which the message has in the body. */
+struct OdometryMessage {
+    std::optional<types::Time> stamp;  ///< As above.
+    types::Pose pose;                  ///< As above.
+};
+/** None: these are no bytes of an Odometry. */
+std::optional<OdometryMessage> readOdometry(std::string_view message, types::WorldFrame frame);
 
-struct Entity {
-    const ignition::msgs::Pose* pose = nullptr;
+/** The entity of a name. */
+struct FoundEntity {
+    const types::Pose* pose = nullptr;
     std::string diagnostic;  ///< Why there is none: nobody has the name, or several have.
 };
-/** The entity of that name. */
-Entity findEntity(const ignition::msgs::Pose_V& message, const std::string& name);
+FoundEntity findEntity(const PoseMessage& message, const std::string& name);
 
 }  // namespace insonify::gazebo

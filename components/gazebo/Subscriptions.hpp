@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "components/gazebo/PoseConfig.hpp"
+#include "components/gazebo/Subscriber.hpp"
+#include "components/gazebo/WorldWatch.hpp"
 #include "types/Pose.hpp"
 #include "types/Time.hpp"
 
@@ -24,24 +26,24 @@ struct Arrived {
     size_t topic = 0;
     std::optional<types::Time> stamp;  ///< Of the simulation.
     std::vector<Placed> bodies;
+    WorldWatch::Change change;
+    std::string diagnostic;  ///< Why nothing of the message is taken.
 };
 
-/** Takes messages on the threads of Gazebo's transport and hands them to the task. Everything is for any thread. */
+/** Takes messages on the thread of Gazebo's transport and hands them to the task. Everything is for any thread. */
 class Inbox {
 public:
     static constexpr size_t capacity = 1000;  ///< Messages, of which the oldest go when nobody takes them.
 
-    /** `arrived` is called on the transport's threads. */
+    /** `arrived` is called on the transport's thread. */
     explicit Inbox(std::function<void()> arrived) : arrived_(std::move(arrived)) {}
     void put(Arrived message);
     std::vector<Arrived> take();
-    /** From now on nobody is told and nothing is kept. */
-    void close();
     uint64_t lost() const;
 
 private:
     mutable std::mutex mutex_;
-    std::function<void()> arrived_;  ///< Empty: closed.
+    const std::function<void()> arrived_;
     std::vector<Arrived> messages_;
     uint64_t lost_ = 0;
 };
@@ -49,24 +51,25 @@ private:
 /** The topics of Gazebo's transport that a configuration needs; their messages go to the inbox while this lives. */
 class Subscriptions {
 public:
-    /** Throws types::ConfigError where a topic or the partition has no name that the transport takes. */
-    Subscriptions(const PoseConfig& config, std::shared_ptr<Inbox> inbox);
-    ~Subscriptions();
-    Subscriptions(const Subscriptions&) = delete;
-    Subscriptions& operator=(const Subscriptions&) = delete;
+    /** Throws types::ConfigError where a topic or the partition has no name that the transport takes, or no network
+     *  takes part. */
+    Subscriptions(const PoseConfig& config, Inbox& inbox);
 
     /** By their numbers in Arrived. */
     const std::vector<std::string>& topics() const { return topics_; }
+    const std::string& partition() const { return options_.partition; }
+    bool hasPublisher(size_t topic) const { return subscriber_->hasPublisher(topic); }
+    /** Lists the topics that are there and end like the first. */
+    std::string heard() const { return subscriber_->heard(); }
 
 private:
-    struct Transport;
+    Topic entities(const PoseConfig& config, Inbox& inbox);
+    Topic odometry(const PoseConfig& config, size_t body, Inbox& inbox);
 
-    void followEntities(const PoseConfig& config);
-    void followOdometry(const PoseConfig& config, size_t body);
-
-    std::shared_ptr<Inbox> inbox_;
+    const TransportOptions options_;
     std::vector<std::string> topics_;
-    std::unique_ptr<Transport> transport_;
+    std::vector<std::string> keys_;  ///< Of the configuration, for each topic.
+    std::unique_ptr<Subscriber> subscriber_;
 };
 
 }  // namespace insonify::gazebo

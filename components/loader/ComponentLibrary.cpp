@@ -25,7 +25,7 @@ constexpr Component all_components[] = {
     {"dataset", "data sets to learn from"},
     {"dds", "ROS 2 messages"},
     {"device", "stand-ins for instruments, and recordings of theirs"},
-    {"gazebo", "poses of Gazebo's"},
+    {"gazebo", "poses and worlds of Gazebo's"},
     {"mavlink", "poses of autopilots"},
     {"nav", "a DVL, an inertial unit and a pressure gauge"},
     {"sdf", "scenes in SDF, .world and .sdf, with meshes as .dae, .obj and .stl", {".sdf", ".world"}},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Placement.hpp"
 #include "types/Mount.hpp"
 
@@ -67,6 +68,7 @@ struct BathymetryConfig {
 
 struct SceneConfig {
     std::string file;
+    std::optional<GazeboConfig> gazebo;
     std::optional<BathymetryConfig> bathymetry;
     std::optional<Placement> placement;
     Mount mount;
@@ -79,13 +81,18 @@ struct SceneConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "",
-                    "scene: .gltf, .glb, .world or .sdf, relative to the deployment; may be absent beside bathymetry"},
+                    "scene: .gltf, .glb, .world or .sdf, relative to the deployment; may be absent beside gazebo or "
+                    "bathymetry"},
               self.file);
+        visit(
+            Field{"gazebo", "",
+                  "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
+            self.gazebo);
         visit(Field{"bathymetry", "",
                     "the sea floor of a survey, of which the part around the vehicle is there; absent: "
                     "what file has"},
               self.bathymetry);
-        visit(Field{"placement", "", "where the file's scene lies in the world; absent: as the file has it"},
+        visit(Field{"placement", "", "where the scene of file or gazebo lies in the world; absent: as it has itself"},
               self.placement);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);

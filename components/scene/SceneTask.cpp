@@ -30,27 +30,47 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
 
 }  // namespace
 
+std::shared_ptr<const Scene> SceneTask::loadModels() const {
+    std::shared_ptr<const Scene> models;
+    if (!config->file.empty()) models = sharedScene(inputPath(config->file));
+    if (config->gazebo) {
+        if (scene_gazebo_ != config->gazebo) gazebo_failure_.reset();
+        scene_gazebo_ = config->gazebo;
+        if (gazebo_failure_) throw types::ConfigError(*gazebo_failure_);
+        try {
+            models = sharedWorld(*config->gazebo, inputPath(""));
+        } catch (const types::ConfigError& error) {
+            const types::Diagnostic& first = error.diagnostics().front();
+            gazebo_failure_.emplace("", "gazebo" + (first.path.empty() ? "" : "." + first.path), first.message);
+            throw types::ConfigError(*gazebo_failure_);
+        }
+    }
+    if (models && config->placement) models = std::make_shared<const Scene>(placed(*models, *config->placement));
+    return models;
+}
+
 std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     const bool has_survey = config->bathymetry.has_value();
-    if (!scene_ || scene_file_ != file || scene_has_survey_ != has_survey || scene_placement_ != config->placement) {
-        if (config->file.empty() && !has_survey)
-            throw types::ConfigError("", name() + ".file",
-                                     "is missing; give the path of a .gltf, .glb, .world or .sdf file, or bathymetry");
-        if (!config->file.empty()) scene_ = sharedScene(file);
-        if (!config->file.empty() && config->placement)
-            scene_ = std::make_shared<const Scene>(placed(*scene_, *config->placement));
-        if (has_survey) {
-            Scene scene;
-            scene.geometry = std::make_shared<const types::Geometry>();
-            if (!config->file.empty()) scene = *scene_;
-            Bathymetry::addMaterial(scene);
-            scene_ = std::make_shared<const Scene>(std::move(scene));
-        }
-        scene_file_ = file;
-        scene_has_survey_ = has_survey;
-        scene_placement_ = config->placement;
+    if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
+        scene_placement_ == config->placement)
+        return scene_;
+    if (config->file.empty() && !config->gazebo && !has_survey)
+        throw types::ConfigError(
+            "", name() + ".file",
+            "is missing; give the path of a .gltf, .glb, .world or .sdf file, or gazebo, or bathymetry");
+    scene_ = loadModels();
+    if (has_survey) {
+        Scene scene;
+        scene.geometry = std::make_shared<const types::Geometry>();
+        if (scene_) scene = *scene_;
+        Bathymetry::addMaterial(scene);
+        scene_ = std::make_shared<const Scene>(std::move(scene));
     }
+    scene_file_ = file;
+    scene_gazebo_ = config->gazebo;
+    scene_has_survey_ = has_survey;
+    scene_placement_ = config->placement;
     return scene_;
 }
 
@@ -96,7 +116,14 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
-    for (const types::Diagnostic& diagnostic : error.diagnostics()) diagnostics.push_back({"file", diagnostic.text()});
+    for (const types::Diagnostic& each : error.diagnostics())
+        diagnostics.push_back(config->gazebo ? types::Diagnostic{each.path, each.message}
+                                             : types::Diagnostic{"file", each.text()});
+}
+
+std::string SceneTask::indivisible() const {
+    return config->gazebo ? "gazebo: is the world as it is when it is asked for, not the same for each shard; a file is"
+                          : "";
 }
 
 std::vector<std::string> SceneTask::notices() const {
@@ -109,15 +136,23 @@ std::vector<std::string> SceneTask::notices() const {
 std::string SceneTask::layText(const Scene& scene) const {
     const auto given = framework::upstreamValue(pose, {"world_frame"});
     const std::string* const name = given ? std::get_if<std::string>(&*given) : nullptr;
-    if (config->file.empty() || (!name && !config->placement)) return "";
+    if ((config->file.empty() && !config->gazebo) || (!name && !config->placement)) return "";
     auto frame = types::WorldFrame::AsIs;
     for (size_t i = 0; name && i < std::size(types::EnumNames<types::WorldFrame>::names); ++i)
         if (types::EnumNames<types::WorldFrame>::names[i] == *name) frame = static_cast<types::WorldFrame>(i);
     return layOf(scene, config->placement.value_or(Placement{}), frame);
 }
 
+std::shared_ptr<const Scene> SceneTask::loadToRun() try {
+    gazebo_failure_.reset();  // Gazebo may run by now
+    return load();
+} catch (const types::ConfigError& error) {
+    if (!gazebo_failure_) throw;
+    throw types::ConfigError("", name() + "." + error.diagnostics().front().path, error.diagnostics().front().message);
+}
+
 bool SceneTask::configureHook() {
-    const auto scene = load();
+    const auto scene = loadToRun();
     types::Diagnostics diagnostics;
     geometry_ = overrideMaterials(*scene, materials(diagnostics), diagnostics);
     if (config->materials_by_name) geometry_ = takeNames(geometry_);

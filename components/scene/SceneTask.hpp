@@ -15,6 +15,7 @@
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
 #include "components/scene/Targets.hpp"
+#include "types/ConfigError.hpp"
 #include "types/RecurringDiagnostic.hpp"
 #include "types/Snapshot.hpp"
 
@@ -48,6 +49,7 @@ public:
     void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
     double wakeAfter() const override;
+    std::string indivisible() const override;
     bool waits() const override { return is_stale_ && newest_came_; }
 
 private:
@@ -75,6 +77,10 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
+    /** What file or Gazebo have, placed; null without them. */
+    std::shared_ptr<const Scene> loadModels() const;
+    /** Asks Gazebo anew where it has not answered before. */
+    std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;
     std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
     /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
@@ -87,10 +93,12 @@ private:
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
+    mutable std::optional<GazeboConfig> scene_gazebo_;
+    mutable std::optional<types::ConfigError> gazebo_failure_;  ///< Of scene_gazebo_; kept, for it has cost a wait.
     mutable std::optional<Placement> scene_placement_;
     std::string lay_;                        ///< How the scene lies; empty: as everywhere.
     mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
-    types::GeometryPtr geometry_;            ///< Of the scene's file, with all materials.
+    types::GeometryPtr geometry_;            ///< Of file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.

@@ -52,6 +52,8 @@ void TargetConfig::check(types::Diagnostics& diagnostics) const {
 }
 
 void SceneConfig::check(types::Diagnostics& diagnostics) const {
+    if (gazebo && !file.empty())
+        diagnostics.push_back({"gazebo", "is given, and file as well; give one of both, which holds the models"});
     std::map<std::string, size_t> first;
     for (size_t i = 0; i < targets.size(); ++i)
         if (const auto [known, is_new] = first.try_emplace(targets[i].name, i); !is_new)

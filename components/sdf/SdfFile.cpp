@@ -65,7 +65,7 @@ private:
 
 class Includes {
 public:
-    explicit Includes(const SdfPaths& paths) : paths_(paths) {}
+    explicit Includes(const meshes::ModelPaths& paths) : paths_(paths) {}
 
     /** With a file and all that it includes. */
     size_t workOf(const std::filesystem::path& file) {
@@ -106,14 +106,14 @@ private:
         return files;
     }
 
-    const SdfPaths& paths_;
+    const meshes::ModelPaths& paths_;
     std::vector<std::filesystem::path> open_;
     std::map<std::filesystem::path, size_t> work_;
 };
 
 /** Follows the includes of an SDF file, and throws types::ConfigError where libsdformat would follow them until its
  *  stack or its user's patience ends: at a model that includes itself, and at more than may be read. */
-void checkIncludes(const std::filesystem::path& file, const SdfPaths& paths) {
+void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
     if (Includes(paths).workOf(std::filesystem::canonical(file)) <= max_sdf_work) return;
     throw types::ConfigError(file.string(), "",
                              "would take minutes to read: with what it includes it may hold up to 100000 elements, or "
@@ -123,7 +123,8 @@ void checkIncludes(const std::filesystem::path& file, const SdfPaths& paths) {
 /** Puts our search into libsdformat's global configuration, the only one that nested includes see. */
 class SearchConfig {
 public:
-    SearchConfig(const std::filesystem::path& world, const SdfPaths& paths, const std::set<std::string>& unreadable)
+    SearchConfig(const std::filesystem::path& world, const meshes::ModelPaths& paths,
+                 const std::set<std::string>& unreadable)
         : before_(global()) {
         if (unreadable.empty())  // these come before libsdformat's own search, the callback after it
             for (const std::filesystem::path& folder : paths.folders()) global().AddURIPath("model://", folder);
@@ -301,7 +302,7 @@ std::string CerrCapture::take() {
     return text;
 }
 
-::sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, CerrCapture& console,
+::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
                         std::vector<std::string>& notices) {
     if (!std::filesystem::is_regular_file(file))
         throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world or .sdf file");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "components/sdf/SdfPaths.hpp"
+#include "components/meshes/ModelPaths.hpp"
 
 namespace insonify::sdf {
 
@@ -32,7 +32,7 @@ private:
 /** Loads an SDF file with what it includes. What libsdformat finds wrong goes to `notices` when there is a world or a
  *  model nevertheless, and is thrown as types::ConfigError when there is none. An include that is not found or cannot
  *  be read is left out. */
-::sdf::Root readSdfFile(const std::filesystem::path& file, const SdfPaths& paths, CerrCapture& console,
+::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
                         std::vector<std::string>& notices);
 
 }  // namespace insonify::sdf

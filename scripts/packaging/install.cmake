@@ -56,6 +56,7 @@ foreach(package ${packages})
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "insonify (= ${PROJECT_VERSION})")
 endforeach()
 set(CPACK_DEBIAN_SDF_PACKAGE_RECOMMENDS insonify-meshes)
+set(CPACK_DEBIAN_GAZEBO_PACKAGE_RECOMMENDS insonify-meshes)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME insonify-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to write components with
@@ -63,7 +64,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, libignition-msgs-dev, libignition-transport-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzstd-dev, zlib1g-dev")
+  "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
 # What the packages hold.
 get_property(installed GLOBAL PROPERTY insonify_installed)
 add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})

@@ -1,9 +1,12 @@
-// deploy/gazebo_poses.yml and what is wrong with others, as a user sees it.
+// deploy/gazebo_world.yml and what is wrong with others, as a user sees it.
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <memory>
+
 #include "tests/deployer/Command.hpp"
-#include "tests/gazebo/World.hpp"
+#include "tests/gazebo/FortressScene.hpp"
+#include "tests/gazebo/FortressWorld.hpp"
 #include "tests/support/Paths.hpp"
 
 using namespace insonify;
@@ -12,10 +15,19 @@ using testing::HasSubstr;
 
 namespace {
 
-const std::string deployment = test::sourceFile("deploy/gazebo_poses.yml");
+const std::string deployment = test::sourceFile("deploy/gazebo_world.yml");
 
 class GazeboRunTest : public gazebo::OwnPartition {
 protected:
+    /** A world that answers what it holds, as Gazebo does, and says no poses by itself. */
+    std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
+        auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");
+        world->serve("/world/two_vehicles/scene/info", [](ignition::msgs::Scene& scene) {
+            scene = gazebo::sceneOf(test::sourceFile("deploy/scenes/two_vehicles.world"));
+            return true;
+        });
+        return world;
+    }
     Process run(const std::vector<std::string>& more) const {
         std::vector<std::string> words = {"run", deployment, "--out", "out"};
         words.insert(words.end(), more.begin(), more.end());
@@ -30,12 +42,12 @@ protected:
 }  // namespace
 
 TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
-    gazebo::World world("/world/two_vehicles/pose/info");
+    const auto world = makeWorld();
     const Process sonar = run({"--pings", "20", "--summary", "summary.json", "--set", "scene.pose_timeout=60"});
     int told = 0;
     const auto tell = [&] {
         ++told;
-        world.tell(0.02 * told, 0.01 * told);
+        world->tell(0.02 * told, 0.01 * told);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
     const bool pings = gazebo::comesTrue([&] { return tell(), fs::exists(folder / "out/fan_000000.png"); });
@@ -48,12 +60,12 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
 }
 
 TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
-    gazebo::World world("/world/two_vehicles/pose/info");
+    const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
     int told = 0;
     const auto tell = [&](bool goes_on) {
         told += goes_on ? 1 : 0;
-        world.tell(0.02 * told, 0.01 * told);
+        world->tell(0.02 * told, 0.01 * told);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
     const auto pictures = [&] {
@@ -70,7 +82,18 @@ TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(GazeboRunTest, WithoutAWorldItWaitsAndSaysSo) {
+TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
+    const Outcome outcome =
+        callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("gazebo.world: is two_vehicles; after 0.5 s (timeout), its service "
+                                       "/world/two_vehicles/scene/info is not offered in partition " +
+                                       partition + "; "));
+    EXPECT_THAT(outcome.err, HasSubstr("deploy/gazebo_world.yml:16:"));
+}
+
+TEST_F(GazeboRunTest, WithoutPosesItWaitsAndSaysSo) {
+    const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=0.2"});
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
     sonar.signal(SIGINT);
@@ -78,6 +101,7 @@ TEST_F(GazeboRunTest, WithoutAWorldItWaitsAndSaysSo) {
 }
 
 TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+    const auto world = makeWorld();
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {
         return callInsonify(folder, {"run", deployment, "--out", "out", "--set", set}).err;
@@ -89,4 +113,5 @@ TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
     EXPECT_THAT(diagnosed("world.pose_topic=/poses"),
                 HasSubstr("world: must be given for the poses of entities, or pose_topic, one of both"));
     EXPECT_THAT(diagnosed("world.world_frame=ecef"), HasSubstr("world_frame: is ecef"));
+    EXPECT_THAT(diagnosed("scene.file=a.glb"), HasSubstr("gazebo: is given, and file as well"));
 }

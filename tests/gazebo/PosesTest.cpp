@@ -1,10 +1,11 @@
+// Messages of Fortress, made by its own library.
 #include <gmock/gmock.h>
 
 #include <limits>
 #include <numbers>
 
 #include "components/gazebo/Poses.hpp"
-#include "tests/gazebo/World.hpp"
+#include "tests/gazebo/FortressWorld.hpp"
 
 namespace insonify::gazebo {
 namespace {
@@ -20,6 +21,23 @@ ignition::msgs::Pose placed(double yaw) {
     ignition::msgs::Pose pose;
     setPose(pose, "rov", 1, 2, 3, yaw);
     return pose;
+}
+
+types::Pose poseOf(const ignition::msgs::Pose& pose, WorldFrame frame) {
+    ignition::msgs::Pose_V message;
+    *message.add_pose() = pose;
+    return readPoses(message.SerializeAsString(), frame).value_or(PoseMessage{}).entities.at(0).pose;
+}
+
+types::Pose poseOf(const ignition::msgs::Odometry& message, WorldFrame frame) {
+    return readOdometry(message.SerializeAsString(), frame).value_or(OdometryMessage{}).pose;
+}
+
+/** Of a message without a header where that is null. */
+std::optional<types::Time> stampOf(const ignition::msgs::Header* header) {
+    ignition::msgs::Pose_V message;
+    if (header) *message.mutable_header() = *header;
+    return readPoses(message.SerializeAsString(), WorldFrame::AsIs).value_or(PoseMessage{}).stamp;
 }
 
 TEST(PosesTest, AxesAreThoseOfTheScenesFileUnlessTheyAreSaidToBeOthers) {
@@ -62,26 +80,27 @@ TEST(PosesTest, VelocitiesOfOdometryAreThoseOfTheBody) {
 
 TEST(PosesTest, StampsAreThoseOfTheSimulation) {
     ignition::msgs::Header header;
-    EXPECT_EQ(stampOf(false, header), std::nullopt);
-    EXPECT_EQ(stampOf(true, header), std::nullopt);
+    EXPECT_EQ(stampOf(nullptr), std::nullopt);
+    EXPECT_EQ(stampOf(&header), std::nullopt);
     setStamp(header, 0);
-    EXPECT_EQ(stampOf(true, header), types::Time{0});
+    EXPECT_EQ(stampOf(&header), types::Time{0});
     setStamp(header, 12.5);
-    EXPECT_EQ(stampOf(true, header), types::Time{12'500'000});
+    EXPECT_EQ(stampOf(&header), types::Time{12'500'000});
     header.mutable_stamp()->set_sec(std::numeric_limits<int64_t>::max());
-    EXPECT_EQ(stampOf(true, header), std::nullopt);
+    EXPECT_EQ(stampOf(&header), std::nullopt);
 }
 
 TEST(PosesTest, AnEntityIsFoundByANameThatNoOtherHas) {
     ignition::msgs::Pose_V message;
     setPose(*message.add_pose(), "rov", 1, 2, 3, 0);
     for (int i = 0; i < 2; ++i) setPose(*message.add_pose(), "link", 0, 0, 0, 0);
-    ASSERT_TRUE(findEntity(message, "rov").pose);
-    EXPECT_EQ(findEntity(message, "rov").pose->position().y(), 2);
-    EXPECT_EQ(findEntity(message, "auv").diagnostic, "no entity of that name");
-    EXPECT_EQ(findEntity(message, "auv").pose, nullptr);
-    EXPECT_EQ(findEntity(message, "link").pose, nullptr);
-    EXPECT_THAT(findEntity(message, "link").diagnostic, testing::StartsWith("several entities of that name"));
+    const PoseMessage read = readPoses(message.SerializeAsString(), WorldFrame::AsIs).value_or(PoseMessage{});
+    ASSERT_TRUE(findEntity(read, "rov").pose);
+    EXPECT_EQ(findEntity(read, "rov").pose->position.y, 2);
+    EXPECT_EQ(findEntity(read, "auv").diagnostic, "no entity of that name");
+    EXPECT_EQ(findEntity(read, "auv").pose, nullptr);
+    EXPECT_EQ(findEntity(read, "link").pose, nullptr);
+    EXPECT_THAT(findEntity(read, "link").diagnostic, testing::StartsWith("several entities of that name"));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"command", "log", "output", "pose"}},
     {"dds", {"ros"}},
     {"framework", {"loader"}},
+    {"gazebo", {"meshes", "scene"}},
     {"log", {"ros"}},
     {"logger", {"log"}},
     {"mavlink", {"device"}},  // its network
@@ -115,9 +116,9 @@ TEST(IncludeRuleTest, EveryThirdPartyPackageHasItsHomes) {
         {"zstd.h", "log"},        {"dds/", "dds"},
         {"png.h", "output"},      {"boost/", "device"},
         {"nlohmann/", "device"},  {"snappy.h", "device"},
-        {"ignition/", "gazebo"},  {"stb", "sdf"},
+        {"zmq", "gazebo"},        {"stb", "meshes"},
         {"gdal", "survey"},       {"opencv2/", "video"},
-        {"opencv2/", "study"},
+        {"opencv2/", "study"},    {"google/protobuf/", "gazebo"},
     };
     const auto livesIn = [&](const std::string& prefix, const std::string& folder) {
         const auto [first, last] = homes.equal_range(prefix);

@@ -189,11 +189,12 @@ TEST_F(ComponentLibraryTest, ADeploymentTellsWhichItLacks) {
     add("nav");
     writeFile(folder_ / "a.yml", R"(tasks:
   scene: {type: scene::SceneTask, properties: {file: tank.world, bathymetry: {file: floor.tif}}}
+  sea: {type: scene::SceneTask, properties: {gazebo: {world: sea}}}
   imu: {type: nav::ImuTask}
   ros: {type: dds::PublisherTask}
   fan: {type: output::FanImageTask, properties: {file: fan.mp4}}
 )");
-    EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\nsdf\nsurvey\nvideo\n");
+    EXPECT_EQ(call({"libraries", "a.yml"}).out, "dds\ngazebo\nsdf\nsurvey\nvideo\n");
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Shapes, materials and heightmaps of SDF visuals, against their closed forms.
 #include <numbers>
 
+#include "components/meshes/VisualMeshes.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/MaterialNames.hpp"
-#include "components/sdf/SdfMeshes.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
 namespace insonify::sdf {

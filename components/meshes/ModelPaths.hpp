@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 
 /** Where the models and files that a world names are looked for: the folders of INSONIFY_MODEL_PATH,
- *  GAZEBO_MODEL_PATH and SDF_PATH (a list with ':' each), then the folder of the world; for a model that stands alone
- *  (with its model.config) last the folder that holds its folder. */
-class SdfPaths {
+ *  GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH and IGN_GAZEBO_RESOURCE_PATH (a list with ':' each), then the
+ *  folder of the world; for a model that stands alone (with its model.config) last the folder that holds its folder. */
+class ModelPaths {
 public:
-    explicit SdfPaths(const std::filesystem::path& world);
+    explicit ModelPaths(const std::filesystem::path& world);
 
     const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
@@ -24,4 +24,4 @@ private:
     std::vector<std::filesystem::path> folders_;
 };
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

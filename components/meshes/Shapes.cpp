@@ -1,4 +1,4 @@
-#include "components/sdf/SdfShapes.hpp"
+#include "components/meshes/Shapes.hpp"
 
 #include <fmt/format.h>
 #include <stb_image.h>
@@ -12,7 +12,7 @@
 
 #include "components/scene/PictureFormat.hpp"
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 
 using namespace scene;
 namespace {
@@ -87,6 +87,8 @@ Surface unitSphere() { return capsule(1, 0); }
 
 Surface unitCylinder() { return revolve({{0, -0.5}, {1, -0.5}, {1, 0.5}, {0, 0.5}}); }
 
+Surface unitCone() { return revolve({{0, -0.5}, {1, -0.5}, {0, 0.5}}); }
+
 Surface capsule(double radius, double length) {
     std::vector<glm::dvec2> profile;
     addQuarter(profile, radius, -length / 2, false);
@@ -120,4 +122,4 @@ Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size) {
     return surface;
 }
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

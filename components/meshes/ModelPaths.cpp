@@ -1,9 +1,9 @@
-#include "components/sdf/SdfPaths.hpp"
+#include "components/meshes/ModelPaths.hpp"
 
 #include <cstdlib>
 #include <sstream>
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 namespace {
 
 bool isThere(const std::filesystem::path& path) {
@@ -13,8 +13,9 @@ bool isThere(const std::filesystem::path& path) {
 
 }  // namespace
 
-SdfPaths::SdfPaths(const std::filesystem::path& world) {
-    for (const char* variable : {"INSONIFY_MODEL_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
+ModelPaths::ModelPaths(const std::filesystem::path& world) {
+    for (const char* variable :
+         {"INSONIFY_MODEL_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH"}) {
         const char* list = std::getenv(variable);
         std::istringstream stream(list ? list : "");
         for (std::string folder; std::getline(stream, folder, ':');)
@@ -25,8 +26,8 @@ SdfPaths::SdfPaths(const std::filesystem::path& world) {
     if (isThere(folder / "model.config")) folders_.push_back(folder.parent_path());
 }
 
-std::optional<std::filesystem::path> SdfPaths::find(const std::string& uri,
-                                                    const std::filesystem::path& named_in) const {
+std::optional<std::filesystem::path> ModelPaths::find(const std::string& uri,
+                                                      const std::filesystem::path& named_in) const {
     const size_t scheme_end = uri.find("://");
     const std::string scheme = scheme_end == std::string::npos ? "" : uri.substr(0, scheme_end);
     const std::filesystem::path path = scheme.empty() ? uri : uri.substr(scheme_end + 3);
@@ -40,4 +41,4 @@ std::optional<std::filesystem::path> SdfPaths::find(const std::string& uri,
     return {};
 }
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

@@ -1,4 +1,4 @@
-#include "components/sdf/SdfMeshes.hpp"
+#include "components/meshes/VisualMeshes.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include "components/meshes/MeshFile.hpp"
 #include "components/scene/Clusters.hpp"
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 
 using namespace scene;
 
-int SdfMeshes::material(types::Material material, const Look& look) {
+int VisualMeshes::material(types::Material material, const Look& look) {
     if (!look.name.empty()) material.name = look.name;
     types::Diagnostics none;
     if (!look.acoustics.empty()) readAcoustics(look.acoustics, "", none).applyTo(material);
@@ -20,7 +20,7 @@ int SdfMeshes::material(types::Material material, const Look& look) {
     return static_cast<int>(geometry_.materials.size()) - 1;
 }
 
-int SdfMeshes::add(Surface surface, const std::string& name, const Look& look) {
+int VisualMeshes::add(Surface surface, const std::string& name, const Look& look) {
     const auto [known, is_new] = materials_.try_emplace(look, -1);
     if (is_new) known->second = material({.name = "default"}, look);
     types::Mesh mesh;
@@ -31,19 +31,19 @@ int SdfMeshes::add(Surface surface, const std::string& name, const Look& look) {
     return static_cast<int>(geometry_.meshes.size()) - 1;
 }
 
-const std::vector<Placing>& SdfMeshes::file(const std::filesystem::path& path, const std::string& submesh,
-                                            const Look& look) {
+const std::vector<Placing>& VisualMeshes::file(const std::filesystem::path& path, const std::string& submesh,
+                                               const Look& look) {
     const types::GeometryPtr& read = readOnce(path);
     const auto [known, is_new] = placings_.try_emplace({path.string(), submesh, look});
     if (is_new) known->second = merge(*read, submesh, look);
     return known->second;
 }
 
-const types::GeometryPtr& SdfMeshes::readOnce(const std::filesystem::path& path) {
+const types::GeometryPtr& VisualMeshes::readOnce(const std::filesystem::path& path) {
     const auto [known, is_new] = files_.try_emplace(path.string());
     FileRead& read = known->second;
     if (is_new) try {
-            read.geometry = meshes::readMeshFile(path);
+            read.geometry = readMeshFile(path);
             for (const std::string& notice : read.geometry->notices)
                 geometry_.notices.push_back(fmt::format("{}: {}", path.string(), notice));
         } catch (const types::ConfigError& failure) {
@@ -53,7 +53,7 @@ const types::GeometryPtr& SdfMeshes::readOnce(const std::filesystem::path& path)
     return read.geometry;
 }
 
-std::vector<Placing> SdfMeshes::merge(const types::Geometry& from, const std::string& submesh, const Look& look) {
+std::vector<Placing> VisualMeshes::merge(const types::Geometry& from, const std::string& submesh, const Look& look) {
     std::vector<Placing> placings;
     std::map<int, int> meshes, materials;  // indices here by indices there
     for (const types::Object& object : from.objects) {
@@ -66,7 +66,7 @@ std::vector<Placing> SdfMeshes::merge(const types::Geometry& from, const std::st
     return placings;
 }
 
-int SdfMeshes::mergeMesh(const types::Geometry& from, int index, const Look& look, std::map<int, int>& materials) {
+int VisualMeshes::mergeMesh(const types::Geometry& from, int index, const Look& look, std::map<int, int>& materials) {
     types::Mesh mesh = from.meshes[static_cast<size_t>(index)];
     for (types::Cluster& cluster : mesh.clusters) {
         const auto [known, is_new] = materials.try_emplace(cluster.material, -1);
@@ -84,7 +84,7 @@ int SdfMeshes::mergeMesh(const types::Geometry& from, int index, const Look& loo
     return static_cast<int>(geometry_.meshes.size()) - 1;
 }
 
-std::vector<Placing> SdfMeshes::centred(std::vector<Placing> placings) const {
+std::vector<Placing> VisualMeshes::centred(std::vector<Placing> placings) const {
     glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
     for (const Placing& placing : placings)
         for (const glm::vec3 position : geometry_.meshes[static_cast<size_t>(placing.mesh)].positions) {
@@ -97,4 +97,4 @@ std::vector<Placing> SdfMeshes::centred(std::vector<Placing> placings) const {
     return placings;
 }
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

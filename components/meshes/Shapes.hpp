@@ -3,7 +3,7 @@
 
 #include "components/scene/Surface.hpp"
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 
 // Shapes of SDF about their origins, faces outward. Round ones have 64 facets around, their corners on the true
 // surface, from which they are off by 0.12 % of the radius at most.
@@ -12,6 +12,7 @@ scene::Surface unitBox();       ///< Of side 1 [m].
 scene::Surface unitPlane();     ///< A square of side 1 in z = 0 that faces up [m].
 scene::Surface unitSphere();    ///< Of radius 1 [m].
 scene::Surface unitCylinder();  ///< Of radius 1 and height 1 along z [m].
+scene::Surface unitCone();      ///< Of radius 1 at its base and height 1 along z, its point up [m].
 /** A cylinder of `length` along z between half spheres of `radius` [m]. */
 scene::Surface capsule(double radius, double length);
 
@@ -20,4 +21,4 @@ scene::Surface capsule(double radius, double length);
  *  more than 2049 a side is read in steps. Throws std::runtime_error for a picture that cannot be read. */
 scene::Surface readHeightmap(const std::filesystem::path& file, glm::dvec3 size);
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

@@ -1,31 +1,18 @@
 #pragma once
-// What stands in for Gazebo: its transport's own publisher, in a partition of the test's own on this machine.
-#include <gtest/gtest.h>
+// What stands in for Gazebo Fortress: its transport's own publishers and services.
+#include <ignition/msgs/empty.pb.h>
 #include <ignition/msgs/odometry.pb.h>
 #include <ignition/msgs/pose_v.pb.h>
-#include <unistd.h>
+#include <ignition/msgs/scene.pb.h>
 
-#include <chrono>
-#include <cstdlib>
+#include <cmath>
+#include <functional>
 #include <ignition/transport/Node.hh>
-#include <random>
 #include <string>
 
-#include "tests/support/Waiting.hpp"
+#include "tests/gazebo/Partition.hpp"
 
 namespace insonify::gazebo {
-
-using test::comesTrue;
-
-/** Tests that hear nobody else, and nobody else hears. */
-class OwnPartition : public testing::Test {
-protected:
-    OwnPartition() {
-        setenv("IGN_IP", "127.0.0.1", 1);
-        setenv("IGN_PARTITION",
-               ("insonify-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device{}())).c_str(), 1);
-    }
-};
 
 inline void setStamp(ignition::msgs::Header& header, double seconds) {
     const auto whole = static_cast<int64_t>(seconds);
@@ -42,10 +29,10 @@ inline void setPose(ignition::msgs::Pose& pose, const std::string& name, double 
     pose.mutable_orientation()->set_z(std::sin(yaw / 2));
 }
 
-/** A world's poses, as Gazebo's scene broadcaster tells them: models and, within them, their links. */
-class World {
+/** A world's poses, as Gazebo's scene broadcaster sends them: models and, within them, their links. */
+class FortressWorld {
 public:
-    explicit World(const std::string& topic = "/world/sea/pose/info")
+    explicit FortressWorld(const std::string& topic = "/world/sea/pose/info")
         : poses_(node_.Advertise<ignition::msgs::Pose_V>(topic)),
           odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {}
     /** Red at x along the world's x, blue 12 m beyond it. */
@@ -61,6 +48,11 @@ public:
     }
     void send(const ignition::msgs::Pose_V& message) { poses_.Publish(message); }
     void send(const ignition::msgs::Odometry& message) { odometry_.Publish(message); }
+
+    /** Answers the service of a world's models. */
+    bool serve(const std::string& service, std::function<bool(ignition::msgs::Scene&)> fill) {
+        return node_.Advertise(service, fill);
+    }
 
 private:
     ignition::transport::Node node_;

@@ -1,4 +1,4 @@
-#include "components/sdf/SdfPaths.hpp"
+#include "components/meshes/ModelPaths.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
 namespace insonify::sdf {
@@ -6,20 +6,20 @@ namespace insonify::sdf {
 using namespace scene;
 namespace {
 
-class SdfPathsTest : public SdfFiles {
+class ModelPathsTest : public SdfFiles {
 protected:
-    SdfPathsTest() {
+    ModelPathsTest() {
         for (const char* folder : {"one", "two", "gazebo", "sdf", "world"})
             std::filesystem::create_directories(folder_ / folder);
     }
     std::string at(const std::string& path) const { return (folder_ / path).string(); }
     std::string find(const std::string& uri, const std::string& named_in = "world/a.world") const {
-        const auto found = SdfPaths(folder_ / "world/a.world").find(uri, folder_ / named_in);
+        const auto found = meshes::ModelPaths(folder_ / "world/a.world").find(uri, folder_ / named_in);
         return found ? found->lexically_relative(folder_).string() : "";
     }
 };
 
-TEST_F(SdfPathsTest, FoldersAreAskedInTheOrderOfTheVariablesAndTheWorldLast) {
+TEST_F(ModelPathsTest, FoldersAreAskedInTheOrderOfTheVariablesAndTheWorldLast) {
     const Variable ours("INSONIFY_MODEL_PATH", at("one") + "::" + at("two")), gazebo("GAZEBO_MODEL_PATH", at("gazebo")),
         sdf("SDF_PATH", at("sdf"));
     for (const char* folder : {"world", "sdf", "gazebo", "two", "one"}) {
@@ -28,7 +28,7 @@ TEST_F(SdfPathsTest, FoldersAreAskedInTheOrderOfTheVariablesAndTheWorldLast) {
     }
 }
 
-TEST_F(SdfPathsTest, AnIncludeFollowsTheSameOrder) {
+TEST_F(ModelPathsTest, AnIncludeFollowsTheSameOrder) {
     const Variable ours("INSONIFY_MODEL_PATH", at("one")), sdf("SDF_PATH", at("sdf"));
     writeModel("sdf/buoy", model("from_sdf_path", box_));
     writeModel("one/buoy", model("from_insonify", box_));
@@ -36,7 +36,7 @@ TEST_F(SdfPathsTest, AnIncludeFollowsTheSameOrder) {
     EXPECT_GE(findNode(scene, "from_insonify"), 0);
 }
 
-TEST_F(SdfPathsTest, FileUrisAndPathsAreWhatTheySay) {
+TEST_F(ModelPathsTest, FileUrisAndPathsAreWhatTheySay) {
     write("world/a.dae", "");
     write("one/b.dae", "");
     const Variable ours("INSONIFY_MODEL_PATH", at("one"));

@@ -12,7 +12,7 @@
 #include "types/ConfigError.hpp"
 #include "types/Geometry.hpp"
 
-namespace insonify::sdf {
+namespace insonify::meshes {
 
 /** What a visual says about its material. */
 struct Look {
@@ -28,9 +28,9 @@ struct Placing {
 };
 
 /** Makes the meshes of a world's visuals, each once however often it stands there with the same material. */
-class SdfMeshes {
+class VisualMeshes {
 public:
-    explicit SdfMeshes(types::Geometry& geometry) : geometry_(geometry) {}
+    explicit VisualMeshes(types::Geometry& geometry) : geometry_(geometry) {}
 
     /** `make()` is called for the first visual of that key and material. */
     template <class Make>
@@ -66,4 +66,4 @@ private:
     std::map<std::tuple<std::string, std::string, Look>, std::vector<Placing>> placings_;
 };
 
-}  // namespace insonify::sdf
+}  // namespace insonify::meshes

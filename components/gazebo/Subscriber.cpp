@@ -1,0 +1,214 @@
+#include "components/gazebo/Subscriber.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <zmq.hpp>
+#include <zmq_addon.hpp>
+
+#include "components/gazebo/Discovery.hpp"
+#include "components/gazebo/Multicast.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::gazebo {
+namespace {
+
+using WorkerClock = std::chrono::steady_clock;
+constexpr int64_t max_message = int64_t{256} << 20;  // [bytes]
+constexpr int max_burst = 200;                       ///< Messages that are read before discovery has its turn.
+constexpr std::chrono::milliseconds period{1000};    ///< Of what is sent again and again, as all of them do.
+
+/** The last two parts of a topic: "/pose/info". */
+std::string endingOf(const std::string& topic) {
+    const size_t last = topic.rfind('/');
+    const size_t before = last == std::string::npos || last == 0 ? last : topic.rfind('/', last - 1);
+    return before == std::string::npos ? topic : topic.substr(before);
+}
+
+}  // namespace
+
+class Subscriber::Worker {
+public:
+    Worker(const TransportOptions& options, std::vector<Topic> topics)
+        : topics_(std::move(topics)),
+          multicast_(options, options.topic_port),
+          stop_(eventfd(0, EFD_CLOEXEC)),
+          has_publisher_(topics_.size()),
+          heard_(topics_.empty() ? "" : endingOf(topics_[0].name)) {
+        socket_.set(zmq::sockopt::linger, 0);
+        socket_.set(zmq::sockopt::maxmsgsize, max_message);
+        for (size_t i = 0; i < topics_.size(); ++i) {
+            const auto name = qualifiedName(options.partition, topics_[i].name);
+            if (!name) {
+                close(stop_);
+                throw types::ConfigError("", std::to_string(i), "is no name of a topic");
+            }
+            names_.push_back(*name);
+            socket_.set(zmq::sockopt::subscribe, *name);
+        }
+        thread_ = std::thread([this] { run(); });
+    }
+    ~Worker() {
+        const uint64_t one = 1;
+        [[maybe_unused]] const auto written = write(stop_, &one, sizeof one);
+        thread_.join();
+        close(stop_);
+    }
+
+    bool hasPublisher(size_t topic) const { return has_publisher_[topic]; }
+    std::string heard() const {
+        const std::lock_guard lock(mutex_);
+        return heard_.text();
+    }
+
+private:
+    void run() {
+        auto next = WorkerClock::now();
+        for (bool goes_on = true; goes_on;) {
+            if (WorkerClock::now() >= next) {
+                announce();
+                next = WorkerClock::now() + period;
+            }
+            const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next - WorkerClock::now());
+            zmq::pollitem_t items[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0},
+                                       {nullptr, multicast_.descriptor(), ZMQ_POLLIN, 0},
+                                       {nullptr, stop_, ZMQ_POLLIN, 0}};
+            try {
+                zmq::poll(items, std::size(items), std::max(wait, std::chrono::milliseconds{0}));
+            } catch (const zmq::error_t&) {
+                continue;  // a signal
+            }
+            if (items[0].revents) readMessages();
+            if (items[1].revents) readDatagrams();
+            goes_on = !items[2].revents;
+        }
+        for (const auto& [address, publication] : publications_) connect(publication, false);
+        multicast_.send(goodbyeDatagram(process_));
+    }
+
+    /** That we are there, and what we look for. Publishers that have gone are let go. */
+    void announce() {
+        multicast_.send(aliveDatagram(process_));
+        for (size_t i = 0; i < names_.size(); ++i)
+            if (!has_publisher_[i]) multicast_.send(askDatagram(process_, names_[i]));
+        const auto oldest = WorkerClock::now() - std::chrono::duration<double>(silence_s);
+        for (auto each = last_heard_.begin(); each != last_heard_.end();) {
+            const auto [process, time] = *each++;
+            if (time < oldest) forget(process, "");
+        }
+    }
+
+    void readMessages() {
+        for (int i = 0; i < max_burst; ++i) {
+            std::vector<zmq::message_t> frames;
+            if (!zmq::recv_multipart(socket_, std::back_inserter(frames), zmq::recv_flags::dontwait)) return;
+            if (frames.size() < 4) continue;  // topic, sender's address, message, type
+            const auto name = std::ranges::find(names_, frames[0].to_string_view());
+            if (name == names_.end()) continue;  // of a longer name
+            const Topic& topic = topics_[static_cast<size_t>(name - names_.begin())];
+            topic.use(messageName(frames[3].to_string()), frames[2].to_string_view());
+        }
+    }
+
+    void readDatagrams() {
+        while (const auto datagram = multicast_.receive()) {
+            std::optional<Announcement> news;
+            {
+                const std::lock_guard lock(mutex_);
+                news = readDatagram(datagram->bytes, process_, heard_);
+            }
+            if (!news) continue;
+            const Publication& publication = news->publication;
+            switch (news->kind) {
+                case Announcement::Kind::Offer:
+                    if (!publication.is_for_host || datagram->is_from_here) follow(publication);
+                    break;
+                case Announcement::Kind::Withdrawal: forget(news->process, publication.topic); break;
+                case Announcement::Kind::Goodbye: forget(news->process, ""); break;
+                case Announcement::Kind::Alive: break;
+            }
+            if (const auto known = last_heard_.find(news->process); known != last_heard_.end())
+                known->second = WorkerClock::now();
+        }
+    }
+
+    /** Sent anew with each offer: a publisher sends messages only to programs that have asked, and a datagram may be
+     *  lost. */
+    void connect(const Publication& publication, bool begins) const {
+        multicast_.send(connectionDatagram(process_, node_, publication, begins));
+    }
+
+    void follow(const Publication& publication) {
+        if (publication.is_service || std::ranges::count(names_, publication.topic) == 0) return;
+        if (!publications_.contains({publication.address, publication.topic})) {
+            try {
+                if (!isConnected(publication.address)) socket_.connect(publication.address);
+            } catch (const zmq::error_t&) {
+                return;  // no address
+            }
+            publications_[{publication.address, publication.topic}] = publication;
+            last_heard_[publication.process] = WorkerClock::now();
+            countPublishers();
+        }
+        connect(publication, true);
+    }
+
+    bool isConnected(const std::string& address) const {
+        return std::ranges::any_of(publications_, [&](const auto& each) { return each.first.address == address; });
+    }
+
+    /** An empty topic is all of them. */
+    void forget(const std::string& process, const std::string& topic) {
+        for (auto each = publications_.begin(); each != publications_.end();) {
+            const auto [key, publication] = *each;
+            if (publication.process != process || (!topic.empty() && publication.topic != topic)) {
+                ++each;
+                continue;
+            }
+            each = publications_.erase(each);
+            if (!isConnected(key.address)) zmq_disconnect(socket_.handle(), key.address.c_str());
+        }
+        if (topic.empty()) last_heard_.erase(process);
+        countPublishers();
+    }
+
+    void countPublishers() {
+        for (size_t i = 0; i < names_.size(); ++i)
+            has_publisher_[i] =
+                std::ranges::any_of(publications_, [&](const auto& each) { return each.first.topic == names_[i]; });
+    }
+
+    struct Key {
+        std::string address, topic;
+        auto operator<=>(const Key&) const = default;
+    };
+
+    const std::vector<Topic> topics_;
+    std::vector<std::string> names_;  ///< Of the topics, with the partition.
+    const std::string process_ = makeUuid(), node_ = makeUuid();
+    Multicast multicast_;
+    zmq::context_t context_;
+    zmq::socket_t socket_{context_, zmq::socket_type::sub};
+    std::map<Key, Publication> publications_;                    ///< That are received.
+    std::map<std::string, WorkerClock::time_point> last_heard_;  ///< By process, of those publications.
+    const int stop_;                                             ///< Readable: the thread ends.
+    std::vector<std::atomic<bool>> has_publisher_;               ///< For each topic.
+    mutable std::mutex mutex_;
+    Heard heard_;
+    std::thread thread_;
+};
+
+Subscriber::Subscriber(const TransportOptions& options, std::vector<Topic> topics)
+    : worker_(std::make_unique<Worker>(options, std::move(topics))) {}
+Subscriber::~Subscriber() = default;
+bool Subscriber::hasPublisher(size_t topic) const { return worker_->hasPublisher(topic); }
+std::string Subscriber::heard() const { return worker_->heard(); }
+
+}  // namespace insonify::gazebo

@@ -1,0 +1,229 @@
+#include "components/gazebo/World.hpp"
+
+#include <fmt/format.h>
+#include <gazebo_messages.pb.h>  // made by the build, of messages.proto
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "components/gazebo/Request.hpp"
+#include "components/gazebo/TransportOptions.hpp"
+#include "components/meshes/WorldBuilder.hpp"
+#include "components/scene/MaterialNames.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::gazebo {
+namespace {
+
+constexpr size_t max_parts = 100'000;  ///< Models, links and visuals of a world.
+
+glm::dvec3 pointOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/** A message leaves out what is not turned at all. Not finite for an orientation without a length. */
+glm::dmat4 matrixOf(const wire::Pose& pose) {
+    const wire::Quaternion& q = pose.orientation();
+    const glm::dquat turn =
+        pose.has_orientation() ? glm::normalize(glm::dquat(q.w(), q.x(), q.y(), q.z())) : glm::dquat(1, 0, 0, 0);
+    const bool has_length = !pose.has_orientation() || glm::length(glm::dquat(q.w(), q.x(), q.y(), q.z())) > 0;
+    const glm::dmat4 matrix = glm::translate(glm::dmat4(1), pointOf(pose.position())) * glm::mat4_cast(turn);
+    return has_length ? matrix : glm::dmat4(std::nan(""));
+}
+
+bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/** Why the sizes of a shape cannot be; empty: they can. */
+std::string reasonAgainst(const meshes::Shape& shape) {
+    if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
+        return fmt::format("its {} {}", fault.path, fault.message);
+    if (const auto* mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !isFinite(mesh->scale))
+        return "its scale is not finite";
+    if (const auto* map = std::get_if<meshes::HeightmapShape>(&shape);
+        map && !(isFinite(map->size) && isFinite(map->position)))
+        return "its size or position is not finite";
+    const auto* plane = std::get_if<meshes::PlaneShape>(&shape);
+    if (plane && !(isFinite(plane->normal) && isFinite({plane->size, 0}))) return "its normal or size is not finite";
+    return "";
+}
+
+class SceneReader {
+public:
+    explicit SceneReader(const std::filesystem::path& folder) : builder_(folder / "world") {}
+
+    World read(const wire::Scene& message) {
+        for (const wire::Light& light : message.light()) names_.insert(light.name());
+        for (const wire::Model& model : message.model()) addModel(model, "", -1, glm::dmat4(1));
+        return {builder_.take(), std::move(names_)};
+    }
+
+private:
+    /** `scope` is the name of what holds the model, with "::" behind it. */
+    void addModel(const wire::Model& model, const std::string& scope, int parent, const glm::dmat4& world_from_scope) {
+        names_.insert(model.name());
+        const auto node = addNode("model", scope + model.name(), parent, world_from_scope, model.pose());
+        if (!node) return;
+        const std::string inner = scope + model.name() + "::";
+        const glm::dmat4 world_from_model = builder_.worldFromNode(*node);
+        for (const wire::Visual& visual : model.visual()) addVisual(visual, inner, *node, {model.name()});
+        for (const wire::Link& link : model.link()) {
+            names_.insert(link.name());
+            for (const wire::Light& light : link.light()) names_.insert(light.name());
+            const auto below = addNode("link", inner + link.name(), *node, world_from_model, link.pose());
+            if (!below) continue;
+            for (const wire::Visual& visual : link.visual())
+                addVisual(visual, inner + link.name() + "::", *below, {link.name(), model.name()});
+        }
+        for (const wire::Model& nested : model.model()) addModel(nested, inner, *node, world_from_model);
+    }
+
+    /** None where it has no place. */
+    std::optional<int> addNode(const char* kind, const std::string& name, int parent,
+                               const glm::dmat4& world_from_parent, const wire::Pose& pose) {
+        count();
+        const glm::dmat4 world_from_node = world_from_parent * matrixOf(pose);
+        if (!scene::isFinite(world_from_node)) {
+            builder_.notice(
+                fmt::format("{} {} is left out: its pose is not finite, or its orientation has no length", kind, name));
+            return {};
+        }
+        const int node = builder_.addNode(name, parent, world_from_node);
+        if (const std::string& given = builder_.node(node).name; given != name)
+            builder_.notice(fmt::format("{} {} is there twice; the second is {} here", kind, name, given));
+        return node;
+    }
+
+    /** `holders` are the names of what holds it, the innermost first. */
+    void addVisual(const wire::Visual& visual, const std::string& scope, int node,
+                   const std::vector<std::string>& holders) {
+        count();
+        names_.insert(visual.name());
+        const std::string name = scope + visual.name();
+        if (!visual.has_geometry()) return builder_.leaveOut(name, "it has no geometry");
+        if (visual.geometry().type() == wire::Geometry::EMPTY) return;
+        const glm::dmat4 node_from_visual = matrixOf(visual.pose());
+        const meshes::Shape shape = shapeOf(visual.geometry());
+        const std::string fault = scene::isFinite(node_from_visual)
+                                      ? reasonAgainst(shape)
+                                      : "its pose is not finite, or its orientation has no length";
+        if (!fault.empty()) return builder_.leaveOut(name, fault);
+        builder_.addVisual(name, node, node_from_visual, shape, {materialOf(visual, holders), {}});
+    }
+
+    /** Gazebo sends colours, and no names of materials: one is taken of the visual or of what holds it, where matter is
+     *  in that name. Empty: none, or a mesh, which has materials of its own. */
+    static std::string materialOf(const wire::Visual& visual, const std::vector<std::string>& holders) {
+        const std::string& given = visual.material().script().name();
+        if (!given.empty() || visual.geometry().type() == wire::Geometry::MESH) return given;
+        if (!scene::matterIn(visual.name()).empty()) return visual.name();
+        for (const std::string& holder : holders)
+            if (!scene::matterIn(holder).empty()) return holder;
+        return "";
+    }
+
+    meshes::Shape shapeOf(const wire::Geometry& geometry) const {
+        switch (geometry.type()) {
+            case wire::Geometry::BOX: return meshes::BoxShape{pointOf(geometry.box().size())};
+            case wire::Geometry::SPHERE: return meshes::EllipsoidShape{glm::dvec3(geometry.sphere().radius()), true};
+            case wire::Geometry::ELLIPSOID: return meshes::EllipsoidShape{pointOf(geometry.ellipsoid().radii()), false};
+            case wire::Geometry::CYLINDER:
+                return meshes::CylinderShape{geometry.cylinder().radius(), geometry.cylinder().length()};
+            case wire::Geometry::CONE: return meshes::ConeShape{geometry.cone().radius(), geometry.cone().length()};
+            case wire::Geometry::CAPSULE:
+                return meshes::CapsuleShape{geometry.capsule().radius(), geometry.capsule().length()};
+            case wire::Geometry::PLANE: {
+                const wire::Plane& plane = geometry.plane();
+                return meshes::PlaneShape{plane.has_normal() ? pointOf(plane.normal()) : glm::dvec3(0, 0, 1),
+                                          {plane.size().x(), plane.size().y()}};
+            }
+            case wire::Geometry::MESH: {
+                const wire::Mesh& mesh = geometry.mesh();
+                return meshes::MeshShape{placeOf(mesh.filename()),
+                                         mesh.submesh(),
+                                         mesh.center_submesh(),
+                                         mesh.has_scale() ? pointOf(mesh.scale()) : glm::dvec3(1),
+                                         {}};
+            }
+            case wire::Geometry::HEIGHTMAP: {
+                const wire::Heightmap& map = geometry.heightmap();
+                return meshes::HeightmapShape{placeOf(map.filename()), pointOf(map.size()), pointOf(map.origin()), {}};
+            }
+            default: return meshes::OtherShape{};
+        }
+    }
+
+    /** Where a file is here that is at this place, or has this URI, on Gazebo's machine; the same where it is not. */
+    std::string placeOf(const std::string& uri) const {
+        if (builder_.paths().find(uri, {})) return uri;
+        const std::filesystem::path path = uri.starts_with("file://") ? uri.substr(7) : uri;
+        if (!path.is_absolute()) return uri;
+        std::filesystem::path last_parts = path.relative_path();
+        while (last_parts.has_parent_path()) {  // at least a folder and the file
+            if (const auto found = builder_.paths().find("model://" + last_parts.string(), {})) return found->string();
+            last_parts = last_parts.lexically_relative(*last_parts.begin());
+        }
+        return uri;
+    }
+
+    void count() {
+        if (++parts_ > max_parts)
+            throw types::ConfigError("", "world",
+                                     fmt::format("has more than {} models, links and visuals in Gazebo, which is too "
+                                                 "many",
+                                                 max_parts));
+    }
+
+    meshes::WorldBuilder builder_;
+    std::set<std::string> names_;
+    size_t parts_ = 0;
+};
+
+std::mutex taken_mutex;
+
+/** By qualified name of the world's service. */
+std::map<std::string, std::set<std::string>>& taken() {
+    static std::map<std::string, std::set<std::string>> worlds;
+    return worlds;
+}
+
+std::string serviceOf(const std::string& world) { return "/world/" + world + "/scene/info"; }
+
+}  // namespace
+
+World worldOf(std::string_view message, const std::filesystem::path& folder) {
+    wire::Scene scene;
+    if (message.size() >= size_t{1} << 31 || !scene.ParseFromArray(message.data(), static_cast<int>(message.size())))
+        throw types::ConfigError("", "world", "has a service that answers bytes which are no message Scene");
+    return SceneReader(folder).read(scene);
+}
+
+scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem::path& folder) {
+    const TransportOptions options = TransportOptions::fromEnvironment(config.partition);
+    const std::string service = serviceOf(config.world);
+    const auto name = qualifiedName(options.partition, service);
+    if (!name)
+        throw types::ConfigError("", "world",
+                                 "is " + config.world + ", which Gazebo's transport does not take for a name");
+    const Reply reply =
+        request(options, {service, "Empty", "Scene"}, "", std::chrono::duration<double>(config.timeout));
+    if (!reply.failure.empty())
+        throw types::ConfigError("", "world",
+                                 fmt::format("is {}; after {:g} s (timeout), its service {} {}", config.world,
+                                             config.timeout, service, reply.failure));
+    World world = worldOf(reply.message, folder);
+    const std::lock_guard lock(taken_mutex);
+    taken()[*name] = std::move(world.names);
+    return std::move(world.scene);
+}
+
+std::optional<std::set<std::string>> namesTaken(const std::string& world, const std::string& partition) {
+    const auto name = qualifiedName(partition, serviceOf(world));
+    const std::lock_guard lock(taken_mutex);
+    const auto found = name ? taken().find(*name) : taken().end();
+    return found == taken().end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace insonify::gazebo

@@ -1,0 +1,172 @@
+#include "components/meshes/WorldBuilder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <memory>
+#include <stdexcept>
+
+#include "components/meshes/Shapes.hpp"
+#include "components/scene/Surface.hpp"
+
+namespace insonify::meshes {
+
+using namespace scene;
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+    using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+Placing scaled(Placing placing, glm::dvec3 size) {
+    placing.visual_from_object = glm::scale(placing.visual_from_object, size);
+    return placing;
+}
+
+/** A square whose normal is turned from z by the shortest way. */
+Placing turnedTo(Placing placing, glm::dvec3 normal) {
+    const double length = glm::length(normal);
+    if (!(length > 0)) return placing;
+    const glm::dvec3 up(0, 0, 1), to = normal / length;
+    const bool is_opposite = glm::dot(up, to) < -1 + 1e-12;
+    const glm::dquat turn =
+        is_opposite ? glm::dquat(0, 1, 0, 0) : glm::normalize(glm::dquat(1 + glm::dot(up, to), glm::cross(up, to)));
+    placing.visual_from_object = glm::mat4_cast(turn);
+    return placing;
+}
+
+}  // namespace
+
+types::Diagnostic faultOf(const Shape& shape) {
+    const auto judged = [](const char* key, std::initializer_list<double> sizes) {
+        for (const double size : sizes)
+            if (!(size >= 0)) return types::Diagnostic{key, fmt::format("is {}; must not be negative", size)};
+        return types::Diagnostic{};
+    };
+    return std::visit(
+        Overloaded{
+            [&](const BoxShape& box) {
+                return judged("size", {box.size.x, box.size.y, box.size.z});
+            },
+            [&](const EllipsoidShape& ball) {
+                return judged(ball.is_sphere ? "radius" : "radii", {ball.radii.x, ball.radii.y, ball.radii.z});
+            },
+            [&](const CylinderShape& c) {
+                return judged("radius, length", {c.radius, c.length});
+            },
+            [&](const ConeShape& c) {
+                return judged("radius, length", {c.radius, c.length});
+            },
+            [&](const CapsuleShape& c) {
+                return judged("radius, length", {c.radius, c.length});
+            },
+            [&](const auto&) { return types::Diagnostic{}; },
+        },
+        shape);
+}
+
+int WorldBuilder::addNode(const std::string& name, int parent, const glm::dmat4& world_from_node) {
+    const glm::dmat4 parent_from_world = parent < 0 ? glm::dmat4(1) : glm::inverse(worldFromNode(parent));
+    scene_.nodes.push_back({names_.add(name), parent, parent_from_world * world_from_node, glm::dvec3(1)});
+    world_from_node_.push_back(world_from_node);
+    return static_cast<int>(scene_.nodes.size()) - 1;
+}
+
+void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
+                             const Look& look) {
+    for (const Placing& placing : placingsOf(name, shape, look)) {
+        const glm::dmat4 node_from_object = node_from_visual * placing.visual_from_object;
+        const glm::dmat4 world_from_object = worldFromNode(node) * node_from_object;
+        if (!isFinite(world_from_object) || glm::determinant(glm::dmat3(node_from_object)) == 0) {
+            ++flat_visuals_;
+            continue;
+        }
+        geometry_.objects.push_back({object_names_.add(name), placing.mesh, world_from_object});
+        scene_.object_nodes.push_back(node);
+        scene_.node_from_object.push_back(node_from_object);
+    }
+}
+
+void WorldBuilder::leaveOut(const std::string& visual, const std::string& why) {
+    notice(fmt::format("visual {} is left out: {}", visual, why));
+}
+
+Scene WorldBuilder::take() {
+    addCount(flat_visuals_, "visuals left out, their size is zero in some direction or not finite", geometry_.notices);
+    if (geometry_.objects.empty()) notice("the scene has no triangles: an empty sea");
+    scene_.geometry = std::make_shared<const types::Geometry>(std::move(geometry_));
+    return std::move(scene_);
+}
+
+std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Shape& shape, const Look& look) {
+    using Placings = std::vector<Placing>;
+    return std::visit(
+        Overloaded{
+            [&](const BoxShape& box) -> Placings { return {scaled(meshes_.shape("box", look, unitBox), box.size)}; },
+            [&](const EllipsoidShape& ball) -> Placings {
+                return {scaled(meshes_.shape("sphere", look, unitSphere), ball.radii)};
+            },
+            [&](const CylinderShape& c) -> Placings {
+                return {scaled(meshes_.shape("cylinder", look, unitCylinder), {c.radius, c.radius, c.length})};
+            },
+            [&](const ConeShape& c) -> Placings {
+                return {scaled(meshes_.shape("cone", look, unitCone), {c.radius, c.radius, c.length})};
+            },
+            [&](const CapsuleShape& c) -> Placings {
+                if (!(static_cast<float>(c.radius) > 0) || !std::isfinite(static_cast<float>(c.radius + c.length)))
+                    return ++flat_visuals_, Placings{};
+                return {meshes_.shape(fmt::format("capsule {} {}", c.radius, c.length), look,
+                                      [&] { return capsule(c.radius, c.length); })};
+            },
+            [&](const PlaneShape& plane) -> Placings {
+                const Placing turned = turnedTo(meshes_.shape("plane", look, unitPlane), plane.normal);
+                return {scaled(turned, {plane.size.x, plane.size.y, 1})};
+            },
+            [&](const MeshShape& mesh) -> Placings { return placingsOfMesh(name, mesh, look); },
+            [&](const HeightmapShape& map) -> Placings { return placingsOfHeightmap(name, map, look); },
+            [&](const OtherShape&) -> Placings {
+                return leaveOut(name, "its geometry is not one of those that are drawn"), Placings{};
+            },
+        },
+        shape);
+}
+
+std::vector<Placing> WorldBuilder::placingsOfMesh(const std::string& name, const MeshShape& mesh,
+                                                  const Look& look) try {
+    const auto path = paths_.find(mesh.uri, mesh.named_in);
+    if (!path) return leaveOut(name, mesh.uri + " is not found"), std::vector<Placing>{};
+    std::vector<Placing> placings = meshes_.file(*path, mesh.submesh, look);
+    if (placings.empty())
+        return leaveOut(name, fmt::format("{} has no submesh \"{}\"", mesh.uri, mesh.submesh)), placings;
+    if (mesh.is_centred) placings = meshes_.centred(std::move(placings));
+    const glm::dmat4 scale = glm::scale(glm::dmat4(1), mesh.scale);
+    for (Placing& placing : placings) placing.visual_from_object = scale * placing.visual_from_object;
+    return placings;
+} catch (const types::ConfigError& failure) {
+    leaveOut(name, fmt::format("{} {}", mesh.uri, failure.diagnostics().front().message));
+    return {};
+}
+
+std::vector<Placing> WorldBuilder::placingsOfHeightmap(const std::string& name, const HeightmapShape& map,
+                                                       const Look& look) try {
+    const auto path = paths_.find(map.uri, map.named_in);
+    if (!path) return leaveOut(name, map.uri + " is not found"), std::vector<Placing>{};
+    const glm::dvec3 size = map.size;
+    Placing placing = meshes_.shape(fmt::format("{} {} {} {}", path->string(), size.x, size.y, size.z), look,
+                                    [&] { return readHeightmap(*path, size); });
+    placing.visual_from_object = glm::translate(glm::dmat4(1), map.position);
+    return {placing};
+} catch (const std::runtime_error& failure) {
+    leaveOut(name, fmt::format("{} {}", map.uri, failure.what()));
+    return {};
+}
+
+}  // namespace insonify::meshes

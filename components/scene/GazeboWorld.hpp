@@ -1,0 +1,38 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/scene/Scene.hpp"
+#include "types/ConfigError.hpp"
+#include "types/Describe.hpp"
+
+namespace insonify::scene {
+
+/** A world that Gazebo runs, whose models are the scene. */
+struct GazeboConfig {
+    std::string world, partition;
+    double timeout = 5;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"world", "", "name of Gazebo's world, which is asked for on /world/NAME/scene/info"}, self.world);
+        visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
+        visit(Field{"timeout", "s", "how long to wait for Gazebo's answer", 0.1, 3600}, self.timeout);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    bool operator==(const GazeboConfig&) const = default;
+};
+
+/** Asks Gazebo for the models of a world, by the component library gazebo. Tasks that hold the scene of one world at
+ *  the same time share it. Relative paths of meshes start at `folder`. Throws types::ConfigError, with the key of
+ *  GazeboConfig for its path, where there is no answer or nothing in it. */
+std::shared_ptr<const Scene> sharedWorld(const GazeboConfig& config, const std::filesystem::path& folder);
+
+using WorldReader = void (*)(const GazeboConfig& config, const std::filesystem::path& folder, Scene& scene);
+/** Makes sharedWorld() ask by another function: for programs that are linked with the reader. */
+void setWorldReader(WorldReader reader);
+
+}  // namespace insonify::scene

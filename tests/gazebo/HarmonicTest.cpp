@@ -1,0 +1,239 @@
+// Poses and worlds over the wire, of one who speaks as Gazebo Harmonic does.
+#include <gmock/gmock.h>
+
+#include "components/gazebo/PoseTask.hpp"
+#include "components/gazebo/Request.hpp"
+#include "components/gazebo/World.hpp"
+#include "components/scene/SceneTask.hpp"
+#include "tests/gazebo/HarmonicWorld.hpp"
+#include "tests/gazebo/Partition.hpp"
+#include "tests/gazebo/Recordings.hpp"
+#include "tests/support/Listening.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::gazebo {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Settings = HarmonicWorld::Settings;
+
+class HarmonicTest : public OwnPartition, protected test::Listening<PoseTask> {
+protected:
+    HarmonicTest() : Listening("world", true) {
+        task.environment().warn = [this](const std::string& text) { warnings += text + "\n"; };
+    }
+
+    void follow(const std::string& entity) {
+        PoseConfig config;
+        config.world = "sea";
+        config.bodies = {{"rov", entity, ""}};
+        start(config, config.bodies);
+    }
+    static std::string poses(double seconds, const std::vector<std::string>& names, double x) {
+        wire::PoseV message;
+        message.mutable_header()->mutable_stamp()->set_sec(static_cast<int64_t>(seconds));
+        message.mutable_header()->mutable_stamp()->set_nsec(static_cast<int32_t>((seconds - int64_t(seconds)) * 1e9));
+        for (const std::string& name : names) {
+            wire::Pose& pose = *message.add_pose();
+            pose.set_name(name);
+            pose.mutable_position()->set_x(x);
+        }
+        return message.SerializeAsString();
+    }
+    /** What the scene's task says that is wrong. */
+    static std::string diagnosticOf(const scene::GazeboConfig& config) {
+        scene::SceneTask task("scene");
+        scene::SceneConfig scene;
+        scene.gazebo = config;
+        task.config.set(scene);
+        types::Diagnostics diagnostics;
+        task.check(diagnostics);
+        EXPECT_EQ(diagnostics.size(), 1u);
+        return diagnostics.empty() ? "" : diagnostics[0].path + ": " + diagnostics[0].message;
+    }
+    bool isDropped(const std::string& why) {
+        task.update();
+        const std::vector<std::string> all = task.notices();
+        return std::ranges::any_of(all, [&](const auto& line) { return line.find("dropped: " + why) != line.npos; });
+    }
+    bool isWarned(const std::string& text) const { return warnings.find(text) != std::string::npos; }
+    static scene::GazeboConfig world(const std::string& name, double timeout = 5) { return {name, "", timeout}; }
+
+    std::string warnings;
+};
+
+TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
+    follow("rov");
+    HarmonicWorld world({});
+    types::Pose read;
+    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its taker is connected
+        world.publish(recording("poses"));
+        task.update();
+        return readers[0].port.readNew(read);
+    }));
+    const types::Pose* const pose = &read;
+    EXPECT_EQ(pose->position, glm::dvec3(1.5, 0, -5));
+    EXPECT_NEAR(2 * std::atan2(pose->orientation.z, pose->orientation.w), 1.5707963, 1e-6);
+}
+
+TEST_F(HarmonicTest, AWorldThatStartsAgainIsFoundAnew) {
+    follow("rov");
+    for (const double x : {1.0, 2.0}) {
+        HarmonicWorld world({});
+        double seconds = x;
+        types::Pose pose;
+        ASSERT_TRUE(comesTrue([&] {
+            world.publish(poses(seconds += 0.02, {"rov"}, x));
+            task.update();
+            return readers[0].port.readNew(pose) && pose.position.x == x;
+        })) << x;
+    }
+}
+
+TEST_F(HarmonicTest, APublisherIsToldWhenItsMessagesAreNoLongerTaken) {
+    HarmonicWorld world({});
+    {
+        const Subscriber subscriber(TransportOptions::fromEnvironment(""),
+                                    {{"/world/sea/pose/info", [](const std::string&, std::string_view) {}}});
+        EXPECT_TRUE(comesTrue([&] { return world.takers() == 1; }));
+        EXPECT_TRUE(comesTrue([&] { return subscriber.hasPublisher(0); }));
+    }
+    EXPECT_TRUE(comesTrue([&] { return world.takers() == 0; }));
+}
+
+TEST_F(HarmonicTest, MessagesOfAnotherTypeAndDamagedOnesAreDroppedAndReported) {
+    follow("rov");
+    {
+        HarmonicWorld world({.type = "gz.msgs.Image"});
+        EXPECT_TRUE(comesTrue([&] {
+            world.publish("x");
+            return isDropped("/world/sea/pose/info: messages of type Image, not Pose_V");
+        }));
+    }
+    HarmonicWorld world({});
+    EXPECT_TRUE(comesTrue([&] {
+        world.publish("no message");
+        return isDropped("/world/sea/pose/info: bytes that are no Pose_V");
+    }));
+}
+
+TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
+    HarmonicWorld other({.world = "harbour"});
+    follow("rov");
+    EXPECT_TRUE(comesTrue([&] {
+        task.update();
+        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition +
+                        "; heard are /world/harbour/pose/info in partition " + partition);
+    })) << warnings;
+}
+
+TEST_F(HarmonicTest, ModelsThatComeAndGoAreReported) {
+    HarmonicWorld gazebo({.scene = recording("scene")});
+    scene::SceneTask scene("scene");
+    scene::SceneConfig config;
+    config.gazebo = world("sea");
+    scene.config.set(config);
+    types::Diagnostics diagnostics;
+    scene.check(diagnostics);
+    ASSERT_TRUE(diagnostics.empty()) << diagnostics[0].text();
+    follow("rov");
+    double seconds = 1;
+    const auto isSaid = [&](const std::vector<std::string>& names, const std::string& text) {
+        return comesTrue([&] {
+            gazebo.publish(poses(seconds += 0.02, names, 1));
+            task.update();
+            return isWarned(text);
+        });
+    };
+    EXPECT_TRUE(isSaid({"rov", "link", "crate", "barrel"},
+                       "world sea has more by now than the scene, which does not show it: barrel; start again"));
+    EXPECT_TRUE(isSaid({"rov", "link"}, "world sea has less by now than the scene, which still shows it: crate"))
+        << warnings;
+}
+
+TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
+    HarmonicWorld gazebo({.scene = recording("scene")});
+    scene::SceneTask task("scene");
+    scene::SceneConfig config;
+    config.gazebo = world("sea");
+    config.materials_by_name = false;
+    task.config.set(config);
+    framework::OutputPort<types::Pose> source(&task, "source", "");
+    EXPECT_NE(task.makeInput("rov.pose", source), nullptr);
+    EXPECT_EQ(task.makeInput("auv.pose", source), nullptr) << "the world has no such model";
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
+    EXPECT_THAT(task.notices(), Contains(HasSubstr("hull.obj is not found")));
+    EXPECT_THAT(task.indivisible(), HasSubstr("gazebo: is the world as it is when it is asked for"));
+}
+
+TEST_F(HarmonicTest, TasksThatHoldAWorldAtOnceShareIt) {
+    HarmonicWorld gazebo({.scene = recording("scene")});
+    const auto first = scene::sharedWorld(world("sea"), "/"), second = scene::sharedWorld(world("sea"), "/");
+    EXPECT_EQ(first, second);
+    EXPECT_FALSE(first->nodes.empty());
+}
+
+TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
+    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
+                testing::StartsWith("gazebo.world: is sea; after 0.3 s (timeout), its service /world/sea/scene/info is "
+                                    "not offered in partition " +
+                                    partition + "; "));
+    HarmonicWorld other({.world = "harbour"});
+    EXPECT_THAT(diagnosticOf(world("sea", 2)),
+                HasSubstr("; heard are /world/harbour/scene/info in partition " + partition));
+    HarmonicWorld unheard({.version = statistics_version});
+    EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
+}
+
+TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
+    {
+        HarmonicWorld gazebo({.succeeds = false});
+        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info answers that it has failed"));
+    }
+    {
+        HarmonicWorld gazebo({.answers = false});
+        EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/sea/scene/info is offered at tcp://127.0.0.1:"));
+    }
+    {
+        HarmonicWorld gazebo({.reply_type = "gz.msgs.StringMsg"});
+        EXPECT_THAT(diagnosticOf(world("sea", 2)),
+                    HasSubstr("takes gz.msgs.Empty and answers gz.msgs.StringMsg; Empty is asked for, and Scene"));
+    }
+    HarmonicWorld gazebo({.scene = "no message"});
+    EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));
+}
+
+TEST_F(HarmonicTest, AFailureIsNotWaitedForAgainUntilTheTaskIsConfigured) {
+    scene::SceneTask task("scene");
+    scene::SceneConfig config;
+    config.gazebo = world("sea", 0.5);
+    task.config.set(config);
+    const auto begin = std::chrono::steady_clock::now();
+    framework::OutputPort<types::Pose> source(&task, "source", "");
+    for (int i = 0; i < 50; ++i) EXPECT_NE(task.makeInput("rov.pose", source), nullptr) << "it may be right";
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    EXPECT_THAT(task.configure().reason, HasSubstr("scene.gazebo.world: is sea"));
+    ASSERT_TRUE(task.recover());
+    HarmonicWorld gazebo({.scene = recording("scene")});
+    config.gazebo->timeout = 30;
+    task.config.set(config);
+    EXPECT_TRUE(task.configure()) << task.lastError();
+}
+
+TEST_F(HarmonicTest, AWorldWithoutANameAndOneNextToAFileAreErrors) {
+    types::Diagnostics diagnostics;
+    scene::GazeboConfig{}.check(diagnostics);
+    scene::SceneConfig both;
+    both.file = "a.glb";
+    both.gazebo = world("sea");
+    both.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 2u);
+    EXPECT_EQ(diagnostics[0].text(), "world: is missing; give the name of a world that Gazebo runs");
+    EXPECT_EQ(diagnostics[1].text(), "gazebo: is given, and file as well; give one of both, which holds the models");
+    EXPECT_THAT(diagnosticOf(world("two words")), HasSubstr("is two words, which Gazebo's transport does not take"));
+}
+
+}  // namespace
+}  // namespace insonify::gazebo

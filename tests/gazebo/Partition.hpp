@@ -1,0 +1,28 @@
+#pragma once
+// Tests that hear nobody else, and whom nobody else hears.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "tests/support/Waiting.hpp"
+
+namespace insonify::gazebo {
+
+using test::comesTrue;
+
+/** A partition of the test's own, on this machine alone. */
+class OwnPartition : public testing::Test {
+protected:
+    OwnPartition() {
+        for (const char* prefix : {"GZ_", "IGN_"}) {
+            setenv((prefix + std::string("IP")).c_str(), "127.0.0.1", 1);
+            setenv((prefix + std::string("PARTITION")).c_str(), partition.c_str(), 1);
+        }
+    }
+    const std::string partition = "insonify-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device{}());
+};
+
+}  // namespace insonify::gazebo

@@ -1,0 +1,222 @@
+// Scenes of the bytes that Gazebo answers.
+#include <gazebo_messages.pb.h>
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "components/gazebo/World.hpp"
+#include "components/gazebo/WorldWatch.hpp"
+#include "components/scene/MaterialNames.hpp"
+#include "tests/gazebo/Recordings.hpp"
+#include "tests/sdf/SdfFiles.hpp"
+#include "types/ConfigError.hpp"
+
+namespace insonify::gazebo {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class WorldTest : public scene::SceneFiles {
+protected:
+    World worldOf(const wire::Scene& message) const { return gazebo::worldOf(message.SerializeAsString(), folder_); }
+    const std::vector<std::string> noticesOf(const wire::Scene& message) const {
+        return worldOf(message).scene.geometry->notices;
+    }
+    static wire::Visual& addBox(wire::Model& model, const std::string& name, double side = 1) {
+        wire::Link& link = *model.add_link();
+        link.set_name(name);
+        wire::Visual& visual = *link.add_visual();
+        visual.set_name("visual");
+        setVector(*visual.mutable_geometry()->mutable_box()->mutable_size(), side, side, side);
+        return visual;
+    }
+    static wire::Model& addModel(wire::Scene& message, const std::string& name) {
+        wire::Model& model = *message.add_model();
+        model.set_name(name);
+        return model;
+    }
+    static void setVector(wire::Vector3d& vector, double x, double y, double z) {
+        vector.set_x(x), vector.set_y(y), vector.set_z(z);
+    }
+    /** Of the objects at and below a node. */
+    static scene::Bounds boundsOf(const scene::Scene& scene, const std::string& node) {
+        const int found = scene::findNode(scene, node);
+        EXPECT_GE(found, 0) << node;
+        scene::Bounds bounds;
+        if (found < 0) return bounds;
+        for (const scene::Part& part : scene::partsOf(scene, found))
+            for (const glm::dvec3 corner : scene::worldCorners(*scene.geometry, scene.geometry->objects[part.object]))
+                bounds.low = glm::min(bounds.low, corner), bounds.high = glm::max(bounds.high, corner);
+        return bounds;
+    }
+};
+
+TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
+    const World world = gazebo::worldOf(recording("scene"), folder_);
+    const scene::Scene& scene = world.scene;
+    std::vector<std::string> nodes;
+    for (const scene::Node& node : scene.nodes) nodes.push_back(node.name);
+    EXPECT_THAT(nodes, ElementsAre("sea_floor", "sea_floor::link", "crate", "crate::link", "ball", "ball::link", "rig",
+                                   "rig::leg", "rig::leg::pipe", "buoy", "buoy::part0", "buoy::part1", "buoy::part2",
+                                   "rov", "rov::link", "hill", "hill::link"));
+    scene::expectSound(*scene.geometry);
+    sdf::expectBounds(boundsOf(scene, "sea_floor"), {-50, -50, -10}, {50, 50, -10});
+    sdf::expectBounds(boundsOf(scene, "crate"), {-1, 1.5, -6}, {3, 3.5, 0});  // half a metre ahead, turned to port
+    sdf::expectBounds(boundsOf(scene, "ball"), {18, -2, -2}, {22, 2, 2});
+    sdf::expectBounds(boundsOf(scene, "rig"), {2.5, 29.5, -4}, {3.5, 30.5, 4});
+    sdf::expectBounds(boundsOf(scene, "buoy::part0"), {-20.5, -0.5, -1}, {-19.5, 0.5, 1});
+    sdf::expectBounds(boundsOf(scene, "buoy::part1"), {-21, -2, 3.5}, {-19, 2, 4.5});
+    sdf::expectBounds(boundsOf(scene, "buoy::part2"), {-21, -1, 6.5}, {-19, 1, 9.5});
+    EXPECT_THAT(scene.geometry->notices,
+                ElementsAre("visual rov::link::visual is left out: file:///nowhere/models/rov/meshes/hull.obj is not "
+                            "found",
+                            "visual hill::link::visual is left out: /nowhere/hill.png is not found"));
+    for (const char* name : {"crate", "link", "visual", "leg", "sun"}) EXPECT_TRUE(world.names.contains(name)) << name;
+}
+
+TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
+    const World world = gazebo::worldOf(recording("scene"), folder_);
+    const auto named = scene::takeNames(world.scene.geometry);
+    EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
+}
+
+TEST_F(WorldTest, WithoutScriptsTheNamesOfVisualsLinksAndModelsSayWhatMatterItIs) {
+    wire::Scene message;
+    wire::Model& model = addModel(message, "concrete_pier");
+    addBox(model, "pile");
+    addBox(model, "steel_ladder");
+    addBox(addModel(message, "crate"), "link").set_name("wood");
+    addBox(addModel(message, "thing"), "link");
+    const World world = worldOf(message);
+    std::vector<std::string> materials;
+    for (const types::Material& material : world.scene.geometry->materials) materials.push_back(material.name);
+    EXPECT_THAT(materials, ElementsAre("concrete_pier", "steel_ladder", "wood", "default"));
+    EXPECT_EQ(world.scene.geometry->meshes.size(), 4u);
+}
+
+TEST_F(WorldTest, AMeshOfAnotherMachineIsFoundByTheEndOfItsPath) {
+    std::filesystem::create_directories(folder_ / "rov/meshes");
+    write("rov/meshes/hull.gltf",
+          gltf(scene::triangle() + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+               "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}])"));
+    const sdf::Variable variable("INSONIFY_MODEL_PATH", folder_.string());
+    wire::Scene message;
+    wire::Visual& visual = addBox(addModel(message, "rov"), "hull");
+    visual.mutable_geometry()->set_type(wire::Geometry::MESH);
+    for (const char* place :
+         {"/home/other/models/rov/meshes/hull.gltf", "file:///home/other/models/rov/meshes/hull.gltf",
+          "model://rov/meshes/hull.gltf", "package://rov/meshes/hull.gltf"}) {
+        visual.mutable_geometry()->mutable_mesh()->set_filename(place);
+        const World world = worldOf(message);
+        EXPECT_THAT(world.scene.geometry->notices, IsEmpty()) << place;
+        EXPECT_EQ(world.scene.geometry->objects.size(), 1u) << place;
+    }
+    visual.mutable_geometry()->mutable_mesh()->set_filename("/home/other/hull.gltf");
+    EXPECT_THAT(noticesOf(message), Contains(HasSubstr("/home/other/hull.gltf is not found")));
+    visual.mutable_geometry()->mutable_mesh()->set_filename("https://fuel.gazebosim.org/hull.gltf");
+    EXPECT_THAT(noticesOf(message), Contains(HasSubstr("https://fuel.gazebosim.org/hull.gltf is not found")));
+}
+
+TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
+    wire::Scene message;
+    wire::Model& lost = addModel(message, "lost");
+    setVector(*lost.mutable_pose()->mutable_position(), nan, 0, 0);
+    addBox(lost, "link");
+    wire::Model& unturned = addModel(message, "unturned");
+    unturned.mutable_pose()->mutable_orientation();  // all zero
+    wire::Model& bad = addModel(message, "bad");
+    addBox(bad, "negative", -1);
+    addBox(bad, "nan", nan);
+    addBox(bad, "flat", 0);
+    setVector(*addBox(bad, "moved").mutable_pose()->mutable_position(), 0, 1 / 0.0, 0);
+    for (const double radius : {0.0, 1 / 0.0}) {
+        wire::Geometry& capsule = *addBox(bad, "capsule").mutable_geometry();
+        capsule.set_type(wire::Geometry::CAPSULE);
+        capsule.mutable_capsule()->set_radius(radius);
+    }
+    addBox(bad, "none").clear_geometry();
+    addBox(bad, "text").mutable_geometry()->set_type(wire::Geometry::POLYLINE);
+    wire::Geometry& mesh = *addBox(bad, "mesh").mutable_geometry();
+    mesh.set_type(wire::Geometry::MESH);
+    setVector(*mesh.mutable_mesh()->mutable_scale(), nan, 1, 1);
+    wire::Geometry& plane = *addBox(bad, "plane").mutable_geometry();
+    plane.set_type(wire::Geometry::PLANE);
+    plane.mutable_plane()->mutable_size()->set_x(nan);
+    addBox(bad, "empty").mutable_geometry()->set_type(wire::Geometry::EMPTY);
+    EXPECT_THAT(
+        noticesOf(message),
+        ElementsAre("model lost is left out: its pose is not finite, or its orientation has no length",
+                    "model unturned is left out: its pose is not finite, or its orientation has no length",
+                    "visual bad::negative::visual is left out: its size is -1; must not be negative",
+                    "visual bad::nan::visual is left out: its size is nan; must not be negative",
+                    "visual bad::moved::visual is left out: its pose is not finite, or its orientation has no length",
+                    "link bad::capsule is there twice; the second is bad::capsule_2 here",
+                    "visual bad::none::visual is left out: it has no geometry",
+                    "visual bad::text::visual is left out: its geometry is not one of those that are drawn",
+                    "visual bad::mesh::visual is left out: its scale is not finite",
+                    "visual bad::plane::visual is left out: its normal or size is not finite",
+                    "visuals left out, their size is zero in some direction or not finite: 3",
+                    "the scene has no triangles: an empty sea"));
+}
+
+TEST_F(WorldTest, AWorldWithoutVisualsIsAnEmptySea) {
+    EXPECT_THAT(noticesOf({}), ElementsAre("the scene has no triangles: an empty sea"));
+}
+
+TEST_F(WorldTest, NamesThatAreThereTwiceAreReported) {
+    wire::Scene message;
+    for (int i = 0; i < 2; ++i) addBox(addModel(message, "buoy"), "link");
+    const World world = worldOf(message);
+    EXPECT_THAT(world.scene.geometry->notices,
+                ElementsAre("model buoy is there twice; the second is buoy_2 here",
+                            "link buoy::link is there twice; the second is buoy::link_2 here"));
+    EXPECT_GE(scene::findNode(world.scene, "buoy_2"), 0);
+}
+
+TEST_F(WorldTest, BytesThatAreNoSceneAndWorldsThatAreTooLargeAreErrors) {
+    const auto diagnosticOf = [&](const std::string& bytes) -> std::string {
+        try {
+            gazebo::worldOf(bytes, folder_);
+            return "";
+        } catch (const types::ConfigError& error) {
+            return error.what();
+        }
+    };
+    EXPECT_THAT(diagnosticOf("no message"), HasSubstr("world: has a service that answers bytes which are no message"));
+    const std::string whole = recording("scene");
+    EXPECT_THAT(diagnosticOf(whole.substr(0, whole.size() - 1)), HasSubstr("bytes which are no message Scene"));
+    wire::Scene message;
+    for (int i = 0; i < 100'001; ++i) message.add_model();
+    EXPECT_THAT(diagnosticOf(message.SerializeAsString()), HasSubstr("more than 100000 models, links and visuals"));
+}
+
+PoseMessage posesOf(const std::vector<std::string>& names) {
+    PoseMessage message;
+    for (const std::string& name : names) message.entities.push_back({name, {}});
+    return message;
+}
+
+TEST(WorldWatchTest, WhatComesAndGoesAfterTheSceneWasTakenIsReportedOnce) {
+    WorldWatch watch(std::set<std::string>{"rov", "link", "buoy"});
+    WorldWatch::Change change = watch.take(posesOf({"rov", "link", "buoy", "crate"}));
+    EXPECT_THAT(change.came, ElementsAre("crate")) << "it came before the first message";
+    EXPECT_THAT(change.went, IsEmpty());
+    EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
+    change = watch.take(posesOf({"rov", "link", "crate"}));
+    EXPECT_THAT(change.went, ElementsAre("buoy"));
+    EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty()) << "the scene does not show the crate";
+    EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
+}
+
+TEST(WorldWatchTest, WithoutASceneOfGazeboTheFirstMessageCounts) {
+    WorldWatch watch({});
+    EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty());
+    EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));
+}
+
+}  // namespace
+}  // namespace insonify::gazebo
