@@ -214,7 +214,12 @@ def test_two_threads_in_one_simulation_are_an_error(deploy):
 
 
 def test_two_vehicles_take_a_dictionary(deploy):
-    simulation = insonify.Simulation(deploy / "two_vehicles.yml")
+    try:
+        simulation = insonify.Simulation(deploy / "two_vehicles.yml")
+    except insonify.ConfigError as error:
+        if "needs the component library sdf" in str(error):
+            pytest.skip("there is no libsdformat")
+        raise
     assert len(simulation.poses) == 2
     with pytest.raises(ValueError, match="dictionary"):
         simulation.step(HERE)
