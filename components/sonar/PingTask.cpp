@@ -275,7 +275,9 @@ void PingTask::writeElements(const types::Sonar& sample) {
 }
 
 types::Time PingTask::lastEcho() const {
-    return {std::max(aimed().time, begun()).microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
+    // No ping is ahead of the clock by more than a second, unless the clock has been set back meanwhile.
+    const types::Time sent = std::min(std::max(aimed().time, begun()), now() + types::Time::fromSeconds(1));
+    return {sent.microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
 }
 
 bool PingTask::waitForLastEcho() { return !activity().realtime() || activity().sleepUntil(lastEcho()); }
