@@ -177,9 +177,9 @@ TEST_F(HarmonicTest, TasksThatHoldAWorldAtOnceShareIt) {
 
 TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
     EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
-                testing::StartsWith("gazebo.world: is sea; after 0.3 s (timeout), its service /world/sea/scene/info is "
-                                    "not offered in partition " +
-                                    partition + "; "));
+                testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
+                                    "partition " +
+                                    partition + " within 0.3 s (timeout); "));
     HarmonicWorld other({.world = "harbour"});
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/harbour/scene/info in partition " + partition));
     HarmonicWorld unheard({.version = statistics_version});
