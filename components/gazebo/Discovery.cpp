@@ -11,7 +11,7 @@
 namespace insonify::gazebo {
 namespace {
 
-constexpr size_t max_heard = 100;
+constexpr size_t max_heard = 100, max_versions = 3;
 
 std::string framed(const wire::Discovery& message) {
     std::string datagram(2, '\0');
@@ -64,23 +64,29 @@ void Heard::add(const Publication& publication) {
 void Heard::addVersion(uint32_t version) {
     if (version == discovery_version)
         is_anybody_there_ = true;
-    else if (other_versions_.size() < max_heard)
+    else if (other_versions_.size() < max_versions)
         other_versions_.insert(version);
 }
 
 std::string Heard::text() const {
-    if (other_versions_.contains(statistics_version))
-        return "programs with GZ_TRANSPORT_TOPIC_STATISTICS are there, which others do not hear: unset it for Gazebo";
-    if (names_.empty() && !other_versions_.empty())
-        return fmt::format("programs that speak version {} of Gazebo's discovery are there; version {} is understood",
-                           fmt::join(other_versions_, ", "), discovery_version);
-    std::vector<std::string> words;
+    std::vector<std::string> texts, names;
     for (const std::string& each : names_)
         if (const auto name = TopicName::of(each))
-            words.push_back(fmt::format("{} in partition {}", name->topic, name->partition));
-    if (!words.empty()) return fmt::format("heard are {}", fmt::join(words, ", "));
-    if (is_anybody_there_) return fmt::format("nobody offers any that ends in {}", ending_);
-    return "no program of Gazebo's is heard: is Gazebo running, on this machine or in its network?";
+            names.push_back(fmt::format("{} in partition {}", name->topic, name->partition));
+    if (!names.empty())
+        texts.push_back(fmt::format("heard are {}", fmt::join(names, ", ")));
+    else if (is_anybody_there_)
+        texts.push_back(fmt::format("nobody offers any that ends in {}", ending_));
+    else if (other_versions_.empty())
+        texts.push_back("no program of Gazebo's is heard: is Gazebo running, on this machine or in its network?");
+    for (const uint32_t version : other_versions_)
+        texts.push_back(version == statistics_version
+                            ? "programs with GZ_TRANSPORT_TOPIC_STATISTICS are there, which others do not hear: unset "
+                              "it for Gazebo"
+                            : fmt::format("programs that speak version {} of Gazebo's discovery are there; version {} "
+                                          "is understood",
+                                          version, discovery_version));
+    return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard) {

@@ -38,21 +38,23 @@ void waitFor(std::vector<zmq::pollitem_t> items, ReplyClock::time_point end) {
 
 class Caller {
 public:
-    Caller(const TransportOptions& options, const Service& service, std::string name, ReplyClock::time_point end)
+    Caller(const TransportOptions& options, const Service& service, std::string name,
+           std::chrono::duration<double> timeout)
         : options_(options),
           service_(service),
           name_(std::move(name)),
-          end_(end),
+          timeout_(timeout),
+          end_(ReplyClock::now() + std::chrono::duration_cast<ReplyClock::duration>(timeout)),
           multicast_(options, options.service_port),
           heard_(endingOfService(service.name)) {}
 
     Reply call(const std::string& message) {
         const std::optional<Publication> found = find();
         if (!found)
-            return {"", other_types_.empty()
-                            ? fmt::format("is not offered in partition {}; {}", options_.partition, heard_.text())
-                            : fmt::format("takes {}; {} is asked for, and {}", other_types_, service_.request_type,
-                                          service_.reply_type)};
+            return {"", other_types_.empty() ? fmt::format("is not offered in partition {} within {:g} s (timeout); {}",
+                                                           options_.partition, timeout_.count(), heard_.text())
+                                             : fmt::format("takes {}; {} is asked for, and {}", other_types_,
+                                                           service_.request_type, service_.reply_type)};
         zmq::context_t context;
         zmq::socket_t replies(context, zmq::socket_type::dealer), requests(context, zmq::socket_type::dealer);
         for (zmq::socket_t* socket : {&replies, &requests}) socket->set(zmq::sockopt::linger, 0);
@@ -112,14 +114,16 @@ private:
             if (frames[4].to_string_view() != "1") return {"", "answers that it has failed"};
             return {frames[3].to_string(), ""};
         }
-        return {"", fmt::format("is offered at {}, and does not answer: is Gazebo still starting, or does a firewall "
-                                "stop TCP between it and this machine?",
-                                address)};
+        return {"",
+                fmt::format("is offered at {}, and does not answer within {:g} s (timeout): is Gazebo still starting, "
+                            "or does a firewall stop TCP between it and this machine?",
+                            address, timeout_.count())};
     }
 
     const TransportOptions& options_;
     const Service& service_;
     const std::string name_;  ///< With the partition.
+    const std::chrono::duration<double> timeout_;
     const ReplyClock::time_point end_;
     const std::string process_ = makeUuid(), node_ = makeUuid();
     Multicast multicast_;
@@ -133,8 +137,7 @@ Reply request(const TransportOptions& options, const Service& service, const std
               std::chrono::duration<double> timeout) {
     const auto name = qualifiedName(options.partition, service.name);
     if (!name) throw types::ConfigError("", "", "is no name that Gazebo's transport takes");
-    const auto end = ReplyClock::now() + std::chrono::duration_cast<ReplyClock::duration>(timeout);
-    return Caller(options, service, *name, end).call(message);
+    return Caller(options, service, *name, timeout).call(message);
 }
 
 }  // namespace insonify::gazebo

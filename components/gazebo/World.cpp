@@ -211,8 +211,7 @@ scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem:
         request(options, {service, "Empty", "Scene"}, "", std::chrono::duration<double>(config.timeout));
     if (!reply.failure.empty())
         throw types::ConfigError("", "world",
-                                 fmt::format("is {}; after {:g} s (timeout), its service {} {}", config.world,
-                                             config.timeout, service, reply.failure));
+                                 fmt::format("is {}; its service {} {}", config.world, service, reply.failure));
     World world = worldOf(reply.message, folder);
     const std::lock_guard lock(taken_mutex);
     taken()[*name] = std::move(world.names);

@@ -86,9 +86,9 @@ TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
     const Outcome outcome =
         callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("gazebo.world: is two_vehicles; after 0.5 s (timeout), its service "
+    EXPECT_THAT(outcome.err, HasSubstr("gazebo.world: is two_vehicles; its service "
                                        "/world/two_vehicles/scene/info is not offered in partition " +
-                                       partition + "; "));
+                                       partition + " within 0.5 s (timeout); "));
     EXPECT_THAT(outcome.err, HasSubstr("deploy/gazebo_world.yml:16:"));
 }
 

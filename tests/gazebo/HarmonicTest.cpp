@@ -124,8 +124,8 @@ TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
     follow("rov");
     EXPECT_TRUE(comesTrue([&] {
         task.update();
-        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition +
-                        "; heard are /world/harbour/pose/info in partition " + partition);
+        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; heard are ") &&
+               isWarned("/world/harbour/pose/info in partition " + partition);
     })) << warnings;
 }
 
@@ -177,12 +177,11 @@ TEST_F(HarmonicTest, TasksThatHoldAWorldAtOnceShareIt) {
 
 TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
     EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
-                testing::StartsWith("gazebo.world: is sea; after 0.3 s (timeout), its service /world/sea/scene/info is "
-                                    "not offered in partition " +
-                                    partition + "; "));
+                testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
+                                    "partition " +
+                                    partition + " within 0.3 s (timeout); "));
     HarmonicWorld other({.world = "harbour"});
-    EXPECT_THAT(diagnosticOf(world("sea", 2)),
-                HasSubstr("; heard are /world/harbour/scene/info in partition " + partition));
+    EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/harbour/scene/info in partition " + partition));
     HarmonicWorld unheard({.version = statistics_version});
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
 }

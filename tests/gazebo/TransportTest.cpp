@@ -111,6 +111,9 @@ TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
     EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo's is heard"));
     EXPECT_FALSE(readDatagram(recording("alive_with_statistics"), "ours", heard).has_value());
     EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are there"));
+    EXPECT_TRUE(readDatagram(recording("offer_topic"), "ours", heard).has_value());
+    EXPECT_THAT(heard.text(),
+                StartsWith("heard are /world/sea/pose/info in partition auv; programs with GZ_TRANSPORT"));
     Heard other("/pose/info");
     std::string datagram = recording("alive");
     datagram[3] = 77;  // after the key of the field
