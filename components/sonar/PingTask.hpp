@@ -134,8 +134,8 @@ private:
     std::shared_ptr<const types::Radiation> radiation_;  ///< Its transmitter's.
     OthersHeard others_heard_;
     std::optional<Taken> listening_;  ///< The ping that is listened to.
-    double render_seconds_ = 0;     ///< Of the last ping [s].
-    uint64_t cut_off_ = 0;          ///< Pings that were still listened to at the stop [1].
+    double render_seconds_ = 0;       ///< Of the last ping [s].
+    uint64_t cut_off_ = 0;            ///< Pings that were still listened to at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;

@@ -8,8 +8,8 @@ using insonify::types::Sonar;
 
 namespace {
 
-// Bins are 100 us at 1000 m/s: 0.1 m. Two is 20 m to port of one, and both look at each other, past the wall. Each pulse of two is
-// 4 ms later, 2 m of slant range, than that of one.
+// Bins are 100 us at 1000 m/s: 0.1 m. Two is 20 m to port of one, and both look at each other, past the wall. Each
+// pulse of two is 4 ms later, 2 m of slant range, than that of one.
 const char* const pair = R"(tasks:
   one: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, -10, 0], yaw_deg: 90}]}}
   two: {type: pose::TrajectoryTask, activity: {period: 0.104}, properties: {waypoints: [{time: 0, position: [0, 10, 0], yaw_deg: -90}]}}
@@ -83,8 +83,12 @@ TEST_F(CrosstalkRunTest, PingsThatHearNoPulseAreThoseOfADeafSonar) {
     ASSERT_EQ(run(looking, {"--pings", "4"}).code, 0);
     const std::vector<Sonar> hearing = logged("one");
     std::string deaf = replaced(looking, "crosstalk: {}", "range_min: 0.1");
-    deaf = replaced(deaf, "  - {from: one_sonar.transmission, to: two_sonar.others, policy: {type: circular_buffer, size: 8}}\n", "");
-    deaf = replaced(deaf, "  - {from: two_sonar.transmission, to: one_sonar.others, policy: {type: circular_buffer, size: 8}}\n", "");
+    deaf = replaced(
+        deaf, "  - {from: one_sonar.transmission, to: two_sonar.others, policy: {type: circular_buffer, size: 8}}\n",
+        "");
+    deaf = replaced(
+        deaf, "  - {from: two_sonar.transmission, to: one_sonar.others, policy: {type: circular_buffer, size: 8}}\n",
+        "");
     ASSERT_EQ(run(deaf, {"--pings", "4"}).code, 0);
     const std::vector<Sonar> alone = logged("one");
     ASSERT_FALSE(heard(alone[0]).empty());

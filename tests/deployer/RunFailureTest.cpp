@@ -44,13 +44,15 @@ TEST(RunFailureTest, AFullDiskIsExitCode1AndWhatWasFlushedIsKept) {
 /** Log and pictures go to a disk that is full for the first second. */
 TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
     std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
-    text = replaced(text, "  log:\n", "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n  log:\n");
+    text =
+        replaced(text, "  log:\n", "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n  log:\n");
     const WallFolder folder(text + "  - {from: noise.noisy, to: fan.ping}\n");
     fs::create_directory(folder / "out");
-    const std::vector<fs::path> full{folder / "out/wall.0.log", folder / "out/fan_000000.png", folder / "out/fan_000001.png"};
+    const std::vector<fs::path> full{folder / "out/wall.0.log", folder / "out/fan_000000.png",
+                                     folder / "out/fan_000001.png"};
     for (const fs::path& file : full) fs::create_symlink("/dev/full", file);
-    Process run({insonify::test::program("insonify"), "run", "wall.yml", "--out", "out", "--duration", "3.5", "--summary",
-                 "summary.json"},
+    Process run({insonify::test::program("insonify"), "run", "wall.yml", "--out", "out", "--duration", "3.5",
+                 "--summary", "summary.json"},
                 folder.path());
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     for (const fs::path& file : full) fs::remove(file);

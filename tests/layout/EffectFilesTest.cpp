@@ -21,15 +21,15 @@ const std::map<std::string, size_t> known{
 
 /** Folders and files in which the word means another thing. */
 const std::multimap<std::string, std::string> other_meanings{
-    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},      // Of a device's neighbouring beams.
+    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},     // Of a device's neighbouring beams.
     {"crosstalk", "components/sonar/plan/ImperfectionsConfig.hpp"},  // The same.
-    {"volume", "components/acoustics/Seabed"},                 // Scattering within a sediment.
-    {"volume", "components/deployer/BackscatterCommand.cpp"},  // The same.
-    {"volume", "components/scene/Clusters.cpp"},               // What a mesh encloses.
-    {"volume", "components/scene/GltfFile.cpp"},               // An extension of glTF.
-    {"volume", "components/sonar/field/"},                     // What the axes of a lattice span.
-    {"volume", "components/sonar/rays/RayVisibility.cpp"},     // What the axes of an object span.
-    {"volume", "types/MeshRays.hpp"},                          // What a triangle and a ray span.
+    {"volume", "components/acoustics/Seabed"},                       // Scattering within a sediment.
+    {"volume", "components/deployer/BackscatterCommand.cpp"},        // The same.
+    {"volume", "components/scene/Clusters.cpp"},                     // What a mesh encloses.
+    {"volume", "components/scene/GltfFile.cpp"},                     // An extension of glTF.
+    {"volume", "components/sonar/field/"},                           // What the axes of a lattice span.
+    {"volume", "components/sonar/rays/RayVisibility.cpp"},           // What the axes of an object span.
+    {"volume", "types/MeshRays.hpp"},                                // What a triangle and a ray span.
 };
 
 /** Code without its comments, in lower case and without underscores: one spelling for all of an effect's names. */

@@ -66,8 +66,8 @@ types::Snapshot openWaterWith(types::TransmissionPtr sent) {
     return snapshot;
 }
 
-/** Random places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at the level
- *  of the one-way sonar equation. */
+/** Random places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at the
+ * level of the one-way sonar equation. */
 TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -208,7 +208,8 @@ TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsThatItLasts) {
     ASSERT_EQ(heard.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
     EXPECT_EQ(heard.front(), 92u);
     // Half of its band is heard, of twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
-    EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1, 1e-4);
+    EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1,
+                1e-4);
 }
 
 /** What a sonar hears of its own pulse, once more from a twin at its place. Fields of coherent speckle add with a phase
@@ -254,7 +255,8 @@ TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
 /** Level ground of Lambert's law, by an integral over its points. */
 TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGround) {
     SonarConfig config = hearing(
-        test::sonarOf({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}), true);
+        test::sonarOf({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}),
+        true);
     const auto scene = test::sceneOf({test::ground(-4, 400)}, -20);
     types::Snapshot snapshot = test::snapshotOf(scene);
     const auto own = pingOf(config, snapshot);

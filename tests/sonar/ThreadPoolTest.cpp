@@ -1,10 +1,10 @@
-#include "components/sonar/ThreadPool.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <numeric>
 #include <stdexcept>
+
+#include "components/sonar/ThreadPool.hpp"
 
 namespace insonify::sonar {
 namespace {

@@ -49,9 +49,9 @@ public:
 
 private:
     DirectSound direct_;
-    std::unique_ptr<ForeignEchoes> echoes_;         ///< Null where surfaces scatter nothing to the sonar.
-    const types::Snapshot* snapshot_ = nullptr;     ///< Of the ping.
-    size_t heard_ = 0;                              ///< Transmissions of the last ping that came directly [1].
+    std::unique_ptr<ForeignEchoes> echoes_;      ///< Null where surfaces scatter nothing to the sonar.
+    const types::Snapshot* snapshot_ = nullptr;  ///< Of the ping.
+    size_t heard_ = 0;                           ///< Transmissions of the last ping that came directly [1].
     bool pinged_ = false;
 };
 

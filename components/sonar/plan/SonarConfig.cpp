@@ -62,7 +62,7 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
 /** Of ways that are bent, what follows straight ones alone. */
 void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
-    const std::string name = config.isCoherent()      ? "speckle"
+    const std::string name = config.isCoherent()    ? "speckle"
                              : config.tracesPaths() ? "multipath"
                              : config.crosstalk     ? "crosstalk"
                                                     : "";

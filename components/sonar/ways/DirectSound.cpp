@@ -54,8 +54,8 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
     const bool conical = plan_.features.has(Feature::Conical);
     if (conical && way.direction.x < 0) return false;
     const double power = sent.radiation->towards(glm::conjugate(sent.sonar.orientation) * way.from_point);
-    const double intensity = received.level * power * way.power * std::exp(-received.loss * way.length) /
-                             (way.length * way.length);
+    const double intensity =
+        received.level * power * way.power * std::exp(-received.loss * way.length) / (way.length * way.length);
     const BeamAngles from = beamAnglesOf(way.direction, conical);
     bool heard = false;
     for (size_t beam = 0; intensity > 0 && beam < plan_.beams.size(); ++beam) {
@@ -64,8 +64,8 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
         heard = true;
         float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
         for (size_t i = 0; i < shares_.size(); ++i)
-            bins[i] = static_cast<float>(std::min(double{bins[i]} + intensity * gain * shares_[i],
-                                                  double{std::numeric_limits<float>::max()}));
+            bins[i] = static_cast<float>(
+                std::min(double{bins[i]} + intensity * gain * shares_[i], double{std::numeric_limits<float>::max()}));
     }
     return heard;
 }

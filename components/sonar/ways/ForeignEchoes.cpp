@@ -10,8 +10,8 @@
 #include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/ways/PathCells.hpp"
 #include "components/sonar/ways/SharedBins.hpp"
-#include "components/sonar/ways/WayPatterns.hpp"
 #include "components/sonar/ways/Waveform.hpp"
+#include "components/sonar/ways/WayPatterns.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -23,9 +23,9 @@ constexpr double nearest_bin = 1e-3;  ///< Slant range before which nothing is s
 struct PlacedSender {
     const types::Transmission* sent;
     Reception received;
-    glm::dvec3 place;                   ///< Sonar axes [m].
-    glm::dquat sender_from_sonar;       ///< Turns directions.
-    size_t sums;                        ///< Place of its sums among those of all lengths [1].
+    glm::dvec3 place;              ///< Sonar axes [m].
+    glm::dquat sender_from_sonar;  ///< Turns directions.
+    size_t sums;                   ///< Place of its sums among those of all lengths [1].
 };
 
 class EchoesOfOthers final : public ForeignEchoes {
@@ -162,8 +162,8 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, c
     const double absorbed = std::exp(2 * sender.received.loss * (range - half));
     SharedBins(ping.rules, sums_[sender.sums].data())
         .depositCell(cell, static_cast<uint>(at.cell),
-                     ping.rules.strength_scale * power * (given.diffuse + given.lobe) * absorbed * range * range * range /
-                         (way.back * way.back));
+                     ping.rules.strength_scale * power * (given.diffuse + given.lobe) * absorbed * range * range *
+                         range / (way.back * way.back));
 }
 
 bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
@@ -187,8 +187,8 @@ bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<fl
             const std::ptrdiff_t low = j - reach - 1, high = std::min(j + reach, std::ssize(bins) - 1);
             const double sum = heard[static_cast<size_t>(high)] - (low >= 0 ? heard[static_cast<size_t>(low)] : 0);
             float& bin = bins[static_cast<size_t>(j)];
-            bin = static_cast<float>(
-                std::min(double{bin} + intensity * sum, double{std::numeric_limits<float>::max()}));
+            bin =
+                static_cast<float>(std::min(double{bin} + intensity * sum, double{std::numeric_limits<float>::max()}));
         }
     }
     return any;

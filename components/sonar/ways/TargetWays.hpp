@@ -13,13 +13,13 @@ namespace insonify::sonar {
 struct TargetWay {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
-    double length = 0;        ///< [m]
-    glm::dvec3 direction{0};  ///< From the sonar, unit, its axes [1].
+    double length = 0;         ///< [m]
+    glm::dvec3 direction{0};   ///< From the sonar, unit, its axes [1].
     glm::dvec3 from_point{0};  ///< From the point to where the way leads first, unit, world axes [1].
-    double power = 1;         ///< What its mirrors leave of the sound [1].
-    int reflections = 0;      ///< In mirrors [1].
-    bool by_surface = false;  ///< One of them is the water surface.
-    double sine_grazing = 0;  ///< At which it is met there [1].
+    double power = 1;          ///< What its mirrors leave of the sound [1].
+    int reflections = 0;       ///< In mirrors [1].
+    bool by_surface = false;   ///< One of them is the water surface.
+    double sine_grazing = 0;   ///< At which it is met there [1].
     /** Its mirrors, from the sonar on: 1 is the water surface, from 2 on mirror triangles in the order of the scene;
      *  0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};

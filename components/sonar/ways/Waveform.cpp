@@ -44,9 +44,8 @@ Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, doub
     if (is_same_band && areAlike(own.bandwidth_khz, sent.bandwidth_khz) && areAlike(own.duration, sent.duration))
         return {};
     const double apart = is_same_band ? 0 : std::abs(own.frequency_khz - sent.frequency_khz);
-    const double common =
-        std::clamp(0.5 * (own.bandwidth_khz + sent.bandwidth_khz) - apart, 0.0,
-                   std::min(own.bandwidth_khz, sent.bandwidth_khz));
+    const double common = std::clamp(0.5 * (own.bandwidth_khz + sent.bandwidth_khz) - apart, 0.0,
+                                     std::min(own.bandwidth_khz, sent.bandwidth_khz));
     const double share = std::max(common / sent.bandwidth_khz, std::pow(10, -rejection_db / 10));
     const double length = 0.5 * speed_of_sound * (own.duration + sent.duration);
     return {share * sent.duration / own.duration * cell / length, length};

@@ -32,10 +32,10 @@ Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, doub
 
 /** How a sonar receives a transmission of another sonar, but for where both are. */
 struct Reception {
-    double level;     ///< Intensity on the axis at 1 m, relative to the sonar's own [1].
-    double length;    ///< Of the box that its filter makes of the pulse [m]; 0: the pulse is as its own.
-    double loss;      ///< By absorption, one way, of intensity [1/m].
-    double offset;    ///< Slant range that the delay between the two pulses amounts to: c (t - t_own) / 2 [m].
+    double level;   ///< Intensity on the axis at 1 m, relative to the sonar's own [1].
+    double length;  ///< Of the box that its filter makes of the pulse [m]; 0: the pulse is as its own.
+    double loss;    ///< By absorption, one way, of intensity [1/m].
+    double offset;  ///< Slant range that the delay between the two pulses amounts to: c (t - t_own) / 2 [m].
 };
 
 /** Receives the transmissions of others. */

@@ -6,7 +6,8 @@
 
 namespace insonify::sonar {
 
-/** Power of a sonar's beam pattern on the way out and on the way back (ACOUSTICS.md 5.9), and the cells that receive it. */
+/** Power of a sonar's beam pattern on the way out and on the way back (ACOUSTICS.md 5.9), and the cells that receive
+ * it. */
 class WayPatterns {
 public:
     explicit WayPatterns(const RenderPlan& plan);
