@@ -39,6 +39,8 @@ LevelBlocks blocksOf(const types::Sonar& intensities);
 /** The mean of several pings, as intensities. */
 LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
 
+constexpr double z_95 = 1.96;  ///< Deviations of a normal law to either side of 95 %.
+
 /** A value that was found, and its interval of 95 %. */
 struct Fitted {
     double value = 0, low = 0, high = 0;
@@ -54,8 +56,9 @@ struct LevelFit {
     Fitted db_per_m = {};             ///< Of the time-varied gain, one way [dB/m].
     Fitted absorption_db_per_m = {};  ///< Of the water, one way [dB/m].
     Fitted tvg_span_db = {};          ///< Gain at the end of the range above that at its tenth [dB].
+    std::optional<Fitted> water_db = {};  ///< Of a side-scan: volume backscattering strength [dB re 1/m].
     std::optional<Fitted> pitch_deg = {}, height_m = {},
-                          elevation_deg = {};  ///< Of a rough scene: the sonar over it, its beam.
+                          elevation_deg = {};  ///< Of a rough scene: the sonar over it, its beam; of a side-scan no height.
     LevelBlocks modelled = {};                 ///< What the codes of each block state by these values.
     double rms_db = 0;                         ///< Of the levels that are left unexplained [dB].
 
@@ -68,7 +71,9 @@ struct LevelFit {
 
 /** How far the scene of a fit is to be trusted. */
 struct LevelOptions {
-    bool rough = false;  ///< It is no more than a floor or walls of about the right kind: medians over the beams count.
+    /** It is no more than a floor or walls of about the right kind. Medians over the beams count; of a side-scan, whose
+     *  lines know how high they are, each block of lines, and the strength of the water is fitted as well. */
+    bool rough = false;
     bool fits_scene = false;  ///< Pitch, height and the beam in elevation are fitted as well; of a rough one.
 };
 
