@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Makes deploy/scenes/sand.glb: a floor of rough sand 20 m deep, from 36 m south to 168 m north and 36 m to either side, of one
-tile that is repeated. Its relief has wavelengths of 0.6 to 6 m and slopes of 3.7 degrees (rms) about each axis. Needs numpy."""
+"""Makes deploy/scenes/sand.glb: a floor of rough sand 20 m deep, from 24 m south to 108 m north and 36 m to either side, of one
+tile that is repeated. Its relief has wavelengths of 0.25 to 2 m and slopes of 3.7 degrees (rms) about each axis. Needs numpy."""
 from pathlib import Path
 
 import numpy as np
 
 from glb import Glb, Mesh
 
-DEPTH, TILE, POSTS = 20.0, 12.0, 60          # [m], posts 0.2 m apart
-SOUTH, EAST, ROWS, COLUMNS = -36.0, -36.0, 17, 6
-SHORTEST, LONGEST, SLOPE = 0.6, 6.0, np.tan(np.radians(3.7))    # of the relief [m], about each axis
+DEPTH, TILE, POSTS = 20.0, 6.0, 60           # [m], posts 0.1 m apart
+SOUTH, EAST, ROWS, COLUMNS = -24.0, -36.0, 22, 12
+SHORTEST, LONGEST, SLOPE = 0.25, 2.0, np.tan(np.radians(3.7))    # of the relief [m], about each axis
 
 rng = np.random.default_rng(7)
 k = np.hypot(*np.meshgrid(np.fft.fftfreq(POSTS, TILE / POSTS), np.fft.fftfreq(POSTS, TILE / POSTS), indexing="ij"))

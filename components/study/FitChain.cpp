@@ -116,7 +116,7 @@ types::Sonar meanEchoes(const FitChain& chain) {
     config.elements.reset();
     config.absorption.reset();
     if (config.pulse) config.pulse->ring_down.reset();
-    if (chain.isSideScan()) config.quality.columns_per_beam = 256, config.quality.rows = 2;
+    if (chain.isSideScan()) config.quality.columns_per_beam = 192, config.quality.rows = 2;
     types::Sonar ping;
     sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
     renderer.render(chain.snapshot, ping);
@@ -135,6 +135,7 @@ types::Sonar meanEchoes(const FitChain& chain) {
 
 std::optional<double> floorBelow(const FitChain& chain) {
     FitChain down = chain;
+    down.lines.clear();
     sonar::SonarConfig& sonar = down.sonar;
     sonar.range *= 20;
     sonar.bin_count = 20000;
@@ -151,9 +152,7 @@ std::optional<double> floorBelow(const FitChain& chain) {
 }
 
 std::vector<CodedPing> simulatedPings(const FitChain& chain, size_t count) {
-    sonar::SonarConfig config = chain.sonar;
-    if (chain.isSideScan() && config.speckle) config.quality.columns_per_beam = 256, config.quality.rows = 4;
-    sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
+    sonar::SonarRenderer renderer(chain.sonar, chain.snapshot.geometry);
     noise::Noise noise(chain.noise);
     receiver::Receiver receiver(chain.receiver);
     types::Sonar clean, noisy, received;

@@ -104,18 +104,19 @@ enum Parameter : size_t {
 using Values = std::array<double, parameters>;
 using Chosen = std::vector<size_t>;  ///< Parameters.
 
-constexpr double water_before = -75, water_deviation = 15;  ///< Of a volume backscattering strength [dB re 1/m].
+constexpr double water_deviation = 15;  ///< Of what is known before of a volume backscattering strength [dB].
 
 /** Levels of the blocks by the values, and how far they are from the recorded ones. */
 class LevelModel {
 public:
     LevelModel(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain, const LevelOptions& options)
         : recorded_(recorded),
+          water_recorded_(options.water),
           response_(law),
           chain_(chain),
           rough_(options.rough),
           by_median_(options.rough && !chain.isSideScan()),  // lines know their altitudes
-          fits_water_(options.rough && chain.isSideScan()),
+          fits_water_(options.rough && chain.isSideScan() && !chain.sonar.volume.empty()),
           fits_scene_(options.rough && options.fits_scene),
           range_(recorded.ranges.back()) {
         const receiver::TvgConfig tvg = chain.receiver.tvg.value_or(receiver::TvgConfig{});
@@ -124,12 +125,13 @@ public:
                    tvg.log_coefficient,
                    tvg.db_per_m,
                    sonar::makeAbsorption(chain.sonar).db_per_m,
-                   chain.sonar.volume.empty() ? water_before : chain.sonar.volume.front().strength_db.value_or(-200),
+                   chain.sonar.volume.empty() ? -200 : chain.sonar.volume.front().strength_db.value_or(-200),
                    0,
                    0,
                    std::log(elevation_before)};
         if (fits_water_) chain_.sonar.volume.clear();
         render(chain_);
+        findLoudBlocks();
         if (by_median_) recorded_level_ = overBeams(recorded);
     }
     Chosen levels() const {
@@ -238,20 +240,12 @@ public:
     std::vector<double> residuals(const Values& values) const {
         std::vector<double> all;
         for (size_t slice = first_slice; slice < recorded_.slices; ++slice) {
-            std::vector<double> across, quiet;
+            std::vector<double> across;
             for (size_t block = 0; block < recorded_.beam_blocks; ++block) {
                 across.push_back(stated(values, block, slice));
-                const double off = recorded_.at(block, slice) - across.back();
-                if (!by_median_) all.push_back(off);
-                if (isQuiet(values, block, slice)) quiet.push_back(off);
+                if (!by_median_) all.push_back(offOf(block, slice, across.back()));
             }
             if (by_median_) all.push_back(recorded_level_[slice] - medianLevel(across));
-            if (quiet.empty()) continue;
-            // What a rough scene lacks in its water (fish, wakes, other sonars) can only add: the quietest quarter counts.
-            const auto quarter = quiet.begin() + static_cast<long>(quiet.size() / 4);
-            std::ranges::nth_element(quiet, quarter);
-            for (size_t block = 0; block < recorded_.beam_blocks; ++block)
-                if (isQuiet(values, block, slice)) all[all.size() - recorded_.beam_blocks + block] = *quarter;
         }
         return all;
     }
@@ -289,12 +283,29 @@ public:
     void weighPulls(double variance) { pull_weight_ = std::max(1.0, variance); }
 
 private:
-    /** Whether a side-scan's block of lines has more water and noise than echoes of the scene. */
-    bool isQuiet(const Values& values, size_t block, size_t slice) const {
-        if (!fits_water_) return false;
-        const double lost = 2 * values[absorption] * recorded_.ranges[slice];
-        return toPower(echoes_.at(block, slice) - lost) <
-               toPower(water_.at(block, slice) + values[water_strength] - lost) + toPower(values[noise_level]);
+    bool isOpenWater(size_t block, size_t slice) const { return echoes_.at(block, slice) <= silent_db; }
+    /** Recorded less modelled level; in the water before the floor that of the quieter side. */
+    double offOf(size_t block, size_t slice, double modelled) const {
+        if (!chain_.isSideScan() || !isOpenWater(block, slice)) return recorded_.at(block, slice) - modelled;
+        return is_loud_[block] ? 0 : (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice) - modelled;
+    }
+    /** Finds the blocks of a side-scan's lines whose water does not count. What a rough scene lacks there (fish, wakes,
+     *  other sonars) can only add: the quietest quarter of the blocks shows the floor of noise and water. */
+    void findLoudBlocks() {
+        is_loud_.assign(recorded_.beam_blocks, false);
+        if (!rough_ || !chain_.isSideScan()) return;
+        std::vector<std::pair<double, size_t>> blocks;
+        for (size_t block = 0; block < recorded_.beam_blocks; ++block) {
+            double sum = 0, count = 0;
+            for (size_t slice = first_slice; slice < recorded_.slices; ++slice) {
+                bool is_open = true;  // in all blocks, so that they are comparable
+                for (size_t other = 0; other < recorded_.beam_blocks; ++other) is_open &= isOpenWater(other, slice);
+                if (is_open) sum += (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice), ++count;
+            }
+            if (count > 0) blocks.emplace_back(sum / count, block);
+        }
+        std::ranges::sort(blocks);
+        for (size_t i = (blocks.size() + 3) / 4; i < blocks.size(); ++i) is_loud_[blocks[i].second] = true;
     }
     void render(const FitChain& chain) {
         const types::Sonar echoes = meanEchoes(rough_ ? thinned(chain) : chain);
@@ -320,10 +331,12 @@ private:
     }
 
     const LevelBlocks& recorded_;
+    std::optional<LevelBlocks> water_recorded_;
     CodeResponse response_;
     FitChain chain_;
     bool rough_, by_median_, fits_water_, fits_scene_;
     double range_;
+    std::vector<bool> is_loud_;  ///< Of each block, see findLoudBlocks().
     double pull_weight_ = 1;
     double axis_ = 1;  ///< Ranges of a simulated sample, whose bins last whole microseconds, over true ones [1].
     Values before_;
@@ -538,6 +551,13 @@ LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
         mean.level[i] = toDb(sum / static_cast<double>(all.size()));
     }
     return mean;
+}
+
+LevelBlocks leastOf(const std::vector<LevelBlocks>& all) {
+    LevelBlocks least = all.front();
+    for (const LevelBlocks& each : all)
+        for (size_t i = 0; i < least.level.size(); ++i) least.level[i] = std::min(least.level[i], each.level[i]);
+    return least;
 }
 
 FitChain LevelFit::applied(const FitChain& chain) const {

@@ -38,6 +38,8 @@ LevelBlocks blocksOf(const CodedPing& ping);
 LevelBlocks blocksOf(const types::Sonar& intensities);
 /** The mean of several pings, as intensities. */
 LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
+/** The least of several pings. */
+LevelBlocks leastOf(const std::vector<LevelBlocks>& all);
 
 constexpr double z_95 = 1.96;  ///< Deviations of a normal law to either side of 95 %.
 
@@ -72,8 +74,10 @@ struct LevelFit {
 /** How far the scene of a fit is to be trusted. */
 struct LevelOptions {
     /** It is no more than a floor or walls of about the right kind. Medians over the beams count; of a side-scan, whose
-     *  lines know how high they are, each block of lines, and the strength of the water is fitted as well. */
+     *  lines know how high they are, each block of lines, and the strength of the water where the sonar has one. */
     bool rough = false;
+    /** Levels that count in the water before the floor of a side-scan; none: the recorded ones. */
+    std::optional<LevelBlocks> water = {};
     bool fits_scene = false;  ///< Pitch, height and the beam in elevation are fitted as well; of a rough one.
 };
 

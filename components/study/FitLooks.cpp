@@ -28,7 +28,7 @@ bool AveragedSpeckle::isIn(const SpeckleMoments& recorded) {
 void AveragedSpeckle::begin(const SpeckleMoments& recorded) {
     recorded_ = recorded;
     const double both = std::max(1e-3, 1 + recorded.texture.value);
-    looks_ = std::clamp(static_cast<int>(std::ceil(1 / both)), 2, 256);
+    looks_ = std::clamp(static_cast<int>(std::ceil(1 / both - 0.25)), 2, 256);
     inverse_ = both - 1.0 / looks_;
     bins_ = recorded.echo_bins.value;
     chain_.sonar.speckle.reset();
