@@ -199,7 +199,7 @@ public:
         acoustics::BeamLaw& law = chain.sonar.beam_pattern->receive.azimuth.emplace();
         law.weighting = acoustics::Weighting::Gaussian;
         law.width_deg = std::min(width_deg, 170.0);
-        chain.sonar.beam_width_deg = std::clamp(2.5 * width_deg, *chain.sonar.beam_width_deg, 110.0);
+        chain.sonar.beam_width_deg = std::clamp(4 * width_deg, *chain.sonar.beam_width_deg, 110.0);
     }
     static void setElevation(double width_deg, FitChain& chain) {
         sonar::BeamPatternConfig& pattern =

@@ -447,7 +447,6 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
         fit.simulated_pings = simulatedPings(chain, simulations);
         fit.simulated = momentsOf(fit.simulated_pings, fit.levels, false);
         levels = corrected(measured, fit.simulated_pings, fit.levels);
-        if (getenv("DBG")) fmt::print(stderr, "round {} T rec {:.3f} sim {:.3f} dens {} echo share {:.3f} range {:.2f} simrange {:.2f} bins {:.3f} {:.3f} fs {:.2f} n {:.2f} w {:.2f} log {:.2f} sl {:.3f} ab {:.3f}\n", round, fit.recorded.texture.value, fit.simulated.texture.value, chain.sonar.speckle ? chain.sonar.speckle->scatterers_per_m2.value_or(0) : -1, fit.recorded.echo_share, fit.recorded.range, fit.simulated.range, fit.recorded.echo_bins.value, fit.simulated.echo_bins.value, fit.levels.full_scale_db.value, fit.levels.noise_db.value, fit.levels.water_db ? fit.levels.water_db->value : 0, fit.levels.log_coefficient.value, fit.levels.db_per_m.value, fit.levels.absorption_db_per_m.value);
         if (round + 1 < rounds)
             averaged ? averaged->improve(fit.recorded, fit.simulated) : speckle.improve(fit.recorded, fit.simulated);
     }

@@ -20,12 +20,12 @@ using testing::HasSubstr;
 constexpr size_t line_count = 96, line_bins = 512;
 constexpr double line_range = 30, sound = 1500, floor_depth = 20;
 
-/** A vehicle that comes down from 9 to 5 m above the floor, a line each 0.3 m. */
+/** A vehicle that comes down from 8 to 7 m above the floor, a line each 0.3 m. */
 CodedPing linesOf() {
     CodedPing lines{.name = "lines", .beam_count = line_count, .bin_count = line_bins};
     for (size_t i = 0; i < line_count; ++i) {
         lines.bearings.push_back(-1.0 - static_cast<double>(i));
-        lines.places.push_back({.altitude = 9 - 4.0 * static_cast<double>(i) / line_count,
+        lines.places.push_back({.altitude = 8 - static_cast<double>(i) / line_count,
                                 .along = 0.3 * static_cast<double>(i)});
     }
     lines.resolution = line_range / line_bins;
@@ -71,8 +71,8 @@ struct TrueSideScan {
         depression_deg = between(22, 38);
         width_deg = between(25, 45);
         pulse_m = between(1.2, 2.5) * line_range / line_bins;
-        noise_db = between(-103, -97);
-        density = between(300, 700);
+        noise_db = between(-114, -108);
+        density = between(100, 220);
         log_coefficient = between(20, 40);
         db_per_m = between(0.02, 0.15);
         sonar::SonarConfig& sonar = chain.sonar;
@@ -165,7 +165,7 @@ TEST(FitLooksTest, SpeckleThatIsAveragedIsDrawnAndVariesAsMuch) {
     EXPECT_THAT(settings, HasSubstr("b.speckle: null\n"));
     EXPECT_THAT(settings, HasSubstr("c.speckle: {law: "));
     EXPECT_THAT(settings, HasSubstr("c.filter: {looks: "));
-    EXPECT_THAT(settings, HasSubstr("v.waypoints: [{time: 0, position: [0, 0, -11]"));
+    EXPECT_THAT(settings, HasSubstr("v.waypoints: [{time: 0, position: [0, 0, -12]"));
 }
 
 TEST(FitSideScanTest, ALineThatShowsTheTransmitterGetsItsRingDown) {
