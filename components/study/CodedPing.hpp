@@ -62,7 +62,7 @@ struct LoggedPings {
     std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
     bool law_known = false;
-    double frequency_khz = 0;  ///< 0: unknown.
+    double frequency_khz = 0;              ///< 0: unknown.
     std::vector<types::Pose> sonars = {};  ///< The sonar at each ping; empty or not usable: unknown.
     std::vector<double> altitudes = {};    ///< Above the bottom at each ping [m]; empty or 0: unknown.
 };

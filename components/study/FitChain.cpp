@@ -80,11 +80,11 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
     FitChain end = chain;
     end.snapshot.sonar = chain.lines.back();
     if (!floorBelow(end))
-        throw types::ConfigError("", "scene",
-                                 fmt::format("has no floor below the last of {} lines, {:.0f} m ahead of the first; cut "
-                                             "the recording (insonify log cut), or take a larger scene",
-                                             chain.lines.size(),
-                                             glm::distance(chain.lines.front().position, chain.lines.back().position)));
+        throw types::ConfigError(
+            "", "scene",
+            fmt::format("has no floor below the last of {} lines, {:.0f} m ahead of the first; cut "
+                        "the recording (insonify log cut), or take a larger scene",
+                        chain.lines.size(), glm::distance(chain.lines.front().position, chain.lines.back().position)));
 }
 
 void takeShape(const CodedPing& recorded, FitChain& chain) {

@@ -149,8 +149,8 @@ public:
     Values start() const {
         Values values = before_;
         const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_);
-        const auto loudest = static_cast<size_t>(std::max_element(recorded.begin() + first_slice, recorded.end()) -
-                                                 recorded.begin());
+        const auto loudest =
+            static_cast<size_t>(std::max_element(recorded.begin() + first_slice, recorded.end()) - recorded.begin());
         const double echo = *std::max_element(echoes.begin() + first_slice, echoes.end());
         values[full_scale] = echo + gainDb(values, recorded_.ranges[loudest]) - recorded[loudest];
         std::vector<double> floors;
@@ -163,7 +163,8 @@ public:
     /** The same with the faintest ranges explained by the water, and noise far below. */
     Values startInWater() const {
         Values values = start();
-        const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_), water = overBeams(water_);
+        const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_),
+                                  water = overBeams(water_);
         values[log_coefficient] = 20;
         std::vector<double> strengths;
         for (size_t i = first_slice; i < recorded.size(); ++i)

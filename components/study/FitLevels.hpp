@@ -52,17 +52,18 @@ struct Fitted {
 
 /** Which level belongs to which range: everything that changes levels alone. */
 struct LevelFit {
-    Fitted full_scale_db = {};        ///< Level of the largest code, all gain included [dB].
-    Fitted noise_db = {};             ///< Mean intensity of noise in a bin, relative to the source [dB].
-    Fitted log_coefficient = {};      ///< Of the time-varied gain [dB].
-    Fitted db_per_m = {};             ///< Of the time-varied gain, one way [dB/m].
-    Fitted absorption_db_per_m = {};  ///< Of the water, one way [dB/m].
-    Fitted tvg_span_db = {};          ///< Gain at the end of the range above that at its tenth [dB].
+    Fitted full_scale_db = {};            ///< Level of the largest code, all gain included [dB].
+    Fitted noise_db = {};                 ///< Mean intensity of noise in a bin, relative to the source [dB].
+    Fitted log_coefficient = {};          ///< Of the time-varied gain [dB].
+    Fitted db_per_m = {};                 ///< Of the time-varied gain, one way [dB/m].
+    Fitted absorption_db_per_m = {};      ///< Of the water, one way [dB/m].
+    Fitted tvg_span_db = {};              ///< Gain at the end of the range above that at its tenth [dB].
     std::optional<Fitted> water_db = {};  ///< Of a side-scan: volume backscattering strength [dB re 1/m].
     std::optional<Fitted> pitch_deg = {}, height_m = {},
-                          elevation_deg = {};  ///< Of a rough scene: the sonar over it, its beam; of a side-scan no height.
-    LevelBlocks modelled = {};                 ///< What the codes of each block state by these values.
-    double rms_db = 0;                         ///< Of the levels that are left unexplained [dB].
+                          elevation_deg =
+                              {};  ///< Of a rough scene: the sonar over it, its beam; of a side-scan no height.
+    LevelBlocks modelled = {};     ///< What the codes of each block state by these values.
+    double rms_db = 0;             ///< Of the levels that are left unexplained [dB].
 
     /** The chain with these values. */
     FitChain applied(const FitChain& chain) const;

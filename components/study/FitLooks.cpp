@@ -8,8 +8,8 @@
 namespace insonify::study {
 namespace {
 
-constexpr double one_look = -0.15;        ///< T of one look is 0 and more; codes that are rounded take off less.
-constexpr double least_texture = 0.01;    ///< 1 / shape from which on the law is K.
+constexpr double one_look = -0.15;              ///< T of one look is 0 and more; codes that are rounded take off less.
+constexpr double least_texture = 0.01;          ///< 1 / shape from which on the law is K.
 constexpr double narrowest = 0.3, widest = 16;  ///< Of a filter [bins].
 
 /** Sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
@@ -46,7 +46,8 @@ void AveragedSpeckle::improve(const SpeckleMoments& recorded, const SpeckleMomen
 
 void AveragedSpeckle::apply() {
     noise::SpeckleConfig& speckle = chain_.noise.speckle.emplace();
-    if (inverse_ > least_texture) speckle.law = noise::SpeckleLaw::K, speckle.shape = std::clamp(1 / inverse_, 0.1, 1e6);
+    if (inverse_ > least_texture)
+        speckle.law = noise::SpeckleLaw::K, speckle.shape = std::clamp(1 / inverse_, 0.1, 1e6);
     noise::FilterConfig& filter = chain_.noise.filter.emplace();
     filter.looks = looks_;
     if (recorded_.echo_bins.isMoreThanChance() && bins_ > correlationOf(narrowest))
@@ -58,7 +59,8 @@ bool AveragedSpeckle::isTextured() const {
 }
 
 void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
-    findings.push_back({"beam width", "deg", {}, false, "the lines of a side-scan are apart, so they share no speckle"});
+    findings.push_back(
+        {"beam width", "deg", {}, false, "the lines of a side-scan are apart, so they share no speckle"});
     findings.push_back({"pulse length",
                         "m",
                         {},
@@ -71,19 +73,16 @@ void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
                         true,
                         "averaged in each bin: the fewest that explain how little intensities vary"});
     const Fitted shape{1 / inverse_, 1 / (inverse_ + off), inverse_ > off ? 1 / (inverse_ - off) : 1e9};
-    findings.push_back(
-        {"shape of K", "1", shape, isTextured() && shape.half() <= 0.5 * shape.value,
-         isTextured() ? fmt::format("of the texture beneath these looks, at {:.3g} m", recorded_.range)
-                      : "looks alone explain the speckle within its error"});
+    findings.push_back({"shape of K", "1", shape, isTextured() && shape.half() <= 0.5 * shape.value,
+                        isTextured() ? fmt::format("of the texture beneath these looks, at {:.3g} m", recorded_.range)
+                                     : "looks alone explain the speckle within its error"});
     const auto& width = chain_.noise.filter->correlation_bins;
     const double slack = z_95 * recorded_.echo_bins.error;
     const auto at = [](double sum) {
         return argumentAt(std::max(sum, correlationOf(narrowest)), narrowest, widest, correlationOf);
     };
-    findings.push_back({"speckle over bins",
-                        "1",
-                        width ? Fitted{*width, at(bins_ - slack), at(bins_ + slack)} : Fitted{},
-                        width.has_value(),
+    findings.push_back({"speckle over bins", "1",
+                        width ? Fitted{*width, at(bins_ - slack), at(bins_ + slack)} : Fitted{}, width.has_value(),
                         width ? "where its correlation is 1/e" : "neighbouring bins share no more than chance"});
 }
 

@@ -158,10 +158,10 @@ std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
         const glm::dquat body = lines[i].orientation * glm::inverse(fan);
         const glm::dvec3 at = lines[i].position - body * tasks.mount.position;
         const types::Turns turns = types::turnsOf(body);
-        points.push_back(fmt::format(
-            "{{time: {:.6g}, position: [{:.6g}, {:.6g}, {:.6g}], yaw_deg: {:.6g}, pitch_deg: {:.4g}}}",
-            static_cast<double>(i) * tasks.period, at.x, at.y, at.z, types::degrees(turns.yaw),
-            types::degrees(turns.pitch)));
+        points.push_back(
+            fmt::format("{{time: {:.6g}, position: [{:.6g}, {:.6g}, {:.6g}], yaw_deg: {:.6g}, pitch_deg: {:.4g}}}",
+                        static_cast<double>(i) * tasks.period, at.x, at.y, at.z, types::degrees(turns.yaw),
+                        types::degrees(turns.pitch)));
     };
     for (size_t i = 0; i + 1 < lines.size(); i += every) add(i);
     if (!lines.empty()) add(lines.size() - 1);
@@ -170,8 +170,7 @@ std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
         {tasks.vehicle + ".waypoints", fmt::format("[{}]", fmt::join(points, ", ")),
          "a straight way, as high above the floor and pitched as the recording states; every fourth line"}};
     const auto level = [&](const char* turn, double is_deg) {
-        if (is_deg != 0)
-            all.push_back({tasks.scene + ".mount." + turn, "0", "the recorded pitch is the sonar's own"});
+        if (is_deg != 0) all.push_back({tasks.scene + ".mount." + turn, "0", "the recorded pitch is the sonar's own"});
     };
     level("roll_deg", tasks.mount.roll_deg);
     level("pitch_deg", tasks.mount.pitch_deg);

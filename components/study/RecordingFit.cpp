@@ -175,8 +175,10 @@ private:
         inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there);
     }
     void apply() {
-        if (!chain_.isSideScan()) azimuth().width_deg = recorded_.echo_beams.isMoreThanChance() ? widthAt(beams_) : width_before_;
-        setPulseLength(recorded_.echo_bins.isMoreThanChance() ? lengthAt(bins_) : length_before_, c_, *chain_.sonar.pulse);
+        if (!chain_.isSideScan())
+            azimuth().width_deg = recorded_.echo_beams.isMoreThanChance() ? widthAt(beams_) : width_before_;
+        setPulseLength(recorded_.echo_bins.isMoreThanChance() ? lengthAt(bins_) : length_before_, c_,
+                       *chain_.sonar.pulse);
         chain_.sonar.speckle->scatterers_per_m2.reset();
         if (inverse_ > 0) chain_.sonar.speckle->scatterers_per_m2 = std::clamp(1 / inverse_, 1e-6, 1e9);
         noise::FilterConfig filter;
@@ -336,7 +338,8 @@ private:
     sonar::SonarRenderer renderer_;
 };
 
-/** The range up to which nearly all lines or beams have the largest code: their own transmitter [m]; 0: there is none. */
+/** The range up to which nearly all lines or beams have the largest code: their own transmitter [m]; 0: there is none.
+ */
 double ringingRange(const std::vector<CodedPing>& recorded) {
     constexpr double nearly_all = 0.9;
     constexpr float largest = 0.99f;
@@ -433,9 +436,8 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     std::optional<AveragedSpeckle> averaged;
     for (size_t round = 0; round < rounds; ++round) {
         const auto show = [&] { progress(fmt::format("round {} of {}: levels", round + 1, rounds)); };
-        fit.levels =
-            fitLevels(levels, recorded.front(), chain,
-                      {.rough = rough, .water = leastOf(blocks), .fits_scene = rough && round == 0}, show);
+        fit.levels = fitLevels(levels, recorded.front(), chain,
+                               {.rough = rough, .water = leastOf(blocks), .fits_scene = rough && round == 0}, show);
         if (round == 0)
             pitch = fit.levels.pitch_deg, height = fit.levels.height_m, elevation = fit.levels.elevation_deg;
         chain = fit.levels.applied(chain);
@@ -454,7 +456,8 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     fit.levels.pitch_deg = pitch, fit.levels.height_m = height, fit.levels.elevation_deg = elevation;
     addLevels(fit.levels, before, range, fit.findings);
     if (ringing > 0)
-        fit.findings.push_back({"transmitter", "m", {ringing, ringing, ringing}, true, "range up to which it is heard"});
+        fit.findings.push_back(
+            {"transmitter", "m", {ringing, ringing, ringing}, true, "range up to which it is heard"});
     averaged ? averaged->addTo(fit.findings) : speckle.addTo(fit.findings);
     if (!chain.isSideScan()) addSidelobes(recorded, fit.chain, fit.findings);
     return fit;

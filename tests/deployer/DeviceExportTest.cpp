@@ -258,9 +258,9 @@ TEST(OculusExportTest, ARecordingIsImportedAgainCodeByCode) {
 TEST(OculusExportTest, CodesOfOtherWidthsAreScaledToSixteenBits) {
     const WallFolder folder(codedWall("{bits: 12, law: sqrt, full_scale_db: -40}"));
     ASSERT_EQ(folder.run({"--pings", "1"}).code, 0);
-    ASSERT_EQ(callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to", "a.oculus"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to", "a.oculus"}).code,
+        0);
     ASSERT_EQ(callInsonify(folder, {"log", "import", "a.oculus", "--to", "a.0.log"}).code, 0);
     const auto logged = log::openLog(folder / "out/wall.0.log"), imported = log::openLog(folder / "a.0.log");
     types::Sonar before, after;

@@ -1,5 +1,5 @@
-// What a fit finds in simulated recordings of side-scans with random properties, and in what a recording states of their
-// lines.
+// What a fit finds in simulated recordings of side-scans with random properties, and in what a recording states of
+// their lines.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ CodedPing linesOf() {
     CodedPing lines{.name = "lines", .beam_count = line_count, .bin_count = line_bins};
     for (size_t i = 0; i < line_count; ++i) {
         lines.bearings.push_back(-1.0 - static_cast<double>(i));
-        lines.places.push_back({.altitude = 8 - static_cast<double>(i) / line_count,
-                                .along = 0.3 * static_cast<double>(i)});
+        lines.places.push_back(
+            {.altitude = 8 - static_cast<double>(i) / line_count, .along = 0.3 * static_cast<double>(i)});
     }
     lines.resolution = line_range / line_bins;
     lines.is_waterfall = true;
@@ -160,7 +160,8 @@ TEST(FitLooksTest, SpeckleThatIsAveragedIsDrawnAndVariesAsMuch) {
     EXPECT_NEAR(fit.simulated.texture.value, fit.recorded.texture.value, 0.02);
     EXPECT_FALSE(fit.finding("pulse length")->is_determined);
     std::string settings;
-    for (const FitSetting& setting : settingsOf(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
+    for (const FitSetting& setting :
+         settingsOf(fit, {.vehicle = "v", .scene = "a", .sonar = "b", .noise = "c", .receiver = "d"}))
         settings += setting.path + ": " + setting.value + "\n";
     EXPECT_THAT(settings, HasSubstr("b.speckle: null\n"));
     EXPECT_THAT(settings, HasSubstr("c.speckle: {law: "));
@@ -195,9 +196,8 @@ types::Pose at(double x, double pitch_deg = 0) {
 TEST(LinePlaceTest, WhatStaysWhileLinesGoOnIsSpreadOverThem) {
     types::Pose unknown = at(0);
     unknown.position.x = NAN;
-    const std::vector<LinePlace> places =
-        placesOf({unknown, at(0, 10), at(0, 10), at(0.4, 10), at(0.4, 20), at(0.8, 20), at(0.8, 20)},
-                 {0, 8, 8, 8, 6, 6, 6});
+    const std::vector<LinePlace> places = placesOf(
+        {unknown, at(0, 10), at(0, 10), at(0.4, 10), at(0.4, 20), at(0.8, 20), at(0.8, 20)}, {0, 8, 8, 8, 6, 6, 6});
     ASSERT_EQ(places.size(), 7u);
     for (size_t i = 0; i < 7; ++i) EXPECT_NEAR(places[i].along, 0.2 * (static_cast<double>(i) - 1), 1e-9) << i;
     const std::vector<double> altitudes{8, 8, 8 - 2.0 / 3, 8 - 4.0 / 3, 6, 6, 6};

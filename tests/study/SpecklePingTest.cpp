@@ -109,7 +109,8 @@ TEST(SpecklePingTest, LinesOfASideScanAreRayleighThoughTheirFanIsWide) {
     for (int line = 0; line < 24; ++line) {
         types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-7)}), {0.5 * line, 0, 0}, 0);
         snapshot.sonar.orientation *= glm::angleAxis(radians(90), glm::dvec3(0, 1, 0));
-        const types::Sonar field = pingOf(coherent(acrossTheTrack()), snapshot), mean = pingOf(acrossTheTrack(), snapshot);
+        const types::Sonar field = pingOf(coherent(acrossTheTrack()), snapshot),
+                           mean = pingOf(acrossTheTrack(), snapshot);
         for (size_t i = 0; i < field.bins.size(); ++i) {
             if (mean.bins[i] <= 0) continue;
             const double relative = static_cast<double>(field.bins[i]) / static_cast<double>(mean.bins[i]);

@@ -134,7 +134,9 @@ void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings&
     CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
     options->addTo(*command, "a YAML file whose receiver gives out codes; absent: what the recordings look like")
         ->required();
-    command->add_option("--side", options->side, "of a side-scan: whose lines are compared; none: starboard, if there are any")
+    command
+        ->add_option("--side", options->side,
+                     "of a side-scan: whose lines are compared; none: starboard, if there are any")
         ->check(CLI::IsMember({"starboard", "port"}));
     command
         ->add_option("--lines", options->lines,
