@@ -8,9 +8,9 @@
 namespace insonify::study {
 namespace {
 
-constexpr double one_look = -0.15;              ///< T of one look is 0 and more; codes that are rounded take off less.
-constexpr double least_texture = 0.01;          ///< 1 / shape from which on the law is K.
-constexpr double narrowest = 0.3, widest = 16;  ///< Of a filter [bins].
+constexpr double one_look = -0.15;    ///< T of one look is 0 and more; codes that are rounded take off less.
+constexpr double min_texture = 0.01;  ///< 1 / shape from which on the law is K.
+constexpr double min_width = 0.3, max_width = 16;  ///< Of a filter [bins].
 
 /** Sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
 double correlationOf(double width) {
@@ -46,16 +46,15 @@ void AveragedSpeckle::improve(const SpeckleMoments& recorded, const SpeckleMomen
 
 void AveragedSpeckle::apply() {
     noise::SpeckleConfig& speckle = chain_.noise.speckle.emplace();
-    if (inverse_ > least_texture)
-        speckle.law = noise::SpeckleLaw::K, speckle.shape = std::clamp(1 / inverse_, 0.1, 1e6);
+    if (inverse_ > min_texture) speckle.law = noise::SpeckleLaw::K, speckle.shape = std::clamp(1 / inverse_, 0.1, 1e6);
     noise::FilterConfig& filter = chain_.noise.filter.emplace();
     filter.looks = looks_;
-    if (recorded_.echo_bins.isMoreThanChance() && bins_ > correlationOf(narrowest))
-        filter.correlation_bins = argumentAt(bins_, narrowest, widest, correlationOf);
+    if (recorded_.echo_bins.isMoreThanChance() && bins_ > correlationOf(min_width))
+        filter.correlation_bins = argumentAt(bins_, min_width, max_width, correlationOf);
 }
 
 bool AveragedSpeckle::isTextured() const {
-    return recorded_.texture.isKnown() && inverse_ > least_texture && inverse_ > z_95 * recorded_.texture.error;
+    return recorded_.texture.isKnown() && inverse_ > min_texture && inverse_ > z_95 * recorded_.texture.error;
 }
 
 void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
@@ -79,7 +78,7 @@ void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
     const auto& width = chain_.noise.filter->correlation_bins;
     const double slack = z_95 * recorded_.echo_bins.error;
     const auto at = [](double sum) {
-        return argumentAt(std::max(sum, correlationOf(narrowest)), narrowest, widest, correlationOf);
+        return argumentAt(std::max(sum, correlationOf(min_width)), min_width, max_width, correlationOf);
     };
     findings.push_back({"speckle over bins", "1",
                         width ? Fitted{*width, at(bins_ - slack), at(bins_ + slack)} : Fitted{}, width.has_value(),
