@@ -27,9 +27,7 @@ bool AveragedSpeckle::isIn(const SpeckleMoments& recorded) {
 
 void AveragedSpeckle::begin(const SpeckleMoments& recorded) {
     recorded_ = recorded;
-    const double both = std::max(1e-3, 1 + recorded.texture.value);
-    looks_ = std::clamp(static_cast<int>(std::ceil(1 / both - 0.25)), 2, 256);
-    inverse_ = both - 1.0 / looks_;
+    take(1 + recorded.texture.value);
     bins_ = recorded.echo_bins.value;
     chain_.sonar.speckle.reset();
     apply();
@@ -38,10 +36,15 @@ void AveragedSpeckle::begin(const SpeckleMoments& recorded) {
 void AveragedSpeckle::improve(const SpeckleMoments& recorded, const SpeckleMoments& simulated) {
     recorded_ = recorded;
     if (recorded.texture.isKnown() && simulated.texture.isKnown())
-        inverse_ = std::max(0.0, inverse_ + recorded.texture.value - simulated.texture.value);
+        take(1.0 / looks_ + inverse_ + recorded.texture.value - simulated.texture.value);
     if (recorded.echo_bins.isKnown() && simulated.echo_bins.isKnown())
         bins_ += recorded.echo_bins.value - simulated.echo_bins.value;
     apply();
+}
+
+void AveragedSpeckle::take(double both) {
+    looks_ = std::clamp(static_cast<int>(std::ceil(1 / std::max(1e-3, both))), 2, 256);
+    inverse_ = std::max(0.0, both - 1.0 / looks_);
 }
 
 void AveragedSpeckle::apply() {

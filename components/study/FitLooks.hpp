@@ -26,6 +26,8 @@ public:
     void addTo(std::vector<Finding>& findings) const;
 
 private:
+    /** Takes the fewest looks that leave a shape. @param both 1 / looks + 1 / shape */
+    void take(double both);
     void apply();
     /** Whether the texture is more than its error. */
     bool isTextured() const;
