@@ -4,7 +4,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "components/deployer/LoggedTrack.hpp"
 #include "components/deployer/Pipeline.hpp"
+#include "components/deployer/StreamMeaning.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/log/Reader.hpp"
 
@@ -42,6 +44,16 @@ void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded)
     }
 }
 
+/** Where the sonar was at each ping, as far as the log has it. */
+void takePlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
+    const LoggedTrack track(log, posesOfSonar(log), mountOf(meaningOf(log, pings)));
+    const LoggedAltitudes altitudes(log);
+    for (const types::Sonar& ping : coded.pings) {
+        coded.sonars.push_back(track.at(ping.time));
+        coded.altitudes.push_back(altitudes.at(ping.time));
+    }
+}
+
 }  // namespace
 
 std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
@@ -53,6 +65,7 @@ std::optional<CodedLog> codedLog(const std::filesystem::path& file) {
         CodedLog coded{.pings = codesOf(*log, i)};
         if (coded.pings.empty()) continue;
         takeLaw(*log, stream.name, coded);
+        takePlaces(*log, stream, coded);
         if (const auto at = stream.metadata.find("insonify_frequency_khz"); at != stream.metadata.end())
             std::from_chars(at->second.data(), at->second.data() + at->second.size(), coded.frequency_khz);
         return coded;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <vector>
 
+#include "components/deployer/LoggedTrack.hpp"
 #include "components/deployer/StreamMeaning.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/log/Reader.hpp"
@@ -17,8 +17,6 @@
 #include "components/output/SideScanImage.hpp"
 #include "components/output/Xtf.hpp"
 #include "types/Image.hpp"
-#include "types/Mount.hpp"
-#include "types/Range.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
@@ -88,38 +86,11 @@ types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
     return ping;
 }
 
-/** Heights above the bottom over time, of the only stream of ranges. */
-class Altitudes {
-public:
-    explicit Altitudes(log::Reader& log) {
-        const auto holds = [](const log::Stream& stream) { return stream.holds<types::Range>(); };
-        if (std::ranges::count_if(log.streams(), holds) != 1) return;
-        log.forEach<types::Range>(std::ranges::find_if(log.streams(), holds)->name,
-                                  [&](const types::Range& range, const log::SampleRef&) {
-                                      all_[range.time] = range.isKnown() ? range.range : 0;
-                                  });
-    }
-    bool areKnown() const { return !all_.empty(); }
-    /** At this time, the last before, or before all of them the first; not finite: unknown. */
-    double nearestTo(types::Time time) const {
-        const double known = time < all_.begin()->first ? all_.begin()->second : at(time);
-        return known > 0 ? known : types::Range::none;
-    }
-    /** At this time or the last before; 0: unknown. */
-    double at(types::Time time) const {
-        const auto after = all_.upper_bound(time);
-        return after == all_.begin() ? 0 : std::prev(after)->second;
-    }
-
-private:
-    std::map<types::Time, double> all_;
-};
-
 /** Lines of a side-scan as waterfalls: a picture when one is full, when the settings change, and of the last lines. */
 class Waterfalls {
 public:
     /** @param altitudes of the lines, which are then along the ground; null: they are in slant range */
-    Waterfalls(const output::DisplayConfig& display, const Altitudes* altitudes, fs::path path)
+    Waterfalls(const output::DisplayConfig& display, const LoggedAltitudes* altitudes, fs::path path)
         : image_(configOf(display, altitudes != nullptr)), altitudes_(altitudes), path_(std::move(path)) {}
 
     void add(const types::Sonar& ping) {
@@ -151,7 +122,7 @@ private:
     }
 
     output::SideScanImage image_;
-    const Altitudes* const altitudes_;
+    const LoggedAltitudes* const altitudes_;
     fs::path path_;
     types::Sonar last_;
     int lines_ = 0;  ///< Lines of this picture, with the last.
@@ -168,7 +139,7 @@ std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream
     if (along_ground && !isSideScan(first))
         throw types::ConfigError("", "--ground", "is for the lines of a side-scan; " + stream + " has none");
     if (isSideScan(first)) {
-        const Altitudes altitudes(log);
+        const LoggedAltitudes altitudes(log);
         if (along_ground && !altitudes.areKnown())
             throw types::ConfigError(log.path(), "--ground",
                                      "takes altitudes; the log has no stream of ranges, or several");
@@ -205,56 +176,15 @@ const log::Stream* posesOf(log::Reader& log, const std::string& asked) {
         if (!poses.holds<types::Pose>()) refuse(log, asked, "holds " + poses.type + "; --pose takes poses");
         return &poses;
     }
-    std::vector<const log::Stream*> all, of_sonars;
+    if (const log::Stream* const only = posesOfSonar(log)) return only;
     std::string names;
-    for (const log::Stream& stream : log.streams()) {
-        if (!stream.holds<types::Pose>()) continue;
-        all.push_back(&stream);
-        names += (names.empty() ? "" : ", ") + stream.name;
-        if (stream.metadatum("rock_task_model").starts_with("sonar::")) of_sonars.push_back(&stream);
-    }
-    if (of_sonars.size() == 1) return of_sonars.front();
-    if (all.size() > 1)
+    for (const log::Stream& stream : log.streams())
+        if (stream.holds<types::Pose>()) names += (names.empty() ? "" : ", ") + stream.name;
+    if (!names.empty())
         throw types::ConfigError(log.path(), "--pose",
                                  "is missing; name the poses of the side-scan or its vehicle: " + names);
-    return all.empty() ? nullptr : all.front();
+    return nullptr;
 }
-
-types::Mount mountOf(const Json& meaning) {
-    types::Mount mount;
-    const Json& given = meaning["mount"];
-    if (!given.is_object()) return mount;
-    if (const Json place = given.value("position", Json()); place.is_array() && place.size() == 3)
-        for (int axis = 0; axis < 3; ++axis) mount.position[axis] = place[static_cast<size_t>(axis)].get<double>();
-    mount.roll_deg = given.value("roll_deg", 0.0);
-    mount.pitch_deg = given.value("pitch_deg", 0.0);
-    mount.yaw_deg = given.value("yaw_deg", 0.0);
-    return mount;
-}
-
-/** The sonar in the world over time. */
-class Track {
-public:
-    Track(log::Reader& log, const log::Stream* poses, const types::Mount& mount) {
-        if (!poses) return;
-        log.forEach<types::Pose>(poses->name, [&](const types::Pose& body, const log::SampleRef&) {
-            types::Pose& sonar = all_.emplace_back(body);
-            if (body.source_frame != "sonar" && isUsable(body)) place(body, mount, sonar);
-        });
-        std::ranges::stable_sort(all_, {}, &types::Pose::time);
-    }
-    /** At this time or the last before; none is known before the first. */
-    types::Pose at(types::Time time) const {
-        const auto after = std::ranges::upper_bound(all_, time, {}, &types::Pose::time);
-        if (after != all_.begin()) return *std::prev(after);
-        types::Pose none;
-        none.position.x = types::Pose::unknown;
-        return none;
-    }
-
-private:
-    std::vector<types::Pose> all_;
-};
 
 void refuseUnlessSideScan(const log::Reader& log, const std::string& stream, const types::Sonar& ping) {
     if (!isSideScan(ping))
@@ -274,8 +204,8 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
                                    frequencyOf(meaning), to.filename().string()};
     const log::Stream* const placed = posesOf(log, poses);
     if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no places\n", log.path().string());
-    const Track track(log, placed, mountOf(meaning));
-    const Altitudes altitudes(log);
+    const LoggedTrack track(log, placed, mountOf(meaning));
+    const LoggedAltitudes altitudes(log);
     types::Sonar ping = firstPing(log, pings);
     refuseUnlessSideScan(log, pings.name, ping);
     output::ByteFile file(to);

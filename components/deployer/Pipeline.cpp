@@ -127,9 +127,10 @@ SonarAt sonarAt(const std::string& file, uint64_t ping) {
     throw types::ConfigError(file, "tasks", "has no sonar that got a snapshot: nothing to study");
 }
 
-PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count) {
+PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count, const std::vector<std::string>& settings) {
     framework::Registry registry = coreTasks();
-    const DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
+    DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
+    for (const std::string& setting : settings) spec.set(setting);
     const Deployment whole(spec, registry);
     const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);
     Deployment deployment(restrictedTo(spec, kept), registry);

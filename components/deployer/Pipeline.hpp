@@ -47,7 +47,9 @@ struct PingsAt {
     receiver::CodeConfig code;
 };
 /** At most `count` pings from number `ping` on, as the first receiver that gives out codes has them. Throws
- *  types::ConfigError where there is none. */
-PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count);
+ *  types::ConfigError where there is none. @param settings properties that differ from the file's, as `--set` takes
+ *  them */
+PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count,
+                     const std::vector<std::string>& settings = {});
 
 }  // namespace insonify::deployer

@@ -12,6 +12,7 @@
 #include "components/output/Sides.hpp"
 #include "components/output/XtfLayout.hpp"
 #include "types/Angle.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::output {
 namespace {
@@ -74,10 +75,7 @@ void putTime(Block& header, types::Time time) {
 
 void putPose(Block& header, const types::Pose& sonar) {
     if (!types::isUsable(sonar)) return;
-    const glm::dquat& q = sonar.orientation;
-    const double yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-    const double pitch = std::asin(std::clamp(2 * (q.w * q.y - q.z * q.x), -1.0, 1.0));
-    const double roll = std::atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y));
+    const auto [yaw, pitch, roll] = types::turnsOf(sonar.orientation);
     const double heading = std::fmod(360 - types::degrees(yaw), 360), north = sonar.position.x,
                  east = -sonar.position.y;
     for (const size_t at : {xtf::ping_header::ship, xtf::ping_header::sonar}) {

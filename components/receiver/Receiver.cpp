@@ -74,7 +74,6 @@ double sandLevelDb(const types::Sonar& ping, double r) {
 }  // namespace
 
 void CodeConfig::check(types::Diagnostics& diagnostics) const {
-    if (bits != 8 && bits != 16) diagnostics.push_back({"bits", fmt::format("is {}; must be 8 or 16", bits)});
     if (gamma != 1 && law == CodeLaw::Log)
         diagnostics.push_back({"gamma", "is given with law log; it bends law linear and sqrt"});
 }

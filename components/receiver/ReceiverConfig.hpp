@@ -48,7 +48,7 @@ struct CodeConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"bits", "1", "8 or 16", 8, 16}, self.bits);
+        visit(Field{"bits", "1", "of a code: the largest is 2^bits - 1", 8, 16}, self.bits);
         visit(Field{"law", "", "the code goes as intensity, as its root, or as its level"}, self.law);
         visit(Field{"full_scale_db", "dB", "level, all gain included, of the largest code", -1000, 1000},
               self.full_scale_db);

@@ -10,6 +10,7 @@
 #include "components/output/SideScanFile.hpp"
 #include "types/BeamArc.hpp"
 #include "types/ConfigError.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::study {
 namespace {
@@ -49,21 +50,18 @@ receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types
 
 std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::CodeConfig& law) {
     std::vector<types::Sonar> lines;
-    std::vector<LinePlace> places;
+    std::vector<types::Pose> sonars;
+    std::vector<double> altitudes;
     double frequency_khz = 0;
-    std::optional<glm::dvec3> before;
     const auto recording = output::openSideScan(file);
     for (auto line = recording->next(); line; line = recording->next()) {
         frequency_khz = line->frequency_khz;
-        const glm::dvec3 here = line->record.sonar.position;
-        const bool is_placed = std::isfinite(here.x + here.y);
-        const double step = is_placed && before ? std::hypot(here.x - before->x, here.y - before->y) : 0;
-        if (is_placed) before = here;
-        places.push_back({line->record.altitude, (places.empty() ? 0 : places.back().along) + step});
+        sonars.push_back(line->record.sonar);
+        altitudes.push_back(line->record.altitude);
         lines.push_back(std::move(line->ping));
     }
     if (lines.empty()) throw types::ConfigError(file.string(), "", "holds no ping of a side-scan");
-    std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", places);
+    std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", placesOf(sonars, altitudes));
     for (CodedPing& side : sides) side.law_known = false, side.frequency_khz = frequency_khz;
     return sides;
 }
@@ -92,7 +90,7 @@ std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeCo
     const receiver::CodeConfig code = log.law_known ? log.code : withBits(law, log.pings);
     std::vector<CodedPing> pings;
     if (isLineOfSideScan(log.pings.front()))
-        pings = codedLines(log.pings, code, "recorded");
+        pings = codedLines(log.pings, code, "recorded", placesOf(log.sonars, log.altitudes));
     else
         for (const types::Sonar& ping : log.pings)
             pings.push_back(codedPing(ping, code, fmt::format("recorded_{}", pings.size())));
@@ -100,7 +98,68 @@ std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeCo
     return pings;
 }
 
+/** A value of a line, where it is known. */
+using Known = std::vector<std::optional<double>>;
+
+/** Each line's value: linear between lines at which it is new, and the same before the first and after the last of
+ *  these. Empty where none is known. */
+std::vector<double> spread(const Known& known) {
+    std::vector<size_t> fresh;
+    for (size_t i = 0; i < known.size(); ++i)
+        if (known[i] && (fresh.empty() || *known[i] != *known[fresh.back()])) fresh.push_back(i);
+    if (fresh.empty()) return {};
+    std::vector<double> values(known.size(), *known[fresh.back()]);
+    for (size_t i = 0; i < fresh.front(); ++i) values[i] = *known[fresh.front()];
+    for (size_t k = 0; k + 1 < fresh.size(); ++k)
+        for (size_t i = fresh[k]; i < fresh[k + 1]; ++i)
+            values[i] = std::lerp(*known[fresh[k]], *known[fresh[k + 1]],
+                                  static_cast<double>(i - fresh[k]) / static_cast<double>(fresh[k + 1] - fresh[k]));
+    return values;
+}
+
+/** The way since the first line; beyond the places that are known it goes on as in the mean. */
+std::vector<double> alongOf(const std::vector<types::Pose>& sonars) {
+    Known known(sonars.size());
+    std::optional<glm::dvec3> before;
+    double along = 0;
+    size_t first = 0, last = 0;
+    for (size_t i = 0; i < sonars.size(); ++i) {
+        if (!types::isUsable(sonars[i])) continue;
+        const glm::dvec3 here = sonars[i].position;
+        const double step = before ? std::hypot(here.x - before->x, here.y - before->y) : 0;
+        if (!before) first = i;
+        if (!before || step > 0) last = i;
+        along += step;
+        before = here;
+        known[i] = along;
+    }
+    std::vector<double> way = spread(known);
+    if (last == first) return way;
+    const double mean = along / static_cast<double>(last - first);
+    for (size_t i = 0; i < way.size(); ++i) {
+        if (i < first) way[i] -= mean * static_cast<double>(first - i);
+        if (i > last) way[i] += mean * static_cast<double>(i - last);
+    }
+    return way;
+}
+
 }  // namespace
+
+std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes) {
+    Known heights, pitches;
+    for (const double altitude : altitudes)
+        heights.push_back(altitude > 0 ? std::optional<double>(altitude) : std::nullopt);
+    for (const types::Pose& pose : sonars)
+        pitches.push_back(types::isUsable(pose)
+                              ? std::optional<double>(types::turnsOf(glm::normalize(pose.orientation)).pitch)
+                              : std::nullopt);
+    const std::vector<double> height = spread(heights), pitch = spread(pitches), along = alongOf(sonars);
+    if (height.empty() && pitch.empty()) return {};
+    std::vector<LinePlace> places(std::max(height.size(), pitch.size()));
+    for (size_t i = 0; i < height.size(); ++i) places[i].altitude = height[i];
+    for (size_t i = 0; i < pitch.size(); ++i) places[i].pitch = pitch[i], places[i].along = along[i];
+    return places;
+}
 
 double CodedPing::levelDb(float code) const {
     const double least = 0.5 / (std::pow(2, bits) - 1), share = std::max(least, static_cast<double>(code));

@@ -7,6 +7,7 @@
 
 #include "components/device/OculusPing.hpp"
 #include "components/receiver/ReceiverConfig.hpp"
+#include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::study {
@@ -15,7 +16,13 @@ namespace insonify::study {
 struct LinePlace {
     double altitude = 0;  ///< Above the bottom [m]; 0: unknown.
     double along = 0;     ///< Way since the first line [m].
+    double pitch = 0;     ///< Of the sonar: positive looks down [rad].
 };
+
+/** The places of lines from the poses of the sonar and its altitudes; empty where neither is known. What stays while
+ *  lines go on is from a slower sensor: way, altitude and pitch are spread evenly over the lines between two values
+ *  that differ. @param altitudes [m]; 0: unknown */
+std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const std::vector<double>& altitudes);
 
 /** A ping as an instrument gives it out, recorded or simulated. */
 struct CodedPing {
@@ -55,7 +62,9 @@ struct LoggedPings {
     std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
     bool law_known = false;
-    double frequency_khz = 0;  ///< 0: unknown.
+    double frequency_khz = 0;              ///< 0: unknown.
+    std::vector<types::Pose> sonars = {};  ///< The sonar at each ping; empty or not usable: unknown.
+    std::vector<double> altitudes = {};    ///< Above the bottom at each ping [m]; empty or 0: unknown.
 };
 /** Reads the pings of a log; none: the file is no log. Throws types::ConfigError for a log without pings of codes. */
 using ReadLog = std::function<std::optional<LoggedPings>(const std::filesystem::path& file)>;

@@ -47,15 +47,23 @@ types::Sonar stacked(const std::vector<types::Sonar>& lines, double side) {
     return all;
 }
 
+/** Orientation of the fan that takes the place of a side-scan: it looks straight down, across the track. */
+glm::dquat abeam(double yaw, double pitch) {
+    return glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) *
+           glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+}
+
 }  // namespace
 
 void layLines(const CodedPing& recorded, FitChain& chain) {
     types::Pose at = chain.snapshot.sonar;
-    const glm::dvec3 ahead = at.orientation * glm::dvec3(1, 0, 0);
-    at.orientation = at.orientation * glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+    const glm::dvec3 bow = at.orientation * glm::dvec3(1, 0, 0);
+    const double yaw = std::atan2(bow.y, bow.x);
+    const glm::dvec3 ahead(std::cos(yaw), std::sin(yaw), 0);
     const std::optional<double> floor = floorBelow(chain);
     if (!floor) throw types::ConfigError("", "scene", "has no floor below the deployment's sonar");
     const double height = *floor;
+    at.orientation = abeam(yaw, 0);
     chain.snapshot.sonar = at;
     const auto known = std::ranges::find_if(recorded.places, [](const LinePlace& place) { return place.altitude > 0; });
     double altitude = known == recorded.places.end() ? height : known->altitude;
@@ -64,10 +72,19 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
             i < recorded.places.size() ? recorded.places[i] : LinePlace{.along = sideways * static_cast<double>(i)};
         if (place.altitude > 0) altitude = place.altitude;
         types::Pose& line = chain.lines.emplace_back(at);
+        line.orientation = abeam(yaw, place.pitch);
         line.position += ahead * place.along;
         line.position.z += altitude - height;
     }
     chain.side = recorded.bearings.front();
+    FitChain end = chain;
+    end.snapshot.sonar = chain.lines.back();
+    if (!floorBelow(end))
+        throw types::ConfigError(
+            "", "scene",
+            fmt::format("has no floor below the last of {} lines, {:.0f} m ahead of the first; cut "
+                        "the recording (insonify log cut), or take a larger scene",
+                        chain.lines.size(), glm::distance(chain.lines.front().position, chain.lines.back().position)));
 }
 
 void takeShape(const CodedPing& recorded, FitChain& chain) {
@@ -98,12 +115,13 @@ types::Sonar meanEchoes(const FitChain& chain) {
     config.speckle.reset();
     config.elements.reset();
     config.absorption.reset();
-    if (chain.isSideScan()) config.quality.columns_per_beam = 128, config.quality.rows = 2;
+    if (config.pulse) config.pulse->ring_down.reset();
+    if (chain.isSideScan()) config.quality.columns_per_beam = 192, config.quality.rows = 2;
     types::Sonar ping;
     sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
     renderer.render(chain.snapshot, ping);
     if (!chain.isSideScan()) return ping;
-    constexpr size_t few = 8;  // one for each block of levels
+    constexpr size_t few = 24;  // three for each block of levels
     std::vector<types::Sonar> lines;
     types::Snapshot snapshot = chain.snapshot;
     const size_t count = std::min(few, chain.lines.size());
@@ -117,6 +135,7 @@ types::Sonar meanEchoes(const FitChain& chain) {
 
 std::optional<double> floorBelow(const FitChain& chain) {
     FitChain down = chain;
+    down.lines.clear();
     sonar::SonarConfig& sonar = down.sonar;
     sonar.range *= 20;
     sonar.bin_count = 20000;
@@ -133,9 +152,7 @@ std::optional<double> floorBelow(const FitChain& chain) {
 }
 
 std::vector<CodedPing> simulatedPings(const FitChain& chain, size_t count) {
-    sonar::SonarConfig config = chain.sonar;
-    if (chain.isSideScan()) config.quality.columns_per_beam = 256, config.quality.rows = 4;
-    sonar::SonarRenderer renderer(config, chain.snapshot.geometry);
+    sonar::SonarRenderer renderer(chain.sonar, chain.snapshot.geometry);
     noise::Noise noise(chain.noise);
     receiver::Receiver receiver(chain.receiver);
     types::Sonar clean, noisy, received;

@@ -24,8 +24,9 @@ struct FitChain {
     receiver::CodeConfig code() const { return receiver.code.value_or(receiver::CodeConfig{}); }
 };
 
-/** Lays the lines of a side-scan: as high above the scene's floor as the recording states its altitude, and as far
- *  apart. The floor is where the chain's sonar has its first echo straight down.
+/** Lays the lines of a side-scan on a straight way ahead: as high above the scene's floor as the recording states its
+ *  altitude, as far apart, and pitched as there. Its roll is left out: recorders stamp it late, and levels do not
+ *  follow it (measured in one log). The floor is where the chain's sonar has its first echo straight down.
  *  @throws types::ConfigError where it has none */
 void layLines(const CodedPing& recorded, FitChain& chain);
 

@@ -19,7 +19,6 @@ constexpr size_t first_slice = 3;  ///< Nearer, transmitters ring, and the gain 
 constexpr double silent_db = -400;
 constexpr double huber_db = 3;  ///< Residuals beyond this count by their size, not their square.
 constexpr double response_low = -140, response_high = 60, response_step = 0.25;  // [dB]
-constexpr double z_95 = 1.96;
 constexpr double elevation_before = 15;  ///< Width of a beam in elevation of which nothing is known [deg].
 
 double toDb(double power) { return power > 1e-40 ? 10 * std::log10(power) : silent_db; }
@@ -89,33 +88,70 @@ FitChain thinned(FitChain chain) {
     return chain;
 }
 
-/** What is fitted, in this order. */
-enum Parameter : size_t { full_scale, noise_level, log_coefficient, tvg_slope, absorption, scene_parameters };
-constexpr size_t pitch = scene_parameters, height = pitch + 1, elevation = pitch + 2, all_parameters = pitch + 3;
-using Values = std::vector<double>;
+/** What may be fitted: levels, then how the scene is looked at. */
+enum Parameter : size_t {
+    full_scale,
+    noise_level,
+    log_coefficient,
+    tvg_slope,
+    absorption,
+    water_strength,
+    pitch,
+    height,
+    elevation,
+    parameters
+};
+using Values = std::array<double, parameters>;
+using Chosen = std::vector<size_t>;  ///< Parameters.
+
+constexpr double water_deviation = 15;  ///< Of what is known before of a volume backscattering strength [dB].
 
 /** Levels of the blocks by the values, and how far they are from the recorded ones. */
 class LevelModel {
 public:
-    LevelModel(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain, bool rough)
-        : recorded_(recorded), response_(law), chain_(chain), rough_(rough), range_(recorded.ranges.back()) {
+    LevelModel(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain, const LevelOptions& options)
+        : recorded_(recorded),
+          water_recorded_(options.water),
+          response_(law),
+          chain_(chain),
+          rough_(options.rough),
+          by_median_(options.rough && !chain.isSideScan()),  // lines know their altitudes
+          fits_water_(options.rough && chain.isSideScan() && !chain.sonar.volume.empty()),
+          fits_scene_(options.rough && options.fits_scene),
+          range_(recorded.ranges.back()) {
         const receiver::TvgConfig tvg = chain.receiver.tvg.value_or(receiver::TvgConfig{});
-        const double absorbed = sonar::makeAbsorption(chain.sonar).db_per_m;
-        before_ = {chain.code().full_scale_db - chain.receiver.gain_db, -100, tvg.log_coefficient, tvg.db_per_m,
-                   absorbed};
-        const types::Sonar echoes = meanEchoes(rough ? thinned(chain) : chain);
-        echoes_ = blocksOf(echoes);
-        const double slices = static_cast<double>(recorded.slices);
-        axis_ = echoes.binStart(echoes.bin_count) / (recorded.ranges.back() * slices / (slices - 0.5));
-        if (rough) recorded_level_ = overBeams(recorded);
+        before_ = {chain.code().full_scale_db - chain.receiver.gain_db,
+                   -100,
+                   tvg.log_coefficient,
+                   tvg.db_per_m,
+                   sonar::makeAbsorption(chain.sonar).db_per_m,
+                   chain.sonar.volume.empty() ? -200 : chain.sonar.volume.front().strength_db.value_or(-200),
+                   0,
+                   0,
+                   std::log(elevation_before)};
+        if (fits_water_) chain_.sonar.volume.clear();
+        render(chain_);
+        findLoudBlocks();
+        if (by_median_) recorded_level_ = overBeams(recorded);
+    }
+    Chosen levels() const {
+        Chosen all{full_scale, noise_level, log_coefficient, tvg_slope, absorption};
+        if (fits_water_) all.push_back(water_strength);
+        return all;
+    }
+    /** How the scene is looked at, as far as it is fitted. */
+    Chosen looks() const {
+        if (!fits_scene_) return {};
+        return chain_.isSideScan() ? Chosen{pitch, elevation} : Chosen{pitch, height, elevation};
     }
 
     /** Values to begin with: full scale and noise from the loudest and faintest slices. */
     Values start() const {
         Values values = before_;
         const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_);
-        const size_t loudest = static_cast<size_t>(std::ranges::max_element(recorded) - recorded.begin());
-        const double echo = *std::ranges::max_element(echoes);
+        const auto loudest =
+            static_cast<size_t>(std::max_element(recorded.begin() + first_slice, recorded.end()) - recorded.begin());
+        const double echo = *std::max_element(echoes.begin() + first_slice, echoes.end());
         values[full_scale] = echo + gainDb(values, recorded_.ranges[loudest]) - recorded[loudest];
         std::vector<double> floors;
         for (size_t i = 0; i < recorded.size(); ++i)
@@ -124,12 +160,27 @@ public:
         values[noise_level] = floors[floors.size() / 16];
         return values;
     }
-    std::vector<double> steps() const { return {6, 6, 10, 10 / range_, 5 / range_}; }
+    /** The same with the faintest ranges explained by the water, and noise far below. */
+    Values startInWater() const {
+        Values values = start();
+        const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_),
+                                  water = overBeams(water_);
+        values[log_coefficient] = 20;
+        std::vector<double> strengths;
+        for (size_t i = first_slice; i < recorded.size(); ++i)
+            strengths.push_back(recorded[i] + values[full_scale] - gainDb(values, recorded_.ranges[i]) - water[i]);
+        std::ranges::sort(strengths);
+        values[water_strength] = strengths[strengths.size() / 16];
+        values[noise_level] -= 25;
+        return values;
+    }
+    bool fitsWater() const { return fits_water_; }
+    /** First steps of the simplex. */
+    Values steps() const { return {6, 6, 10, 10 / range_, 5 / range_, 6, 8, -0.1 * range_, 0.4}; }
 
-    /** Renders the scene as these values see it; of a rough one alone. */
+    /** Renders the scene as these values see it, where that is fitted. */
     void look(const Values& values) {
-        if (!rough_ || values.size() < all_parameters) return;
-        echoes_ = blocksOf(meanEchoes(thinned(seen(values))));
+        if (fits_scene_) render(seen(values));
     }
     FitChain seen(const Values& values) const {
         FitChain chain = chain_;
@@ -149,7 +200,7 @@ public:
         acoustics::BeamLaw& law = chain.sonar.beam_pattern->receive.azimuth.emplace();
         law.weighting = acoustics::Weighting::Gaussian;
         law.width_deg = std::min(width_deg, 170.0);
-        chain.sonar.beam_width_deg = std::clamp(2.5 * width_deg, *chain.sonar.beam_width_deg, 110.0);
+        chain.sonar.beam_width_deg = std::clamp(4 * width_deg, *chain.sonar.beam_width_deg, 110.0);
     }
     static void setElevation(double width_deg, FitChain& chain) {
         sonar::BeamPatternConfig& pattern =
@@ -172,8 +223,9 @@ public:
     /** What the codes of a block state, relative to the largest code [dB]. */
     double stated(const Values& values, size_t block, size_t slice) const {
         const double r = recorded_.ranges[slice];
-        const double echo = echoes_.at(block, slice) - 2 * values[absorption] * r;
-        const double both = toDb(toPower(echo) + toPower(values[noise_level]));
+        double echo = toPower(echoes_.at(block, slice));
+        if (fits_water_) echo += toPower(water_.at(block, slice) + values[water_strength]);
+        const double both = toDb(echo * toPower(-2 * values[absorption] * r) + toPower(values[noise_level]));
         return response_(both + gainDb(values, r) - values[full_scale]);
     }
 
@@ -192,9 +244,9 @@ public:
             std::vector<double> across;
             for (size_t block = 0; block < recorded_.beam_blocks; ++block) {
                 across.push_back(stated(values, block, slice));
-                if (!rough_) all.push_back(recorded_.at(block, slice) - across.back());
+                if (!by_median_) all.push_back(offOf(block, slice, across.back()));
             }
-            if (rough_) all.push_back(recorded_level_[slice] - medianLevel(across));
+            if (by_median_) all.push_back(recorded_level_[slice] - medianLevel(across));
         }
         return all;
     }
@@ -203,7 +255,8 @@ public:
         std::vector<double> all{(values[log_coefficient] - before_[log_coefficient]) / 30,
                                 (values[tvg_slope] - before_[tvg_slope]) * 2 * range_ / 60,
                                 (values[absorption] - before_[absorption]) * 2 * range_ / (rough_ ? 2 : 3)};
-        if (values.size() == all_parameters) {
+        if (fits_water_) all.push_back((values[water_strength] - before_[water_strength]) / water_deviation);
+        if (fits_scene_) {
             all.push_back(values[pitch] / 20);
             all.push_back(values[height] / (0.5 * range_));
             all.push_back(values[elevation] - std::log(elevation_before));
@@ -216,15 +269,58 @@ public:
             const double size = std::abs(r);
             sum += size < huber_db ? r * r : huber_db * (2 * size - huber_db);
         }
-        for (const double pull : pulls(values)) sum += pull * pull;
+        for (const double pull : pulls(values)) sum += pull_weight_ * pull * pull;
         for (const size_t not_negative : {size_t{log_coefficient}, size_t{tvg_slope}, size_t{absorption}})
             sum += values[not_negative] < 0 ? 1e3 * values[not_negative] * values[not_negative] * range_ * range_ : 0;
         return sum;
     }
     double range() const { return range_; }
+    /** Slices that count for a fit, of each block; neighbours are neighbours in `residuals`, or a block apart. */
+    size_t rows() const { return recorded_.slices - first_slice; }
     const FitChain& chain() const { return chain_; }
 
+    /** Weighs pulls as many deviations of the residuals, as far as those are independent: a scene that is not quite
+     *  the recorded one must not overrule what is known before. */
+    void weighPulls(double variance) { pull_weight_ = std::max(1.0, variance); }
+
 private:
+    bool isOpenWater(size_t block, size_t slice) const { return echoes_.at(block, slice) <= silent_db; }
+    /** Recorded less modelled level; in the water before the floor that of the quieter side. */
+    double offOf(size_t block, size_t slice, double modelled) const {
+        if (!chain_.isSideScan() || !isOpenWater(block, slice)) return recorded_.at(block, slice) - modelled;
+        return is_loud_[block] ? 0 : (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice) - modelled;
+    }
+    /** Finds the blocks of a side-scan's lines whose water does not count. What a rough scene lacks there (fish, wakes,
+     *  other sonars) can only add: the quietest quarter of the blocks shows the floor of noise and water. */
+    void findLoudBlocks() {
+        is_loud_.assign(recorded_.beam_blocks, false);
+        if (!rough_ || !chain_.isSideScan()) return;
+        std::vector<std::pair<double, size_t>> blocks;
+        for (size_t block = 0; block < recorded_.beam_blocks; ++block) {
+            double sum = 0, count = 0;
+            for (size_t slice = first_slice; slice < recorded_.slices; ++slice) {
+                bool is_open = true;  // in all blocks, so that they are comparable
+                for (size_t other = 0; other < recorded_.beam_blocks; ++other) is_open &= isOpenWater(other, slice);
+                if (is_open) sum += (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice), ++count;
+            }
+            if (count > 0) blocks.emplace_back(sum / count, block);
+        }
+        std::ranges::sort(blocks);
+        for (size_t i = (blocks.size() + 3) / 4; i < blocks.size(); ++i) is_loud_[blocks[i].second] = true;
+    }
+    void render(const FitChain& chain) {
+        const types::Sonar echoes = meanEchoes(rough_ ? thinned(chain) : chain);
+        echoes_ = blocksOf(echoes);
+        const double slices = static_cast<double>(recorded_.slices);
+        axis_ = echoes.binStart(echoes.bin_count) / (recorded_.ranges.back() * slices / (slices - 0.5));
+        if (!fits_water_) return;
+        constexpr double strength_db = -40;  // far above the rounding of what is taken off
+        FitChain filled = thinned(chain);
+        filled.sonar.volume.emplace_back().strength_db = strength_db;
+        water_ = blocksOf(meanEchoes(filled));
+        for (size_t i = 0; i < water_.level.size(); ++i)
+            water_.level[i] = toDb(toPower(water_.level[i]) - toPower(echoes_.level[i])) - strength_db;
+    }
     std::vector<double> overBeams(const LevelBlocks& blocks) const {
         std::vector<double> levels;
         for (size_t slice = 0; slice < blocks.slices; ++slice) {
@@ -236,29 +332,39 @@ private:
     }
 
     const LevelBlocks& recorded_;
+    std::optional<LevelBlocks> water_recorded_;
     CodeResponse response_;
-    const FitChain& chain_;
-    bool rough_;
+    FitChain chain_;
+    bool rough_, by_median_, fits_water_, fits_scene_;
     double range_;
+    std::vector<bool> is_loud_;  ///< Of each block, see findLoudBlocks().
+    double pull_weight_ = 1;
     double axis_ = 1;  ///< Ranges of a simulated sample, whose bins last whole microseconds, over true ones [1].
     Values before_;
     LevelBlocks echoes_;
+    LevelBlocks water_;  ///< Of water of 0 dB re 1/m, without absorption.
     std::vector<double> recorded_level_;
 };
 
-/** The best level parameters for the scene as it is looked at. */
-Values fitInner(const LevelModel& model, Values values, int evaluations, int rounds) {
-    const Values scene(values.begin() + std::min<long>(static_cast<long>(values.size()), scene_parameters),
-                       values.end());
-    values.resize(scene_parameters);
-    const auto whole = [&](const double* x) {
-        Values all(x, x + scene_parameters);
-        all.insert(all.end(), scene.begin(), scene.end());
-        return all;
+/** The values at which the cost is least when the chosen ones move. */
+Values moving(const Chosen& chosen, const LevelModel& model, Values values, int evaluations, int rounds,
+              const std::function<double(const Values&)>& cost) {
+    const Values all_steps = model.steps();
+    std::vector<double> x, steps;
+    for (const size_t i : chosen) x.push_back(values[i]), steps.push_back(all_steps[i]);
+    const auto at = [&](const double* moved) {
+        Values tried = values;
+        for (size_t i = 0; i < chosen.size(); ++i) tried[chosen[i]] = moved[i];
+        return tried;
     };
-    values = minimum(std::move(values), model.steps(), evaluations, rounds,
-                     [&](const double* x) { return model.cost(whole(x)); });
-    return whole(values.data());
+    x = minimum(std::move(x), steps, evaluations, rounds, [&](const double* moved) { return cost(at(moved)); });
+    return at(x.data());
+}
+
+/** The best level parameters for the scene as it is looked at. */
+Values fitInner(const LevelModel& model, const Values& values, int evaluations, int rounds) {
+    return moving(model.levels(), model, values, evaluations, rounds,
+                  [&](const Values& tried) { return model.cost(tried); });
 }
 
 /** Places of the sonar over its scene from which the fit of the scene may begin: pitch [deg] and height [m], both
@@ -276,15 +382,13 @@ std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double rang
 }
 
 /** The best pitch, height and beam in elevation, each with the best level parameters. */
-Values fitScene(LevelModel& model, Values values, const std::function<void()>& progress) {
-    values.resize(all_parameters);
-    values[elevation] = std::log(elevation_before);
+Values fitScene(LevelModel& model, const Values& values, const std::function<void()>& progress) {
     Values best = values;
     double least = std::numeric_limits<double>::infinity();
     const auto costAt = [&](Values tried, bool anew) {
         if (std::abs(tried[elevation] - std::log(elevation_before)) > 2.5 || std::abs(tried[pitch]) > 60) return 1e9;
         model.look(tried);
-        if (anew) std::ranges::copy(model.start(), tried.begin());
+        if (anew && !model.fitsWater()) std::ranges::copy_n(model.start().begin(), pitch, tried.begin());
         tried = fitInner(model, tried, 150, 1);
         progress();
         const double found = model.cost(tried);
@@ -294,35 +398,62 @@ Values fitScene(LevelModel& model, Values values, const std::function<void()>& p
         }
         return found;
     };
-    for (const auto& [turn, rise] : beginnings(model.chain(), model.range()))
-        costAt({0, 0, 0, 0, 0, turn, rise, std::log(elevation_before)}, true);
-    const auto cost = [&](const double* x) {
+    for (const auto& [turn, rise] : beginnings(model.chain(), model.range())) {
+        Values tried = values;
+        tried[pitch] = turn, tried[height] = rise, tried[elevation] = std::log(elevation_before);
+        costAt(tried, true);
+    }
+    moving(model.looks(), model, best, 60, 2, [&](const Values& looking) {
         Values tried = best;
-        for (size_t i = 0; i < 3; ++i) tried[pitch + i] = x[i];
+        for (const size_t i : model.looks()) tried[i] = looking[i];
         return costAt(tried, false);
-    };
-    minimum({best[pitch], best[height], best[elevation]}, {8, -0.1 * model.range(), 0.4}, 60, 2, cost);
+    });
     model.look(best);
     return fitInner(model, best, 1500, 3);
 }
 
-/** Derivatives of residuals and pulls by each value; of scenes by rendering anew. */
-cv::Mat jacobian(LevelModel& model, const Values& at) {
+/** How many neighbouring residuals say the same, from the correlation of those of neighbouring slices: the variance of
+ *  a mean is so many times that of independent ones (of a first-order process; Priestley 1981). */
+double alikeOf(const std::vector<double>& residuals, size_t stride) {
+    double squares = 0, products = 0, pairs = 0;
+    for (size_t i = 0; i < residuals.size(); ++i) {
+        squares += residuals[i] * residuals[i] / static_cast<double>(residuals.size());
+        if (i + stride < residuals.size()) products += residuals[i] * residuals[i + stride], ++pairs;
+    }
+    if (!(squares > 0) || pairs == 0) return 1;
+    const double correlation = std::clamp(products / pairs / squares, 0.0, 0.95);
+    return (1 + correlation) / (1 - correlation);
+}
+
+/** Variance of a residual, as if all were independent [dB^2]. */
+double varianceOf(const LevelModel& model, const Values& at) {
+    const std::vector<double> residuals = model.residuals(at);
+    double sum = 0;
+    for (const double r : residuals) sum += r * r;
+    const auto fitted = static_cast<double>(model.levels().size() + model.looks().size());
+    const double freedom = std::max(1.0, static_cast<double>(residuals.size()) - fitted);
+    return sum / freedom * alikeOf(residuals, residuals.size() / model.rows());
+}
+
+/** Derivatives of residuals and pulls by each chosen value; of how the scene is looked at by rendering anew. */
+cv::Mat jacobian(LevelModel& model, const Values& at, const Chosen& chosen) {
     const auto all = [&](const Values& values) {
         std::vector<double> rows = model.residuals(values);
         for (const double pull : model.pulls(values)) rows.push_back(pull);
         return rows;
     };
-    const Values steps{0.05, 0.05, 0.05, 0.05 / model.range(), 0.05 / model.range(), 0.2, 0.005 * model.range(), 0.02};
+    const double range = model.range();
+    const Values steps{0.05, 0.05, 0.05, 0.05 / range, 0.05 / range, 0.05, 0.2, 0.005 * range, 0.02};
     const std::vector<double> here = all(at);
-    cv::Mat derivatives(static_cast<int>(here.size()), static_cast<int>(at.size()), CV_64F);
-    for (size_t i = 0; i < at.size(); ++i) {
+    cv::Mat derivatives(static_cast<int>(here.size()), static_cast<int>(chosen.size()), CV_64F);
+    for (size_t column = 0; column < chosen.size(); ++column) {
         Values there = at;
-        there[i] += steps[i];
-        if (i >= scene_parameters) model.look(there);
+        there[chosen[column]] += steps[chosen[column]];
+        if (chosen[column] >= pitch) model.look(there);
         const std::vector<double> changed = all(there);
         for (size_t row = 0; row < here.size(); ++row)
-            derivatives.at<double>(static_cast<int>(row), static_cast<int>(i)) = (changed[row] - here[row]) / steps[i];
+            derivatives.at<double>(static_cast<int>(row), static_cast<int>(column)) =
+                (changed[row] - here[row]) / steps[chosen[column]];
     }
     model.look(at);
     return derivatives;
@@ -332,18 +463,20 @@ Fitted around(double value, double deviation) { return {value, value - z_95 * de
 
 /** Values with their intervals. */
 LevelFit fitOf(LevelModel& model, const Values& at) {
+    Chosen chosen = model.levels();
+    for (const size_t i : model.looks()) chosen.push_back(i);
     const std::vector<double> residuals = model.residuals(at);
+    const double variance = varianceOf(model, at);
     double sum = 0;
     for (const double r : residuals) sum += r * r;
-    const double freedom = std::max(1.0, static_cast<double>(residuals.size()) - static_cast<double>(at.size()));
-    const double variance = sum / freedom;
-    cv::Mat derivatives = jacobian(model, at);
+    cv::Mat derivatives = jacobian(model, at, chosen);
     for (int row = 0; row < static_cast<int>(residuals.size()); ++row)
         derivatives.row(row) /= std::sqrt(std::max(variance, 1e-6));
     cv::Mat covariance;
     cv::invert(derivatives.t() * derivatives, covariance, cv::DECOMP_SVD);
     const auto deviation = [&](size_t i) {
-        return std::sqrt(std::max(0.0, covariance.at<double>(static_cast<int>(i), static_cast<int>(i))));
+        const auto place = static_cast<int>(std::ranges::find(chosen, i) - chosen.begin());
+        return std::sqrt(std::max(0.0, covariance.at<double>(place, place)));
     };
     const auto fitted = [&](size_t i) { return around(at[i], deviation(i)); };
     LevelFit fit{.full_scale_db = fitted(full_scale),
@@ -361,9 +494,10 @@ LevelFit fitOf(LevelModel& model, const Values& at) {
             span_variance += gain[static_cast<size_t>(i)] * gain[static_cast<size_t>(j)] *
                              covariance.at<double>(log_coefficient + i, log_coefficient + j);
     fit.tvg_span_db = around(model.gainDb(at, r) - model.gainDb(at, 0.1 * r), std::sqrt(std::max(0.0, span_variance)));
-    if (at.size() < all_parameters) return fit;
+    if (std::ranges::count(chosen, water_strength) > 0) fit.water_db = fitted(water_strength);
+    if (model.looks().empty()) return fit;
     fit.pitch_deg = fitted(pitch);
-    fit.height_m = fitted(height);
+    if (!model.chain().isSideScan()) fit.height_m = fitted(height);
     const Fitted logarithm = fitted(elevation);
     fit.elevation_deg = {std::exp(logarithm.value), std::exp(logarithm.low), std::exp(logarithm.high)};
     return fit;
@@ -420,6 +554,13 @@ LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
     return mean;
 }
 
+LevelBlocks leastOf(const std::vector<LevelBlocks>& all) {
+    LevelBlocks least = all.front();
+    for (const LevelBlocks& each : all)
+        for (size_t i = 0; i < least.level.size(); ++i) least.level[i] = std::min(least.level[i], each.level[i]);
+    return least;
+}
+
 FitChain LevelFit::applied(const FitChain& chain) const {
     FitChain fitted = chain;
     receiver::TvgConfig tvg = fitted.receiver.tvg.value_or(receiver::TvgConfig{});
@@ -434,6 +575,10 @@ FitChain LevelFit::applied(const FitChain& chain) const {
     sonar::AbsorptionConfig absorption;
     absorption.db_per_m = std::max(0.0, absorption_db_per_m.value);
     fitted.sonar.absorption = absorption;
+    if (water_db) {
+        fitted.sonar.volume = {sonar::VolumeLayer{.top_m = {}, .bottom_m = {}, .strength_db = {}}};
+        fitted.sonar.volume.front().strength_db = std::clamp(water_db->value, -200.0, 0.0);
+    }
     if (pitch_deg && fitted.isSideScan()) {
         LevelModel::lookAcross(pitch_deg->value, elevation_deg->value, fitted);
     } else if (pitch_deg) {
@@ -450,9 +595,20 @@ double LevelFit::echoShare(double level_db, double range) const {
 
 LevelFit fitLevels(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain,
                    const LevelOptions& options, const std::function<void()>& progress) {
-    LevelModel model(recorded, law, chain, options.rough);
+    LevelModel model(recorded, law, chain, options);
     Values values = fitInner(model, model.start(), 1500, 3);
-    if (options.rough && options.fits_scene) values = fitScene(model, values, progress);
+    if (model.fitsWater()) {
+        const Values in_water = fitInner(model, model.startInWater(), 1500, 3);
+        if (model.cost(in_water) < model.cost(values)) values = in_water;
+    }
+    model.weighPulls(varianceOf(model, values));
+    if (model.looks().empty()) {
+        values = fitInner(model, values, 1500, 2);
+    } else {
+        values = fitScene(model, values, progress);
+        model.weighPulls(varianceOf(model, values));
+        values = fitInner(model, values, 1500, 2);
+    }
     progress();
     return fitOf(model, values);
 }

@@ -38,6 +38,10 @@ LevelBlocks blocksOf(const CodedPing& ping);
 LevelBlocks blocksOf(const types::Sonar& intensities);
 /** The mean of several pings, as intensities. */
 LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
+/** The least of several pings. */
+LevelBlocks leastOf(const std::vector<LevelBlocks>& all);
+
+constexpr double z_95 = 1.96;  ///< Deviations of a normal law to either side of 95 %.
 
 /** A value that was found, and its interval of 95 %. */
 struct Fitted {
@@ -48,16 +52,18 @@ struct Fitted {
 
 /** Which level belongs to which range: everything that changes levels alone. */
 struct LevelFit {
-    Fitted full_scale_db = {};        ///< Level of the largest code, all gain included [dB].
-    Fitted noise_db = {};             ///< Mean intensity of noise in a bin, relative to the source [dB].
-    Fitted log_coefficient = {};      ///< Of the time-varied gain [dB].
-    Fitted db_per_m = {};             ///< Of the time-varied gain, one way [dB/m].
-    Fitted absorption_db_per_m = {};  ///< Of the water, one way [dB/m].
-    Fitted tvg_span_db = {};          ///< Gain at the end of the range above that at its tenth [dB].
+    Fitted full_scale_db = {};            ///< Level of the largest code, all gain included [dB].
+    Fitted noise_db = {};                 ///< Mean intensity of noise in a bin, relative to the source [dB].
+    Fitted log_coefficient = {};          ///< Of the time-varied gain [dB].
+    Fitted db_per_m = {};                 ///< Of the time-varied gain, one way [dB/m].
+    Fitted absorption_db_per_m = {};      ///< Of the water, one way [dB/m].
+    Fitted tvg_span_db = {};              ///< Gain at the end of the range above that at its tenth [dB].
+    std::optional<Fitted> water_db = {};  ///< Of a side-scan: volume backscattering strength [dB re 1/m].
     std::optional<Fitted> pitch_deg = {}, height_m = {},
-                          elevation_deg = {};  ///< Of a rough scene: the sonar over it, its beam.
-    LevelBlocks modelled = {};                 ///< What the codes of each block state by these values.
-    double rms_db = 0;                         ///< Of the levels that are left unexplained [dB].
+                          elevation_deg =
+                              {};  ///< Of a rough scene: the sonar over it, its beam; of a side-scan no height.
+    LevelBlocks modelled = {};     ///< What the codes of each block state by these values.
+    double rms_db = 0;             ///< Of the levels that are left unexplained [dB].
 
     /** The chain with these values. */
     FitChain applied(const FitChain& chain) const;
@@ -68,7 +74,11 @@ struct LevelFit {
 
 /** How far the scene of a fit is to be trusted. */
 struct LevelOptions {
-    bool rough = false;  ///< It is no more than a floor or walls of about the right kind: medians over the beams count.
+    /** It is no more than a floor or walls of about the right kind. Medians over the beams count; of a side-scan, whose
+     *  lines know how high they are, each block of lines, and the strength of the water where the sonar has one. */
+    bool rough = false;
+    /** Levels that count in the water before the floor of a side-scan; none: the recorded ones. */
+    std::optional<LevelBlocks> water = {};
     bool fits_scene = false;  ///< Pitch, height and the beam in elevation are fitted as well; of a rough one.
 };
 

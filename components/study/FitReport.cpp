@@ -13,6 +13,7 @@
 #include "components/study/LikenessReport.hpp"
 #include "types/Angle.hpp"
 #include "types/Describe.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::study {
 namespace {
@@ -34,9 +35,13 @@ std::string blockOf(const acoustics::BeamLaw& law) {
 }
 
 std::string blockOf(const acoustics::PulseConfig& pulse) {
-    if (pulse.duration_us) return fmt::format("{{duration_us: {:.4g}}}", *pulse.duration_us);
-    return fmt::format("{{bandwidth_khz: {:.4g}, window: {}}}", pulse.bandwidth_khz.value_or(0),
-                       nameOf(pulse.window.value_or(acoustics::PulseWindow::None)));
+    const std::string ringing = pulse.ring_down
+                                    ? fmt::format(", ring_down: {{level_db: {:.2f}, decay_db_per_m: {:.4g}}}",
+                                                  *pulse.ring_down->level_db, *pulse.ring_down->decay_db_per_m)
+                                    : "";
+    if (pulse.duration_us) return fmt::format("{{duration_us: {:.4g}{}}}", *pulse.duration_us, ringing);
+    return fmt::format("{{bandwidth_khz: {:.4g}, window: {}{}}}", pulse.bandwidth_khz.value_or(0),
+                       nameOf(pulse.window.value_or(acoustics::PulseWindow::None)), ringing);
 }
 
 std::string blockOf(const sonar::SpeckleConfig& speckle) {
@@ -79,30 +84,16 @@ std::string comment(const RecordingFit& fit, const std::string& name) {
 
 /** What a side-scan has across its track; its azimuth is that of the fan which the chain has in its place. */
 void addAcross(const RecordingFit& fit, const std::string& task, std::vector<FitSetting>& all) {
-    if (!fit.levels.pitch_deg) return;
     const sonar::SonarConfig& fan = fit.chain.sonar;
+    if (fit.levels.water_db)
+        all.push_back({task + ".volume", fmt::format("{{strength_db: {:.2f}}}", *fan.volume.front().strength_db),
+                       comment(fit, "water")});
+    if (!fit.levels.pitch_deg) return;
     all.push_back({task + ".depression_deg", fmt::format("{:.4g}", 90 - std::abs(fan.bearings_deg.front())),
-                   comment(fit, "pitch")});
+                   comment(fit, "depression")});
     all.push_back({task + ".beam_height_deg", fmt::format("{:.4g}", *fan.beam_width_deg), ""});
     all.push_back({task + ".beam_pattern.receive.elevation", blockOf(*fan.beam_pattern->receive.azimuth),
                    comment(fit, "elevation width")});
-}
-
-/** The places of the lines of a side-scan, every fourth, as waypoints. */
-void addWay(const RecordingFit& fit, const FitTasks& tasks, std::vector<FitSetting>& all) {
-    constexpr size_t every = 4;
-    std::vector<std::string> points;
-    const std::vector<types::Pose>& lines = fit.chain.lines;
-    const glm::dvec3 ahead = lines.front().orientation * glm::dvec3(0, 0, 1);
-    const double yaw = types::degrees(std::atan2(ahead.y, ahead.x));
-    for (size_t i = 0; i < lines.size(); i += every) {
-        const glm::dvec3 at = lines[i].position - tasks.mount_position;
-        points.push_back(fmt::format("{{time: {:.6g}, position: [{:.6g}, {:.6g}, {:.6g}], yaw_deg: {:.6g}}}",
-                                     static_cast<double>(i) * tasks.period, at.x, at.y, at.z, yaw));
-    }
-    all.push_back({tasks.vehicle + ".file", "null", ""});
-    all.push_back({tasks.vehicle + ".waypoints", fmt::format("[{}]", fmt::join(points, ", ")),
-                   "as high above the floor as the recording states, a straight way"});
 }
 
 void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitSetting>& all) {
@@ -116,7 +107,8 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
     set("speed_of_sound", fmt::format("{:.7g}", sonar.speedOfSound()), "as recorded");
     set("frequency_khz", fmt::format("{:.7g}", *sonar.frequency_khz), "as recorded");
     set("pulse", blockOf(*sonar.pulse), comment(fit, "pulse length"));
-    set("speckle", blockOf(*sonar.speckle), comment(fit, "scatterers per cell"));
+    set("speckle", sonar.speckle ? blockOf(*sonar.speckle) : "null",
+        sonar.speckle ? comment(fit, "scatterers per cell") : "the noise has it");
     set("absorption", fmt::format("{{db_per_m: {:.4g}}}", *sonar.absorption->db_per_m), comment(fit, "absorption"));
     if (fit.chain.isSideScan()) return addAcross(fit, task, all);
     set("field_of_view_deg", "null", "");
@@ -131,36 +123,75 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
         set("beam_pattern.transmit.elevation", blockOf(*pattern.transmit.elevation), comment(fit, "elevation width"));
 }
 
+void addNoise(const RecordingFit& fit, const std::string& task, std::vector<FitSetting>& all) {
+    const noise::NoiseConfig& noise = fit.chain.noise;
+    const auto set = [&](const char* property, const std::string& value, const std::string& why) {
+        all.push_back({task + "." + property, value, why});
+    };
+    if (!noise.speckle)
+        set("speckle", "null", "");
+    else
+        set("speckle",
+            noise.speckle->shape ? fmt::format("{{law: k, shape: {:.3g}}}", *noise.speckle->shape) : "{law: rayleigh}",
+            comment(fit, "shape of K"));
+    set("additive", "null", "");
+    set("ambient", fmt::format("{{level_db: {:.2f}}}", *noise.ambient->level_db), comment(fit, "noise"));
+    if (!noise.filter) return set("filter", "null", "");
+    std::vector<std::string> parts;
+    if (noise.filter->looks > 1) parts.push_back(fmt::format("looks: {}", noise.filter->looks));
+    if (noise.filter->correlation_beams)
+        parts.push_back(fmt::format("correlation_beams: {:.3g}", *noise.filter->correlation_beams));
+    if (noise.filter->correlation_bins)
+        parts.push_back(fmt::format("correlation_bins: {:.3g}", *noise.filter->correlation_bins));
+    set("filter", fmt::format("{{{}}}", fmt::join(parts, ", ")),
+        noise.filter->looks > 1 ? comment(fit, "looks") : "noise that neighbouring beams and bins share");
+}
+
 }  // namespace
+
+std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
+    constexpr size_t every = 4;
+    std::vector<std::string> points;
+    const std::vector<types::Pose>& lines = chain.lines;
+    const glm::dquat fan = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
+    const auto add = [&](size_t i) {
+        const glm::dquat body = lines[i].orientation * glm::inverse(fan);
+        const glm::dvec3 at = lines[i].position - body * tasks.mount.position;
+        const types::Turns turns = types::turnsOf(body);
+        points.push_back(
+            fmt::format("{{time: {:.6g}, position: [{:.6g}, {:.6g}, {:.6g}], yaw_deg: {:.6g}, pitch_deg: {:.4g}}}",
+                        static_cast<double>(i) * tasks.period, at.x, at.y, at.z, types::degrees(turns.yaw),
+                        types::degrees(turns.pitch)));
+    };
+    for (size_t i = 0; i + 1 < lines.size(); i += every) add(i);
+    if (!lines.empty()) add(lines.size() - 1);
+    std::vector<FitSetting> all{
+        {tasks.vehicle + ".file", "null", ""},
+        {tasks.vehicle + ".waypoints", fmt::format("[{}]", fmt::join(points, ", ")),
+         "a straight way, as high above the floor and pitched as the recording states; every fourth line"}};
+    const auto level = [&](const char* turn, double is_deg) {
+        if (is_deg != 0) all.push_back({tasks.scene + ".mount." + turn, "0", "the recorded pitch is the sonar's own"});
+    };
+    level("roll_deg", tasks.mount.roll_deg);
+    level("pitch_deg", tasks.mount.pitch_deg);
+    level("yaw_deg", tasks.mount.yaw_deg);
+    return all;
+}
 
 std::vector<FitSetting> settingsOf(const RecordingFit& fit, const FitTasks& tasks) {
     std::vector<FitSetting> all;
-    if (fit.chain.isSideScan()) addWay(fit, tasks, all);
+    if (fit.chain.isSideScan()) all = wayOf(fit.chain, tasks);
     if (fit.levels.pitch_deg && !fit.chain.isSideScan()) {
         all.push_back({tasks.scene + ".mount.pitch_deg",
-                       fmt::format("{:.4g}", tasks.mount_pitch_deg + fit.levels.pitch_deg->value),
+                       fmt::format("{:.4g}", tasks.mount.pitch_deg + fit.levels.pitch_deg->value),
                        comment(fit, "pitch")});
         all.push_back({tasks.scene + ".mount.position",
-                       fmt::format("[{:.6g}, {:.6g}, {:.6g}]", tasks.mount_position.x, tasks.mount_position.y,
-                                   tasks.mount_position.z + fit.levels.height_m->value),
+                       fmt::format("[{:.6g}, {:.6g}, {:.6g}]", tasks.mount.position.x, tasks.mount.position.y,
+                                   tasks.mount.position.z + fit.levels.height_m->value),
                        comment(fit, "height")});
     }
     addSonar(fit, tasks.sonar, all);
-    const noise::NoiseConfig& noise = fit.chain.noise;
-    all.push_back({tasks.noise + ".speckle", "null", ""});
-    all.push_back({tasks.noise + ".additive", "null", ""});
-    all.push_back({tasks.noise + ".ambient", fmt::format("{{level_db: {:.2f}}}", *noise.ambient->level_db),
-                   comment(fit, "noise")});
-    if (noise.filter) {
-        std::vector<std::string> parts;
-        if (noise.filter->correlation_beams)
-            parts.push_back(fmt::format("correlation_beams: {:.3g}", *noise.filter->correlation_beams));
-        if (noise.filter->correlation_bins)
-            parts.push_back(fmt::format("correlation_bins: {:.3g}", *noise.filter->correlation_bins));
-        all.push_back({tasks.noise + ".filter", fmt::format("{{{}}}", fmt::join(parts, ", ")),
-                       "noise that neighbouring beams and bins share"});
-    }
-    if (!noise.filter) all.push_back({tasks.noise + ".filter", "null", ""});
+    addNoise(fit, tasks.noise, all);
     const receiver::TvgConfig& tvg = *fit.chain.receiver.tvg;
     all.push_back({tasks.receiver + ".tvg.log_coefficient", fmt::format("{:.4g}", tvg.log_coefficient),
                    comment(fit, "TVG logarithm")});

@@ -5,21 +5,24 @@
 
 #include "components/study/RecordingFit.hpp"
 #include "types/Image.hpp"
+#include "types/Mount.hpp"
 
 namespace insonify::study {
 
 /** Names of the tasks of a deployment that a fit changes. */
 struct FitTasks {
     std::string vehicle, scene, sonar, noise, receiver;
-    double period = 0.1;           ///< Of the vehicle's poses [s].
-    double mount_pitch_deg = 0;    ///< Of the sonar in the body, as the scene has it [deg].
-    glm::dvec3 mount_position{0};  ///< Of the sonar in the body [m].
+    double period = 0.1;      ///< Of the vehicle's poses [s].
+    types::Mount mount = {};  ///< Of the sonar in the body, as the scene has it.
 };
 
 /** A property of a fitted deployment: `task.property.path`, its value in YAML, and what is said of it there. */
 struct FitSetting {
     std::string path, value, comment;
 };
+
+/** The properties that move a deployment's vehicle along the lines of a side-scan, a line in each of its periods. */
+std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks);
 
 /** The properties that make a deployment the fitted one. */
 std::vector<FitSetting> settingsOf(const RecordingFit& fit, const FitTasks& tasks);

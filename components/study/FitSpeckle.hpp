@@ -12,6 +12,8 @@ struct Measured {
     double value = NAN, error = NAN;
 
     bool isKnown() const { return std::isfinite(value) && std::isfinite(error); }
+    /** Whether neighbours share more than nothing, where it is a correlation. */
+    bool isMoreThanChance() const { return isKnown() && value > z_95 * error && value > 0.02; }
 };
 
 /** What neighbouring bins of recordings have in common, and how far their speckle is from Rayleigh's. Correlations are

@@ -15,15 +15,21 @@ SonarAt sonarAt(const std::string& deployment, uint64_t ping) {
     return {std::move(at.config), std::move(at.snapshot)};
 }
 
-PingsAt codedPingsAt(const std::string& deployment, uint64_t ping, size_t count) {
-    deployer::PingsAt at = deployer::codedPingsAt(deployment, ping, count);
+PingsAt codedPingsAt(const std::string& deployment, uint64_t ping, size_t count,
+                     const std::vector<std::string>& settings) {
+    deployer::PingsAt at = deployer::codedPingsAt(deployment, ping, count, settings);
     return {std::move(at.pings), at.code};
 }
 
 std::optional<LoggedPings> readLog(const std::filesystem::path& file) {
     std::optional<deployer::CodedLog> log = deployer::codedLog(file);
     if (!log) return std::nullopt;
-    return LoggedPings{std::move(log->pings), log->code, log->law_known, log->frequency_khz};
+    return LoggedPings{.pings = std::move(log->pings),
+                       .code = log->code,
+                       .law_known = log->law_known,
+                       .frequency_khz = log->frequency_khz,
+                       .sonars = std::move(log->sonars),
+                       .altitudes = std::move(log->altitudes)};
 }
 
 ChainAt chainAt(const std::string& deployment, uint64_t ping) {
@@ -39,8 +45,7 @@ ChainAt chainAt(const std::string& deployment, uint64_t ping) {
                       .noise = at.noise_task,
                       .receiver = at.receiver_task,
                       .period = at.period,
-                      .mount_pitch_deg = at.mount.pitch_deg,
-                      .mount_position = at.mount.position}};
+                      .mount = at.mount}};
 }
 
 std::string fittedText(const std::string& deployment, const std::vector<FitSetting>& settings,
@@ -55,7 +60,7 @@ std::string fittedText(const std::string& deployment, const std::vector<FitSetti
 
 extern "C" void insonify_add_command(CLI::App& app, insonify::command::Action& action) {
     insonify::study::addCommand(app, action, insonify::study::sonarAt, insonify::study::codedPingsAt,
-                                insonify::study::readLog);
+                                insonify::study::chainAt, insonify::study::readLog);
     insonify::study::addFit(app, action, insonify::study::chainAt, insonify::study::fittedText,
                             insonify::study::readLog);
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/receiver/Receiver.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/study/FitLooks.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
@@ -13,7 +16,6 @@ namespace {
 
 constexpr size_t rounds = 5, simulations = 3;
 constexpr size_t fewest_beams = 32, fewest_bins = 64;
-constexpr double z_interval = 1.96;  ///< Deviations of a normal law to either side of 95 %.
 
 void refuseUnusable(const std::vector<CodedPing>& recorded) {
     if (recorded.empty()) throw types::ConfigError("", "--real", "holds no ping");
@@ -22,8 +24,8 @@ void refuseUnusable(const std::vector<CodedPing>& recorded) {
     if (first.beam_count < fewest_beams || first.bin_count < fewest_bins)
         refuse(fmt::format("has pings of {} beams and {} bins; a fit needs {} and {} at least", first.beam_count,
                            first.bin_count, fewest_beams, fewest_bins));
-    if (first.bits != 8 && first.bits != 16)
-        refuse(fmt::format("has codes of {} bits; the receiver of a deployment gives out 8 or 16", first.bits));
+    if (first.bits < 8 || first.bits > 16)
+        refuse(fmt::format("has codes of {} bits; the receiver of a deployment gives out 8 to 16", first.bits));
     size_t clipped = 0, zero = 0, all = 0;
     for (const CodedPing& ping : recorded) {
         if (ping.beam_count != first.beam_count || ping.bin_count != first.bin_count)
@@ -138,12 +140,8 @@ private:
     acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
     /** 1 / shape of the K law of the echoes where it was measured, and whether it is more than nothing. */
     double texture() const { return inverse_ / areaAt(recorded_); }
-    double textureInterval() const { return z_interval * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations); }
+    double textureInterval() const { return z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations); }
     bool isTextured() const { return recorded_.texture.isKnown() && texture() > textureInterval(); }
-    /** Whether neighbours share more than nothing. */
-    static bool shows(const Measured& measured) {
-        return measured.isKnown() && measured.value > z_interval * measured.error && measured.value > 0.02;
-    }
     double areaAt(const SpeckleMoments& moments) const {
         return cellPerMetre(chain_) * moments.range / (moments.echo_share * moments.echo_share);
     }
@@ -163,7 +161,7 @@ private:
         });
     }
     static std::optional<double> filterAt(const Measured& recorded, double correlation) {
-        if (!shows(recorded) || correlation < 0.005) return std::nullopt;
+        if (!recorded.isMoreThanChance() || correlation < 0.005) return std::nullopt;
         return std::clamp(1 / std::sqrt(-std::log(std::min(correlation, 0.99))), 0.3, 16.0);
     }
     /** A step of the secant method. Patches of one kind show less texture than there is. */
@@ -177,8 +175,10 @@ private:
         inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there);
     }
     void apply() {
-        if (!chain_.isSideScan()) azimuth().width_deg = shows(recorded_.echo_beams) ? widthAt(beams_) : width_before_;
-        setPulseLength(shows(recorded_.echo_bins) ? lengthAt(bins_) : length_before_, c_, *chain_.sonar.pulse);
+        if (!chain_.isSideScan())
+            azimuth().width_deg = recorded_.echo_beams.isMoreThanChance() ? widthAt(beams_) : width_before_;
+        setPulseLength(recorded_.echo_bins.isMoreThanChance() ? lengthAt(bins_) : length_before_, c_,
+                       *chain_.sonar.pulse);
         chain_.sonar.speckle->scatterers_per_m2.reset();
         if (inverse_ > 0) chain_.sonar.speckle->scatterers_per_m2 = std::clamp(1 / inverse_, 1e-6, 1e9);
         noise::FilterConfig filter;
@@ -190,7 +190,7 @@ private:
     /** An interval by those of the statistic, of recorded and simulated pings. */
     template <class At>
     static Fitted interval(double value, double statistic, const Measured& recorded, const At& at) {
-        const double off = z_interval * recorded.error * std::sqrt(1 + 1.0 / simulations);
+        const double off = z_95 * recorded.error * std::sqrt(1 + 1.0 / simulations);
         const double a = at(statistic - off), b = at(statistic + off);
         return {value, std::min(a, b), std::max(a, b)};
     }
@@ -208,7 +208,7 @@ bool isWithin(const Fitted& fitted, double share) { return fitted.half() <= shar
 void SpeckleFit::addTo(std::vector<Finding>& findings) const {
     const auto add = [&](const char* name, const char* unit, const Measured& measured, Fitted found, double share,
                          const char* note, const char* why_not) {
-        const bool is_determined = shows(measured) && isWithin(found, share);
+        const bool is_determined = measured.isMoreThanChance() && isWithin(found, share);
         findings.push_back({name, unit, found, is_determined, is_determined ? note : why_not});
     };
     const double length = pulseLength(*chain_.sonar.pulse, c_);
@@ -240,6 +240,29 @@ void SpeckleFit::addTo(std::vector<Finding>& findings) const {
     noiseWidth("noise over bins", recorded_.noise_bins, noise_bins_);
 }
 
+/** How the sonar looks at a rough scene. */
+void addLook(const LevelFit& fit, const FitChain& before, double range, std::vector<Finding>& findings) {
+    const auto add = [&](const char* name, const char* unit, const Fitted& found, bool is_determined, const char* note,
+                         const char* why_not) {
+        findings.push_back({name, unit, found, is_determined, is_determined ? note : why_not});
+    };
+    const Fitted &pitch = *fit.pitch_deg, &width = *fit.elevation_deg;
+    if (before.looks_abeam) {
+        const double depression = 90 - std::abs(before.sonar.bearings_deg.front());
+        add("depression", "deg", {depression + pitch.value, depression + pitch.low, depression + pitch.high},
+            pitch.half() <= 5, "of each beam's axis below the horizontal", "the width of the beam takes its place");
+        add("elevation width", "deg", width, isWithin(width, 0.5), "of a beam across the track, two-way, at -3 dB",
+            "the depression takes its place");
+        return;
+    }
+    add("pitch", "deg", pitch, pitch.half() <= 5, "added to the mount, down is positive",
+        "height and elevation take its place");
+    add("height", "m", *fit.height_m, fit.height_m->half() <= 0.15 * range, "added to the sonar's place",
+        "pitch and elevation take its place");
+    add("elevation width", "deg", width, isWithin(width, 0.5), "one way, of the transmitter",
+        "height and pitch take its place");
+}
+
 void addLevels(const LevelFit& fit, const FitChain& before, double range, std::vector<Finding>& findings) {
     const auto add = [&](const char* name, const char* unit, const Fitted& found, double useful, const char* note,
                          const char* why_not) {
@@ -261,16 +284,10 @@ void addLevels(const LevelFit& fit, const FitChain& before, double range, std::v
         "echoes and noise over range are explained by several gains");
     add("absorption", "dB/m", positive(fit.absorption_db_per_m), 1.5 / range, "one way",
         "only echoes and noise, both at several ranges, tell it from the TVG");
-    if (fit.pitch_deg) {
-        add("pitch", "deg", *fit.pitch_deg, 5, "added to the mount, down is positive",
-            "height and elevation take its place");
-        if (!before.looks_abeam)
-            add("height", "m", *fit.height_m, 0.15 * range, "added to the sonar's place",
-                "pitch and elevation take its place");
-        findings.push_back(
-            {"elevation width", "deg", *fit.elevation_deg, isWithin(*fit.elevation_deg, 0.5),
-             isWithin(*fit.elevation_deg, 0.5) ? "one way, of the transmitter" : "height and pitch take its place"});
-    }
+    if (fit.water_db)
+        add("water", "dB re 1/m", *fit.water_db, 6, "volume backscattering strength, for the scene's sediment",
+            "no range shows the water by itself, or noise takes its place");
+    if (fit.pitch_deg) addLook(fit, before, range, findings);
     Finding source{
         "source level", "dB", {}, false, "only its sum with the sediment's strength and the gain is in the codes"};
     if (const auto& ambient = before.noise.ambient; ambient && ambient->wind_m_s && ambient->bandwidth_khz) {
@@ -293,7 +310,7 @@ void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::
     constexpr double useful_db = 3;
     acoustics::BeamLaw& law = *chain.sonar.beam_pattern->receive.azimuth;
     const Measured level = sidelobesOf(recorded, *law.width_deg / *chain.sonar.beam_width_deg);
-    const double off = z_interval * level.error;
+    const double off = z_95 * level.error;
     const bool is_determined = level.isKnown() && off <= useful_db;
     findings.push_back({"sidelobe level",
                         "dB",
@@ -303,6 +320,50 @@ void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::
                                       : "no target stands far enough above what is around it"});
     if (is_determined && law.weighting == acoustics::Weighting::Taylor)
         law.sidelobe_db = std::clamp(level.value, -60.0, -14.0);
+}
+
+/** Keeps what a renderer makes of the scene, which all renderers of it share, for as long as it lives. */
+class SceneTrees {
+public:
+    explicit SceneTrees(const FitChain& chain) : renderer_(plain(chain.sonar), chain.snapshot.geometry) {
+        types::Sonar ping;
+        renderer_.render(chain.snapshot, ping);
+    }
+
+private:
+    static sonar::SonarConfig plain(sonar::SonarConfig config) {
+        config.speckle.reset();
+        return config;
+    }
+    sonar::SonarRenderer renderer_;
+};
+
+/** The range up to which nearly all lines or beams have the largest code: their own transmitter [m]; 0: there is none.
+ */
+double ringingRange(const std::vector<CodedPing>& recorded) {
+    constexpr double nearly_all = 0.9;
+    constexpr float largest = 0.99f;
+    const CodedPing& first = recorded.front();
+    size_t bin = 0;
+    for (; bin < first.bin_count / 16; ++bin) {
+        double clipped = 0, all = 0;
+        for (const CodedPing& ping : recorded)
+            for (size_t beam = 0; beam < ping.beam_count; ++beam) ++all, clipped += ping.code(beam, bin) >= largest;
+        if (clipped < nearly_all * all) break;
+    }
+    return first.resolution * static_cast<double>(bin);
+}
+
+/** Lets the transmitter be heard at full scale up to this range, and fall steeply from there. */
+void ring(double range, double bin, FitChain& chain) {
+    constexpr double steepest = 1000, margin_db = 15, whole_fall_db = 200;
+    if (range <= 0) return;
+    const double decay = std::min(steepest, whole_fall_db / range);
+    const double gain = receiver::tvgDb(*chain.receiver.tvg, range);
+    chain.sonar.pulse->ring_down.emplace() = {
+        .level_db = std::min(300.0, chain.code().full_scale_db - chain.receiver.gain_db - gain + margin_db +
+                                        decay * (range - 0.5 * bin)),
+        .decay_db_per_m = decay};
 }
 
 /** Recorded levels less what the model of levels is off from simulated ones, by slices, where echoes are most of them:
@@ -358,6 +419,7 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     const FitChain before = chain;
     prepare(recorded.front(), chain);
     const types::Sonar echoes = meanEchoes(chain);
+    const SceneTrees held(chain);
     if (std::ranges::none_of(echoes.bins, [](float bin) { return bin > 0; }))
         throw types::ConfigError("", "scene", "gives the deployment's sonar no echo in the range of the recording");
     std::vector<LevelBlocks> blocks;
@@ -366,28 +428,37 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     LevelBlocks levels = measured;
     const double range = recorded.front().resolution * static_cast<double>(recorded.front().bin_count);
 
+    const double ringing = ringingRange(recorded);
+
     RecordingFit fit;
     std::optional<Fitted> pitch, height, elevation;
     SpeckleFit speckle(recorded.front(), chain);
+    std::optional<AveragedSpeckle> averaged;
     for (size_t round = 0; round < rounds; ++round) {
         const auto show = [&] { progress(fmt::format("round {} of {}: levels", round + 1, rounds)); };
-        fit.levels =
-            fitLevels(levels, recorded.front(), chain, {.rough = rough, .fits_scene = rough && round == 0}, show);
+        fit.levels = fitLevels(levels, recorded.front(), chain,
+                               {.rough = rough, .water = leastOf(blocks), .fits_scene = rough && round == 0}, show);
         if (round == 0)
             pitch = fit.levels.pitch_deg, height = fit.levels.height_m, elevation = fit.levels.elevation_deg;
         chain = fit.levels.applied(chain);
+        ring(ringing, recorded.front().resolution, chain);
         fit.recorded = momentsOf(recorded, fit.levels, round + 2 == rounds);
-        if (round == 0) speckle.begin(fit.recorded);
+        if (round == 0 && chain.isSideScan() && AveragedSpeckle::isIn(fit.recorded)) averaged.emplace(chain);
+        if (round == 0) averaged ? averaged->begin(fit.recorded) : speckle.begin(fit.recorded);
         progress(fmt::format("round {} of {}: speckle", round + 1, rounds));
         fit.simulated_pings = simulatedPings(chain, simulations);
         fit.simulated = momentsOf(fit.simulated_pings, fit.levels, false);
         levels = corrected(measured, fit.simulated_pings, fit.levels);
-        if (round + 1 < rounds) speckle.improve(fit.recorded, fit.simulated);
+        if (round + 1 < rounds)
+            averaged ? averaged->improve(fit.recorded, fit.simulated) : speckle.improve(fit.recorded, fit.simulated);
     }
     fit.chain = chain;
     fit.levels.pitch_deg = pitch, fit.levels.height_m = height, fit.levels.elevation_deg = elevation;
     addLevels(fit.levels, before, range, fit.findings);
-    speckle.addTo(fit.findings);
+    if (ringing > 0)
+        fit.findings.push_back(
+            {"transmitter", "m", {ringing, ringing, ringing}, true, "range up to which it is heard"});
+    averaged ? averaged->addTo(fit.findings) : speckle.addTo(fit.findings);
     if (!chain.isSideScan()) addSidelobes(recorded, fit.chain, fit.findings);
     return fit;
 }

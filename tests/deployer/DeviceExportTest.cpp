@@ -255,6 +255,23 @@ TEST(OculusExportTest, ARecordingIsImportedAgainCodeByCode) {
     }
 }
 
+TEST(OculusExportTest, CodesOfOtherWidthsAreScaledToSixteenBits) {
+    const WallFolder folder(codedWall("{bits: 12, law: sqrt, full_scale_db: -40}"));
+    ASSERT_EQ(folder.run({"--pings", "1"}).code, 0);
+    ASSERT_EQ(
+        callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to", "a.oculus"}).code,
+        0);
+    ASSERT_EQ(callInsonify(folder, {"log", "import", "a.oculus", "--to", "a.0.log"}).code, 0);
+    const auto logged = log::openLog(folder / "out/wall.0.log"), imported = log::openLog(folder / "a.0.log");
+    types::Sonar before, after;
+    logged->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) { before = ping; });
+    imported->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) { after = ping; });
+    ASSERT_EQ(after.bins.size(), before.bins.size());
+    EXPECT_GT(*std::ranges::max_element(before.bins), 100);
+    for (size_t i = 0; i < before.bins.size(); ++i)
+        EXPECT_EQ(after.bins[i], std::round(before.bins[i] * 65535 / 4095)) << i;
+}
+
 TEST(OculusExportTest, WhatNoOculusSendsIsRefused) {
     const auto refusal = [](const std::string& code, const std::string& stream) {
         const WallFolder folder(codedWall(code));

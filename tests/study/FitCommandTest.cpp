@@ -1,6 +1,9 @@
 // `insonify fit` as a user calls it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "tests/deployer/Wall.hpp"
 #include "tests/support/SpeckleRecording.hpp"
 
@@ -95,6 +98,36 @@ TEST(FitCommandTest, FittedToOnePingOfARealOculusAllClaimsOfLikenessHoldOnTheOth
         folder, {"study", "likeness", "fitted.yml", "--real", "ping_1.raw", "ping_2.raw", "--out", "report"});
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
+}
+
+TEST(FitCommandTest, FittedToTheFirstHalfOfASideScansLogLikenessHoldsOnTheSecond) {
+    const std::string recording = insonify::test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
+    if (!fs::exists(recording))
+        GTEST_SKIP() << "NOT TESTED: the recording of a side-scan is not next to the repository";
+    const FitFolder folder;
+    const auto call = [&](std::vector<std::string> arguments) { return callInsonify(folder, std::move(arguments)); };
+    ASSERT_EQ(call({"log", "import", recording, "--to", "whole.0.log"}).code, 0);
+    ASSERT_EQ(call({"log", "cut", "whole.0.log", "--until", "25.9", "--to", "first.0.log"}).code, 0);
+    ASSERT_EQ(call({"log", "cut", "whole.0.log", "--from", "25.9", "--to", "second.0.log"}).code, 0);
+    Outcome outcome = call({"fit", insonify::test::sourceFile("deploy/sidescan_recording.yml"), "--real", "first.0.log",
+                            "--scene-is", "rough", "--out", "fitted.yml"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("depression           25."), HasSubstr("transmitter          0.2342 ")));
+    EXPECT_THAT(readFile(folder / "fitted.yml"), AllOf(HasSubstr("bits: 15"), HasSubstr("ring_down: ")));
+    const auto likeness = [&](const char* side) {
+        return call({"study", "likeness", "fitted.yml", "--real", "second.0.log", "--lines", "recorded", "--side", side,
+                     "--out", side});
+    };
+    outcome = likeness("port");
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
+    outcome = likeness("starboard");  // a wreck, which no scene has, covers half of these lines and saturates
+    std::string failed;
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with("FAIL")) failed += line + "\n";
+    EXPECT_THAT(failed, testing::StartsWith("FAIL  share of saturated codes"));
+    EXPECT_EQ(std::ranges::count(failed, '\n'), 1) << failed;
 }
 
 TEST(FitCommandTest, AFitIsTheSameEachTime) {

@@ -199,8 +199,8 @@ TEST(RecordingFitTest, WhatStatesNothingIsRefusedWithTheReason) {
     empty.snapshot = lookingAt(floorAt(-500), {}, 0, 0.45);
     EXPECT_NE(refusal({ping}, empty).find("no echo in the range"), std::string::npos);
     CodedPing odd = ping;
-    odd.bits = 15;
-    EXPECT_NE(refusal({odd}, guess()).find("codes of 15 bits"), std::string::npos);
+    odd.bits = 24;
+    EXPECT_NE(refusal({odd}, guess()).find("codes of 24 bits"), std::string::npos);
     ping.is_waterfall = true;
     EXPECT_NE(refusal({ping}, guess()).find("side-scan"), std::string::npos);
     EXPECT_NE(refusal({}, guess()).find("no ping"), std::string::npos);

@@ -90,6 +90,38 @@ TEST(SpecklePingTest, ManyScatterersAreRayleighAndKeepTheMean) {
     EXPECT_GT(few.rayleigh_distance, rayleigh_distance_limit);
 }
 
+/** A fan across the track whose beams are half a degree along it. */
+SonarConfig acrossTheTrack() {
+    SonarConfig config = boxes();
+    config.range_min = 10;
+    config.range = 25;
+    config.bin_count = 256;
+    config.bearings_deg = {-60, 60};
+    config.beam_width_deg = 60;
+    config.beam_height_deg = 0.5;
+    config.quality.rows = 4;
+    config.quality.columns_per_beam = 1024;
+    return config;
+}
+
+TEST(SpecklePingTest, LinesOfASideScanAreRayleighThoughTheirFanIsWide) {
+    double sum = 0, squares = 0, count = 0;
+    for (int line = 0; line < 24; ++line) {
+        types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-7)}), {0.5 * line, 0, 0}, 0);
+        snapshot.sonar.orientation *= glm::angleAxis(radians(90), glm::dvec3(0, 1, 0));
+        const types::Sonar field = pingOf(coherent(acrossTheTrack()), snapshot),
+                           mean = pingOf(acrossTheTrack(), snapshot);
+        for (size_t i = 0; i < field.bins.size(); ++i) {
+            if (mean.bins[i] <= 0) continue;
+            const double relative = static_cast<double>(field.bins[i]) / static_cast<double>(mean.bins[i]);
+            ++count, sum += relative, squares += relative * relative;
+        }
+    }
+    ASSERT_GT(count, 5000);
+    EXPECT_NEAR(sum / count, 1, 0.05);
+    EXPECT_NEAR(squares * count / (sum * sum) - 1, 1, 0.1) << "scintillation index";
+}
+
 TEST(SpecklePingTest, EveryFanAndPatternKeepsTheMean) {
     SonarConfig conical = coherent(boxes());
     conical.beam_geometry = BeamGeometry::Conical;

@@ -45,7 +45,7 @@ Codes codesOf(const log::Reader& log, const std::string& stream, const Json& mea
 OculusResult settingsOf(const Codes& codes, double frequency_khz) {
     OculusResult result;
     result.fire.header.version = 2;
-    if (codes.bits == 16) result.fire.flags |= OculusFire::wide_16;
+    if (codes.bits > 8) result.fire.flags |= OculusFire::wide_16;  // a code is scaled to the width that is sent
     result.frequency_hz = 1e3 * frequency_khz;
     return result;
 }

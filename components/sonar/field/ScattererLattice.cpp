@@ -5,6 +5,7 @@
 
 #include "components/sonar/echo/RangeResponse.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
+#include "types/Angle.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -51,7 +52,9 @@ std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle)) return {};
     const SpeckleConfig& speckle = *plan.config.speckle;
     const double density = speckle.scatterers_per_m2.value_or(0);
-    const double area_per_metre = beamWidthOf(plan) * rangeResolutionOf(plan) / speckle.scatterers_per_cell;
+    // A side-scan is a fan across its track: along it, its beam is narrower than the fan's.
+    const double width = std::min(beamWidthOf(plan), types::radians(plan.config.beam_height_deg));
+    const double area_per_metre = width * rangeResolutionOf(plan) / speckle.scatterers_per_cell;
     std::vector<LatticeLevel> levels;
     for (int level = lowest_level; level <= highest_level; ++level) {
         const double square = std::exp2(level);  // [m^2]

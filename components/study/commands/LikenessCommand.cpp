@@ -59,10 +59,32 @@ bool printClaims(const LikenessResult& result) {
     return std::ranges::none_of(all, &Claim::fails);
 }
 
+struct LikenessOptions : RecordingOptions {
+    std::string lines = "deployment", side;
+};
+
+/** What lays the deployment's lines where those of a recording were. */
+std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOptions& options,
+                                     const FindChain& chainAt) {
+    if (!recorded.is_waterfall)
+        throw types::ConfigError(recorded.file, "--lines", "is recorded; the recording is of no side-scan");
+    if (recorded.places.empty())
+        throw types::ConfigError(recorded.file, "--lines",
+                                 "is recorded; the recording states neither places nor altitudes");
+    ChainAt at = chainAt(options.deployment, options.ping);
+    layLines(recorded, at.chain);
+    std::vector<std::string> settings;
+    for (const FitSetting& setting : wayOf(at.chain, at.tasks)) settings.push_back(setting.path + "=" + setting.value);
+    return settings;
+}
+
 /** What the deployment makes of a recording's kind: a ping, or as many lines of a side-scan as a waterfall has. */
-CodedPing simulatedLike(const CodedPing& recorded, const RecordingOptions& options, const FindPings& pingsAt) {
+CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& options, const FindPings& pingsAt,
+                        const FindChain& chainAt) {
     const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
-    const PingsAt found = pingsAt(options.deployment, options.ping, count);
+    std::vector<std::string> settings;
+    if (options.lines == "recorded") settings = recordedWay(recorded, options, chainAt);
+    const PingsAt found = pingsAt(options.deployment, options.ping, count, settings);
     if (!recorded.is_waterfall) return codedPing(found.pings.front(), found.code, "simulated");
     for (CodedPing& side : codedLines(found.pings, found.code, "simulated"))
         if (side.bearings.front() * recorded.bearings.front() > 0) {
@@ -73,19 +95,26 @@ CodedPing simulatedLike(const CodedPing& recorded, const RecordingOptions& optio
                              "have no side-scan with this side, which the recording is of");
 }
 
-/** Recorded pings of one kind: of a side-scan the starboard lines, or all that there are. */
-std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded) {
+/** Recorded pings of one kind: of a side-scan the lines of one side. */
+std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded, const std::string& side) {
     if (!recorded.front().is_waterfall) return recorded;
-    std::erase_if(recorded, [&](const CodedPing& ping) { return ping.name != recorded.front().name; });
+    const std::string file = recorded.front().file;
+    const bool is_starboard = side.empty() ? recorded.front().bearings.front() < 0 : side == "starboard";
+    std::erase_if(recorded, [&](const CodedPing& ping) {
+        return !ping.is_waterfall || (ping.bearings.front() < 0) != is_starboard;
+    });
+    if (recorded.empty()) throw types::ConfigError(file, "--side", "is " + side + ", of which there are no lines");
     return recorded;
 }
 
-int runStudy(const RecordingOptions& options, const FindPings& pingsAt, const ReadLog& readLog) {
+int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const FindChain& chainAt,
+             const ReadLog& readLog) {
     std::optional<receiver::CodeConfig> law;
-    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1).code;
-    const std::vector<CodedPing> recorded = ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog));
+    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1, {}).code;
+    const std::vector<CodedPing> recorded =
+        ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog), options.side);
     std::optional<CodedPing> simulated;
-    if (law) simulated = simulatedLike(recorded.front(), options, pingsAt);
+    if (law) simulated = simulatedLike(recorded.front(), options, pingsAt, chainAt);
     const LikenessResult result = studyLikeness(recorded, simulated ? &*simulated : nullptr);
     command::OutputFolder folder(options.out, "study_likeness");
     folder.keep();
@@ -99,13 +128,23 @@ int runStudy(const RecordingOptions& options, const FindPings& pingsAt, const Re
 
 }  // namespace
 
-void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const ReadLog& readLog) {
-    const auto options = std::make_shared<RecordingOptions>();
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const FindChain& chainAt,
+                      const ReadLog& readLog) {
+    const auto options = std::make_shared<LikenessOptions>();
     CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
     options->addTo(*command, "a YAML file whose receiver gives out codes; absent: what the recordings look like")
         ->required();
-    command->callback([options, pingsAt, readLog, &action] {
-        action = [options, pingsAt, readLog] { return runStudy(*options, pingsAt, readLog); };
+    command
+        ->add_option("--side", options->side,
+                     "of a side-scan: whose lines are compared; none: starboard, if there are any")
+        ->check(CLI::IsMember({"starboard", "port"}));
+    command
+        ->add_option("--lines", options->lines,
+                     "of a side-scan. deployment: its vehicle goes its own way; recorded: straight on, as high above "
+                     "the floor and pitched as the recording states")
+        ->check(CLI::IsMember({"deployment", "recorded"}));
+    command->callback([options, pingsAt, chainAt, readLog, &action] {
+        action = [options, pingsAt, chainAt, readLog] { return runStudy(*options, pingsAt, chainAt, readLog); };
     });
 }
 

@@ -4,7 +4,7 @@
 namespace insonify::study {
 
 void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPings& pingsAt,
-                const ReadLog& readLog) {
+                const FindChain& chainAt, const ReadLog& readLog) {
     CLI::App* study = app.add_subcommand("study", "Measures the simulator itself");
     study->require_subcommand(1);
 #ifdef INSONIFY_EMBREE
@@ -12,7 +12,7 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
     addRaysStudy(*study, action, sonarAt);
     addMultipathStudy(*study, action);
 #endif
-    addLikenessStudy(*study, action, pingsAt, readLog);
+    addLikenessStudy(*study, action, pingsAt, chainAt, readLog);
     addOmissionStudy(*study, action, sonarAt);
     addSpeckleStudy(*study, action, sonarAt, readLog);
     addStabilityStudy(*study, action);

@@ -33,8 +33,10 @@ struct PingsAt {
     receiver::CodeConfig code;
 };
 /** At most `count` pings from number `ping`, from 1, of the first receiver of a deployment that gives out codes, all
- *  noise included. Throws types::ConfigError where there is none. */
-using FindPings = std::function<PingsAt(const std::string& deployment, uint64_t ping, size_t count)>;
+ *  noise included. Throws types::ConfigError where there is none. @param settings properties that differ from the
+ *  deployment's, "task.property=value" */
+using FindPings = std::function<PingsAt(const std::string& deployment, uint64_t ping, size_t count,
+                                        const std::vector<std::string>& settings)>;
 
 /** What makes a deployment's pings, and the names of its tasks. */
 struct ChainAt {
@@ -50,7 +52,7 @@ using WriteDeployment =
 
 /** Adds the command `study` with its options to `app`; parsing it sets `action`. */
 void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt, const FindPings& pingsAt,
-                const ReadLog& readLog);
+                const FindChain& chainAt, const ReadLog& readLog);
 
 /** Adds the command `fit`. */
 void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, const WriteDeployment& write,
@@ -72,7 +74,8 @@ command::Json verdictsOf(const std::vector<Claim>& claims);
 
 // Each adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
-void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const ReadLog& readLog);
+void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const FindChain& chainAt,
+                      const ReadLog& readLog);
 void addMultipathStudy(CLI::App& study, command::Action& action);
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
