@@ -177,7 +177,7 @@ TEST(FitSideScanTest, ALineThatShowsTheTransmitterGetsItsRingDown) {
             for (size_t bin = 0; bin < 6; ++bin) ping.codes[line * ping.bin_count + bin] = 1;
     const RecordingFit fit = fitRecording(recorded, guessedSideScan(), true, [](const std::string&) {});
     ASSERT_NE(fit.finding("transmitter"), nullptr);
-    EXPECT_NEAR(fit.finding("transmitter")->found.value, 6 * line_range / line_bins, 1e-6);
+    EXPECT_NEAR(fit.finding("transmitter")->found.value, 6 * recorded.front().resolution, 1e-6);
     const CodedPing& made = fit.simulated_pings.front();
     double loud = 0, after = 0;
     for (size_t line = 0; line < made.beam_count; ++line)
