@@ -104,7 +104,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // in ImperfectionsTest.cpp:
                                                "imperfections",
                                                // in EdgeDiffractionTest.cpp:
-                                               "edge diffraction"};
+                                               "edge diffraction",
+                                               // in CrosstalkTest.cpp and CrosstalkRunTest.cpp:
+                                               "crosstalk"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
