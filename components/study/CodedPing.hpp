@@ -16,7 +16,7 @@ namespace insonify::study {
 struct LinePlace {
     double altitude = 0;  ///< Above the bottom [m]; 0: unknown.
     double along = 0;     ///< Way since the first line [m].
-    double pitch = 0;     ///< Of the sonar: positive looks down [rad].
+    double pitch = 0;     ///< The sonar's: positive looks down [rad].
 };
 
 /** The places of lines from the poses of the sonar and its altitudes; empty where neither is known. What stays while

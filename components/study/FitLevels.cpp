@@ -14,38 +14,14 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t beam_blocks = 8, range_slices_of_fit = 64;
-constexpr size_t first_slice = 3;  ///< Nearer, transmitters ring, and the gain changes within a slice.
-constexpr double silent_db = -400;
-constexpr double huber_db = 3;  ///< Residuals beyond this count by their size, not their square.
-constexpr double response_low = -140, response_high = 60, response_step = 0.25;  // [dB]
+constexpr size_t first_slice = 3;        ///< Nearer, transmitters ring, and the gain changes within a slice.
+constexpr double huber_db = 3;           ///< Residuals beyond this count by their size, not their square.
 constexpr double elevation_before = 15;  ///< Width of a beam in elevation of which nothing is known [deg].
-
-double toDb(double power) { return power > 1e-40 ? 10 * std::log10(power) : silent_db; }
-double toPower(double db) { return std::pow(10, db / 10); }
 
 double medianLevel(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<long>(values.size() / 2);
     std::ranges::nth_element(values, middle);
     return *middle;
-}
-
-template <class Intensity>
-LevelBlocks blocksBy(size_t beams, size_t bins, double resolution, const Intensity& intensity) {
-    LevelBlocks blocks{.beam_blocks = std::min(beam_blocks, beams), .slices = std::min(range_slices_of_fit, bins)};
-    for (size_t slice = 0; slice < blocks.slices; ++slice)
-        blocks.ranges.push_back(resolution * static_cast<double>(bins) * (static_cast<double>(slice) + 0.5) /
-                                static_cast<double>(blocks.slices));
-    for (size_t block = 0; block < blocks.beam_blocks; ++block)
-        for (size_t slice = 0; slice < blocks.slices; ++slice) {
-            const size_t b0 = block * beams / blocks.beam_blocks, b1 = (block + 1) * beams / blocks.beam_blocks;
-            const size_t k0 = slice * bins / blocks.slices, k1 = (slice + 1) * bins / blocks.slices;
-            double sum = 0;
-            for (size_t beam = b0; beam < b1; ++beam)
-                for (size_t bin = k0; bin < k1; ++bin) sum += intensity(beam, bin);
-            blocks.level.push_back(toDb(sum / static_cast<double>((b1 - b0) * (k1 - k0))));
-        }
-    return blocks;
 }
 
 /** Wraps a function for OpenCV's minimiser. */
@@ -104,7 +80,7 @@ enum Parameter : size_t {
 using Values = std::array<double, parameters>;
 using Chosen = std::vector<size_t>;  ///< Parameters.
 
-constexpr double water_deviation = 15;  ///< Of what is known before of a volume backscattering strength [dB].
+constexpr double water_deviation = 15;  ///< Deviation of a volume backscattering strength before the fit [dB].
 
 /** Levels of the blocks by the values, and how far they are from the recorded ones. */
 class LevelModel {
@@ -337,12 +313,12 @@ private:
     FitChain chain_;
     bool rough_, by_median_, fits_water_, fits_scene_;
     double range_;
-    std::vector<bool> is_loud_;  ///< Of each block, see findLoudBlocks().
+    std::vector<bool> is_loud_;  ///< One for each block, see findLoudBlocks().
     double pull_weight_ = 1;
     double axis_ = 1;  ///< Ranges of a simulated sample, whose bins last whole microseconds, over true ones [1].
     Values before_;
     LevelBlocks echoes_;
-    LevelBlocks water_;  ///< Of water of 0 dB re 1/m, without absorption.
+    LevelBlocks water_;  ///< Levels of water with 0 dB re 1/m, without absorption.
     std::vector<double> recorded_level_;
 };
 
@@ -504,62 +480,6 @@ LevelFit fitOf(LevelModel& model, const Values& at) {
 }
 
 }  // namespace
-
-CodeResponse::CodeResponse(const CodedPing& law) {
-    constexpr int quantiles = 128;
-    const double largest = std::pow(2, law.bits) - 1;
-    const auto codeOf = [&](double intensity) {
-        const double exponent = (law.law.law == receiver::CodeLaw::Sqrt ? 0.5 : 1.0) * law.law.gamma;
-        const double share = law.law.law == receiver::CodeLaw::Log ? 1 + toDb(intensity) / law.law.dynamic_range_db
-                                                                   : std::pow(intensity, exponent);
-        return static_cast<float>(std::round(std::clamp(share, 0.0, 1.0) * largest) / largest);
-    };
-    for (double level = response_low; level <= response_high; level += response_step) {
-        double sum = 0;
-        for (int i = 0; i < quantiles; ++i) {
-            const double factor = -std::log((i + 0.5) / quantiles);
-            sum += toPower(law.levelDb(codeOf(toPower(level) * factor))) / quantiles;
-        }
-        stated_db_.push_back(toDb(sum));
-    }
-}
-
-double CodeResponse::operator()(double level_db) const {
-    const double place =
-        std::clamp((level_db - response_low) / response_step, 0.0, static_cast<double>(stated_db_.size()) - 1.001);
-    const auto i = static_cast<size_t>(place);
-    const double part = place - static_cast<double>(i);
-    return (1 - part) * stated_db_[i] + part * stated_db_[i + 1];
-}
-
-LevelBlocks blocksOf(const CodedPing& ping) {
-    return blocksBy(ping.beam_count, ping.bin_count, ping.resolution,
-                    [&](size_t beam, size_t bin) { return toPower(ping.levelDb(ping.code(beam, bin))); });
-}
-
-LevelBlocks blocksOf(const types::Sonar& intensities) {
-    return blocksBy(intensities.beam_count, intensities.bin_count, intensities.binStart(1),
-                    [&](size_t beam, size_t bin) {
-                        return static_cast<double>(intensities.bins[beam * intensities.bin_count + bin]);
-                    });
-}
-
-LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
-    LevelBlocks mean = all.front();
-    for (size_t i = 0; i < mean.level.size(); ++i) {
-        double sum = 0;
-        for (const LevelBlocks& each : all) sum += toPower(each.level[i]);
-        mean.level[i] = toDb(sum / static_cast<double>(all.size()));
-    }
-    return mean;
-}
-
-LevelBlocks leastOf(const std::vector<LevelBlocks>& all) {
-    LevelBlocks least = all.front();
-    for (const LevelBlocks& each : all)
-        for (size_t i = 0; i < least.level.size(); ++i) least.level[i] = std::min(least.level[i], each.level[i]);
-    return least;
-}
 
 FitChain LevelFit::applied(const FitChain& chain) const {
     FitChain fitted = chain;

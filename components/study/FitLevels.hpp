@@ -5,41 +5,9 @@
 #include <vector>
 
 #include "components/study/FitChain.hpp"
+#include "components/study/LevelBlocks.hpp"
 
 namespace insonify::study {
-
-/** What a code says in the mean of an intensity, over the exponential law of speckle: codes are cut off at both ends
- *  and rounded. */
-class CodeResponse {
-public:
-    /** @param law with which intensities, relative to that of the largest code, become codes and levels again */
-    explicit CodeResponse(const CodedPing& law);
-
-    /** Mean of the intensity that codes state, for a mean intensity of `level_db`, both relative to the largest code's
-     *  [dB]. */
-    double operator()(double level_db) const;
-
-private:
-    std::vector<double> stated_db_;  ///< By steps of a quarter of a decibel.
-};
-
-/** Mean levels of blocks of a ping, by beams and by range. */
-struct LevelBlocks {
-    size_t beam_blocks = 0, slices = 0;
-    std::vector<double> ranges = {};  ///< Middle of each slice [m].
-    std::vector<double> level = {};   ///< By beam block, then slice: 10 log10 of the mean intensity [dB].
-
-    double at(size_t block, size_t slice) const { return level[block * slices + slice]; }
-};
-
-/** Mean levels of what the codes of a ping state, relative to the largest code, and of intensities relative to the
- *  source. A block without intensity has the level -400 dB. */
-LevelBlocks blocksOf(const CodedPing& ping);
-LevelBlocks blocksOf(const types::Sonar& intensities);
-/** The mean of several pings, as intensities. */
-LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
-/** The least of several pings. */
-LevelBlocks leastOf(const std::vector<LevelBlocks>& all);
 
 constexpr double z_95 = 1.96;  ///< Deviations of a normal law to either side of 95 %.
 
@@ -54,16 +22,15 @@ struct Fitted {
 struct LevelFit {
     Fitted full_scale_db = {};            ///< Level of the largest code, all gain included [dB].
     Fitted noise_db = {};                 ///< Mean intensity of noise in a bin, relative to the source [dB].
-    Fitted log_coefficient = {};          ///< Of the time-varied gain [dB].
-    Fitted db_per_m = {};                 ///< Of the time-varied gain, one way [dB/m].
-    Fitted absorption_db_per_m = {};      ///< Of the water, one way [dB/m].
+    Fitted log_coefficient = {};          ///< Time-varied gain, for each decade of range [dB].
+    Fitted db_per_m = {};                 ///< Time-varied gain, one way [dB/m].
+    Fitted absorption_db_per_m = {};      ///< In the water, one way [dB/m].
     Fitted tvg_span_db = {};              ///< Gain at the end of the range above that at its tenth [dB].
-    std::optional<Fitted> water_db = {};  ///< Of a side-scan: volume backscattering strength [dB re 1/m].
-    std::optional<Fitted> pitch_deg = {}, height_m = {},
-                          elevation_deg =
-                              {};  ///< Of a rough scene: the sonar over it, its beam; of a side-scan no height.
-    LevelBlocks modelled = {};     ///< What the codes of each block state by these values.
-    double rms_db = 0;             ///< Of the levels that are left unexplained [dB].
+    std::optional<Fitted> water_db = {};  ///< Volume backscattering strength, side-scans only [dB re 1/m].
+    /** The sonar over a rough scene, and its beam; a side-scan has no height. */
+    std::optional<Fitted> pitch_deg = {}, height_m = {}, elevation_deg = {};
+    LevelBlocks modelled = {};  ///< What the codes of each block state by these values.
+    double rms_db = 0;          ///< Levels left unexplained, root mean square [dB].
 
     /** The chain with these values. */
     FitChain applied(const FitChain& chain) const;

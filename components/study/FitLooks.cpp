@@ -10,7 +10,7 @@ namespace {
 
 constexpr double one_look = -0.15;    ///< T of one look is 0 and more; codes that are rounded take off less.
 constexpr double min_texture = 0.01;  ///< 1 / shape from which on the law is K.
-constexpr double min_width = 0.3, max_width = 16;  ///< Of a filter [bins].
+constexpr double min_width = 0.3, max_width = 16;  ///< Bounds of a filter's width [bins].
 
 /** Sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
 double correlationOf(double width) {

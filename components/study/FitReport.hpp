@@ -12,8 +12,8 @@ namespace insonify::study {
 /** Names of the tasks of a deployment that a fit changes. */
 struct FitTasks {
     std::string vehicle, scene, sonar, noise, receiver;
-    double period = 0.1;      ///< Of the vehicle's poses [s].
-    types::Mount mount = {};  ///< Of the sonar in the body, as the scene has it.
+    double period = 0.1;      ///< Between the vehicle's poses [s].
+    types::Mount mount = {};  ///< The sonar in the body, as the scene has it.
 };
 
 /** A property of a fitted deployment: `task.property.path`, its value in YAML, and what is said of it there. */

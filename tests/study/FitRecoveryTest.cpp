@@ -2,15 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <random>
 #include <set>
 
-#include "components/study/FitReport.hpp"
 #include "components/study/LikenessReport.hpp"
 #include "components/study/Probe.hpp"
-#include "components/study/RecordingFit.hpp"
 #include "components/study/Shapes.hpp"
+#include "tests/study/FitBench.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -52,10 +49,8 @@ struct Truth {
     double beam_width_deg, pulse_m, noise_db, density, log_coefficient, db_per_m;
 
     explicit Truth(uint32_t seed) {
-        std::mt19937 random(seed);
-        const auto between = [&](double low, double high) {
-            return low + (high - low) * (static_cast<double>(random()) + 0.5) / 4294967296.0;
-        };
+        Draws draws(seed);
+        const auto between = [&](double low, double high) { return draws.between(low, high); };
         beam_width_deg = between(0.6, 1.3);
         pulse_m = between(1.2, 2.5) * range / bins;
         noise_db = between(-92, -84);
@@ -76,26 +71,13 @@ struct Truth {
         chain.receiver.tvg->log_coefficient = log_coefficient;
         chain.receiver.tvg->db_per_m = db_per_m;
         chain.receiver.code->full_scale_db = -20;
-        chain.receiver.code->full_scale_db += loudestLevelDb() + between(-3, 3);
+        chain.receiver.code->full_scale_db += loudestLevelDb(chain) + 29 + between(-3, 3);
     }
     /** Pings from three places. */
     std::vector<CodedPing> recorded() const {
         std::vector<CodedPing> pings = simulatedPings(chain, 3);
         for (CodedPing& ping : pings) ping.frequency_khz = *chain.sonar.frequency_khz;
         return pings;
-    }
-
-private:
-    /** Mean level of the loudest slice of range relative to full scale [dB]. */
-    double loudestLevelDb() const {
-        FitChain open = chain;
-        open.receiver.code->full_scale_db = 60;
-        open.receiver.code->law = receiver::CodeLaw::Log;
-        open.receiver.code->gamma = 1;
-        open.receiver.code->bits = 16;
-        open.receiver.code->dynamic_range_db = 200;
-        const LevelBlocks blocks = blocksOf(simulatedPings(open, 1).front());
-        return 60 + *std::ranges::max_element(blocks.level) + 20 + 9;
     }
 };
 
@@ -106,15 +88,11 @@ TEST_P(FitRecoveryTest, FindsThePropertiesOfASimulatedSonar) {
     const RecordingFit fit = fitRecording(truth.recorded(), guess(), false, [](const std::string&) {});
     for (const Finding& finding : fit.findings) RecordProperty(finding.name, finding.text());
     const auto near = [&](const char* name, double expected, double tolerance) {
-        const Finding* finding = fit.finding(name);
-        ASSERT_NE(finding, nullptr) << name;
-        EXPECT_TRUE(finding->is_determined) << name << ": " << finding->text();
-        EXPECT_NEAR(finding->found.value, expected, tolerance) << name;
+        expectFound(fit, name, expected, tolerance);
     };
     near("full scale", truth.chain.receiver.code->full_scale_db, 1);
     near("noise", truth.noise_db, 1);
-    const auto gain = [&](double r) { return truth.log_coefficient * std::log10(r) + 2 * truth.db_per_m * r; };
-    const double span = gain(range) - gain(0.1 * range);
+    const double span = tvgSpanDb(truth.log_coefficient, truth.db_per_m, range);
     near("TVG span", span, 0.05 * span);
     near("beam width", truth.beam_width_deg, 0.05 * truth.beam_width_deg);
     near("pulse length", truth.pulse_m, 0.05 * truth.pulse_m);
@@ -206,16 +184,7 @@ TEST(RecordingFitTest, WhatStatesNothingIsRefusedWithTheReason) {
     EXPECT_NE(refusal({}, guess()).find("no ping"), std::string::npos);
 }
 
-/** A few; seeds 2 to INSONIFY_FIT_SEEDS where that is set, for the figures on the page of studies. */
-std::vector<uint32_t> seeds() {
-    const char* const last = std::getenv("INSONIFY_FIT_SEEDS");
-    if (!last) return {2, 3, 4, 15};
-    std::vector<uint32_t> all;
-    for (uint32_t seed = 2; seed <= std::stoul(last); ++seed) all.push_back(seed);
-    return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Seeds, FitRecoveryTest, testing::ValuesIn(seeds()));
+INSTANTIATE_TEST_SUITE_P(Seeds, FitRecoveryTest, testing::ValuesIn(fitSeeds({2, 3, 4, 15})));
 
 }  // namespace
 }  // namespace insonify::study

@@ -3,13 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <random>
 
-#include "components/study/FitReport.hpp"
 #include "components/study/Probe.hpp"
-#include "components/study/RecordingFit.hpp"
 #include "components/study/Shapes.hpp"
+#include "tests/study/FitBench.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -64,10 +61,8 @@ struct TrueSideScan {
     double depression_deg, width_deg, pulse_m, noise_db, density, log_coefficient, db_per_m;
 
     explicit TrueSideScan(uint32_t seed) {
-        std::mt19937 random(seed);
-        const auto between = [&](double low, double high) {
-            return low + (high - low) * (static_cast<double>(random()) + 0.5) / 4294967296.0;
-        };
+        Draws draws(seed);
+        const auto between = [&](double low, double high) { return draws.between(low, high); };
         depression_deg = between(22, 38);
         width_deg = between(25, 45);
         pulse_m = between(1.2, 2.5) * line_range / line_bins;
@@ -92,7 +87,7 @@ struct TrueSideScan {
         chain.receiver.tvg->log_coefficient = log_coefficient;
         chain.receiver.tvg->db_per_m = db_per_m;
         layLines(linesOf(), chain);
-        chain.receiver.code->full_scale_db = loudestDb() + between(4, 9);
+        chain.receiver.code->full_scale_db = loudestLevelDb(chain) + between(4, 9);
     }
     std::vector<CodedPing> recorded() const {
         std::vector<CodedPing> pings = simulatedPings(chain, 1);
@@ -101,18 +96,6 @@ struct TrueSideScan {
             ping.frequency_khz = *chain.sonar.frequency_khz;
         }
         return pings;
-    }
-
-private:
-    /** Mean level of the loudest slice of range relative to full scale [dB]. */
-    double loudestDb() const {
-        FitChain open = chain;
-        open.receiver.code->full_scale_db = 60;
-        open.receiver.code->law = receiver::CodeLaw::Log;
-        open.receiver.code->bits = 16;
-        open.receiver.code->dynamic_range_db = 250;
-        const LevelBlocks blocks = blocksOf(simulatedPings(open, 1).front());
-        return 60 + *std::ranges::max_element(blocks.level);
     }
 };
 
@@ -123,15 +106,11 @@ TEST_P(FitSideScanTest, FindsThePropertiesOfASimulatedSideScan) {
     const RecordingFit fit = fitRecording(truth.recorded(), guessedSideScan(), true, [](const std::string&) {});
     for (const Finding& finding : fit.findings) RecordProperty(finding.name, finding.text());
     const auto near = [&](const char* name, double expected, double tolerance) {
-        const Finding* finding = fit.finding(name);
-        ASSERT_NE(finding, nullptr) << name;
-        EXPECT_TRUE(finding->is_determined) << name << ": " << finding->text();
-        EXPECT_NEAR(finding->found.value, expected, tolerance) << name << ": " << finding->text();
+        expectFound(fit, name, expected, tolerance);
     };
     near("full scale", truth.chain.receiver.code->full_scale_db, 2);  // 1 dB is wanted, see SIDE_SCANS.md
     near("noise", truth.noise_db, 1);
-    const auto gain = [&](double r) { return truth.log_coefficient * std::log10(r) + 2 * truth.db_per_m * r; };
-    const double span = gain(line_range) - gain(0.1 * line_range);
+    const double span = tvgSpanDb(truth.log_coefficient, truth.db_per_m, line_range);
     near("TVG span", span, 0.05 * span);
     near("depression", truth.depression_deg, 1);
     near("elevation width", truth.width_deg, 0.12 * truth.width_deg);  // 5 % is wanted, see SIDE_SCANS.md
@@ -219,16 +198,7 @@ TEST(LinePlaceTest, LinesBeyondTheFloorAreRefusedWithTheReason) {
     }
 }
 
-/** A few; seeds 2 to INSONIFY_FIT_SEEDS where that is set, for the figures on the page of studies. */
-std::vector<uint32_t> sideScanSeeds() {
-    const char* const last = std::getenv("INSONIFY_FIT_SEEDS");
-    if (!last) return {2, 5};
-    std::vector<uint32_t> all;
-    for (uint32_t seed = 2; seed <= std::stoul(last); ++seed) all.push_back(seed);
-    return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(sideScanSeeds()));
+INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(fitSeeds({2, 5})));
 
 }  // namespace
 }  // namespace insonify::study

@@ -1,0 +1,60 @@
+#pragma once
+// What tests of fits to simulated recordings share.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "components/study/FitReport.hpp"
+#include "components/study/RecordingFit.hpp"
+
+namespace insonify::study {
+
+/** Random numbers that are the same with each standard library. */
+class Draws {
+public:
+    explicit Draws(uint32_t seed) : random_(seed) {}
+    double between(double low, double high) {
+        return low + (high - low) * (static_cast<double>(random_()) + 0.5) / 4294967296.0;
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+/** Mean level of the loudest block of a chain's ping, relative to full scale [dB]. */
+inline double loudestLevelDb(FitChain chain) {
+    chain.receiver.code->full_scale_db = 60;
+    chain.receiver.code->law = receiver::CodeLaw::Log;
+    chain.receiver.code->gamma = 1;
+    chain.receiver.code->bits = 16;
+    chain.receiver.code->dynamic_range_db = 250;
+    const LevelBlocks blocks = blocksOf(simulatedPings(chain, 1).front());
+    return 60 + *std::ranges::max_element(blocks.level);
+}
+
+/** Expects a finding that is determined, and not farther off than a tolerance. */
+inline void expectFound(const RecordingFit& fit, const char* name, double expected, double tolerance) {
+    const Finding* finding = fit.finding(name);
+    ASSERT_NE(finding, nullptr) << name;
+    EXPECT_TRUE(finding->is_determined) << name << ": " << finding->text();
+    EXPECT_NEAR(finding->found.value, expected, tolerance) << name << ": " << finding->text();
+}
+
+/** Gain of a receiver's tvg at the end of the range above that at its tenth [dB]. */
+inline double tvgSpanDb(double log_coefficient, double db_per_m, double range) {
+    return log_coefficient + 2 * db_per_m * 0.9 * range;
+}
+
+/** These seeds; those from 2 to INSONIFY_FIT_SEEDS where that is set, for the figures on the pages of studies. */
+inline std::vector<uint32_t> fitSeeds(std::vector<uint32_t> few) {
+    const char* const last = std::getenv("INSONIFY_FIT_SEEDS");
+    if (!last) return few;
+    std::vector<uint32_t> all;
+    for (uint32_t seed = 2; seed <= std::stoul(last); ++seed) all.push_back(seed);
+    return all;
+}
+
+}  // namespace insonify::study
