@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "components/framework/MayLose.hpp"
 #include "components/framework/Upstream.hpp"
 #include "types/ConfigError.hpp"
 
@@ -117,10 +118,7 @@ std::vector<std::string> LoggerTask::notices() const {
     return all;
 }
 
-bool LoggerTask::heals() const {
-    const framework::Environment& run = environment();
-    return run.deployment && !run.lockstep && run.wall_clock;  // before the start, when no cycle has been released yet
-}
+bool LoggerTask::heals() const { return framework::mayLose(environment()); }
 
 void LoggerTask::followHealth() {
     const LogHealth before = std::exchange(health_, thread_->health());

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <stdexcept>
-#include <utility>
 
 #include "components/output/SamplePictureTask.hpp"
 #include "components/output/ScanMosaicTask.hpp"
@@ -21,12 +20,7 @@ bool PictureTask::configureHook() {
 
 bool PictureTask::startHook() {
     pings_ = 0;
-    const PictureConfig& config = pictureConfig();
-    health_ = {};
-    const bool heals = environment().deployment && !environment().lockstep;
-    if (config.file || config.video)
-        writer_ = std::make_unique<PictureWriter>(PictureFiles(config, outputPath("")),
-                                                  heals ? AtPictureFailure::Count : AtPictureFailure::Throw);
+    openFiles(pictureConfig());
     return true;
 }
 
@@ -35,25 +29,17 @@ void PictureTask::updateHook() {
     if (ping.readNew(sample)) take(*sample);
 }
 
-void PictureTask::followHealth() {
-    const PictureHealth before = std::exchange(health_, writer_->health());
-    if (health_.fails && state() != framework::TaskState::RunTimeError)
-        error(health_.failure + "; pictures are lost until one can be written");
-    else if (!health_.fails && before.fails && state() == framework::TaskState::RunTimeError)
-        recover();
-}
-
 void PictureTask::take(const types::Sonar& sample) {
     const bool due = pings_++ % pictureConfig().every == 0;
     if (environment().rehearsing) {
-        if (due && writer_) writer_->skip();
+        if (due) skipFile();
         return;
     }
-    if (due && (image.connected() || writer_))
+    if (due && (image.connected() || hasFiles()))
         show(sample);
     else
         painter_->skip(sample);
-    if (writer_) followHealth();
+    followFiles();
 }
 
 std::string PictureTask::indivisible() const {
@@ -72,7 +58,7 @@ void PictureTask::show(const types::Sonar& sample) {
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     pool_.stock(*picture);
     image.write(picture);
-    if (writer_) writer_->write(picture);
+    writeFile(picture);
 }
 
 void PictureTask::paint(const types::Sonar& sample, types::Image& picture) try {
@@ -81,13 +67,6 @@ void PictureTask::paint(const types::Sonar& sample, types::Image& picture) try {
     throw std::runtime_error(fmt::format(
         "cannot draw {} beams x {} bins to {:g} m in a picture {} pixels wide; try another `width` (OpenCV: {})",
         sample.beam_count, sample.bin_count, sample.binStart(sample.bin_count), pictureConfig().width, failure.err));
-}
-
-void PictureTask::stopHook() {
-    const auto writer = std::move(writer_);
-    if (!writer) return;
-    writer->close();
-    health_ = writer->health();
 }
 
 void PictureTask::cleanupHook() { painter_.reset(); }

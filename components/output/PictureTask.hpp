@@ -12,7 +12,7 @@
 #include "components/output/FanImage.hpp"
 #include "components/output/Painter.hpp"
 #include "components/output/PictureConfig.hpp"
-#include "components/output/PictureWriter.hpp"
+#include "components/output/RecordingTask.hpp"
 #include "components/output/WaterfallImage.hpp"
 #include "types/Image.hpp"
 #include "types/Sonar.hpp"
@@ -22,26 +22,21 @@ namespace insonify::output {
 /** What the tasks that show pings have in common: ping in, picture out, on a port and in files.
  *
  *  A picture is made only when somebody is connected to `image` or a file is configured, and of one ping in `every`;
- *  it carries the ping's time. Files are numbered by picture from 0 at each start, and written by a thread of their
- *  own. One that cannot be written ends the task in Exception; in realtime it is RunTimeError until one can be written
- *  again, and the pictures between are counted. */
-class PictureTask : public framework::TaskContext, public framework::Divisible {
+ *  it carries the ping's time. */
+class PictureTask : public RecordingTask, public framework::Divisible {
 public:
-    using TaskContext::TaskContext;
+    using RecordingTask::RecordingTask;
 
     framework::InputPort<types::SonarPtr> ping{this, "ping", "what is shown"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
     std::string indivisible() const override;
-    std::vector<std::string> notices() const override { return health_.notices(); }
 
 protected:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
-    void stopHook() override;
     void cleanupHook() override;
-    void errorHook() override { updateHook(); }
     /** Makes the picture of a ping, or lets the painter take note of it. */
     void take(const types::Sonar& sample);
 
@@ -51,14 +46,11 @@ private:
     /** Whether a picture shows its own ping alone. */
     virtual bool showsOne() const { return false; }
     void show(const types::Sonar& sample);
-    void followHealth();
     void paint(const types::Sonar& sample, types::Image& picture);
 
     std::unique_ptr<Painter> painter_;
-    std::unique_ptr<PictureWriter> writer_;
     framework::SamplePool<types::Image> pool_;
     uint64_t pings_ = 0;
-    PictureHealth health_;  ///< As it was last looked at.
 };
 
 /** Shows pings as the Picture does, which is a Painter that needs nothing but them. */

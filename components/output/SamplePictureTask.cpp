@@ -1,7 +1,6 @@
 #include "components/output/SamplePictureTask.hpp"
 
 #include <chrono>
-#include <utility>
 
 namespace insonify::output {
 
@@ -15,11 +14,7 @@ template <class Picture>
 bool SamplePictureTask<Picture>::startHook() {
     samples_ = 0;
     picture_->clear();
-    health_ = {};
-    const bool heals = environment().deployment && !environment().lockstep;
-    if (config->file || config->video)
-        writer_ = std::make_unique<PictureWriter>(PictureFiles(*config, outputPath("")),
-                                                  heals ? AtPictureFailure::Count : AtPictureFailure::Throw);
+    openFiles(*config);
     return true;
 }
 
@@ -27,18 +22,9 @@ template <class Picture>
 void SamplePictureTask<Picture>::updateHook() {
     for (Sample sample; input.readNew(sample);) {
         picture_->add(sample);
-        if (++samples_ % config->every == 0 && (image.connected() || writer_)) show();
+        if (++samples_ % config->every == 0 && (image.connected() || hasFiles())) show();
     }
-    if (writer_) followHealth();
-}
-
-template <class Picture>
-void SamplePictureTask<Picture>::followHealth() {
-    const PictureHealth before = std::exchange(health_, writer_->health());
-    if (health_.fails && state() != framework::TaskState::RunTimeError)
-        error(health_.failure + "; pictures are lost until one can be written");
-    else if (!health_.fails && before.fails && state() == framework::TaskState::RunTimeError)
-        recover();
+    followFiles();
 }
 
 template <class Picture>
@@ -49,15 +35,7 @@ void SamplePictureTask<Picture>::show() {
     recordStage("paint", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     pool_.stock(*shown);
     image.write(shown);
-    if (writer_) writer_->write(shown);
-}
-
-template <class Picture>
-void SamplePictureTask<Picture>::stopHook() {
-    const auto writer = std::move(writer_);
-    if (!writer) return;
-    writer->close();
-    health_ = writer->health();
+    writeFile(shown);
 }
 
 template class SamplePictureTask<SoundingMap>;

@@ -4,10 +4,9 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/framework/TaskContext.hpp"
 #include "components/output/PictureConfig.hpp"
-#include "components/output/PictureWriter.hpp"
 #include "components/output/RangeImage.hpp"
+#include "components/output/RecordingTask.hpp"
 #include "components/output/SoundingMap.hpp"
 
 namespace insonify::output {
@@ -34,29 +33,22 @@ struct SamplePictureConfig : RecordingConfig {
  *  In: a port named by Picture::port. Out: `image` and files, as PictureTask has them, the first picture after `every`
  *  samples. */
 template <class Picture>
-class SamplePictureTask final : public framework::TaskContext {
+class SamplePictureTask final : public RecordingTask {
 public:
-    using TaskContext::TaskContext;
+    using RecordingTask::RecordingTask;
     using Sample = typename Picture::Sample;
 
     framework::Properties<SamplePictureConfig> config{this};
     framework::InputPort<Sample> input{this, Picture::port, "what is shown"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
-    std::vector<std::string> notices() const override { return health_.notices(); }
-
 private:
     bool configureHook() override;
     bool startHook() override;
     void updateHook() override;
-    void stopHook() override;
-    void errorHook() override { updateHook(); }
     void show();
-    void followHealth();
 
     std::unique_ptr<Picture> picture_;
-    std::unique_ptr<PictureWriter> writer_;
-    PictureHealth health_;  ///< As it was last looked at.
     framework::SamplePool<types::Image> pool_;
     uint64_t samples_ = 0;
 };

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "components/framework/MayLose.hpp"
+
 namespace insonify::output {
 
 void XtfConfig::check(types::Diagnostics& diagnostics) const {
@@ -45,7 +47,7 @@ void XtfTask::put() {
     try {
         file_->append(bytes_);
     } catch (const std::exception& failure) {
-        if (!environment().deployment || environment().lockstep) throw;
+        if (!framework::mayLose(environment())) throw;
         // What half a ping has left would spoil what comes after it.
         file_.reset();
         ++lost_;

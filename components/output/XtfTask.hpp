@@ -33,7 +33,7 @@ struct XtfConfig {
 /** Writes the lines of a side-scan sonar as an XTF file: see Xtf.hpp.
  *
  *  In: `ping`; `pose`, the sonar in the world, of which the one at the ping's time counts, or the last before it;
- *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is told of. In
+ *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is counted. In
  *  realtime a file that cannot be written ends there: RunTimeError, and pings are counted. */
 class XtfTask final : public framework::TaskContext {
 public:
