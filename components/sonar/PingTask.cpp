@@ -77,7 +77,7 @@ bool PingTask::configureHook() {
                                  "is connected; the sonar does not hear other sonars: give it `crosstalk: {}`, or "
                                  "leave the connection out");
     sonarConfig().requireDevice(name());
-    radiation_ = transmission.connected() ? std::make_shared<SentPower>(locatedConfig()) : nullptr;
+    transmitted_ = {};
     renderer_.reset();
     plan_.reset();
     resetAim();
@@ -95,23 +95,27 @@ bool PingTask::begin() {
         return false;
     }
     if (state() == framework::TaskState::RunTimeError) recover();
-    if (radiation_) transmission.write(ownTransmission());
+    if (transmission.connected()) transmit();
     return true;
 }
 
-types::TransmissionPtr PingTask::ownTransmission() const {
-    const SonarConfig config = sonarConfig();
+void PingTask::prepareTransmission() {
+    const SonarConfig config = locatedConfig();
     const Waveform form = waveformOf(config, grid());
-    auto sent = std::make_shared<types::Transmission>();
+    transmitted_.radiation = std::make_shared<SentPower>(config);
+    if (config.crosstalk && config.crosstalk->source_level_db)
+        transmitted_.source_level_db = *config.crosstalk->source_level_db;
+    transmitted_.frequency_khz = form.frequency_khz;
+    transmitted_.bandwidth_khz = form.bandwidth_khz;
+    transmitted_.duration = form.duration;
+}
+
+void PingTask::transmit() {
+    if (!transmitted_.radiation) prepareTransmission();
+    const auto sent = std::make_shared<types::Transmission>(transmitted_);
     sent->time = aimed().time;
     sent->sonar = aimed().sonar;
-    sent->radiation = radiation_;
-    if (config.crosstalk && config.crosstalk->source_level_db)
-        sent->source_level_db = *config.crosstalk->source_level_db;
-    sent->frequency_khz = form.frequency_khz;
-    sent->bandwidth_khz = form.bandwidth_khz;
-    sent->duration = form.duration;
-    return sent;
+    transmission.write(sent);
 }
 
 void PingTask::complete() {

@@ -97,7 +97,9 @@ protected:
 private:
     /** Takes the next ping, if there is one, and sends its pulse. Returns whether it can be rendered. */
     bool begin();
-    types::TransmissionPtr ownTransmission() const;
+    void prepareTransmission();
+    /** Writes the pulse of the ping that begins. */
+    void transmit();
     /** Renders what has been begun, and goes on. */
     void complete();
     void hearOthers();
@@ -131,10 +133,10 @@ private:
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
-    std::shared_ptr<const types::Radiation> radiation_;  ///< Its transmitter's.
+    types::Transmission transmitted_;  ///< All but time and place; made for the first ping.
     OthersHeard others_heard_;
     std::optional<Taken> listening_;  ///< The ping that is listened to.
-    double render_seconds_ = 0;       ///< Of the last ping [s].
+    double render_seconds_ = 0;       ///< Time that the last ping took [s].
     uint64_t cut_off_ = 0;            ///< Pings that were still listened to at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;

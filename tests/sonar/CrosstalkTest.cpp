@@ -66,20 +66,34 @@ types::Snapshot openWaterWith(types::TransmissionPtr sent) {
     return snapshot;
 }
 
-/** Random places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at the
- * level of the one-way sonar equation. */
+/** A patterned sonar with a random fan: regular or a table of bearings in any order, planar or conical. */
+SonarConfig randomFan(std::mt19937& random) {
+    const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    SonarConfig config =
+        hearing(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
+    if (between(0, 1) < 0.5) {
+        config.field_of_view_deg.reset();
+        config.beam_width_deg = 5;
+        for (int i = 0; i < 16; ++i) config.bearings_deg.push_back(-45 + 6 * i + between(-2, 2));
+        std::ranges::shuffle(config.bearings_deg, random);
+    }
+    if (between(0, 1) < 0.5) config.beam_geometry = BeamGeometry::Conical;
+    config.absorption.emplace().db_per_m = between(0, 0.3);
+    config.crosstalk->source_level_db = between(180, 220);
+    config.beam_pattern.emplace();
+    config.beam_pattern->receive.azimuth = lawOf(between(3, 12));
+    config.beam_pattern->transmit.elevation = lawOf(between(10, 30));
+    return config;
+}
+
+/** Random fans, places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at
+ * the level of the one-way sonar equation. */
 TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     int heard = 0;
     for (int trial = 0; trial < 60; ++trial) {
-        SonarConfig config =
-            hearing(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
-        config.absorption.emplace().db_per_m = between(0, 0.3);
-        config.crosstalk->source_level_db = between(180, 220);
-        config.beam_pattern.emplace();
-        config.beam_pattern->receive.azimuth = lawOf(between(3, 12));
-        config.beam_pattern->transmit.elevation = lawOf(between(10, 30));
+        const SonarConfig config = randomFan(random);
         const double azimuth = between(-0.7, 0.7), elevation = between(-0.2, 0.2), distance = between(3, 60);
         const glm::dvec3 direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                    std::sin(elevation));
@@ -93,8 +107,11 @@ TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
         const double range = 500 * (sent->time - types::Time{1'000'000}).seconds() + distance / 2;
         const auto bin = static_cast<size_t>(range / 0.1);
         const acoustics::BeamPattern receive(*config.beam_pattern->receive.azimuth);
+        const bool conical = config.beam_geometry == BeamGeometry::Conical;
         for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
-            const double power = receive.power(azimuth - ping.bearings[beam].rad, 0);
+            const double bearing = ping.bearings[beam].rad;
+            const double power =
+                conical ? receive.power(std::asin(direction.y), bearing) : receive.power(azimuth - bearing, 0);
             if (bin >= ping.bin_count || power < 1e-4) continue;
             const double expected = sent->source_level_db - *config.crosstalk->source_level_db + decibelsOf(0.25) +
                                     decibelsOf(power) - 20 * std::log10(distance) -

@@ -25,7 +25,7 @@ private:
     std::vector<double> integral_;          ///< From 0 to there, of straight lines between the steps [m].
 };
 
-/** Of the plan's pulse; none where it is left out. */
+/** Returns what the plan's pulse leaves; none where the plan omits the pulse. */
 std::optional<EchoShape> echoShapeOf(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

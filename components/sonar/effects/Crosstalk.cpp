@@ -1,6 +1,3 @@
-#include <cmath>
-#include <numbers>
-
 #include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/ways/DirectSound.hpp"
 #include "components/sonar/ways/ForeignEchoes.hpp"
@@ -27,39 +24,40 @@ public:
     void takeScene(const types::Geometry& geometry) override { direct_.takeScene(geometry); }
     void begin(const PingStart& start) override {
         snapshot_ = &start.snapshot;
-        pinged_ = true;
+        had_any_ = !start.snapshot.transmissions.empty();
         heard_ = 0;
         if (echoes_) echoes_->begin(start.snapshot);
     }
     bool followsRays() const override { return echoes_ != nullptr; }
     void followRays(const CastPing& ping, std::span<const CastTile> tiles) override {
-        if (!snapshot_->transmissions.empty()) echoes_->follow(ping, tiles);
+        if (had_any_) echoes_->follow(ping, tiles);
     }
     bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override {
-        return !snapshot_->transmissions.empty() && echoes_->addEnergies(ping, cell, bins);
+        return had_any_ && echoes_->addEnergies(ping, cell, bins);
     }
     void addToBins(types::Sonar& ping) override {
-        if (!snapshot_->transmissions.empty()) heard_ = direct_.add(*snapshot_, ping);
+        if (had_any_) heard_ = direct_.add(*snapshot_, ping);
     }
     size_t heard() const override { return heard_; }
     std::optional<LeftOut> leftOut() const override {
-        if (!pinged_ || heard_ > 0) return {};
+        if (!snapshot_ || had_any_) return {};
         return LeftOut{.effect = crosstalk_name, .reason = Reason::Other, .words = unheardPings};
     }
 
 private:
     DirectSound direct_;
     std::unique_ptr<ForeignEchoes> echoes_;      ///< Null where surfaces scatter nothing to the sonar.
-    const types::Snapshot* snapshot_ = nullptr;  ///< Of the ping.
+    const types::Snapshot* snapshot_ = nullptr;  ///< The ping's; none before the first.
     size_t heard_ = 0;                           ///< Transmissions of the last ping that came directly [1].
-    bool pinged_ = false;
+    bool had_any_ = false;                       ///< The ping has transmissions.
 };
 
 /** The pulses of other sonars (ACOUSTICS.md 5.29). */
 class Crosstalk final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
-        if (config.crosstalk && config.model == Model::Cerqueira2017)
+        const bool needs_rays = config.crosstalk && config.crosstalk->echoes;  // which is refused as such
+        if (config.crosstalk && !needs_rays && config.model == Model::Cerqueira2017)
             diagnostics.push_back({"crosstalk", "is given with model: cerqueira2017; it belongs to physical"});
     }
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -71,16 +71,19 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
 }
 
 size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
-    size_t heard = 0;
     // A way may take as long as the pulse was sent before the ping.
+    received_.clear();
     double earliest = 0;
-    for (const auto& sent : snapshot.transmissions)
-        earliest = std::max(earliest, -receiver_.receptionOf(*sent, snapshot.time).offset);
-    if (!snapshot.transmissions.empty()) ways_->place(snapshot, plan_.grid.range_max + earliest);
     for (const auto& sent : snapshot.transmissions) {
-        const Reception received = receiver_.receptionOf(*sent, snapshot.time);
+        received_.push_back(receiver_.receptionOf(*sent, snapshot.time));
+        earliest = std::max(earliest, -received_.back().offset);
+    }
+    ways_->place(snapshot, plan_.grid.range_max + earliest);
+    size_t heard = 0;
+    for (size_t i = 0; i < received_.size(); ++i) {
+        const auto& sent = snapshot.transmissions[i];
         bool any = false;
-        for (const TargetWay& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received, way, ping);
+        for (const TargetWay& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received_[i], way, ping);
         heard += any ? 1 : 0;
     }
     return heard;

@@ -33,7 +33,8 @@ private:
     Receiver receiver_;
     std::optional<TargetWays> ways_;
     std::optional<EchoShape> shape_;
-    std::vector<double> shares_;  ///< Mean of the response in each bin [1].
+    std::vector<Reception> received_;  ///< The ping's transmissions.
+    std::vector<double> shares_;       ///< Mean of the response in each bin [1].
     size_t first_bin_ = 0;
 };
 

@@ -16,8 +16,9 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double edge_on = 1e-4;      ///< Cosine below which a surface gives no echo [1].
-constexpr double nearest_bin = 1e-3;  ///< Slant range before which nothing is summed [m].
+constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
+constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
+constexpr double nearest_bin = 1e-3;   ///< Slant range before which nothing is summed [m].
 
 /** A transmission in one ping. */
 struct PlacedSender {
@@ -54,7 +55,7 @@ private:
     std::optional<WayPatterns> patterns_;
     size_t bin_count_ = 0;  ///< Sums of a cell [1].
     std::vector<PlacedSender> senders_;
-    std::vector<double> lengths_;              ///< Of the boxes that pulses become [m].
+    std::vector<double> lengths_;              ///< Lengths of the boxes that pulses become [m].
     std::vector<std::vector<uint64_t>> sums_;  ///< One for each length: [cell][bin], in quanta.
 };
 
@@ -109,7 +110,7 @@ uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const CastPing& ping
         if (!(glm::dot(plane.normal, way) * glm::dot(plane.normal, on) < 0)) continue;
         if (!(length > RayVisibility::nearest)) continue;
         const double half = sender.received.offset + 0.5 * (glm::length(at) + length);
-        if (!(half > nearest_bin && half < 1.1 * plan_.grid.range_max)) continue;
+        if (!(half > nearest_bin && half < reaching_back * plan_.grid.range_max)) continue;
         rays.from_x[i] = static_cast<float>(at.x), rays.from_y[i] = static_cast<float>(at.y);
         rays.from_z[i] = static_cast<float>(at.z);
         rays.towards.x[i] = static_cast<float>(on.x), rays.towards.y[i] = static_cast<float>(on.y);

@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double time_bandwidth = 50;  ///< Of a chirp whose duration is not configured [1].
+constexpr double time_bandwidth = 50;  ///< Time-bandwidth product of a chirp whose duration is not configured [1].
 constexpr double alike = 1e-6;         ///< Relative difference of two numbers of the same waveform [1].
 
 bool hasPulse(const SonarConfig& config) {

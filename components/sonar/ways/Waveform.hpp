@@ -21,8 +21,8 @@ Waveform waveformOf(const types::Transmission& sent, const Waveform& own);
 
 /** What a matched filter makes of a pulse that it is not made for: a box in slant range (ACOUSTICS.md 5.29). */
 struct Mismatch {
-    double intensity = 1;  ///< Of the box, relative to the peak of the filter's own pulse of the same source level [1].
-    double length = 0;     ///< Of the box in slant range [m]; 0: the pulse is the filter's own.
+    double intensity = 1;  ///< Relative to the peak of the filter's own pulse of the same source level [1].
+    double length = 0;     ///< In slant range [m]; 0: the pulse is the filter's own.
 };
 
 /** @param own  the waveform that the receiver's filter matches
@@ -33,7 +33,7 @@ Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, doub
 /** How a sonar receives a transmission of another sonar, but for where both are. */
 struct Reception {
     double level;   ///< Intensity on the axis at 1 m, relative to the sonar's own [1].
-    double length;  ///< Of the box that its filter makes of the pulse [m]; 0: the pulse is as its own.
+    double length;  ///< Mismatch::length [m].
     double loss;    ///< By absorption, one way, of intensity [1/m].
     double offset;  ///< Slant range that the delay between the two pulses amounts to: c (t - t_own) / 2 [m].
 };
@@ -51,7 +51,7 @@ public:
 private:
     const RenderPlan& plan_;
     Waveform own_;
-    double cell_, summed_cell_;  ///< Of the pulse itself, and summedCell() [m].
+    double cell_, summed_cell_;  ///< The pulse's own integral, and summedCell() [m].
     double loss_;                ///< By absorption, one way, of intensity [1/m].
 };
 
