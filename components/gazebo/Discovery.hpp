@@ -20,8 +20,8 @@ struct Publication {
     std::string topic;               ///< With its partition, see qualifiedName().
     std::string address;             ///< "tcp://192.168.1.7:40123".
     std::string process, node;       ///< UUIDs.
-    std::string type;                ///< Of its messages, or of requests: "gz.msgs.Pose_V".
-    std::string reply_type, socket;  ///< Of a service.
+    std::string type;                ///< Type of its messages, or of requests: "gz.msgs.Pose_V".
+    std::string reply_type, socket;  ///< Services only.
     bool is_for_host = false;        ///< Only for programs on the same machine.
 };
 
@@ -30,7 +30,7 @@ struct Announcement {
     enum class Kind { Offer, Withdrawal, Alive, Goodbye };
     Kind kind = Kind::Alive;
     std::string process;      ///< UUID of the sender.
-    Publication publication;  ///< Of an offer or a withdrawal.
+    Publication publication;  ///< What is offered or withdrawn.
 };
 
 /** A program has gone when no datagram of it has come for this time [s]. It sends one each second. */

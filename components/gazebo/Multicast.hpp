@@ -36,7 +36,7 @@ private:
     uint16_t port_ = 0;
     int receiver_ = -1;
     std::vector<int> senders_;         ///< One for each network.
-    std::vector<uint32_t> addresses_;  ///< Of this machine, in the order of networks.
+    std::vector<uint32_t> addresses_;  ///< This machine's, in the order of networks.
 };
 
 /** Returns this machine's address in the network of "tcp://ADDRESS:PORT". */

@@ -16,7 +16,7 @@ struct PoseMessage {
         std::string name;
         types::Pose pose;  ///< In our axes; without a time. What the message does not have is unknown.
     };
-    std::optional<types::Time> stamp;  ///< Of the simulation; none: it has none, or one that is out of bounds.
+    std::optional<types::Time> stamp;  ///< Simulated time; none: the message has none, or one that is out of bounds.
     std::vector<Entity> entities;
 };
 /** None: these are no bytes of a Pose_V. */

@@ -128,7 +128,7 @@ private:
     const std::string process_ = makeUuid(), node_ = makeUuid();
     Multicast multicast_;
     Heard heard_;
-    std::string other_types_;  ///< Of a service of that name.
+    std::string other_types_;  ///< Types of a service with that name.
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ namespace {
 using WorkerClock = std::chrono::steady_clock;
 constexpr int64_t max_message = int64_t{256} << 20;  // [bytes]
 constexpr int max_burst = 200;                       ///< Messages that are read before discovery has its turn.
-constexpr std::chrono::milliseconds period{1000};    ///< Of what is sent again and again, as all of them do.
+constexpr std::chrono::milliseconds period{1000};    ///< Between two heartbeats, as all programs have it.
 
 /** The last two parts of a topic: "/pose/info". */
 std::string endingOf(const std::string& topic) {
@@ -191,7 +191,7 @@ private:
     };
 
     const std::vector<Topic> topics_;
-    std::vector<std::string> names_;  ///< Of the topics, with the partition.
+    std::vector<std::string> names_;  ///< Topics, with the partition.
     const std::string process_ = makeUuid(), node_ = makeUuid();
     Multicast multicast_;
     zmq::context_t context_;

@@ -68,7 +68,7 @@ private:
 
     const TransportOptions options_;
     std::vector<std::string> topics_;
-    std::vector<std::string> keys_;  ///< Of the configuration, for each topic.
+    std::vector<std::string> keys_;  ///< Key of the configuration for each topic.
     std::unique_ptr<Subscriber> subscriber_;
 };
 

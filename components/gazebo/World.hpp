@@ -13,7 +13,7 @@ namespace insonify::gazebo {
 /** What of a world is a scene, and the names of all that the world has. */
 struct World {
     scene::Scene scene;
-    std::set<std::string> names;  ///< Of models, links, visuals and lights, each without its scope.
+    std::set<std::string> names;  ///< Names of models, links, visuals and lights, each without its scope.
 };
 
 /** Asks Gazebo for a world's models, see scene::sharedWorld(). */

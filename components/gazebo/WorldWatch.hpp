@@ -25,7 +25,7 @@ public:
 private:
     std::set<std::string> known_;
     std::set<std::string> present_;        ///< In the message before.
-    std::vector<std::string> last_names_;  ///< Of the message before, in its order.
+    std::vector<std::string> last_names_;  ///< Names in the message before, in its order.
     std::set<std::string> reported_;
     bool is_taken_;
 };

@@ -12,7 +12,7 @@ scene::Surface unitBox();       ///< Of side 1 [m].
 scene::Surface unitPlane();     ///< A square of side 1 in z = 0 that faces up [m].
 scene::Surface unitSphere();    ///< Of radius 1 [m].
 scene::Surface unitCylinder();  ///< Of radius 1 and height 1 along z [m].
-scene::Surface unitCone();      ///< Of radius 1 at its base and height 1 along z, its point up [m].
+scene::Surface unitCone();      ///< Radius 1 at its base, height 1 along z, its point up [m].
 /** A cylinder of `length` along z between half spheres of `radius` [m]. */
 scene::Surface capsule(double radius, double length);
 

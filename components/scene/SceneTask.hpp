@@ -94,11 +94,12 @@ private:
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
     mutable std::optional<GazeboConfig> scene_gazebo_;
-    mutable std::optional<types::ConfigError> gazebo_failure_;  ///< Of scene_gazebo_; kept, for it has cost a wait.
+    mutable std::optional<types::ConfigError>
+        gazebo_failure_;  ///< Why scene_gazebo_ is not there; kept, for it has cost a wait.
     mutable std::optional<Placement> scene_placement_;
     std::string lay_;                        ///< How the scene lies; empty: as everywhere.
     mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
-    types::GeometryPtr geometry_;            ///< Of file or gazebo, with all materials.
+    types::GeometryPtr geometry_;            ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.

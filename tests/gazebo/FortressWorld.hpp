@@ -36,7 +36,7 @@ public:
         : poses_(node_.Advertise<ignition::msgs::Pose_V>(topic)),
           odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {}
     /** Red at x along the world's x, blue 12 m beyond it. */
-    void tell(double seconds, double x) {
+    void publish(double seconds, double x) {
         ignition::msgs::Pose_V message;
         setStamp(*message.mutable_header(), seconds);
         setPose(*message.add_pose(), "sea_floor", 0, 0, -9, 0);

@@ -44,14 +44,14 @@ protected:
 TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
     const auto world = makeWorld();
     const Process sonar = run({"--pings", "20", "--summary", "summary.json", "--set", "scene.pose_timeout=60"});
-    int told = 0;
-    const auto tell = [&] {
-        ++told;
-        world->tell(0.02 * told, 0.01 * told);
+    int sent = 0;
+    const auto publish = [&] {
+        ++sent;
+        world->publish(0.02 * sent, 0.01 * sent);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
-    const bool pings = gazebo::comesTrue([&] { return tell(), fs::exists(folder / "out/fan_000000.png"); });
-    const bool ended = pings && gazebo::comesTrue([&] { return tell(), fs::exists(folder / "summary.json"); });
+    const bool pings = gazebo::comesTrue([&] { return publish(), fs::exists(folder / "out/fan_000000.png"); });
+    const bool ended = pings && gazebo::comesTrue([&] { return publish(), fs::exists(folder / "summary.json"); });
     if (!ended) sonar.signal(SIGKILL);
     EXPECT_TRUE(ended);
     const Outcome outcome = sonar.wait();
@@ -62,21 +62,21 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
 TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
-    int told = 0;
-    const auto tell = [&](bool goes_on) {
-        told += goes_on ? 1 : 0;
-        world->tell(0.02 * told, 0.01 * told);
+    int sent = 0;
+    const auto publish = [&](bool goes_on) {
+        sent += goes_on ? 1 : 0;
+        world->publish(0.02 * sent, 0.01 * sent);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
     const auto pictures = [&] {
         return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});
     };
-    EXPECT_TRUE(gazebo::comesTrue([&] { return tell(true), fs::exists(folder / "out/fan_000003.png"); }));
+    EXPECT_TRUE(gazebo::comesTrue([&] { return publish(true), fs::exists(folder / "out/fan_000003.png"); }));
     EXPECT_TRUE(gazebo::comesTrue([&] {
-        tell(false);
+        publish(false);
         return readFile(folder / "stderr.txt").find("no pose of the last 2 s (pose_timeout)") != std::string::npos;
     }));
-    EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return tell(true), pictures() > before + 2; }));
+    EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);
     const Outcome outcome = sonar.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -26,8 +26,8 @@ public:
     struct Settings {
         std::string world = "sea";
         std::string scene = {};                    ///< Bytes that the service answers.
-        std::string type = "gz.msgs.Pose_V";       ///< Of the topic.
-        std::string reply_type = "gz.msgs.Scene";  ///< Of the service.
+        std::string type = "gz.msgs.Pose_V";       ///< The topic's.
+        std::string reply_type = "gz.msgs.Scene";  ///< The service's.
         bool succeeds = true;
         bool answers = true;
         uint32_t version = discovery_version;
@@ -154,7 +154,7 @@ private:
     Multicast topics_, services_;
     zmq::context_t context_;
     zmq::socket_t publisher_{context_, zmq::socket_type::pub}, replier_{context_, zmq::socket_type::router};
-    mutable std::mutex mutex_;  ///< Of the publisher, and of who takes its messages.
+    mutable std::mutex mutex_;  ///< Guards the publisher and the list of its subscribers.
     std::set<std::string> takers_;
     std::atomic<bool> stop_ = false;
     std::thread thread_;

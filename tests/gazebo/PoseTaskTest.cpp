@@ -31,7 +31,7 @@ protected:
     /** Until a message has come; then nothing of it is left. */
     void meet(double seconds = 1) {
         ASSERT_TRUE(comesTrue([&] {
-            world.tell(seconds, 0);
+            world.publish(seconds, 0);
             task.update();
             types::Pose pose;
             return readers[0].port.readNew(pose);
@@ -50,7 +50,7 @@ TEST_F(PoseTaskTest, AVehicleAndAnObjectOfTheWorldAreFollowed) {
     meet();
     types::Time last;
     for (int i = 1; i <= 20; ++i) {
-        world.tell(1 + 0.02 * i, i);
+        world.publish(1 + 0.02 * i, i);
         const auto red = next(0), blue = next(1);
         ASSERT_TRUE(red && blue) << i;
         EXPECT_EQ(red->position, glm::dvec3(i, 2, -5));
@@ -85,7 +85,7 @@ TEST_F(PoseTaskTest, AnObjectOfTheSceneMovesWithItsModelInGazebo) {
     meet();
     glm::dvec3 first{0};
     for (const double x : {3.0, 5.5}) {
-        world.tell(1 + x, x);
+        world.publish(1 + x, x);
         ASSERT_TRUE(next());
         scene.update();
         types::SnapshotPtr snapshot;
@@ -102,11 +102,11 @@ TEST_F(PoseTaskTest, AnObjectOfTheSceneMovesWithItsModelInGazebo) {
 TEST_F(PoseTaskTest, AMessageWakesTheTask) {
     startWith({entity("rov", "red")});
     task.activity().release();
-    int told = 0;
+    int sent = 0;
     types::Pose pose;
     EXPECT_TRUE(comesTrue([&] {
-        ++told;
-        world.tell(1 + 0.01 * told, told);
+        ++sent;
+        world.publish(1 + 0.01 * sent, sent);
         return readers[0].port.readNew(pose);
     }));
 }
@@ -133,13 +133,13 @@ TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
 TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
     startWith({entity("rov", "red")});
     meet(100);
-    for (int i = 0; i < 5; ++i) world.tell(100, 1);  // stands still
-    world.tell(100.02, 2);
+    for (int i = 0; i < 5; ++i) world.publish(100, 1);  // stands still
+    world.publish(100.02, 2);
     EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
     double stamp = 100.02;
     const auto is_told = [&] {  // in pairs, for after a second of silence any stamp may come
-        world.tell(stamp += 0.1, 2);
-        world.tell(stamp - 0.05, 3);  // of another publisher, or overtaken
+        world.publish(stamp += 0.1, 2);
+        world.publish(stamp - 0.05, 3);  // of another publisher, or overtaken
         task.update();
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const auto& line) {
@@ -147,7 +147,7 @@ TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
         });
     };
     EXPECT_TRUE(comesTrue(is_told));
-    world.tell(0, 4);
+    world.publish(0, 4);
     auto pose = next();
     while (pose && pose->position.x != 4) pose = next();
     EXPECT_EQ(pose.value_or(types::Pose{}).position.x, 4);

@@ -33,7 +33,7 @@ types::Pose poseOf(const ignition::msgs::Odometry& message, WorldFrame frame) {
     return readOdometry(message.SerializeAsString(), frame).value_or(OdometryMessage{}).pose;
 }
 
-/** Of a message without a header where that is null. */
+/** @param header  null: the message has none */
 std::optional<types::Time> stampOf(const ignition::msgs::Header* header) {
     ignition::msgs::Pose_V message;
     if (header) *message.mutable_header() = *header;

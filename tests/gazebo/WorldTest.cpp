@@ -42,7 +42,7 @@ protected:
     static void setVector(wire::Vector3d& vector, double x, double y, double z) {
         vector.set_x(x), vector.set_y(y), vector.set_z(z);
     }
-    /** Of the objects at and below a node. */
+    /** Returns the box around the objects at and below a node. */
     static scene::Bounds boundsOf(const scene::Scene& scene, const std::string& node) {
         const int found = scene::findNode(scene, node);
         EXPECT_GE(found, 0) << node;

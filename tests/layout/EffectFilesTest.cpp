@@ -21,7 +21,7 @@ const std::map<std::string, size_t> known{
 
 /** Folders and files in which the word means another thing. */
 const std::multimap<std::string, std::string> other_meanings{
-    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},     // Of a device's neighbouring beams.
+    {"crosstalk", "components/sonar/effects/Imperfections.cpp"},     // Between a device's neighbouring beams.
     {"crosstalk", "components/sonar/plan/ImperfectionsConfig.hpp"},  // The same.
     {"volume", "components/acoustics/Seabed"},                       // Scattering within a sediment.
     {"volume", "components/deployer/BackscatterCommand.cpp"},        // The same.
