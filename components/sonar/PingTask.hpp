@@ -35,6 +35,10 @@ namespace insonify::sonar {
  *  array heard, of a sonar that is configured to have some. `pose` tells where each ping was rendered, carried on as it
  *  was, so that it renders the same pings again as `given_pose`.
  *
+ *  With `others` connected a ping is rendered once its last echo could have come, with all pulses of other sonars that
+ *  were sent until then. In lockstep that is at the first sample after it, or when the next ping begins; a ping that is
+ *  still listened to at the stop is not written, and a notice counts it.
+ *
  *  Of a run that is cut into shards every ping is that of the whole run; its quality is to be given, for what is chosen
  *  depends on the pings before. */
 class PingTask : public AimedTask, public framework::Planned, public framework::Divisible {
