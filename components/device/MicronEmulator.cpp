@@ -221,14 +221,15 @@ std::optional<types::Time> MicronEmulator::tick(types::Time now) {
     if (line_ && line_->asked.empty() && !line_->data && now >= line_->ready) askForPing(now);
     if (line_ && line_->data && now >= line_->whole) finishLine();
     if (line_ && line_->asked.isLate(now)) {
-        if (!warned_) outlet_.warn("no ping came that was asked for; its scan line is not answered");
+        if (!warned_) outlet_.warn("no ping came that was asked for; its scan line waits for another");
         warned_ = true;
-        line_.reset();
+        askForPing(now);
     }
-    if (now >= next_alive_ && !line_) tellAlive(now);
+    if (now >= next_alive_ && (!line_ || warned_)) tellAlive(now);
     if (!line_) return next_alive_;
     if (line_->data) return line_->whole;
-    return line_->asked.empty() ? line_->ready : line_->asked.deadline();
+    if (line_->asked.empty()) return line_->ready;
+    return warned_ ? std::min(line_->asked.deadline(), next_alive_) : line_->asked.deadline();
 }
 
 }  // namespace insonify::device

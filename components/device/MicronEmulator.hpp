@@ -64,11 +64,13 @@ public:
 
 private:
     enum class State { Off, Booting, Unconfigured, Ready };
+    static constexpr size_t max_asked = 16;  ///< For one line: a sonar that takes so long that it is asked again may
+                                             ///< answer what it was asked before [1].
     /** A scan line on its way. */
     struct Line {
         types::Time ready;  ///< When the motor has arrived.
         types::Time whole;  ///< When sound is back.
-        AskedPings<> asked;
+        AskedPings<> asked{max_asked};
         std::optional<Bytes> data;  ///< Once the ping has come.
         std::vector<Client> clients;
     };

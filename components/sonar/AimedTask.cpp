@@ -126,6 +126,10 @@ void AimedTask::takeScene(const types::Snapshot& scene) {
 
 const char* AimedTask::refusal() {
     if (!taken_.scene.geometry) return "the snapshot has no geometry";
+    if (std::ranges::any_of(taken_.scene.moved, [count = taken_.scene.geometry->objects.size()](const auto& moved) {
+            return moved.object >= count;
+        }))
+        return "the snapshot moves an object that its geometry does not have";
     if (const char* why = normalisePose(taken_.scene.sonar)) return why;
     if (activity().realtime() && (taken_.scene.time - now()).seconds() > 1)
         return "the snapshot's time is ahead of the clock by more than a second";

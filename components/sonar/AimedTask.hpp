@@ -26,10 +26,10 @@ namespace insonify::sonar {
  *  that wait counts, and there is no ping for the others. What they name becomes the value of the property of that
  *  name, and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
  *
- *  A pose that cannot be used (not finite, a quaternion of no length), a snapshot without geometry, and in realtime one
- *  whose time is a second ahead of the clock are refused. A quaternion that is not of unit length is normalised. A
- * sonar that only more than a tenth of the speed of sound takes to its new place has been put there: a warning reports
- * it, and the ping is made without a velocity from that way. */
+ *  Refused are a pose that cannot be used (not finite, a quaternion of no length), a snapshot without geometry or one
+ *  that moves an object beyond it, and in realtime one whose time is a second ahead of the clock. A quaternion that is
+ *  not of unit length is normalised. A sonar that only more than a tenth of the speed of sound takes to its new place
+ *  has been put there: a warning reports it, and the ping is made without a velocity from that way. */
 class AimedTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

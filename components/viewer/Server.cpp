@@ -184,15 +184,16 @@ void Server::Core::leave(uint64_t session) {
 }
 
 void Server::Core::recount() {
-    uint64_t pages = 0, others = 0, readers = 0;
+    uint64_t admitted = 0, pages = 0, others = 0, readers = 0;
     std::vector<uint64_t> wanted(subscribers_.size());
     for (const auto& [id, session] : sessions_) {
+        admitted += session->isAdmitted() ? 1 : 0;
         pages += session->kind() == Kind::Page ? 1 : 0;
         others += session->kind() == Kind::Foxglove ? 1 : 0;
         readers += session->parameters().any() ? 1 : 0;
         for (const auto& [subscription, channel] : session->subscriptions().all()) ++wanted[channel];
     }
-    clients = pages + others;
+    clients = admitted;
     pages_ = pages;
     foxglove_ = others;
     parameter_readers_ = readers;

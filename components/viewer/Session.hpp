@@ -38,6 +38,7 @@ inline Response responseTo(const Request& request, unsigned status, std::string_
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, "no-cache");
     response.set(http::field::x_frame_options, "DENY");
+    response.set("Referrer-Policy", "no-referrer");  // the address may have a token
     response.keep_alive(false);
     response.body() = body;
     response.prepare_payload();
@@ -64,7 +65,8 @@ class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(tcp::socket socket, ServerContext& context, uint64_t id);
     Kind kind() const { return open_ ? kind_ : Kind::None; }
-    bool hasAsked() const { return asked_; }  ///< Its request is there.
+    bool isAdmitted() const { return admitted_; }  ///< One of the clients, whose handshake may be under way.
+    bool hasAsked() const { return asked_; }       ///< Its request is there.
     const Subscriptions& subscriptions() const { return subscriptions_; }
     const ParameterSubscriptions& parameters() const { return parameters_; }
     void readRequest();
@@ -114,7 +116,7 @@ private:
     Frame sending_;
     uint64_t told_dropped_ = 0;
     size_t rest_ = 0;  ///< Read after the answer [B].
-    bool asked_ = false, open_ = false, writing_ = false;
+    bool asked_ = false, admitted_ = false, open_ = false, writing_ = false;
 };
 
 inline Session::Session(tcp::socket socket, ServerContext& context, uint64_t id)
@@ -207,6 +209,8 @@ inline void Session::readRest() {
 }
 
 inline void Session::upgrade() {
+    admitted_ = true;
+    context_.recount();
     stream().expires_never();
     const auto idle = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(context_.options.idle_timeout));

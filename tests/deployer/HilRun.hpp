@@ -40,6 +40,7 @@ public:
         process_.signal(SIGINT);
         return process_.wait();
     }
+    void signal(int number) const { process_.signal(number); }
     const TestFolder& folder() const { return folder_; }
 
 private:

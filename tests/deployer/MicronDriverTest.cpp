@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "tests/deployer/HilRun.hpp"
 #include "tests/support/MicronDriver.hpp"
@@ -114,6 +115,24 @@ TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas)
     EXPECT_EQ(driver.beam().bins.size(), 200u);
     const Outcome outcome = run_.stop();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+/** As on a machine that is short of processors, or whose clock is set on: the line comes late, and it comes. */
+TEST_F(MicronDriverTest, ALineIsAnsweredThoughTheSimulationStoodStill) {
+    INSONIFY_NEEDS("sdf");
+    const int port = run_.port();
+    ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
+    const Wire wire(Wire::connected(port));
+    MicronDriver driver = driverOn(wire);
+    driver.configure({.resolution = 0.05, .max_distance = 10});
+    for (int i = 0; i < 3; ++i) {
+        driver.request();
+        std::this_thread::sleep_for(std::chrono::milliseconds(4 * i));  // before the ping, while it is under way, after
+        run_.signal(SIGSTOP);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+        run_.signal(SIGCONT);
+        EXPECT_EQ(driver.beam().bins.size(), 200u) << i;
+    }
 }
 
 }  // namespace

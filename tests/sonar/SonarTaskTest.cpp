@@ -69,12 +69,14 @@ TEST_F(SonarTaskTest, ABeamThatIsWiderThanItsSpacingHearsWhatItsNeighboursHear) 
 TEST_F(SonarTaskTest, APoseThatCannotBeUsedIsARunTimeErrorUntilTheNextGoodOne) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     start();
-    types::Snapshot lost = facingWall(5), unturned = facingWall(5), spun = facingWall(5), empty = facingWall(5);
+    types::Snapshot lost = facingWall(5), unturned = facingWall(5), spun = facingWall(5), empty = facingWall(5),
+                    strange = facingWall(5);
     lost.sonar.position.x = nan;
     unturned.sonar.orientation = {0, 0, 0, 1e-7};
     spun.sonar.orientation.w = nan;
     empty.geometry = nullptr;
-    for (const types::Snapshot& bad : {lost, unturned, spun, empty}) {
+    strange.moved.push_back({static_cast<uint32_t>(strange.geometry->objects.size()), glm::dmat4(1)});
+    for (const types::Snapshot& bad : {lost, unturned, spun, empty, strange}) {
         EXPECT_FALSE(pingOf(bad));
         EXPECT_EQ(task_.state(), TaskState::RunTimeError);
         EXPECT_FALSE(task_.lastError().empty());

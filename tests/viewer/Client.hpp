@@ -65,9 +65,16 @@ public:
     }
     /** Becomes a WebSocket; gives the first line of the answer. */
     std::string upgrade(const std::string& protocol, const std::string& target = "/", const std::string& more = "") {
+        sendUpgrade(protocol, target, more);
+        return upgraded();
+    }
+    void sendUpgrade(const std::string& protocol, const std::string& target = "/", const std::string& more = "") {
         send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
              "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
              protocol + "\r\n" + more + "\r\n");
+    }
+    /** The first line of the answer to sendUpgrade(). */
+    std::string upgraded() {
         while (received_.find("\r\n\r\n") == std::string::npos)
             if (!receive()) break;
         const size_t end = received_.find("\r\n\r\n");
@@ -75,7 +82,7 @@ public:
         received_.erase(0, end == std::string::npos ? end : end + 4);
         return head_.substr(0, head_.find("\r\n"));
     }
-    const std::string& head() const { return head_; }  ///< Of the answer to upgrade().
+    const std::string& head() const { return head_; }  ///< Headers of the answer to sendUpgrade().
     /** A text message of less than 64 KiB. */
     void say(const std::string& text) {
         std::string frame = "\x81";

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "components/viewer/Server.hpp"
 #include "tests/viewer/Bench.hpp"
@@ -34,15 +36,41 @@ TEST(ServerTest, AnErrorClosesTheSessionThatItWasFor) {
     EXPECT_EQ(silent.heard(), "still there");
 }
 
+/** Serves one file, and nothing else. */
+struct Quiet final : ServerHandler {
+    std::optional<PageFile> file(std::string_view) override { return PageFile{"text/plain", "a page"}; }
+    std::vector<Frame> greeting() override { return {}; }
+    void request(uint64_t, std::string) override {}
+    void parameters(uint64_t, ParameterRequest, bool) override {}
+    void subscribed(const std::vector<uint32_t>&) override {}
+    void subscribedToParameters() override {}
+};
+
+TEST(ServerTest, HandshakesUnderWayCountAsClients) {
+    Quiet quiet;
+    ServerOptions options;
+    options.clients = 3;
+    Server server(options, quiet);
+    std::vector<Client> asking;
+    for (int i = 0; i < 12; ++i) asking.emplace_back(server.port());
+    for (Client& client : asking) client.sendUpgrade(page_protocol);
+    std::map<std::string, int> answers;
+    for (Client& client : asking) ++answers[client.upgraded()];
+    EXPECT_THAT(answers, testing::ElementsAre(testing::Pair(testing::HasSubstr("101"), 3),
+                                              testing::Pair(testing::HasSubstr("503"), 9)));
+    asking.clear();
+    EXPECT_TRUE(comesTrue([&] { return server.counts().clients == 0; }));
+}
+
+/** A link on the page would give the token in its address away otherwise. */
+TEST(ServerTest, ThePagesAddressIsNoReferrer) {
+    Quiet quiet;
+    Server server({}, quiet);
+    EXPECT_THAT(Client(server.port()).get("/?token=secret"), testing::HasSubstr("Referrer-Policy: no-referrer\r\n"));
+}
+
 TEST(ServerTest, WhatIsReplacedBeforeItIsSentIsCountedForEachClient) {
-    struct Quiet final : ServerHandler {
-        std::optional<PageFile> file(std::string_view) override { return std::nullopt; }
-        std::vector<Frame> greeting() override { return {}; }
-        void request(uint64_t, std::string) override {}
-        void parameters(uint64_t, ParameterRequest, bool) override {}
-        void subscribed(const std::vector<uint32_t>&) override {}
-        void subscribedToParameters() override {}
-    } quiet;
+    Quiet quiet;
     Server server({}, quiet);
     Client client(server.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
