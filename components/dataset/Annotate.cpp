@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace insonify::dataset {
@@ -15,17 +16,19 @@ constexpr int32_t none = types::SonarTruth::no_object;
 class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-              const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width)
+              const Classes& classes, const Instances& instances, const AnnotationConfig& config,
+              output::BinScale scale, double bin_width)
         : ping_(ping),
           truth_(truth),
           picture_(picture),
+          instances_(instances),
+          ghost_(classes.ghost()),
+          first_shadow_(static_cast<int32_t>(truth.objects.size())),
           config_(config),
           decibel_(scale == output::BinScale::Decibel),
           bin_width_(bin_width) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
-        for (const std::string& name : truth.objects) class_of_.push_back(classes.of(name));
-        for (size_t i = 0; i < truth.objects.size(); ++i) class_of_.push_back(classes.shadowOf(class_of_[i]));
     }
 
     Annotated annotated() {
@@ -47,26 +50,65 @@ private:
         const auto value = static_cast<double>(ping_.bins[bin]);
         return decibel_ ? std::pow(10, value / 10) : value;
     }
-    bool counts(size_t bin) const {
+    /** The instance that a bin shows; none where that is no part of the file's scene, as the floor of a survey. */
+    int32_t instanceAt(size_t bin) const {
         const int32_t object = truth_.object[bin];
-        return object != none && class_of_[static_cast<size_t>(object)] != 0 &&
+        return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
+    }
+    bool isGhost(size_t bin) const {
+        return !truth_.path.empty() && truth_.path[bin] != 0 && truth_.path[bin] != types::SonarTruth::through_wall;
+    }
+    bool counts(size_t bin) const {
+        const int32_t instance = instanceAt(bin);
+        return instance != none && instances_.category(instance) != 0 && !isGhost(bin) &&
                static_cast<double>(truth_.share[bin]) >= config_.min_share && intensityOf(bin) > 0;
     }
 
     void labelCells() {
         const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
         object_of_.assign(size_t{ping_.beam_count} * cells, none);
+        if (ghost_ != 0) findGhosts();
         for (uint32_t beam = 0; beam < ping_.beam_count; ++beam) {
             if (ping_.bearings[beam].isUnknown()) continue;
             if (config_.shadows) findShadows(beam);
             for (uint32_t cell = 0; cell < cells; ++cell) {
                 const size_t at = size_t{beam} * cells + cell;
                 const uint32_t last = std::min((cell + 1) * step, ping_.bin_count);
-                if (picture_.levels()[at] >= config_.min_level) labelCell(beam, cell * step, last, object_of_[at]);
+                if (object_of_[at] == none && picture_.levels()[at] >= config_.min_level)
+                    labelCell(beam, cell * step, last, object_of_[at]);
                 if (config_.shadows && object_of_[at] == none) object_of_[at] = shadow_of_[cell * step];
                 if (object_of_[at] != none) addCell(beam, cell, cell * step, last, object_of_[at]);
             }
         }
+    }
+
+    /** Labels the cells of ghosts, each with a number of its own behind those of shadows. */
+    void findGhosts() {
+        const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
+        const std::vector<uint32_t> order = neighbours();
+        cv::Mat is_ghost(static_cast<int>(order.size()), static_cast<int>(cells), CV_8U, cv::Scalar(0)), numbers;
+        for (size_t row = 0; row < order.size(); ++row)
+            for (uint32_t cell = 0; cell < cells; ++cell) {
+                const size_t first = size_t{order[row]} * ping_.bin_count + size_t{cell} * step;
+                const size_t last = std::min(first + step, (size_t{order[row]} + 1) * ping_.bin_count);
+                bool ghost = picture_.levels()[size_t{order[row]} * cells + cell] >= config_.min_level;
+                for (size_t bin = first; bin < last && ghost; ++bin) ghost = isGhost(bin);
+                is_ghost.at<uint8_t>(static_cast<int>(row), static_cast<int>(cell)) = ghost;
+            }
+        cv::connectedComponents(is_ghost, numbers);
+        for (size_t row = 0; row < order.size(); ++row)
+            for (uint32_t cell = 0; cell < cells; ++cell)
+                if (const int32_t number = numbers.at<int32_t>(static_cast<int>(row), static_cast<int>(cell)))
+                    object_of_[size_t{order[row]} * cells + cell] = 2 * first_shadow_ + number - 1;
+    }
+
+    /** The beams in an order in which those that are beside each other in the picture follow each other. */
+    std::vector<uint32_t> neighbours() const {
+        std::vector<uint32_t> order;
+        for (uint32_t beam = 0; beam < ping_.beam_count; ++beam)
+            if (!ping_.bearings[beam].isUnknown()) order.push_back(beam);
+        std::ranges::stable_sort(order, {}, [this](uint32_t beam) { return picture_.bearing(beam); });
+        return order;
     }
 
     /** Finds for each bin of a beam whose shadow it is. The sound that just passes the object meets what lies behind
@@ -83,20 +125,22 @@ private:
     }
 
     /** The number of the shadow of what hides the bins from `first` to `behind`; none where that has no class or is
-     *  what lies behind them as well, as where a floor is uneven. */
+     *  what lies behind them as well, as where a floor is uneven. Of echoes whose elevations differ from that behind by
+     *  no more than one bin's there, the last one hides it: sound passed the others already. */
     int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
+        const auto elevation = [&](uint32_t k) { return static_cast<double>(truth_.elevation[start + k]); };
+        const auto apart = [&](uint32_t k) { return std::abs(elevation(k) - elevation(behind)); };
         double nearest = std::numeric_limits<double>::infinity();
-        int32_t caster = none;
-        for (uint32_t k = 0; k < first; ++k) {
-            const double apart =
-                std::abs(static_cast<double>(truth_.elevation[start + k] - truth_.elevation[start + behind]));
-            if (truth_.object[start + k] == none || !(apart <= nearest)) continue;
-            nearest = apart;
-            caster = truth_.object[start + k];
+        for (uint32_t k = 0; k < first; ++k)
+            if (truth_.object[start + k] != none && apart(k) <= nearest) nearest = apart(k);
+        if (behind + 1 < ping_.bin_count && std::isfinite(apart(behind + 1))) nearest += apart(behind + 1);
+        for (uint32_t k = first; k-- > 0;) {
+            if (truth_.object[start + k] == none || !(apart(k) <= nearest)) continue;
+            const int32_t caster = instanceAt(start + k);
+            if (caster == none || caster == instanceAt(start + behind)) return none;
+            return instances_.shadow(caster) == 0 ? none : caster + first_shadow_;
         }
-        if (caster == none || caster == truth_.object[start + behind]) return none;
-        const auto shadow = caster + static_cast<int32_t>(truth_.objects.size());
-        return class_of_[static_cast<size_t>(shadow)] == 0 ? none : shadow;
+        return none;
     }
 
     void labelCell(uint32_t beam, uint32_t first, uint32_t last, int32_t& object) const {
@@ -107,8 +151,13 @@ private:
             const double energy = intensityOf(bin) * static_cast<double>(truth_.share[bin]);
             if (energy <= strongest) continue;
             strongest = energy;
-            object = truth_.object[bin];
+            object = instanceAt(bin);
         }
+    }
+    /** Whether a bin is of what its cell was labelled as. */
+    bool shows(size_t bin, uint32_t number, int32_t object) const {
+        if (object >= 2 * first_shadow_) return isGhost(bin);
+        return object >= first_shadow_ ? shadow_of_[number] == object : instanceAt(bin) == object && !isGhost(bin);
     }
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
@@ -121,10 +170,11 @@ private:
         annotation.range_max = std::max(annotation.range_max, far);
         for (uint32_t k = first; k < last; ++k) {
             const size_t bin = size_t{beam} * ping_.bin_count + k;
-            if (annotation.is_shadow ? shadow_of_[k] != object : truth_.object[bin] != object) continue;
+            if (!shows(bin, k, object)) continue;
             ++annotation.bins;
             if (annotation.is_shadow) continue;
-            annotation.energy += intensityOf(bin) * static_cast<double>(truth_.share[bin]);
+            annotation.energy +=
+                intensityOf(bin) * (annotation.object < 0 ? 1 : static_cast<double>(truth_.share[bin]));
         }
         const cv::Point at = picture_.pixelOf(beam, cell);
         widen(annotation.box, at.x, at.y);
@@ -132,16 +182,23 @@ private:
 
     Annotation& annotationOf(int32_t object, double bearing, double range) {
         const auto [at, is_new] = found_.try_emplace(object);
-        if (is_new) {
-            const auto objects = static_cast<int32_t>(truth_.objects.size());
-            at->second.is_shadow = object >= objects;
-            at->second.object = object % objects;
-            at->second.name = truth_.objects[static_cast<size_t>(object % objects)];
-            at->second.category = class_of_[static_cast<size_t>(object)];
-            at->second.bearing_min = at->second.bearing_max = bearing;
-            at->second.range_min = at->second.range_max = range;
+        Annotation& annotation = at->second;
+        if (!is_new) return annotation;
+        annotation.bearing_min = annotation.bearing_max = bearing;
+        annotation.range_min = annotation.range_max = range;
+        if (object >= 2 * first_shadow_) {
+            annotation.object = none;
+            annotation.name = "ghost";
+            annotation.category = ghost_;
+            return annotation;
         }
-        return at->second;
+        annotation.is_shadow = object >= first_shadow_;
+        annotation.object = object % first_shadow_;
+        annotation.parts = instances_.parts(annotation.object);
+        annotation.name = instances_.name(annotation.object);
+        annotation.category =
+            annotation.is_shadow ? instances_.shadow(annotation.object) : instances_.category(annotation.object);
+        return annotation;
     }
 
     static void widen(Box& box, int x, int y) {
@@ -194,12 +251,15 @@ private:
     const types::Sonar& ping_;
     const types::SonarTruth& truth_;
     const output::PlainPicture& picture_;
+    const Instances& instances_;
+    const uint32_t ghost_;        ///< Class of ghosts; 0: they have none.
+    const int32_t first_shadow_;  ///< Number of objects of the truth.
     const AnnotationConfig& config_;
     const bool decibel_;
-    const double bin_width_;          ///< [m]
-    std::vector<uint32_t> class_of_;  ///< Class of each object of the truth, then of each shadow.
-    std::vector<int32_t>
-        object_of_;  ///< Object of each cell; for a shadow, its object's number plus the number of objects.
+    const double bin_width_;  ///< [m]
+    /** What each cell shows: an instance; from first_shadow_ on the shadow of one; from 2 * first_shadow_ on a ghost.
+     */
+    std::vector<int32_t> object_of_;
     std::vector<int32_t> shadow_of_;  ///< The same for each bin of a beam.
     std::map<int32_t, Annotation> found_;
 };
@@ -207,8 +267,9 @@ private:
 }  // namespace
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width) {
-    return Annotator(ping, truth, picture, classes, config, scale, bin_width).annotated();
+                   const Classes& classes, const Instances& instances, const AnnotationConfig& config,
+                   output::BinScale scale, double bin_width) {
+    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width).annotated();
 }
 
 }  // namespace insonify::dataset

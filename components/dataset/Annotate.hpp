@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "components/dataset/Classes.hpp"
+#include "components/dataset/Instances.hpp"
 #include "components/output/PlainPicture.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"
@@ -16,9 +16,10 @@ struct Box {
     bool operator==(const Box&) const = default;
 };
 
-/** One object as a picture shows it. */
+/** One instance as a picture shows it, or a ghost. */
 struct Annotation {
-    int32_t object = 0;  ///< Index into the truth's objects.
+    int32_t object = 0;          ///< The first of its objects, an index into the truth's list; -1: it is a ghost.
+    std::vector<int32_t> parts;  ///< All of its objects.
     std::string name;
     uint32_t category = 0;                    ///< From 1.
     bool is_shadow = false;                   ///< It is the object's shadow, not its echo.
@@ -37,13 +38,15 @@ struct Annotated {
     std::vector<uint16_t> labels;         ///< Of each pixel, row by row: number of its annotation from 1; 0: none.
 };
 
-/** Finds which objects a picture shows, and with AnnotationConfig::shadows which shadows. A cell is of the object that
- * gives most energy to one of its bins, if its share there is at least `min_share`, it has a class, and the cell's grey
- * level is at least `min_level`. An object of fewer than `min_pixels` pixels is not annotated, and its pixels belong to
- * none.
+/** Finds which instances a picture shows, with AnnotationConfig::shadows which shadows, and with
+ *  AnnotationConfig::ghosts which ghosts. A cell is of the instance whose object gives most energy to one of its bins,
+ * if its share there is at least `min_share`, it has a class, and the cell's grey level is at least `min_level`. Where
+ * most of a bin's energy came by a mirror, it is no object's: cells of such bins that touch are a ghost. What has fewer
+ *  than `min_pixels` pixels is not annotated, and its pixels belong to none.
  *  @param picture that took the ping; @param bin_width exact [m]. Throws std::runtime_error for a truth of another
  * grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
-                   const Classes& classes, const AnnotationConfig& config, output::BinScale scale, double bin_width);
+                   const Classes& classes, const Instances& instances, const AnnotationConfig& config,
+                   output::BinScale scale, double bin_width);
 
 }  // namespace insonify::dataset

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "components/dataset/Samples.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
 
@@ -14,18 +15,36 @@ std::string withoutNumber(const std::string& name) {
     return end == std::string::npos ? name : name.substr(0, end + 1);
 }
 
-Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects) : rules_(sweep.classes) {
+Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, const std::vector<std::string>& nodes)
+    : rules_(sweep.classes) {
+    std::vector<std::string> known = objects;
+    known.insert(known.end(), nodes.begin(), nodes.end());
     for (const ClassRule& rule : rules_) {
-        resolve(sweep, rule.patterns, objects, "classes." + rule.name, rule.line, rule.column,
+        resolve(sweep, rule.patterns, known, "classes." + rule.name, rule.line, rule.column,
                 sweep.scenes.size() > 1 ? "any of the scenes" : "the scene");
         names_.push_back(rule.name);
     }
     std::set<std::string> bare;
     for (const std::string& object : objects) bare.insert(withoutNumber(object));
     if (rules_.empty()) names_.assign(bare.begin(), bare.end());
-    if (!sweep.annotations.shadows) return;
-    first_shadow_ = static_cast<uint32_t>(names_.size());
-    for (uint32_t i = 0; i < first_shadow_; ++i) names_.push_back(names_[i] + "_shadow");
+    if (sweep.annotations.shadows) {
+        first_shadow_ = static_cast<uint32_t>(names_.size());
+        for (uint32_t i = 0; i < first_shadow_; ++i) names_.push_back(names_[i] + "_shadow");
+    }
+    if (sweep.annotations.ghosts) {
+        names_.emplace_back("ghost");
+        ghost_ = static_cast<uint32_t>(names_.size());
+    }
+    refuseTwice(sweep);
+}
+
+void Classes::refuseTwice(const Sweep& sweep) const {
+    for (size_t i = 0; i < names_.size(); ++i)
+        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) !=
+            names_.begin() + static_cast<std::ptrdiff_t>(i))
+            throw types::ConfigError(
+                sweep.file, "classes",
+                "has " + names_[i] + ", which is the class of shadows or ghosts; name it otherwise");
 }
 
 uint32_t Classes::of(const std::string& object) const {

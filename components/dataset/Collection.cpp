@@ -149,7 +149,8 @@ void Collection::writeTracks() {
         std::string& text =
             lines[fmt::format("tracks_{:03}_{:03}.txt", sequence[0].get<int>(), sequence[1].get<int>())];
         for (const Json& each : record["annotations"]) {
-            if (each["shadow"].get<bool>()) continue;  // a track has one box in a frame
+            // A track has one box in a frame.
+            if (each["shadow"].get<bool>() || each["object"].get<int>() < 0) continue;
             const Json& box = each["bbox"];
             text += fmt::format("{},{},{},{},{},{},1,{},1\n", record["frame"].get<uint64_t>() + 1,
                                 each["object"].get<int>() + 1, box[0].get<int>(), box[1].get<int>(), box[2].get<int>(),

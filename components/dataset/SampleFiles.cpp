@@ -22,6 +22,7 @@ Json toJson(const types::Pose& pose) {
 Json toJson(const Annotation& annotation, const Classes& classes, const output::PlainPicture& picture) {
     const Box& box = annotation.box;
     return {{"object", annotation.object},
+            {"parts", annotation.parts},
             {"name", annotation.name},
             {"class", classes.names()[annotation.category - 1]},
             {"category", annotation.category},
@@ -35,8 +36,10 @@ Json toJson(const Annotation& annotation, const Classes& classes, const output::
             {"segmentation", {{"size", {picture.height(), picture.width()}}, {"counts", annotation.runs}}}};
 }
 
-Json toJson(const types::Sonar& ping, double bin_width, const types::BeamArc& arc) {
-    return {{"beams", ping.beam_count},
+Json toJson(const Run& run, double bin_width, const types::BeamArc& arc) {
+    const types::Sonar& ping = run.ping();
+    return {{"lines", run.size()},
+            {"beams", ping.beam_count / run.size()},
             {"bins", ping.bin_count},
             {"range_m", ping.bin_count * bin_width},
             {"bearing_rad", {arc.bearings.front(), arc.bearings.back()}},
@@ -68,23 +71,40 @@ std::string yoloOf(const Annotated& annotated, const output::PlainPicture& pictu
     return text;
 }
 
+/** When each line was, and where the vehicle was then. */
+void addLines(log::NpzFile& npz, const std::vector<TimedPose>& run) {
+    std::vector<double> times, positions, orientations;
+    for (const auto& [time, at] : run) {
+        times.push_back(time);
+        for (const double each : {at.position.x, at.position.y, at.position.z}) positions.push_back(each);
+        for (const double each : {at.orientation.w, at.orientation.x, at.orientation.y, at.orientation.z})
+            orientations.push_back(each);
+    }
+    npz.array("times", {run.size()}, times);
+    npz.array("positions", {run.size(), 3}, positions);
+    npz.array("orientations_wxyz", {run.size(), 4}, orientations);
+}
+
 void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta) {
-    const types::Sonar& ping = heard.ping;
-    const std::vector<size_t> shape{ping.beam_count, ping.bin_count};
+    const types::Sonar& ping = heard.run.ping();
+    const uint32_t lines = heard.run.size(), beams = ping.beam_count / lines;
+    std::vector<size_t> shape{beams, ping.bin_count};
+    if (lines > 1) shape.insert(shape.begin(), lines);
     std::vector<double> bearings, ranges;
-    for (const types::Angle& bearing : ping.bearings) bearings.push_back(bearing.rad);
+    for (uint32_t beam = 0; beam < beams; ++beam) bearings.push_back(ping.bearings[beam].rad);
     for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * heard.bin_width);
     log::NpzFile npz(file);
     npz.array("bins", shape, ping.bins);
     npz.array("bearings", {bearings.size()}, bearings);
     npz.array("range_m", {ranges.size()}, ranges);
     types::SonarTruth::forEachArray(
-        heard.truth, [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
+        heard.run.truth(), [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
             npz.begin(name, log::numpyType<Number>(), shape);
             npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
             npz.end();
         });
-    npz.texts("objects", heard.truth.objects);
+    if (lines > 1) addLines(npz, heard.sample.run);
+    npz.texts("objects", heard.run.truth().objects);
     npz.text("meta", meta);
     npz.close();
 }
@@ -96,11 +116,13 @@ void writeMcap(const fs::path& file, const Heard& heard) {
     const size_t ping = log->addStream<types::Sonar>("sonar.ping");
     const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
     const size_t pose = log->addStream<types::Pose>("vehicle.pose");
-    types::Pose at = heard.sample.at;
-    at.time = heard.ping.time;
-    log->write(pose, at.time, at);
-    log->write(ping, at.time, heard.ping);
-    log->write(truth, at.time, heard.truth);
+    for (uint32_t i = 0; i < heard.run.size(); ++i) {
+        types::Pose at = heard.sample.run[i].at;
+        at.time = heard.run.pings()[i]->time;
+        log->write(pose, at.time, at);
+        log->write(ping, at.time, *heard.run.pings()[i]);
+        log->write(truth, at.time, *heard.run.truths()[i]);
+    }
     log->close();
     fs::rename(inside, file);
     fs::remove_all(bag);
@@ -112,9 +134,9 @@ SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& class
     : sweep_(sweep), format_(format), classes_(classes), store_(store), picture_(sweep.picture) {}
 
 void SampleFiles::write(const Heard& heard) {
-    picture_.take(heard.ping);
-    const Annotated annotated = annotate(heard.ping, heard.truth, picture_, classes_, sweep_.annotations,
-                                         sweep_.picture.scale, heard.bin_width);
+    picture_.take(heard.run.ping());
+    const Annotated annotated = annotate(heard.run.ping(), heard.run.truth(), picture_, classes_, heard.instances,
+                                         sweep_.annotations, sweep_.picture.scale, heard.bin_width);
     Json record = recordOf(heard, annotated);
     record["files"] = writeFiles(store_.stemOf(heard.sample.index), heard, annotated, record);
     store_.putRecord(heard.sample.index, std::move(record));
@@ -127,11 +149,11 @@ Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const
                 {"scene", heard.scene},
                 {"sequence", {sample.scene, sample.setting}},
                 {"frame", sample.pose},
-                {"time_s", sample.time},
+                {"time_s", sample.run.front().time},
                 {"settings", Json::object()},
-                {"pose", toJson(sample.at)},
+                {"pose", toJson(sample.run.front().at)},
                 {"objects", Json::array()},
-                {"ping", toJson(heard.ping, heard.bin_width, picture_.arc())},
+                {"ping", toJson(heard.run, heard.bin_width, picture_.arc())},
                 {"picture",
                  {{"width", picture_.width()},
                   {"height", picture_.height()},

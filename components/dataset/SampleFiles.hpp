@@ -4,18 +4,17 @@
 #include <vector>
 
 #include "components/dataset/Annotate.hpp"
+#include "components/dataset/Run.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Store.hpp"
-#include "types/Sonar.hpp"
-#include "types/SonarTruth.hpp"
 
 namespace insonify::dataset {
 
 /** A sample with what a sonar heard of it. */
 struct Heard {
     const Sample& sample;
-    const types::Sonar& ping;
-    const types::SonarTruth& truth;
+    const Run& run;
+    const Instances& instances;
     double bin_width;                                      ///< Exact [m].
     std::string scene;                                     ///< Name of its file.
     std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.

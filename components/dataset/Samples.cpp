@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "components/dataset/Placement.hpp"
 #include "types/ConfigError.hpp"
@@ -14,7 +15,8 @@ namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t max_samples = 100'000'000;
-constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365;
+constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365,
+                   motion_stream = 0x6d6f74696f6e00;
 
 /** The coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
@@ -63,7 +65,7 @@ uint64_t wordOf(const Sweep& sweep, uint64_t index, size_t number) {
     return types::hashed(sweep.seed, index, setting_stream + number);
 }
 
-Samples::Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes)
+Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> trajectory, std::vector<SceneParts> scenes)
     : sweep_(sweep), trajectory_(std::move(trajectory)), scenes_(std::move(scenes)) {
     poses_ = sweep.grid ? sweep.grid->gridSize() : sweep.random ? sweep.random_count : trajectory_.size();
     for (const Setting& setting : sweep.settings)
@@ -123,11 +125,8 @@ std::vector<std::pair<std::string, std::string>> Samples::settingsOf(size_t sett
     return chosen;
 }
 
-types::Pose Samples::poseOf(uint64_t pose, double& time) const {
-    if (sweep_.trajectory) {
-        time = trajectory_[pose].time;
-        return trajectory_[pose].at;
-    }
+std::vector<TimedPose> Samples::runOf(uint64_t pose) const {
+    if (sweep_.trajectory) return trajectory_[pose];
     const std::vector<double> values =
         sweep_.grid ? gridded(*sweep_.grid, pose) : drawn(*sweep_.random, sweep_.seed, pose);
     const types::Mount mount{{values[0], values[1], values[2]}, values[3], values[4], values[5]};
@@ -136,7 +135,22 @@ types::Pose Samples::poseOf(uint64_t pose, double& time) const {
     at.target_frame = "world";
     at.position = mount.position;
     at.orientation = mount.orientation();
-    return at;
+    std::vector<TimedPose> run{{0, at}};
+    if (!sweep_.lines) return run;
+    const LinesConfig& lines = *sweep_.lines;
+    std::optional<pose::SeaMotion> motion;
+    if (pose::SeaMotionConfig own = lines.motion.value_or(pose::SeaMotionConfig{}); lines.motion) {
+        own.seed = static_cast<uint32_t>(types::hashed(sweep_.seed, pose, motion_stream + own.seed));
+        motion.emplace(own);
+    }
+    const double heading = types::radians(mount.yaw_deg);
+    run.clear();
+    for (uint32_t i = 0; i < lines.count; ++i) {
+        TimedPose& here = run.emplace_back(lines.period * i, at);
+        here.at.position += *lines.speed * here.time * glm::dvec3(std::cos(heading), std::sin(heading), 0);
+        if (motion) motion->move(here.time, here.at);
+    }
+    return run;
 }
 
 std::vector<PlacedObject> Samples::place(size_t scene, uint64_t pose, const types::Pose& vehicle) const {
@@ -151,8 +165,8 @@ Sample Samples::at(uint64_t index) const {
     sample.pose = index % poses_;
     sample.setting = index / poses_ % settings_;
     sample.scene = index / poses_ / settings_;
-    sample.at = poseOf(sample.pose, sample.time);
-    sample.objects = place(sample.scene, sample.pose, sample.at);
+    sample.run = runOf(sample.pose);
+    sample.objects = place(sample.scene, sample.pose, sample.run.front().at);
     sample.settings = settingsOf(sample.setting);
     for (size_t i = 0; i < sweep_.drawn.size(); ++i)
         sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(wordOf(sweep_, index, i)));

@@ -36,6 +36,12 @@ struct PlacedObject {
     bool present = true;  ///< Else it is out of hearing, far below.
 };
 
+/** Where the vehicle is, and when since the start [s]. */
+struct TimedPose {
+    double time;  ///< [s]
+    types::Pose at;
+};
+
 /** What one sample is of. It depends on its own number alone: whoever makes it, and whatever else is made, it is the
  *  same. Poses and places of objects are those of the pose's number, the same in each scene and setting. Drawn settings
  *  are those of the sample's number. */
@@ -43,27 +49,21 @@ struct Sample {
     uint64_t index = 0;
     size_t scene = 0, setting = 0;  ///< Numbers in Sweep::scenes, and of the combination of settings.
     uint64_t pose = 0;
-    double time = 0;  ///< Since the start [s].
-    types::Pose at;
+    std::vector<TimedPose> run;  ///< A pose for each of its pings, at least one.
     std::vector<PlacedObject> objects;
     std::vector<std::pair<std::string, std::string>> settings;  ///< "task.property" and YAML: listed ones, drawn ones.
     uint64_t seed = 1;                                          ///< Seed of noise and the like; not 0.
     Part part = Part::Train;
 };
 
-/** A pose of a trajectory. */
-struct TimedPose {
-    double time;  ///< [s]
-    types::Pose at;
-};
-
 /** All samples of a sweep. The last pose runs fastest, then settings, of which the last named runs fastest, then
  *  scenes. */
 class Samples {
 public:
-    /** @param trajectory the poses of Sweep::trajectory, empty without; @param scenes one for each of Sweep::scenes.
-     *  Throws types::ConfigError for names of objects that no scene has, and for more than 10^8 samples. */
-    Samples(const Sweep& sweep, std::vector<TimedPose> trajectory, std::vector<SceneParts> scenes);
+    /** @param trajectory the run of each pose of Sweep::trajectory, empty without; @param scenes one for each of
+     *  Sweep::scenes. Throws types::ConfigError for names of objects that no scene has, and for more than 10^8 samples.
+     */
+    Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> trajectory, std::vector<SceneParts> scenes);
 
     uint64_t count() const { return count_; }
     uint64_t poses() const { return poses_; }
@@ -76,14 +76,14 @@ public:
     std::vector<std::string> objectsOf(size_t scene) const;
 
 private:
-    types::Pose poseOf(uint64_t pose, double& time) const;
+    std::vector<TimedPose> runOf(uint64_t pose) const;
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
     /** Throws where a pattern of a group matches in none of the scenes. */
     void refuseUnmatched(size_t group) const;
     std::vector<std::string> namesOf(size_t scene, size_t group) const;
 
     const Sweep& sweep_;
-    std::vector<TimedPose> trajectory_;
+    std::vector<std::vector<TimedPose>> trajectory_;
     std::vector<SceneParts> scenes_;
     std::vector<std::vector<std::vector<std::string>>> names_;  ///< Of each scene and group, patterns resolved.
     uint64_t poses_ = 0, settings_ = 1, count_ = 0;

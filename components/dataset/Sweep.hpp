@@ -85,6 +85,28 @@ struct TrajectoryPoses {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** Lines of a side-scan: each sample is a run of pings, which begins at its pose. */
+struct LinesConfig {
+    uint32_t count = 200;
+    double period = 0.1;          ///< [s]
+    std::optional<double> speed;  ///< Straight ahead at the pose's depth; of a trajectory its own [m/s].
+    std::optional<pose::SeaMotionConfig> motion = {};
+    int line = 0, column = 0;  ///< Where it stands in the sweep.
+
+    double duration() const { return period * (count - 1); }  ///< From the first to the last [s].
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"count", "1", "lines of a sample", 2, 10000}, self.count);
+        visit(Field{"period", "s", "between two lines", 1e-3, 1e3}, self.period);
+        visit(Field{"speed", "m/s", "straight ahead by the pose's heading; with a trajectory absent, as it has its own",
+                    0, 100},
+              self.speed);
+        visit(Field{"motion", "", "of the carrier on waves, on top of the straight way; absent: none"}, self.motion);
+    }
+};
+
 enum class Frame { World, Vehicle };
 
 /** Objects of the scene that stand elsewhere in each pose, without touching each other. */
@@ -148,6 +170,7 @@ struct AnnotationConfig {
     uint32_t min_level = 1;
     uint32_t min_pixels = 12;
     bool shadows = false;
+    bool ghosts = false;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -157,6 +180,8 @@ struct AnnotationConfig {
         visit(Field{"min_level", "1", "grey level of the picture from which a place is seen", 0, 255}, self.min_level);
         visit(Field{"min_pixels", "1", "of an object, from which it is annotated", 1, 1e6}, self.min_pixels);
         visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
+        visit(Field{"ghosts", "", "annotates what came by the water surface or other mirrors, in the class ghost"},
+              self.ghosts);
     }
 };
 
@@ -211,6 +236,7 @@ struct Sweep {
     std::optional<PoseAxes> random;
     uint32_t random_count = 0;
     std::optional<TrajectoryPoses> trajectory;
+    std::optional<LinesConfig> lines;
     std::vector<ObjectGroup> objects;
     Split split;
     std::vector<ClassRule> classes;

@@ -30,6 +30,18 @@ double strongLevel(std::vector<double> levels) {
     return *at;
 }
 
+bool isToPort(const types::Angle& bearing) { return bearing.rad >= 0; }
+
+/** The first of the lines that a ping holds one after the other. */
+types::Sonar firstLine(const types::Sonar& ping) {
+    types::Sonar line;
+    line.bin_count = ping.bin_count, line.bin_duration = ping.bin_duration, line.speed_of_sound = ping.speed_of_sound;
+    line.beam_width = ping.beam_width;
+    line.beam_count = ping.beam_count > 1 && isToPort(ping.bearings[0]) != isToPort(ping.bearings[1]) ? 2 : 1;
+    line.bearings.assign(ping.bearings.begin(), ping.bearings.begin() + line.beam_count);
+    return line;
+}
+
 }  // namespace
 
 DisplayConfig PlainConfig::display() const {
@@ -44,17 +56,22 @@ DisplayConfig PlainConfig::display() const {
 void PlainPicture::take(const types::Sonar& ping) {
     if (!ping.wellShaped() || ping.bin_count == 0 || ping.beam_count == 0)
         throw std::runtime_error("a ping without bins, or with other numbers than it says, is no picture");
-    shape_ = FanShape::of(ping);
+    const bool is_waterfall = config_.shape == PlainShape::Waterfall;
+    shape_ = FanShape::of(is_waterfall ? firstLine(ping) : ping);
     if (shape_.beams.empty()) throw std::runtime_error("a ping without known bearings is no picture");
     time_ = ping.time;
     bins_per_cell_ = (ping.bin_count + config_.height - 1) / config_.height;
     cells_ = (ping.bin_count + bins_per_cell_ - 1) / bins_per_cell_;
     bearing_of_.assign(ping.bearings.size(), types::Angle{}.rad);
-    for (size_t i = 0; i < shape_.beams.size(); ++i) bearing_of_[shape_.beams[i]] = shape_.bearings[i];
-    if (config_.shape == PlainShape::Fan)
-        buildFan();
+    if (is_waterfall)
+        std::ranges::transform(ping.bearings, bearing_of_.begin(), &types::Angle::rad);
     else
-        buildPolar();
+        for (size_t i = 0; i < shape_.beams.size(); ++i) bearing_of_[shape_.beams[i]] = shape_.bearings[i];
+    switch (config_.shape) {
+        case PlainShape::Fan: buildFan(); break;
+        case PlainShape::Polar: buildPolar(); break;
+        case PlainShape::Waterfall: buildWaterfall(ping); break;
+    }
     findLevels(ping);
 }
 
@@ -89,6 +106,28 @@ void PlainPicture::buildPolar() {
     }
 }
 
+void PlainPicture::buildWaterfall(const types::Sonar& ping) {
+    line_of_.clear();
+    bool has_side[2] = {}, is_there[2] = {};  // starboard, port; of all lines, of this one
+    uint32_t lines = 1;
+    for (const types::Angle& bearing : ping.bearings) {
+        bool& side = is_there[isToPort(bearing)];
+        if (side) ++lines, is_there[0] = is_there[1] = false;
+        side = has_side[isToPort(bearing)] = true;
+        line_of_.push_back(lines - 1);
+    }
+    port_cells_ = has_side[1] ? cells_ : 0;
+    width_ = port_cells_ + (has_side[0] ? cells_ : 0);
+    height_ = lines;
+    cell_of_.assign(size_t{width_} * height_, -1);
+    for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
+        for (uint32_t cell = 0; cell < cells_; ++cell) {
+            const cv::Point at = pixelOf(beam, cell);
+            cell_of_[static_cast<size_t>(at.y) * width_ + static_cast<size_t>(at.x)] =
+                static_cast<int32_t>(beam * cells_ + cell);
+        }
+}
+
 void PlainPicture::findLevels(const types::Sonar& ping) {
     const bool linear = config_.scale == BinScale::Linear, codes = config_.scale == BinScale::Code;
     std::vector<double> shown;
@@ -117,6 +156,9 @@ double PlainPicture::meanOf(const types::Sonar& ping, uint32_t beam, uint32_t ce
 cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
     if (config_.shape == PlainShape::Polar)
         return {static_cast<int>(column_of_[beam]), static_cast<int>(cells_ - 1 - cell)};
+    if (config_.shape == PlainShape::Waterfall)
+        return {static_cast<int>(bearing_of_[beam] >= 0 ? port_cells_ - 1 - cell : port_cells_ + cell),
+                static_cast<int>(height_ - 1 - line_of_[beam])};
     const double distance = (cell + 0.5) / cells_ * radius_, bearing = bearing_of_[beam];
     const int x = static_cast<int>(std::lround(origin_.x - distance * std::sin(bearing)));
     const int y = static_cast<int>(std::lround(origin_.y - distance * std::cos(bearing)));

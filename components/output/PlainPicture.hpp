@@ -9,7 +9,7 @@
 
 namespace insonify::output {
 
-enum class PlainShape { Fan, Polar };
+enum class PlainShape { Fan, Polar, Waterfall };
 
 /** How a plain picture looks. */
 struct PlainConfig {
@@ -25,7 +25,10 @@ struct PlainConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"shape", "", "fan: as it was in the water, ahead is up; polar: a column for each beam"},
+        visit(Field{"shape", "",
+                    "fan: as it was in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
+                    "each line of "
+                    "a side-scan, the newest on top, port left"},
               self.shape);
         visit(Field{"height", "1", "pixels that the range takes, at most; a pixel is never longer than bins make it",
                     16, 8192},
@@ -47,7 +50,8 @@ class PlainPicture {
 public:
     explicit PlainPicture(const PlainConfig& config) : config_(config) {}
 
-    /** Takes a ping with one bearing for each beam. */
+    /** Takes a ping with one bearing for each beam; of a waterfall all lines as one ping, line by line. A line has a
+     *  beam to port, which is one of a bearing that is not negative, or one to starboard, or both. */
     void take(const types::Sonar& ping);
 
     uint32_t width() const { return width_; }    ///< [px]
@@ -59,7 +63,7 @@ public:
     const std::vector<int32_t>& cells() const { return cell_of_; }
     /** Of each cell from black, 0, to white, 255. */
     const std::vector<uint8_t>& levels() const { return levels_; }
-    /** The ping's beams from starboard to port. */
+    /** The ping's beams from starboard to port; of a waterfall those of its first line. */
     const types::BeamArc& arc() const { return shape_; }
     /** Bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
     double bearing(uint32_t beam) const { return bearing_of_[beam]; }
@@ -73,6 +77,7 @@ public:
 private:
     void buildFan();
     void buildPolar();
+    void buildWaterfall(const types::Sonar& ping);
     void findLevels(const types::Sonar& ping);
     double meanOf(const types::Sonar& ping, uint32_t beam, uint32_t cell) const;
 
@@ -80,6 +85,8 @@ private:
     FanShape shape_;
     std::vector<double> bearing_of_;   ///< The bearing of each of the ping's beams, on the arc [rad].
     std::vector<uint32_t> column_of_;  ///< Of each beam in a polar picture.
+    std::vector<uint32_t> line_of_;    ///< Of each beam in a waterfall, from the oldest.
+    uint32_t port_cells_ = 0;          ///< Of a row of a waterfall that are to port, left [px].
     uint32_t bins_per_cell_ = 1, cells_ = 0, width_ = 0, height_ = 0;
     cv::Point2d origin_{};  ///< The sonar in a fan [px].
     double radius_ = 0;     ///< Of a fan [px].
@@ -93,5 +100,5 @@ private:
 
 template <>
 struct insonify::types::EnumNames<insonify::output::PlainShape> {
-    static constexpr std::string_view names[] = {"fan", "polar"};
+    static constexpr std::string_view names[] = {"fan", "polar", "waterfall"};
 };

@@ -17,6 +17,7 @@ constexpr int default_rows = 8, default_columns = 2048;
 SonarConfig SideScanConfig::acrossTrack() const {
     SonarConfig fan = sonar;
     const double from_nadir = 90 - depression_deg;
+    fan.across_track = true;
     fan.bearings_deg = {-from_nadir, from_nadir};
     fan.beam_width_deg = sonar.beam_height_deg;
     fan.beam_height_deg = *sonar.beam_width_deg;

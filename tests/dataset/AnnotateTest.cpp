@@ -47,8 +47,11 @@ protected:
     Annotated annotated() {
         shown_.emplace(picture_);
         shown_->take(ping_);
-        const Classes classes(sweep_, truth_.objects);
-        return annotate(ping_, truth_, *shown_, classes, config_, picture_.scale, bin_width);
+        const Classes classes(sweep_, truth_.objects, nodes_);
+        std::vector<Lineage> lineages = lineages_;
+        for (size_t i = lineages.size(); i < truth_.objects.size(); ++i) lineages.push_back({truth_.objects[i]});
+        const Instances instances(classes, lineages);
+        return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, bin_width);
     }
     /** Of the pixel at which a bin is shown. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
@@ -59,6 +62,8 @@ protected:
     types::Sonar ping_;
     types::SonarTruth truth_;
     Sweep sweep_;
+    std::vector<Lineage> lineages_;  ///< Empty: each object is alone.
+    std::vector<std::string> nodes_;
     output::PlainConfig picture_;
     AnnotationConfig config_;
     std::optional<output::PlainPicture> shown_;
@@ -212,6 +217,83 @@ TEST_F(AnnotateTest, LevelsAreTurnedIntoEnergies) {
     picture_.scale = output::BinScale::Decibel;
     for (float& bin : ping_.bins) bin = 10 * std::log10(bin);
     EXPECT_NEAR(annotated().annotations.at(0).energy, 40, 1e-3);
+}
+
+TEST_F(AnnotateTest, PartsOfOneThingAreOneInstance) {
+    truth_.objects = {"floor", "tyre", "hub"};
+    lineages_ = {{"floor"}, {"tyre", "wheel_1"}, {"hub", "wheel_1"}};
+    nodes_ = {"wheel_1"};
+    sweep_.classes = {{"wheel", {"wheel_*"}, 1, 1}};
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(1));
+    const Annotation& wheel = all.annotations[0];
+    EXPECT_EQ(wheel.name, "wheel_1");
+    EXPECT_EQ(wheel.object, 1);
+    EXPECT_THAT(wheel.parts, ElementsAre(1, 2));
+    EXPECT_EQ(wheel.bins, 42u);
+    EXPECT_TRUE(holds(wheel.box, 20, 50) && holds(wheel.box, 40, 71));
+}
+
+TEST_F(AnnotateTest, WhatCameByMirrorsIsNoObjectAndWhereAskedForAGhost) {
+    truth_.path.assign(ping_.bins.size(), 0);
+    const auto came = [&](uint8_t path, Span in_beams, Span in_bins) {
+        put(1, in_beams, in_bins);
+        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
+            for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) truth_.path[size_t{beam} * bins + bin] = path;
+    };
+    const auto energyOfRock = [&] { return annotated().annotations.at(0).energy; };
+    came(types::SonarTruth::through_wall, {20, 24}, {50, 60});
+    EXPECT_NEAR(energyOfRock(), 40, 1e-3) << "through a wall it is the object still";
+    came(1, {20, 24}, {80, 90});
+    came(3, {30, 33}, {20, 30});
+    EXPECT_NEAR(energyOfRock(), 40, 1e-3);
+    sweep_.annotations.ghosts = config_.ghosts = true;
+    config_.min_pixels = 1;
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(4)) << "rock, pile, and two ghosts that do not touch";
+    double ghosts = 0;
+    for (size_t i = 2; i < 4; ++i) {
+        EXPECT_EQ(all.annotations[i].name, "ghost");
+        EXPECT_EQ(all.annotations[i].category, 3u);
+        EXPECT_EQ(all.annotations[i].object, -1);
+        EXPECT_FALSE(all.annotations[i].is_shadow);
+        ghosts += all.annotations[i].energy;
+    }
+    EXPECT_NEAR(ghosts, 4 * 10 + 3 * 10, 1e-3);
+    EXPECT_TRUE(holds(all.annotations[2].box, 21, 85) || holds(all.annotations[3].box, 21, 85));
+}
+
+/** The truth names what the file does not hold, as the tiles of a survey: that is of no class. */
+TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
+    lineages_ = {{"floor"}, {"rock"}};
+    const Classes classes(sweep_, truth_.objects);
+    const Instances instances(classes, lineages_);
+    shown_.emplace(picture_);
+    shown_->take(ping_);
+    const Annotated all = annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, bin_width);
+    ASSERT_THAT(all.annotations, SizeIs(1));
+    EXPECT_EQ(all.annotations[0].name, "rock");
+}
+
+/** A rise of the floor that hides some of it, far behind an object whose top is as high as what lies behind. */
+TEST_F(AnnotateTest, AShadowOfTheFloorItselfIsNoObjects) {
+    sweep_.annotations.shadows = config_.shadows = true;
+    config_.min_pixels = 1;
+    truth_.shadow.assign(ping_.bins.size(), 0);
+    truth_.elevation.resize(ping_.bins.size());
+    const auto at = [](uint32_t beam, uint32_t bin) { return size_t{beam} * bins + bin; };
+    for (uint32_t beam = 0; beam < beams; ++beam)
+        for (uint32_t bin = 0; bin < bins; ++bin)
+            truth_.elevation[at(beam, bin)] = -std::asin(20.0f / static_cast<float>(std::max(bin, 20u)));
+    for (uint32_t beam = 20; beam < 24; ++beam) {
+        for (uint32_t bin = 75; bin < 80; ++bin) {
+            truth_.shadow[at(beam, bin)] = 1, truth_.object[at(beam, bin)] = nothing;
+            truth_.elevation[at(beam, bin)] = std::numeric_limits<float>::quiet_NaN();
+        }
+        truth_.elevation[at(beam, 74)] = truth_.elevation[at(beam, 80)] - 0.001f;   // the rise
+        truth_.elevation[at(beam, 55)] = truth_.elevation[at(beam, 80)] - 0.0005f;  // of the rock
+    }
+    for (const Annotation& each : annotated().annotations) EXPECT_FALSE(each.is_shadow) << each.name;
 }
 
 TEST_F(AnnotateTest, ATruthOfAnotherGridIsRefused) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 
@@ -53,12 +54,12 @@ TEST(SamplesTest, APoseIsTheFastestThenSettingsThenScenes) {
     const Samples samples(sweep, {}, {SceneParts{}, SceneParts{}});
     ASSERT_EQ(samples.count(), 24u);
     const Sample first = samples.at(0), second = samples.at(1), last = samples.at(23);
-    EXPECT_EQ(first.at.position, glm::dvec3(1, 0, 0));
-    EXPECT_NEAR((second.at.orientation * glm::dvec3(1, 0, 0)).y, 1, 1e-12);
+    EXPECT_EQ(first.run.front().at.position, glm::dvec3(1, 0, 0));
+    EXPECT_NEAR((second.run.front().at.orientation * glm::dvec3(1, 0, 0)).y, 1, 1e-12);
     EXPECT_EQ(samples.at(6).pose, 0u);
     EXPECT_EQ(samples.at(6).setting, 1u);
     EXPECT_EQ(samples.at(12).scene, 1u);
-    EXPECT_EQ(last.at.position, glm::dvec3(2, 0, 0));
+    EXPECT_EQ(last.run.front().at.position, glm::dvec3(2, 0, 0));
     EXPECT_THAT(samples.settingsOf(1), ElementsAre(Pair("sonar.range", "30"), Pair("sonar.bin_count", "100")));
 }
 
@@ -67,14 +68,14 @@ TEST(SamplesTest, ASampleIsTheSameHoweverManyThereAreAndWhateverWasAskedBefore) 
     const Samples of_few(few, {}, {SceneParts{}}), of_many(many, {}, {SceneParts{}});
     of_many.at(999);
     for (const uint64_t index : {2, 0, 1}) {
-        EXPECT_EQ(of_few.at(index).at.position, of_many.at(index).at.position);
+        EXPECT_EQ(of_few.at(index).run.front().at.position, of_many.at(index).run.front().at.position);
         EXPECT_EQ(of_few.at(index).seed, of_many.at(index).seed);
         EXPECT_EQ(of_few.at(index).part, of_many.at(index).part);
     }
     std::set<double> places;
     std::set<uint64_t> seeds;
     for (uint64_t index = 0; index < 1000; ++index) {
-        places.insert(of_many.at(index).at.position.x);
+        places.insert(of_many.at(index).run.front().at.position.x);
         seeds.insert(of_many.at(index).seed);
     }
     EXPECT_GT(places.size(), 990u);
@@ -90,7 +91,7 @@ TEST(SamplesTest, SettingsAndScenesShareTheirPosesAndHaveNoiseOfTheirOwn) {
     sweep.objects[0].x = sweep.objects[0].y = {-10, 10};
     const Samples samples(sweep, {}, {stoneParts(3)});
     const Sample near = samples.at(2), far = samples.at(7);
-    EXPECT_EQ(near.at.position, far.at.position);
+    EXPECT_EQ(near.run.front().at.position, far.run.front().at.position);
     EXPECT_NE(near.seed, far.seed);
     for (size_t i = 0; i < 3; ++i) EXPECT_EQ(near.objects[i].at.position, far.objects[i].at.position);
 }
@@ -100,10 +101,41 @@ TEST(SamplesTest, ATrajectoryGivesItsPosesAtTheirTimes) {
     sweep.trajectory.emplace();
     types::Pose there;
     there.position = {3, 0, 0};
-    const Samples samples(sweep, {{0, {}}, {2.5, there}}, {SceneParts{}});
+    const Samples samples(sweep, {{{0, {}}}, {{2.5, there}}}, {SceneParts{}});
     EXPECT_EQ(samples.count(), 2u);
-    EXPECT_EQ(samples.at(1).time, 2.5);
-    EXPECT_EQ(samples.at(1).at.position, there.position);
+    EXPECT_EQ(samples.at(1).run.front().time, 2.5);
+    EXPECT_EQ(samples.at(1).run.front().at.position, there.position);
+}
+
+TEST(SamplesTest, LinesGoStraightAheadFromEachPoseAndWavesMoveEachRunByItself) {
+    Sweep sweep;
+    sweep.grid.emplace();
+    sweep.grid->x.values = {1, 2};
+    sweep.grid->z.values = {-3};
+    sweep.grid->pitch_deg.values = {10};
+    sweep.grid->yaw_deg.values = {90};
+    sweep.lines = LinesConfig{.count = 50, .period = 0.2, .speed = 1.5};
+    const Sample still = Samples(sweep, {}, {SceneParts{}}).at(1);
+    ASSERT_EQ(still.run.size(), 50u);
+    for (size_t i = 0; i < still.run.size(); ++i) {
+        EXPECT_NEAR(still.run[i].time, 0.2 * static_cast<double>(i), 1e-12);
+        const glm::dvec3 there(2, 0.3 * static_cast<double>(i), -3);
+        EXPECT_LT(glm::distance(still.run[i].at.position, there), 1e-9) << "level, though the bow is down";
+        EXPECT_EQ(still.run[i].at.orientation, still.run[0].at.orientation);
+    }
+    sweep.lines->motion.emplace();
+    sweep.lines->motion->heave_m = 0.1;
+    const Samples waves(sweep, {}, {SceneParts{}});
+    const Sample first = waves.at(0), second = waves.at(1), again = waves.at(1);
+    double apart = 0, heave = 0;
+    for (size_t i = 0; i < first.run.size(); ++i) {
+        apart = std::max(apart, std::abs(first.run[i].at.position.z - second.run[i].at.position.z));
+        heave = std::max(heave, std::abs(second.run[i].at.position.z + 3));
+        EXPECT_EQ(second.run[i].at.position, again.run[i].at.position);
+    }
+    EXPECT_GT(heave, 0.03);
+    EXPECT_LT(heave, 0.5);
+    EXPECT_GT(apart, 0.03);
 }
 
 TEST(SamplesTest, ObjectsThatAreNotThereOrTwiceAreRefusedWithTheirPlace) {

@@ -87,6 +87,29 @@ TEST(PlainPictureTest, EachPixelTellsItsCellAndTheCellItsPixel) {
     }
 }
 
+/** Lines whose sides come in either order, with a port side alone, or without one. */
+TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
+    const double sides[][2] = {{-90, 90}, {90, -90}, {60, 60}, {-80, -80}};  // [deg]; twice the same: one beam a line
+    for (const auto& [first, second] : sides) {
+        constexpr uint32_t lines = 7, bins = 50;
+        const bool is_pair = first != second;
+        types::Sonar run = emptyPing(120, is_pair ? 2 * lines : lines, bins);
+        for (uint32_t beam = 0; beam < run.beam_count; ++beam)
+            run.bearings[beam] = types::Angle::fromDeg(beam % 2 == 0 ? first : second);
+        for (uint32_t beam = 0; beam < run.beam_count; ++beam) {
+            const PlainPicture picture = pictureOf(withEcho(run, beam, 11), configOf(PlainShape::Waterfall, 100));
+            ASSERT_EQ(picture.height(), lines);
+            ASSERT_EQ(picture.width(), is_pair ? 2 * bins : bins);
+            const double bearing = beam % 2 == 0 ? first : second;
+            const uint32_t line = is_pair ? beam / 2 : beam, port = is_pair || bearing > 0 ? bins : 0;
+            const double column = bearing > 0 ? bins - 1 - 11 : port + 11;
+            EXPECT_EQ(middleOf(picture.image()), cv::Point2d(column, lines - 1 - line)) << first << " " << beam;
+            EXPECT_EQ(picture.pixelOf(beam, 11),
+                      cv::Point(static_cast<int>(column), static_cast<int>(lines - 1 - line)));
+        }
+    }
+}
+
 TEST(PlainPictureTest, ItsScaleIsThatOfThePingWhateverCameBefore) {
     const types::Sonar loud = withEcho(emptyPing(120, 31), 3, 50);
     types::Sonar faint = loud;

@@ -133,5 +133,34 @@ TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
     }
 }
 
+/** In the truth elevations are those above the vehicle's x-y plane, as with other sonars: of a flat bottom at slant
+ *  range r the sine is -D / r, and a vehicle that rolls to starboard has them changed by its roll. */
+TEST_F(SideScanTaskTest, TheTruthsElevationsAreAboveTheVehiclesPlane) {
+    test::Reader<types::SonarTruthPtr> told{"told"};
+    task_.truth.connectTo(told.port, framework::ConnPolicy::data());
+    startWith(sideScan());
+    for (const double roll : {0.0, 6.0}) {
+        types::Snapshot snapshot = test::snapshotOf(sceneOf({ground(0)}, -10), {3, 4, height}, types::radians(70));
+        snapshot.sonar.orientation *= glm::angleAxis(types::radians(roll), glm::dvec3(1, 0, 0));
+        const auto line = lineOf(snapshot);
+        types::SonarTruthPtr truth;
+        ASSERT_TRUE(line && told.port.readNewest(truth) == framework::FlowStatus::NewData) << task_.lastError();
+        size_t compared = 0;
+        for (uint32_t beam = 0; beam < 2; ++beam)
+            for (uint32_t bin = 0; bin < line->bin_count; ++bin) {
+                const size_t at = size_t{beam} * line->bin_count + bin;
+                const double near = line->binStart(bin), far = line->binStart(bin + 1);
+                if (truth->object[at] < 0 || near <= 1.02 * height) continue;
+                const double turn = types::radians(beam == 0 ? roll : -roll);
+                const double high = turn - std::asin(height / far), low = turn - std::asin(height / near);
+                const double slack = 2e-3;  // a sample's extent in range
+                ASSERT_GT(truth->elevation[at], low - slack) << beam << " " << bin;
+                ASSERT_LT(truth->elevation[at], high + slack) << beam << " " << bin;
+                ++compared;
+            }
+        EXPECT_GT(compared, 1000u);
+    }
+}
+
 }  // namespace
 }  // namespace insonify::sonar

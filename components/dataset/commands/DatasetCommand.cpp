@@ -69,7 +69,7 @@ int makeDataset(const DatasetOptions& options) {
                    run.samples().count(), folder.path().string());
     if (done.stopped) return 1;
     const Title title{fs::path(run.deployment()).filename(), fs::path(options.sweep).filename(), INSONIFY_VERSION,
-                      run.format(), run.sweep().trajectory.has_value()};
+                      run.format(), run.sweep().trajectory.has_value() && !run.sweep().lines};
     Collection collection(title, run.samples().count(), run.classes(), store);
     if (!collection.isWhole(false)) {
         if (!options.quiet) fmt::print("others are missing; who makes the last writes manifest.json\n");

@@ -27,6 +27,7 @@ using framework::child, framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
 constexpr uint64_t max_poses = 1'000'000;  ///< Of a trajectory.
+constexpr uint32_t max_beams_per_line = 2;
 
 constexpr const char* no_budget =
     "budget_ms lets the speed of the machine decide how samples are rendered, which must not depend on it; "
@@ -40,31 +41,43 @@ Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
     return sweep;
 }
 
-std::vector<TimedPose> posesOf(const Sweep& sweep) {
-    std::vector<TimedPose> poses;
-    if (!sweep.trajectory) return poses;
+/** The poses of each sample along a trajectory. */
+std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
+    std::vector<std::vector<TimedPose>> runs;
+    if (!sweep.trajectory) return runs;
     const TrajectoryPoses& asked = *sweep.trajectory;
     const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
     const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
-    const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last), length = to - from;
+    const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last);
+    const double length = to - from - (sweep.lines ? sweep.lines->duration() : 0);  // in which samples begin
     for (const auto& [key, time] : {std::pair("from", from), std::pair("to", to)})
         if (time < first || time > last)
             throw types::ConfigError(
                 {{std::string("poses.trajectory.") + key,
                   fmt::format("is {:g} s; the trajectory is from {:g} to {:g} s", time, first, last), sweep.file,
                   asked.line, asked.column}});
+    if (length < 0)
+        throw types::ConfigError({{"lines",
+                                   fmt::format("take {:g} s; the trajectory from {:g} to {:g} s is shorter",
+                                               sweep.lines->duration(), from, to),
+                                   sweep.file, sweep.lines->line, sweep.lines->column}});
+    const uint64_t lines = sweep.lines ? sweep.lines->count : 1;
     const auto count = asked.count ? uint64_t{*asked.count} : static_cast<uint64_t>(length / *asked.period + 1e-9) + 1;
-    if (count > max_poses)
+    if (count > max_poses / lines)
         throw types::ConfigError(sweep.file, "poses.trajectory.period",
-                                 fmt::format("makes {} poses; at most {}", count, max_poses));
+                                 fmt::format("makes {} poses; at most {}", count * lines, max_poses));
     const auto motion = asked.motion ? std::optional<pose::SeaMotion>(*asked.motion) : std::nullopt;
     for (uint64_t i = 0; i < count; ++i) {
         const double step = asked.count ? (count == 1 ? 0 : length / static_cast<double>(count - 1)) : *asked.period;
-        const double time = from + step * static_cast<double>(i);
-        poses.push_back({time, trajectory.at(time)});
-        if (motion) motion->move(time, poses.back().at);
+        std::vector<TimedPose>& run = runs.emplace_back();
+        for (uint64_t line = 0; line < lines; ++line) {
+            const double time = from + step * static_cast<double>(i) +
+                                (sweep.lines ? sweep.lines->period * static_cast<double>(line) : 0);
+            run.push_back({time, trajectory.at(std::min(time, last))});
+            if (motion) motion->move(time, run.back().at);
+        }
     }
-    return poses;
+    return runs;
 }
 
 /** Whether what a task has in files decides what a sonar hears. */
@@ -120,14 +133,17 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
     checkAssignments();
     readScenes();
     std::vector<SceneParts> parts;
-    std::vector<std::string> objects;
+    std::vector<std::string> objects, nodes;
     for (const SceneFile& scene : scenes_) {
         parts.push_back(scene.parts);
-        objects.insert(objects.end(), scene.objects.begin(), scene.objects.end());
+        for (const Lineage& names : scene.objects) {
+            objects.push_back(names.front());
+            nodes.insert(nodes.end(), names.begin() + 1, names.end());
+        }
     }
-    trajectory_ = posesOf(sweep_);
-    samples_.emplace(sweep_, trajectory_, std::move(parts));
-    classes_.emplace(sweep_, objects);
+    samples_.emplace(sweep_, runsOf(sweep_), std::move(parts));
+    classes_.emplace(sweep_, objects, nodes);
+    for (const SceneFile& scene : scenes_) instances_.emplace_back(*classes_, scene.objects);
     checkDrawn();
     digest_ = digestOfAll();
 }
@@ -219,7 +235,7 @@ DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
                    partsOf(sweep_, scene),
                    {},
                    dataset::digestOf(*scene.geometry)};
-    for (const types::Object& object : scene.geometry->objects) read.objects.push_back(object.name);
+    read.objects = lineagesOf(scene);
     return read;
 }
 
@@ -283,15 +299,29 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
         at[deployer::Simulation::objectPort(object.name)] = object.at;
         std::erase(vehicles, deployer::Simulation::objectPort(object.name));
     }
-    at[onlyOf(vehicles, deployment_, "vehicles")] = sample.at;
+    const std::string vehicle = onlyOf(vehicles, deployment_, "vehicles");
     onlyOf(simulation_->pings(), deployment_, "pings");
     simulation_->reset(sample.seed);
-    const deployer::SteppedPing made = simulation_->step(std::move(at), simulation_->time() + sample.time).front();
-    if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
+    const double start = simulation_->time();
+    Run run;
+    double bin_width = 0;
+    for (const auto& [time, pose] : sample.run) {
+        at[vehicle] = pose;
+        const deployer::SteppedPing made = simulation_->step(at, start + time).front();
+        if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
+        if (sweep_.lines && made.ping->beam_count > max_beams_per_line)
+            throw types::ConfigError({{"lines",
+                                       fmt::format("are of side-scans, whose pings have one or two beams; those of {} "
+                                                   "have {}",
+                                                   deployment_, made.ping->beam_count),
+                                       sweep_.file, sweep_.lines->line, sweep_.lines->column}});
+        run.add(made.ping, made.truth);
+        bin_width = made.bin_width;
+    }
     std::vector<std::pair<std::string, Json>> settings;
     for (const auto& [property, yaml] : sample.settings)
         settings.emplace_back(property, deployer::toJson(framework::parseValue(yaml)));
-    files.write({sample, *made.ping, *made.truth, made.bin_width, scenes_[sample.scene].name, std::move(settings)});
+    files.write({sample, run, instances_[sample.scene], bin_width, scenes_[sample.scene].name, std::move(settings)});
 }
 
 }  // namespace insonify::dataset

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "components/command/Shard.hpp"
-#include "components/dataset/Classes.hpp"
+#include "components/dataset/Instances.hpp"
 #include "components/dataset/SampleFiles.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/deployer/Simulation.hpp"
@@ -45,7 +45,7 @@ private:
     struct SceneFile {
         std::string name;  ///< Without folders.
         SceneParts parts;
-        std::vector<std::string> objects;
+        std::vector<Lineage> objects;
         std::string digest;
     };
     framework::DeploymentSpec loaded() const;
@@ -65,7 +65,7 @@ private:
     const Sweep sweep_;
     const Format format_;
     framework::DeploymentSpec spec_;
-    std::vector<TimedPose> trajectory_;
+    std::vector<Instances> instances_;  ///< Of each scene.
     std::vector<SceneFile> scenes_;
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;

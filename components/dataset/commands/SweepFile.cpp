@@ -19,7 +19,8 @@ YAML::Node absent() { return YAML::Node(YAML::NodeType::Undefined); }
 /** The keys of a sweep; what is not described by its values alone is read later. */
 struct SweepKeys {
     uint64_t seed = 1;
-    YAML::Node scenes = absent(), poses = absent(), settings = absent(), objects = absent(), classes = absent();
+    YAML::Node scenes = absent(), poses = absent(), lines = absent(), settings = absent(), objects = absent(),
+               classes = absent();
     Split split;
     output::PlainConfig picture;
     AnnotationConfig annotations;
@@ -28,6 +29,7 @@ struct SweepKeys {
         visit(Field{"seed", "1", "of all that is drawn at random"}, self.seed);
         visit(Field{"scenes", "", "files, or blocks of file and set"}, self.scenes);
         visit(Field{"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
+        visit(Field{"lines", "", "of a side-scan, as many for each sample"}, self.lines);
         visit(Field{"settings", "", "by task.property: lists of values, or what they are drawn from"}, self.settings);
         visit(Field{"objects", "", "those that are placed"}, self.objects);
         visit(Field{"split", "", "shares of train, val and test"}, self.split);
@@ -104,6 +106,7 @@ public:
         sweep_.annotations = keys.annotations;
         readScenes(keys.scenes);
         readPoses(keys.poses);
+        readLines(keys.lines);
         readSettings(keys.settings);
         readObjects(keys.objects);
         readClasses(keys.classes);
@@ -151,6 +154,23 @@ private:
         const YAML::Mark place = keys.trajectory.Mark();
         sweep_.trajectory->line = place.line + 1, sweep_.trajectory->column = place.column + 1;
         sweep_.trajectory->file = inFolder(sweep_.trajectory->file);
+    }
+
+    void readLines(const YAML::Node& node) {
+        const bool is_waterfall = sweep_.picture.shape == output::PlainShape::Waterfall;
+        if (node.IsDefined() != is_waterfall)
+            return reader_.report(node.IsDefined() ? node : document_, node.IsDefined() ? "lines" : "picture.shape",
+                                  "`lines` and `picture: {shape: waterfall}` go together: give both or neither");
+        if (!is_waterfall) return;
+        LinesConfig& lines = sweep_.lines.emplace();
+        lines.line = node.Mark().line + 1, lines.column = node.Mark().column + 1;
+        if (!reader_.read(node, "lines", lines)) return;
+        if (lines.speed.has_value() == sweep_.trajectory.has_value())
+            reader_.report(node, "lines.speed",
+                           sweep_.trajectory ? "is given beside a trajectory, which has its own"
+                                             : "is missing: how fast the vehicle goes straight ahead [m/s]");
+        if (lines.motion && sweep_.trajectory)
+            reader_.report(node, "lines.motion", "is given beside a trajectory; give it as poses.trajectory.motion");
     }
 
     void readRandom(const YAML::Node& node) {

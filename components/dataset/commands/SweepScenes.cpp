@@ -117,6 +117,17 @@ SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
     return parts;
 }
 
+std::vector<Lineage> lineagesOf(const scene::Scene& scene) {
+    std::vector<Lineage> all;
+    for (size_t i = 0; i < scene.geometry->objects.size(); ++i) {
+        Lineage& names = all.emplace_back(Lineage{scene.geometry->objects[i].name});
+        for (int node = scene.object_nodes[i]; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent)
+            if (scene.nodes[static_cast<size_t>(node)].name != names.back())
+                names.push_back(scene.nodes[static_cast<size_t>(node)].name);
+    }
+    return all;
+}
+
 std::string digestOf(const types::Geometry& geometry) {
     command::Sha256 hash;
     for (const types::Mesh& mesh : geometry.meshes) {

@@ -54,6 +54,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     rules.attenuation = makeAbsorption(plan.config).amplitudeNepersPerMetre();
     rules.strength_scale = strengthScale(plan);
     rules.laws = plan.laws;
+    rules.looks_down = plan.config.across_track;
     rules.hears_misses = plan.hears_misses;
     rules.lattice = scattererLattice(plan);
     if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;

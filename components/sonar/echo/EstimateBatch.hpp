@@ -97,7 +97,8 @@ void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered
     for (int i = 0; i < cells.count; ++i) {
         const double x = cells.normal_x[i], y = cells.normal_y[i], z = cells.normal_z[i];
         const double facing = (x * cells.cos_az[i] + y * cells.sin_az[i]) * cells.cos_el[i] + z * cells.sin_el[i];
-        estimator.regard({cells.object[i], cells.hits[i], cells.sin_el[i], abs(facing) / sqrt(x * x + y * y + z * z)});
+        const double up = rules.looks_down ? -cells.cos_az[i] * cells.cos_el[i] : cells.sin_el[i];
+        estimator.regard({cells.object[i], cells.hits[i], up, abs(facing) / sqrt(x * x + y * y + z * z)});
         estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
     }
 }

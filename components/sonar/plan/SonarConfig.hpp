@@ -219,6 +219,7 @@ struct SonarConfig {
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
     bool motion_in_ping = false;
+    bool across_track = false;  ///< The fan stands upright and looks down, as a side-scan's: no key of its own.
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;

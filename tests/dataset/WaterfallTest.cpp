@@ -1,0 +1,141 @@
+// insonify dataset: waterfalls of a side-scan over rocks whose places are known.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/deployer/Command.hpp"
+#include "tests/support/Paths.hpp"
+
+using namespace insonify::deployer;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string deployment = R"(schedule: lockstep
+tasks:
+  vehicle:
+    type: pose::TrajectoryTask
+    activity: {period: 0.1}
+    properties: {waypoints: [{time: 0, position: [0, 0, 0]}]}
+  scene: {type: scene::SceneTask, properties: {file: )" +
+                               (insonify::test::source_dir / "deploy/scenes/harbour.glb").string() + R"(}}
+  sonar:
+    type: sonar::SideScanTask
+    properties: {range: 20, bin_count: 400, beam_width_deg: 1, beam_height_deg: 70, depression_deg: 40,
+      quality: {rows: 4, columns_per_beam: 512}}
+connections:
+  - {from: vehicle.pose, to: scene.pose}
+  - {from: scene.snapshot, to: sonar.snapshot}
+)";
+
+constexpr double speed = 1.5, period = 0.1;  // [m/s], [s]
+constexpr int lines = 120;
+
+const std::string sweep = R"(seed: 5
+poses: {grid: {x: 2, y: -14, z: -5, yaw_deg: [0, 5]}}
+lines: {count: 120, period: 0.1, speed: 1.5}
+objects:
+  - {names: [rock_00*], count: [6, 8], x: [3, 15], y: [-9, 9], frame: vehicle, ground: sea_floor, gap: 0.5,
+     avoid: [quay_wall, hull, mooring_block, pile_*, pipeline, saddle_*]}
+classes: {rock: rock_00*}
+picture: {shape: waterfall, height: 400}
+annotations: {min_pixels: 4, shadows: true}
+)";
+
+class WaterfallTest : public testing::Test {
+protected:
+    WaterfallTest() {
+        writeFile(folder_ / "d.yml", deployment);
+        writeFile(folder_ / "sweep.yml", sweep);
+    }
+    std::map<std::string, std::string> made(const std::string& out, std::vector<std::string> more = {}) const {
+        std::vector<std::string> all = {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", out};
+        all.insert(all.end(), more.begin(), more.end());
+        const Outcome outcome = callInsonify(folder_, all);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::directory_iterator(folder_ / out))
+            files[entry.path().filename()] = readFile(entry.path());
+        return files;
+    }
+
+    const TestFolder folder_;
+};
+
+/** A rock abeam of line k at a slant range r is in row `lines - 1 - k`, r / range from the middle, on its side. */
+TEST_F(WaterfallTest, EachRockIsWhereTheVehiclePassedIt) {
+    size_t rocks = 0, shadows = 0;
+    for (const auto& [name, bytes] : made("out")) {
+        if (!name.ends_with(".json") || !name.starts_with("00")) continue;
+        const json record = json::parse(bytes);
+        EXPECT_EQ(record["ping"]["lines"], lines);
+        EXPECT_EQ(record["ping"]["beams"], 2);
+        EXPECT_EQ(record["picture"]["height"], lines);
+        EXPECT_EQ(record["picture"]["width"], 800);
+        std::map<std::string, json> placed;
+        for (const json& object : record["objects"]) placed[object["name"]] = object;
+        const json& q = record["pose"]["orientation_wxyz"];
+        const double yaw = 2 * std::atan2(q[3].get<double>(), q[0].get<double>());
+        for (const json& each : record["annotations"]) {
+            const json &at = placed.at(each["name"])["position"], &from = record["pose"]["position"],
+                       &box = each["bbox"];
+            const double x = at[0].get<double>() - from[0].get<double>(),
+                         y = at[1].get<double>() - from[1].get<double>(),
+                         z = at[2].get<double>() - from[2].get<double>();
+            const double ahead = x * std::cos(yaw) + y * std::sin(yaw), port = y * std::cos(yaw) - x * std::sin(yaw);
+            const double row = lines - 1 - ahead / (speed * period);
+            const double near = box[0].get<double>(), far = near + box[2].get<double>();
+            const double slack = 2 + 1 / (speed * period);  // a rock has a metre
+            EXPECT_NEAR(box[1].get<double>() + box[3].get<double>() / 2, row, slack) << each["name"];
+            const double sign = port > 0 ? -1 : 1;
+            const double inner = sign * ((sign > 0 ? near : far) - 400) / 400 * 20;  // slant range [m]
+            if (each["shadow"].get<bool>()) {
+                ++shadows;
+                EXPECT_GT(inner, std::hypot(port, z) - 1.2) << each["name"] << " shadow";
+                continue;
+            }
+            ++rocks;
+            EXPECT_NEAR(inner, std::hypot(port, z), 1.2) << each["name"];
+        }
+    }
+    std::cout << rocks << " rocks, " << shadows << " shadows\n";
+    EXPECT_GE(rocks, 6u);
+    EXPECT_GE(shadows, 4u);
+}
+
+TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
+    for (const char* format : {"yolo", "npz", "mcap"}) {
+        const std::string one = std::string("one_") + format, two = std::string("two_") + format;
+        made(two, {"--format", format, "--shard", "1/2"});
+        EXPECT_EQ(made(two, {"--format", format, "--shard", "0/2"}), made(one, {"--format", format})) << format;
+    }
+}
+
+/** Along a trajectory a run goes on from its pose, and must end before the trajectory does. */
+TEST_F(WaterfallTest, ARunFollowsATrajectory) {
+    writeFile(folder_ / "t.csv", "time,x,y,z,qw,qx,qy,qz\n0,2,-14,-5,1,0,0,0\n20,32,-14,-5,1,0,0,0\n");
+    const auto sweepOf = [&](const std::string& poses, const std::string& more) {
+        writeFile(folder_ / "sweep.yml", "poses: {trajectory: {file: t.csv, " + poses +
+                                             "}}\nlines: {count: 50, period: 0.1" + more +
+                                             "}\npicture: {shape: waterfall}\nclasses: {rock: rock_*}\n");
+    };
+    sweepOf("period: 5", "");
+    const auto files = made("out", {"--format", "npz"});
+    EXPECT_EQ(std::ranges::count_if(files, [](const auto& each) { return each.first.ends_with(".npz"); }), 4)
+        << "at 0, 5, 10 and 15 s";
+    for (const auto& [name, bytes] : files) EXPECT_FALSE(name.starts_with("tracks")) << name;
+    const auto refused = [&] {
+        const Outcome outcome = callInsonify(folder_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "bad"});
+        EXPECT_EQ(outcome.code, 2);
+        return outcome.err;
+    };
+    sweepOf("count: 2, from: 16", "");
+    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines: take 4.9 s; the trajectory from 16 to 20 s is shorter"));
+    sweepOf("count: 2", ", speed: 1");
+    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given beside a trajectory, which has its own"));
+    sweepOf("count: 2", ", motion: {heave_m: 1}");
+    EXPECT_THAT(refused(), HasSubstr("lines.motion: is given beside a trajectory; give it as poses.trajectory.motion"));
+}
+
+}  // namespace
