@@ -23,6 +23,7 @@
 #include "components/sonar/rays/TileDirections.hpp"
 #include "components/sonar/rays/TilePatches.hpp"
 #include "components/sonar/rays/WallRays.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -119,6 +120,7 @@ private:
     TileDirections directions_;
     BinLevels levels_;
     WaterView water_;                 ///< In this ping.
+    WaterMirror surface_;             ///< Where rays that go through walls end.
     std::optional<EchoGrid> grid_;    ///< Of energies,
     std::optional<EchoField> field_;  ///< or of fields.
     std::unique_ptr<ObjectPlaces> places_;
@@ -147,6 +149,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, Ping
       effects_(effects),
       rules_(makeEchoRules(plan, effects)),
       levels_(plan.config, summedGrid(plan)),
+      surface_(plan.config),
       visibility_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
@@ -180,6 +183,7 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
 
 void CastEchoes::takePlan() {
     levels_ = BinLevels(plan_.config, summedGrid(plan_));
+    surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
         if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
     } else {
@@ -238,6 +242,7 @@ void CastEchoes::makeTruth() {
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
+    surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);
     if (ray_paths_) ray_paths_->place(snapshot);
@@ -304,7 +309,8 @@ bool CastEchoes::castThrough(CastTile& tile) const {
         tile.passed[i] *= static_cast<float>(rules_.laws.walls[run.material].passedAt(cosine));
         const float begin =
             tile.hits->distance[i] * (1 + 1e-5f) + static_cast<float>(RayVisibility::nearest / 10 / length);
-        const auto end = static_cast<float>(rules_.bins.range_max / length);
+        const auto end =
+            static_cast<float>(std::min(rules_.bins.range_max / length, surface_.distance(glm::dvec3(0), way)));
         if (!(tile.passed[i] >= min_passed) || !(begin < end)) continue;
         on.nearest[i] = begin;
         on.farthest[i] = end;
@@ -331,7 +337,7 @@ bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
 void CastEchoes::followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const {
     const double absorption = makeAbsorption(plan_.config).db_per_m * std::log(10.0) / 10;
     const PlacedScene scene = this->scene();
-    WallRays rays(rules_, visibility_, scene, plan_.config.max_walls, absorption);
+    WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, absorption);
     for (const CastTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
             while (const CastTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);

@@ -175,7 +175,7 @@ void WallRays::pass(int i, PathRays& on) {
     if (next.speed != ray.medium.speed && !refract(i, next.speed)) return;
     ray.medium = next;
     const double begin = RayVisibility::nearest / 10 + 1e-5 * ray.range,
-                 end = (rules_.bins.range_max - ray.range) * next.speed;
+                 end = std::min((rules_.bins.range_max - ray.range) * next.speed, surface_.distance(ray.from, ray.way));
     if (!(begin < end)) return;
     const glm::vec3 from(ray.from), way(ray.way);
     on.from_x[i] = from.x, on.from_y[i] = from.y, on.from_z[i] = from.z;

@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 
 #include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
 
@@ -47,10 +48,15 @@ public:
     static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].
     static constexpr double max_focus = 30;     ///< At a caustic rays would give infinitely much [1].
 
-    /** `absorption`: of energy in the sonar's water, one way [Np/m]. */
-    WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene, int max_walls,
-             double absorption)
-        : rules_(rules), visibility_(visibility), scene_(scene), max_walls_(max_walls), absorption_(absorption) {}
+    /** `surface`: where rays end; `absorption`: of energy in the sonar's water, one way [Np/m]. */
+    WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
+             const WaterMirror& surface, int max_walls, double absorption)
+        : rules_(rules),
+          visibility_(visibility),
+          scene_(scene),
+          surface_(surface),
+          max_walls_(max_walls),
+          absorption_(absorption) {}
 
     /** Begins with what a tile has met, the first return of which is deposited already. Returns whether any of it is a
      *  wall that rings or lets sound through. */
@@ -109,6 +115,7 @@ private:
     const EchoRules& rules_;
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
+    const WaterMirror& surface_;
     int max_walls_;
     double absorption_;
     int walls_ = 0;  ///< Through which the rays of this layer have gone [1].
