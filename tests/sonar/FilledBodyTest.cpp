@@ -285,7 +285,7 @@ TEST(FilledBodyTest, CoherentSpeckleAndPatternsKeepTheEnergyOfTheFarSide) {
         if (effect == "coherent") config.speckle.emplace().coherent = true;
         double far = 0, alone = 0;
         for (int place = 0; place < (effect == "coherent" ? 20 : 1); ++place) {  // of other scatterers
-            const glm::dvec3 position(0, 3 * place, 0);
+            const glm::dvec3 position(0, 3 * place - 30, 0);
             const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(6), test::wall(11)}, 1, shell), position));
             const auto plain = pingOf(config, snapshotOf(shellsOf({test::wall(11)}, 0), position));
             for (uint32_t beam = 4; beam < 28; ++beam) {

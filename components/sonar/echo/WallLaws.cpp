@@ -15,7 +15,7 @@ namespace {
 
 constexpr double water_density = 1025;      ///< [kg/m^3]
 constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
-constexpr int entries = 1024, per_entry = 8;
+constexpr int entries = 1024;
 
 /** A wall between the sonar's water and what is behind it. */
 class Wall {
@@ -35,6 +35,7 @@ public:
     std::vector<float> passed(int bands) const {
         std::vector<float> table;
         const double width = plate_.sound_speed / (2 * plate_.thickness);
+        const int per_entry = bands == 1 ? 8 : 2;
         for (int i = 0; i < entries; ++i) {
             double sum = 0;
             for (int k = 0; k < per_entry * bands; ++k) {
