@@ -232,6 +232,7 @@ TEST(WallReturnsTest, RandomPlatesGiveBackNoMoreThanARigidOne) {
         if (i == 0) shell.thickness = 0;
         if (i == 1) shell = {1, 7850, 5900, 3230, 1e-4, false};
         if (i == 2) shell = {0.5, 1025, water_speed, 0, 0, false};  // water
+        if (i == 3) shell = {0.5, 1025, water_speed, 0, 0, true};   // water before air: all is in the second return
         if (i % 5 == 4) shell.shear_speed = 0.5 * shell.sound_speed;
         SonarConfig config = wallSonar(between(1, 120), between(1, 60), 1 + i % 9, 200);
         config.frequency_khz = between(10, 3000);

@@ -16,6 +16,7 @@ namespace {
 constexpr double water_density = 1025;      ///< [kg/m^3]
 constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
 constexpr int entries = 1024;
+constexpr double min_first = 1e-4;  ///< Share of the first return, to which the others are relative [1].
 
 /** A wall between the sonar's water and what is behind it. */
 class Wall {
@@ -90,8 +91,10 @@ double sumOf(const std::vector<double>& energies) { return std::accumulate(energ
 Returns relative(const std::vector<double>& energies) {
     const double sum = sumOf(energies);
     if (!(sum > 0)) return {1};
+    const double first = std::max(energies.front(), min_first * sum), all = sum + first - energies.front();
     Returns returns;
-    for (const double energy : energies) returns.push_back(static_cast<float>(energy / sum));
+    for (const double energy : energies) returns.push_back(static_cast<float>(energy / all));
+    returns.front() = static_cast<float>(first / all);
     return returns;
 }
 
