@@ -14,14 +14,17 @@
 
 namespace insonify::types {
 
-/** A wall that a surface stands for, with water on both sides or air behind it. */
+/** A wall that a surface stands for, with water on both sides, or air or another fluid behind it. */
 struct Shell {
-    double thickness = 0;    ///< [m]
-    double density = 0;      ///< [kg/m^3]
-    double sound_speed = 0;  ///< Speed of longitudinal waves [m/s].
-    double shear_speed = 0;  ///< 0: as a fluid [m/s].
-    double loss = 0;         ///< Imaginary over real part of the wave numbers [1].
-    bool has_air = false;    ///< Air behind it, and not water.
+    double thickness = 0;     ///< [m]
+    double density = 0;       ///< [kg/m^3]
+    double sound_speed = 0;   ///< Speed of longitudinal waves [m/s].
+    double shear_speed = 0;   ///< 0: as a fluid [m/s].
+    double loss = 0;          ///< Imaginary over real part of the wave numbers [1].
+    bool has_air = false;     ///< Air behind it, and not water.
+    double fill_density = 0;  ///< Of the fluid behind it; 0: air or water [kg/m^3].
+    double fill_speed = 0;    ///< Speed of sound there [m/s].
+    double fill_loss = 0;     ///< Imaginary over real part of the wave number there [1].
 
     bool operator==(const Shell&) const = default;
 };

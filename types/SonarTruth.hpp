@@ -20,7 +20,7 @@ struct SonarTruth {
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
 
     static constexpr int32_t no_object = -1;
-    static constexpr uint8_t through_wall = 4;
+    static constexpr uint8_t through_wall = 4, rung = 5;
 
     Time time;
     Time bin_duration;
@@ -72,7 +72,10 @@ struct SonarTruth {
         visit(Field{"hits", "1", "samples whose echo lies in the bin"}, self.hits);
         visit(Field{"grazing", "rad", "angle between the sound and the object's surface, pi/2: square to it"},
               self.grazing);
-        visit(Field{"path", "1", "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall"}, self.path);
+        visit(Field{"path", "1",
+                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, "
+                    "5: rung in a wall"},
+              self.path);
         visit(Field{"shadow", "", "1: nothing heard though nearer than the beam's last echo"}, self.shadow);
     }
 };

@@ -37,7 +37,40 @@ Complex impedanceOf(const Fluid& fluid, double slowness) {
            (std::abs(normal) > grazing_cosine / fluid.sound_speed ? normal : grazing_cosine / fluid.sound_speed);
 }
 
+constexpr double min_rest = 1e-3;  ///< Share of all returns below which the rest counts in the last of them [1].
+
+/** Returns the terms of a series with that sum; `term(k)` is the k-th of them. */
+template <class Term>
+std::vector<double> termsOf(double sum, size_t max_count, const Term& term) {
+    std::vector<double> terms;
+    double rest = sum;
+    while (terms.empty() || (rest > min_rest * sum && terms.size() < max_count)) {
+        terms.push_back(term(terms.size()));
+        rest -= terms.back();
+    }
+    terms.back() += std::max(rest, 0.0);
+    return terms;
+}
+
 }  // namespace
+
+PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
+                          size_t max_count) {
+    const Complex number = Complex(1, plate.loss) / plate.sound_speed;  // over the angular frequency [s/m]
+    const Complex own = plate.density / number;
+    const double one = before.density * before.sound_speed, other = behind.density * behind.sound_speed;
+    const Complex front = (own - one) / (own + one), back = (other - own) / (other + own);
+    const double crossing = std::exp(-4 * std::numbers::pi * frequency * plate.thickness * number.imag());
+    const double again =  // of the energy, each time across and back
+        std::min(std::norm(front * back) * crossing * crossing, 1 - 1e-9);
+    const double first = std::norm(front), in_and_out = std::norm(1.0 - front * front);
+    const double second = in_and_out * std::norm(back) * crossing * crossing;
+    const double straight = in_and_out * std::norm(1.0 - back * back) * crossing * crossing;
+    return {termsOf(first + second / (1 - again), max_count,
+                    [&](size_t k) { return k == 0 ? first : second * std::pow(again, k - 1); }),
+            termsOf(straight * (1 + again) / std::pow(1 - again, 3), max_count,
+                    [&](size_t k) { return straight * std::pow(k + 1, 2) * std::pow(again, k); })};
+}
 
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                             double cos_incidence) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <complex>
+#include <vector>
 
 namespace insonify::acoustics {
 
@@ -28,5 +29,18 @@ struct PlateResponse {
  *  @param cos_incidence cosine of the angle to the plate's normal in the first fluid, 0 to 1 [1] */
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                             double cos_incidence);
+
+/** Energies of the returns of a pulse that is shorter than the time of sound across a plate and back, which meets it at
+ *  normal incidence; over the energy of the pulse, the loss being that of one frequency [1]. Return k is k such times
+ *  late. What follows the last return is counted in it. */
+struct PlateReturns {
+    std::vector<double> reflected;  ///< The sum is the mean of |R|^2 over a resonance's width.
+    std::vector<double> passed;     ///< Out and back through the plate; the sum is the mean of |T T'|^2.
+};
+
+/** Returns what resounds in a plate (ACOUSTICS.md 3.10), at most `max_count` returns each, and none that are weaker
+ *  together than 30 dB below all of them. */
+PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
+                          size_t max_count);
 
 }  // namespace insonify::acoustics

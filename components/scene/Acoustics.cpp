@@ -54,6 +54,17 @@ constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
 }
 static_assert(isInOrder(seabeds, &SeabedRow::sediment));
 
+/** A fluid of that name; none where it is water or air. */
+std::optional<acoustics::MatterProperties> fluidOf(Fill fill) {
+    if (fill == Fill::Sand) return acoustics::propertiesOf(Matter::Sand);
+    if (fill == Fill::Mud) return acoustics::propertiesOf(Matter::Mud);
+    if (fill != Fill::Oil) return {};
+    acoustics::MatterProperties oil{};  // light mineral oil, Selfridge 1985, who has no loss
+    oil.density = 825;
+    oil.sound_speed = 1440;
+    return oil;
+}
+
 /** Lambert parameter with which a rigid sphere of radius a has its target strength of a^2 / 4: 3 / (8 pi) [dB]. */
 constexpr double convex_body_db = -9.23;
 
@@ -258,6 +269,15 @@ void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
     if (!material && !(density && sound_speed))
         diagnostics.push_back({"material", "is missing; or give density and sound_speed"});
     const double speed = sound_speed.value_or(is_wall ? acoustics::propertiesOf(*material).sound_speed : INFINITY);
+    const bool has_fluid = fill_density || fill_sound_speed || fill_loss;
+    if (has_fluid && fill == Fill::Air)
+        diagnostics.push_back({"fill",
+                               "is air, which nothing passes into; leave out fill_density, fill_sound_speed and "
+                               "fill_loss"});
+    else if (has_fluid && !(fill && fluidOf(*fill)) && !(fill_density && fill_sound_speed))
+        diagnostics.push_back({"fill_density",
+                               "needs a fill of oil, sand or mud, or both fill_density and "
+                               "fill_sound_speed"});
     if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
         diagnostics.push_back(
             {"shear_speed", fmt::format("is {}; must be below 0.87 times the sound_speed of {}", *shear_speed, speed)});
@@ -266,9 +286,17 @@ void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
 types::Shell ShellAcoustics::shell() const {
     const acoustics::MatterProperties wall =
         material ? acoustics::propertiesOf(*material) : acoustics::MatterProperties{};
-    return {
-        thickness_mm.value_or(0) / 1000,        density.value_or(wall.density), sound_speed.value_or(wall.sound_speed),
-        shear_speed.value_or(wall.shear_speed), loss.value_or(wall.loss),       fill == Fill::Air};
+    const acoustics::MatterProperties fluid =
+        fluidOf(fill.value_or(Fill::Water)).value_or(acoustics::MatterProperties{});
+    return {.thickness = thickness_mm.value_or(0) / 1000,
+            .density = density.value_or(wall.density),
+            .sound_speed = sound_speed.value_or(wall.sound_speed),
+            .shear_speed = shear_speed.value_or(wall.shear_speed),
+            .loss = loss.value_or(wall.loss),
+            .has_air = fill == Fill::Air,
+            .fill_density = fill_density.value_or(fluid.density),
+            .fill_speed = fill_sound_speed.value_or(fluid.sound_speed),
+            .fill_loss = fill_loss.value_or(fluid.loss)};
 }
 
 void Acoustics::check(types::Diagnostics& diagnostics) const {

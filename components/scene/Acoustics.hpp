@@ -42,8 +42,8 @@ double reflection(Matter matter);     ///< Signed pressure reflection coefficien
  *  ACOUSTICS.md 3.3. */
 double lambertDb(Matter matter);
 
-/** What is behind a shell. */
-enum class Fill { Water, Air };
+/** What is behind a shell (ACOUSTICS.md 5.26). */
+enum class Fill { Water, Air, Oil, Sand, Mud };
 
 /** A thin wall of a solid, by name or by numbers beside it. */
 struct ShellAcoustics {
@@ -51,6 +51,7 @@ struct ShellAcoustics {
     std::optional<Matter> material;
     std::optional<double> density, sound_speed, shear_speed, loss;
     std::optional<Fill> fill;
+    std::optional<double> fill_density, fill_sound_speed, fill_loss;
 
     void check(types::Diagnostics& diagnostics) const;
     /** Returns the shell. check() must find nothing wrong. */
@@ -67,6 +68,11 @@ struct ShellAcoustics {
         visit(Field{"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
         visit(Field{"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
         visit(Field{"fill", "", "what is behind it"}, self.fill);
+        visit(Field{"fill_density", "kg/m^3", "of what is behind it, in place of that of `fill`", 10, 20000},
+              self.fill_density);
+        visit(Field{"fill_sound_speed", "m/s", "of what is behind it, in place of that of `fill`", 200, 6000},
+              self.fill_sound_speed);
+        visit(Field{"fill_loss", "1", "imaginary over real part of its wave number", 0, 1}, self.fill_loss);
     }
 };
 
@@ -139,5 +145,5 @@ struct insonify::types::EnumNames<insonify::scene::Sediment> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::scene::Fill> {
-    static constexpr std::string_view names[] = {"water", "air"};
+    static constexpr std::string_view names[] = {"water", "air", "oil", "sand", "mud"};
 };

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <complex>
+#include <iostream>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "components/acoustics/Plate.hpp"
@@ -119,6 +121,72 @@ TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
     const PlateResponse lost = plateResponse(rubber, water, water, 3e6, 1);
     EXPECT_LT(std::abs(lost.transmitted), 1e-30);
     EXPECT_NEAR(std::abs(lost.reflected), std::abs(1100. * 1550 - 1025. * 1500) / (1100. * 1550 + 1025. * 1500), 0.1);
+}
+
+/** Parseval: the energies of a series of pulses are the means over a period of the spectrum's. */
+TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
+    Draw draw;
+    double worst = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Plate plate{draw.between(1e-3, 0.1), draw.between(900, 9000), draw.between(1000, 7000), 0, 0};
+        const Fluid before{draw.between(800, 2000), draw.between(1000, 2000)};
+        const Fluid behind{draw.between(800, 2000), draw.between(1000, 2000)};
+        const double frequency = draw.between(1e5, 3e6), width = plate.sound_speed / (2 * plate.thickness);
+        constexpr int steps = 4000;
+        double reflected = 0, passed = 0;
+        for (int k = 0; k < steps; ++k) {
+            const double at = frequency + width * (k + 0.5) / steps;
+            reflected += std::norm(plateResponse(plate, before, behind, at, 1).reflected) / steps;
+            passed += std::norm(plateResponse(plate, before, behind, at, 1).transmitted *
+                                plateResponse(plate, behind, before, at, 1).transmitted) /
+                      steps;
+        }
+        const PlateReturns returns = plateReturns(plate, before, behind, frequency, 32);
+        const double all = std::accumulate(returns.reflected.begin(), returns.reflected.end(), 0.0),
+                     through = std::accumulate(returns.passed.begin(), returns.passed.end(), 0.0);
+        EXPECT_NEAR(all, reflected, 1e-5) << i;
+        EXPECT_NEAR(through, passed, 1e-5) << i;
+        EXPECT_LE(all + through, 1 + 1e-9);
+        worst = std::max({worst, std::abs(all - reflected), std::abs(through - passed)});
+    }
+    RecordProperty("worst", std::to_string(worst));
+    std::cout << "worst difference from the mean over a resonance: " << worst << "\n";
+}
+
+/** A train of pulses by the faces' own coefficients: at its delays it makes up the response at every frequency. */
+TEST(PlateTest, EachReturnIsThatOfItsPath) {
+    const Plate plate{0.01, 1190, 2700, 0, 0};
+    const Fluid oil{870, 1440};
+    const double own = 1190. * 2700, one = water.density * water.sound_speed, other = oil.density * oil.sound_speed;
+    const double front = (own - one) / (own + one), back = (other - own) / (other + own);
+    const PlateReturns returns = plateReturns(plate, water, oil, 500e3, 32);
+    EXPECT_NEAR(returns.reflected[0], front * front, 1e-12);
+    EXPECT_NEAR(returns.reflected[1], std::pow((1 - front * front) * back, 2), 1e-12);
+    EXPECT_NEAR(returns.reflected[2], std::pow((1 - front * front) * back * front * back, 2), 1e-3);
+    for (const double frequency : {480e3, 500e3, 555e3}) {
+        std::complex<double> sum = front;
+        const std::complex<double> across = std::exp(std::complex(0.0, 4 * pi * frequency * 0.01 / 2700));
+        for (int n = 1; n < 60; ++n)
+            sum += (1 - front * front) * back * std::pow(-front * back, n - 1) * std::pow(across, n);
+        EXPECT_LT(std::abs(sum - plateResponse(plate, water, oil, frequency, 1).reflected), 1e-6) << frequency;
+    }
+}
+
+TEST(PlateTest, ReturnsOfExtremePlatesAreFiniteAndBounded) {
+    Draw draw;
+    for (int i = 0; i < 3000; ++i) {
+        const Plate plate{i % 7 ? draw.between(1e-9, 10) : 0, draw.between(1, 30000), draw.between(100, 20000), 0,
+                          i % 3 ? draw.uniform() : 0};
+        const Fluid behind = i % 5 ? Fluid{draw.between(1, 3000), draw.between(100, 4000)} : air;
+        const PlateReturns returns = plateReturns(plate, water, behind, draw.between(1, 1e8), 32);
+        double reflected = 0, passed = 0;
+        for (const double share : returns.reflected) EXPECT_GE(share, 0), reflected += share;
+        for (const double share : returns.passed) EXPECT_GE(share, 0), passed += share;
+        EXPECT_TRUE(std::isfinite(reflected) && std::isfinite(passed)) << i;
+        EXPECT_LE(reflected, 1 + 1e-9) << i;
+        EXPECT_LE(passed, 1 + 1e-9) << i;
+        EXPECT_LE(returns.reflected.size(), 32u);
+    }
 }
 
 TEST(PlateTest, ExtremeOnesAreFinite) {

@@ -68,6 +68,18 @@ TEST_F(GltfMaterialsTest, AShellIsOfMatterOrOfNumbers) {
     EXPECT_FALSE(acoustics(R"({"material":"steel"})").shell);
 }
 
+TEST_F(GltfMaterialsTest, AFillIsOfATableOrOfNumbers) {
+    const auto fillOf = [this](const std::string& fill) {
+        const types::Shell shell =
+            acoustics(R"({"shell":{"thickness_mm":3,"material":"pvc",)" + fill + "}}").shell.value();
+        return std::array{shell.fill_density, shell.fill_speed, shell.fill_loss};
+    };
+    EXPECT_EQ(fillOf(R"("fill":"water")"), (std::array{0., 0., 0.}));
+    EXPECT_EQ(fillOf(R"("fill":"oil","fill_loss":1e-3)"), (std::array{825., 1440., 1e-3}));
+    EXPECT_EQ(fillOf(R"("fill":"sand","fill_density":2000)"), (std::array{2000., 1650., 0.0147}));
+    EXPECT_EQ(fillOf(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
+}
+
 TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"shell":{"material":"pvc"}})", "acoustics.shell.thickness_mm: is missing"},
@@ -80,7 +92,14 @@ TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
         {R"({"shell":{"thickness_mm":2,"material":"pvc","shear_speed":2400}})",
          "shell.shear_speed: is 2400; must be below 0.87 times the sound_speed of 2400"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","thick":2}})", "shell.thick: is not known; "},
-        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"oil"}})", "shell.fill: is \"oil\"; may be water, air"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"wine"}})",
+         "shell.fill: is \"wine\"; may be water, air"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"air","fill_loss":0.1}})",
+         "shell.fill: is air, which nothing passes into; leave out fill_density"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900}})",
+         "shell.fill_density: needs a fill of oil, sand or mud, or both"},
+        {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900,"fill_sound_speed":100}})",
+         "shell.fill_sound_speed: is 100; must be a number from 200 to 6000"},
         {R"({"shell":2})", "acoustics.shell: must be a block such as"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc"},"material":"steel"})",
          "acoustics.shell: stands beside `sediment`, `material` or `table`; give one of them"},

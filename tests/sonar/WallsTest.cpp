@@ -8,6 +8,7 @@
 
 #include "components/acoustics/Plate.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
@@ -19,47 +20,12 @@ using std::numbers::pi;
 using test::pingOf;
 using test::snapshotOf;
 
-constexpr double frequency_khz = 200, water_speed = 1000;
-constexpr types::Shell acrylic{0.004, 1190, 2700, 1340, 5e-3, false};
 constexpr types::Shell sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // no resonance is narrower than a sample
 constexpr types::Shell rubber{0.1, 1300, 900, 0, 0.2, false};
 
-acoustics::PlateResponse responseOf(const types::Shell& shell, double cosine) {
-    const acoustics::Fluid water{1025, water_speed};
-    return acoustics::plateResponse({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
-                                    water, water, 1000 * frequency_khz, cosine);
-}
 /** Share of the energy that goes through and back. */
 double passed(const types::Shell& shell, double cosine) {
-    return std::pow(std::norm(responseOf(shell, cosine).transmitted), 2);
-}
-
-SonarConfig wallSonar(double width_deg, double height_deg, int beams, int bins = 300) {
-    SonarConfig config = test::sonarOf(
-        {.beams = beams, .width_deg = width_deg, .height_deg = height_deg, .bins = bins, .rows = 256, .columns = 8});
-    config.visibility = Visibility::Cpu;
-    config.frequency_khz = frequency_khz;
-    return config;
-}
-
-/** Objects of which the first ones are shells, all else has a Lambert parameter of 0 dB. */
-types::GeometryPtr shellsOf(std::vector<types::Mesh> meshes, size_t shells, const types::Shell& shell = acrylic,
-                           std::vector<glm::dvec3> positions = {}) {
-    for (size_t i = 0; i < shells; ++i)
-        for (types::Cluster& cluster : meshes[i].clusters) cluster.material = 1;
-    const auto scene = std::make_shared<types::Geometry>(*test::sceneOf(std::move(meshes), 0, std::move(positions)));
-    scene->materials.push_back(scene->materials.front());
-    scene->materials[1].shell = shell;
-    scene->materials[1].lambert_db = -10;
-    return scene;
-}
-
-/** Energy of a beam between two ranges [m]. */
-double energyOf(const types::Sonar& ping, uint32_t beam, double from, double to) {
-    double sum = 0;
-    for (uint32_t k = 0; k < ping.bin_count; ++k)
-        if (ping.binStart(k) >= from && ping.binStart(k) < to) sum += double{ping.bins[beam * ping.bin_count + k]};
-    return sum;
+    return std::pow(std::norm(shellResponse(shell, cosine).transmitted), 2);
 }
 
 TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBothWays) {
@@ -76,7 +42,7 @@ TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBoth
         double share = 0;  // mean over the beam
         for (int i = 0; i < 100; ++i) share += passed(sheet, std::cos(bearing + half_beam * (i / 49.5 - 1))) / 100;
         EXPECT_NEAR(energyOf(both, beam, back - margin, 30) / there, share, 0.02 * share + 1e-4) << beam;
-        const double reflected = std::norm(responseOf(sheet, 1).reflected) * 0.1;
+        const double reflected = std::norm(shellResponse(sheet, 1).reflected) * 0.1;
         EXPECT_NEAR(energyOf(both, beam, 0, front + margin) / energyOf(rigid, beam, 0, 30), reflected,
                     1e-3 * reflected);
         EXPECT_EQ(energyOf(both, beam, front + margin, back - margin), 0);
@@ -107,7 +73,7 @@ TEST(WallsTest, AHollowSphereHasBothItsSides) {
     const SonarConfig config = wallSonar(12, 12, 1, 120);
     const auto ping = pingOf(config, snapshotOf(shellsOf({test::sphere(radius, 256)}, 1, sheet, {{distance, 0, 0}})));
     std::vector<double> bins(ping.bin_count, 0);
-    const double strength = 0.1 * std::norm(responseOf(sheet, 1).reflected);
+    const double strength = 0.1 * std::norm(shellResponse(sheet, 1).reflected);
     constexpr int steps = 400'000;
     const double end = std::asin(radius / distance);
     for (int i = 0; i < steps; ++i) {

@@ -7,7 +7,6 @@
 
 #include "components/acoustics/Backscatter.hpp"
 #include "components/acoustics/Matter.hpp"
-#include "components/acoustics/Plate.hpp"
 #include "components/acoustics/RoughSurface.hpp"
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
@@ -17,9 +16,8 @@ namespace {
 
 static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
 
-constexpr double water_density = 1025;      ///< [kg/m^3]
-constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
-constexpr double min_lobe_share = 1e-4;     ///< A rough solid whose lobe keeps less energy has none [1].
+constexpr double water_density = 1025;   ///< [kg/m^3]
+constexpr double min_lobe_share = 1e-4;  ///< A rough solid whose lobe keeps less energy has none [1].
 
 /** What shaders/backscatter.glsl reads and computes. */
 struct Shared {
@@ -95,34 +93,6 @@ private:
     std::map<std::string, int> seabeds_, matters_;
 };
 
-acoustics::PlateResponse wallResponse(const types::Shell& shell, const SonarConfig& config, double cosine) {
-    const acoustics::Fluid water{water_density, config.speedOfSound()};
-    return acoustics::plateResponse({shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
-                                    water, shell.has_air ? air : water, 1000 * *config.frequency_khz, cosine);
-}
-
-/** Share of the energy that a shell reflects at the normal; all of it without a frequency [1]. */
-float wallReflection(const types::Material& material, const SonarConfig& config) {
-    if (!material.shell || !config.frequency_khz) return 1;
-    return static_cast<float>(std::norm(wallResponse(*material.shell, config, 1).reflected));
-}
-
-/** Means over steps of the cosine, so that no resonance falls between two entries. */
-std::vector<float> wallTable(const types::Material& material, const SonarConfig& config) {
-    if (!material.shell || material.shell->has_air || !config.frequency_khz) return {};
-    constexpr int entries = 1024, per_entry = 8;
-    std::vector<float> table;
-    for (int i = 0; i < entries; ++i) {
-        double sum = 0;
-        for (int k = 0; k < per_entry; ++k) {
-            const double cosine = (i + (k + 0.5) / per_entry) / entries;
-            sum += std::pow(std::norm(wallResponse(*material.shell, config, cosine).transmitted), 2);
-        }
-        table.push_back(static_cast<float>(sum / per_entry));
-    }
-    return table;
-}
-
 vec4 lawOf(const types::Material& material, const SonarConfig& config, float reflected, TableList& tables) {
     vec4 law(static_cast<float>(tables.of(material)), 0, 0, 0);
     if (const auto surface = roughSurface(material, config)) {
@@ -140,14 +110,19 @@ vec4 lawOf(const types::Material& material, const SonarConfig& config, float ref
 }  // namespace
 
 bool MaterialLaws::hasWalls() const {
-    return std::ranges::any_of(walls, [](const std::vector<float>& wall) { return !wall.empty(); });
+    return std::ranges::any_of(walls, [](const WallLaw& wall) { return wall.letsThrough() || wall.rings(); });
 }
 
-float MaterialLaws::passed(size_t material, double cosine) const {
-    const std::vector<float>& wall = walls[material];
-    if (wall.empty()) return 0;
-    return wall[static_cast<size_t>(
-        std::clamp(cosine * static_cast<double>(wall.size()), 0.0, static_cast<double>(wall.size() - 1)))];
+bool MaterialLaws::hasReturns() const {
+    return std::ranges::any_of(walls, [](const WallLaw& wall) { return wall.rings() || wall.fill; });
+}
+
+void MaterialLaws::takeReturnsApart() {
+    for (size_t i = 0; i < walls.size(); ++i)
+        if (walls[i].rings()) {
+            records[i].values.x *= walls[i].outside.front();
+            records[i].law.y *= walls[i].outside.front();
+        }
 }
 
 bool MaterialLaws::hasLobes() const {
@@ -216,13 +191,14 @@ MaterialLaws makeMaterialLaws(const SonarConfig& config, const types::Geometry& 
     TableList tables(config, laws);
     if (config.frequency_khz) laws.wavelength = config.speedOfSound() / (1000 * *config.frequency_khz);
     for (const types::Material& material : geometry.materials) {
-        const float reflected = wallReflection(material, config);
+        WallLaw wall = config.model == Model::Physical ? makeWallLaw(material, config) : WallLaw();
+        const auto reflected = static_cast<float>(wall.reflected);
         const vec4 values(reflected * std::pow(10.0f, material.lambert_db / 10), material.reflectivity,
                           material.normal_scale, 0);
         const vec4 law =
             config.model == Model::Physical ? lawOf(material, config, reflected, tables) : vec4(-1, 0, 0, 0);
         laws.records.push_back({values, law});
-        laws.walls.push_back(config.model == Model::Physical ? wallTable(material, config) : std::vector<float>());
+        laws.walls.push_back(std::move(wall));
     }
     return laws;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/sonar/echo/Interface.hpp"
+#include "components/sonar/echo/WallLaws.hpp"
 #include "components/sonar/plan/SonarConfig.hpp"
 #include "types/Geometry.hpp"
 
@@ -26,22 +27,24 @@ struct LobeSample {
 /** What materials give back to a sonar (ACOUSTICS.md 3): by Lambert's law, or by a table, and by a lobe about the
  *  normal. */
 struct MaterialLaws {
-    std::vector<MaterialRecord> records;    ///< One for each material.
-    std::vector<double> tables;             ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
-    std::vector<std::vector<float>> walls;  ///< Share of energy that shells let through both ways, one for each
-                                            ///< material, over the cosine from 0 to 1; empty: nothing [1].
-    std::optional<double> wavelength;       ///< None without a frequency [m].
-    bool has_measured = false;              ///< A table is measured.
-    bool has_seabeds = false;               ///< A table is that of APL-UW TR 9407.
-    bool has_matter = false;                ///< A table is that of a rough solid.
-    bool lacks_frequency = false;           ///< There are seabeds, which follow Lambert's law for want of a frequency.
-    std::optional<double> sharp_turn;       ///< Edges of this turn and more echo themselves (3.12) [rad].
-    std::string outside_validity;           ///< What lies outside of what TR 9407 covers; empty: nothing.
+    std::vector<MaterialRecord> records;  ///< One for each material.
+    std::vector<double> tables;           ///< sigma_b / cos(theta), BACKSCATTER_ENTRIES each [1].
+    std::vector<WallLaw> walls;           ///< One for each material.
+    std::optional<double> wavelength;     ///< None without a frequency [m].
+    bool has_measured = false;            ///< A table is measured.
+    bool has_seabeds = false;             ///< A table is that of APL-UW TR 9407.
+    bool has_matter = false;              ///< A table is that of a rough solid.
+    bool lacks_frequency = false;         ///< There are seabeds, which follow Lambert's law for want of a frequency.
+    std::optional<double> sharp_turn;     ///< Edges of this turn and more echo themselves (3.12) [rad].
+    std::string outside_validity;         ///< What lies outside of what TR 9407 covers; empty: nothing.
 
     bool hasLobes() const;
+    /** Whether sound goes through a wall, or rings in one. */
     bool hasWalls() const;
-    /** Returns the share of energy that goes through a material's shell and back at a cosine of incidence [1]. */
-    float passed(size_t material, double cosine) const;
+    /** Whether any wall has returns that are apart in range, or a fill. */
+    bool hasReturns() const;
+    /** Leaves each wall that rings its first return; WallRays adds the others. */
+    void takeReturnsApart();
     bool followsLambert(size_t material) const { return FOLLOWS_LAMBERT(records[material].law); }
     bool hasLobe(size_t material) const { return records[material].law.y > 0; }
     /** sigma_b / cos(theta) of a material at a cosine [1]; of one with a lobe, as the lobe is seen. */

@@ -85,8 +85,10 @@ void TruthTable::reportBin(size_t at, size_t to, types::SonarTruth& truth) const
         return std::clamp(static_cast<float>(static_cast<double>(sines) * per_energy), -1.0f, 1.0f);
     };
     const bool alone = used_[at] == 1;
-    truth.object[to] = static_cast<int32_t>(strongest->object & ~behind_walls);
-    truth.path[to] = strongest->object & behind_walls ? types::SonarTruth::through_wall : 0;
+    truth.object[to] = static_cast<int32_t>(strongest->object & ~(behind_walls | rung_in_wall));
+    truth.path[to] = strongest->object & behind_walls   ? types::SonarTruth::through_wall
+                     : strongest->object & rung_in_wall ? types::SonarTruth::rung
+                                                        : 0;
     truth.elevation[to] = sine(strongest->elevation);
     truth.grazing[to] = sine(strongest->grazing);
     truth.share[to] = alone ? 1 : static_cast<float>(energy / static_cast<double>(all.energy));

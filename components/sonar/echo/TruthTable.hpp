@@ -11,13 +11,15 @@ namespace insonify::sonar {
 
 /** Set in the index of an object whose echo has come through a wall. */
 constexpr uint32_t behind_walls = 0x80000000;
+/** The same where its echo has rung in its own wall. */
+constexpr uint32_t rung_in_wall = 0x40000000;
 
 /** What one object has sent back to one bin. Weighted by energy, sines are counted in half quanta. */
 struct ObjectEcho {
     uint64_t energy = 0;    ///< In quanta, as the bin's own sum.
     int64_t elevation = 0;  ///< Sine of the elevation, weighted.
     int64_t grazing = 0;    ///< Sine of the grazing angle, weighted.
-    uint32_t object = 0;    ///< Index into Geometry::objects; with behind_walls where the echo came through a wall [1].
+    uint32_t object = 0;    ///< Index into Geometry::objects; with behind_walls or rung_in_wall [1].
     uint32_t hits = 0;      ///< Samples [1].
 
     /** Of one cell: `energy` above 0. */

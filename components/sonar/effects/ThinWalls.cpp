@@ -31,6 +31,7 @@ public:
         if (plan.profile || plan.config.motion_in_ping) return omit(Reason::Lacking, onBentWays);
         if (!plan.laws.hasWalls()) return omit(Reason::NoneInScene, withoutShell);
         plan.add(Pass::Walls);
+        plan.laws.takeReturnsApart();
         return true;
     }
     std::string takeOut(SonarConfig& config) const override {

@@ -22,6 +22,8 @@
 #include "components/sonar/rays/RayPaths.hpp"
 #include "components/sonar/rays/TileDirections.hpp"
 #include "components/sonar/rays/TilePatches.hpp"
+#include "components/sonar/rays/WallRays.hpp"
+#include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -32,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int part_samples = 8192;
 
 /** Share of the energy below which a ray ends that has gone through walls: 60 dB [1]. */
-constexpr float min_passed = 1e-6f;
+constexpr auto min_passed = static_cast<float>(WallRays::min_passed);
 
 /** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
 struct Part {
@@ -99,6 +101,8 @@ private:
     /** Follows rays on through the walls that they have met; whether there are any. */
     bool castThrough(std::span<CastTile> tiles, Worker& worker) const;
     bool castThrough(CastTile& tile) const;
+    /** The same where walls ring or have a fill; deposits their echoes. */
+    void followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const;
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<CastTile> cast(const Part& part, Worker& worker) const;
@@ -116,6 +120,7 @@ private:
     TileDirections directions_;
     BinLevels levels_;
     WaterView water_;                 ///< In this ping.
+    WaterMirror surface_;             ///< Where rays that go through walls end.
     std::optional<EchoGrid> grid_;    ///< Of energies,
     std::optional<EchoField> field_;  ///< or of fields.
     std::unique_ptr<ObjectPlaces> places_;
@@ -144,6 +149,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, Ping
       effects_(effects),
       rules_(makeEchoRules(plan, effects)),
       levels_(plan.config, summedGrid(plan)),
+      surface_(plan.config),
       visibility_(*geometry_),
       threads_(plan.options.threads),
       workers_(static_cast<size_t>(threads_.size())) {
@@ -177,6 +183,7 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
 
 void CastEchoes::takePlan() {
     levels_ = BinLevels(plan_.config, summedGrid(plan_));
+    surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
         if (!ray_paths_) ray_paths_.emplace(plan_, *geometry_);
     } else {
@@ -235,6 +242,7 @@ void CastEchoes::makeTruth() {
 
 void CastEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
+    surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);
     if (ray_paths_) ray_paths_->place(snapshot);
@@ -298,10 +306,11 @@ bool CastEchoes::castThrough(CastTile& tile) const {
             normal = turned(run, run.planes[tile.hits->triangle[i]].normal);
         const double length = glm::length(way),
                      cosine = std::abs(glm::dot(normal, way)) / (glm::length(normal) * length);
-        tile.passed[i] *= rules_.laws.passed(run.material, cosine);
+        tile.passed[i] *= static_cast<float>(rules_.laws.walls[run.material].passedAt(cosine));
         const float begin =
             tile.hits->distance[i] * (1 + 1e-5f) + static_cast<float>(RayVisibility::nearest / 10 / length);
-        const auto end = static_cast<float>(rules_.bins.range_max / length);
+        const auto end =
+            static_cast<float>(std::min(rules_.bins.range_max / length, surface_.distance(glm::dvec3(0), way)));
         if (!(tile.passed[i] >= min_passed) || !(begin < end)) continue;
         on.nearest[i] = begin;
         on.farthest[i] = end;
@@ -316,12 +325,22 @@ bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
     for (size_t i = 0; i < tiles.size(); ++i) {
         if (!tiles[i].passed) worker.passed[i].fill(1);
         tiles[i].passed = worker.passed[i].data();
+        tiles[i].path = behind_walls;
         if (castThrough(tiles[i]))
             any = true;
         else
             std::fill_n(tiles[i].hits->command, tile_samples, TileHits::nothing);
     }
     return any;
+}
+
+void CastEchoes::followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const {
+    const double absorption = makeAbsorption(plan_.config).db_per_m * std::log(10.0) / 10;
+    const PlacedScene scene = this->scene();
+    WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, absorption);
+    for (const CastTile& tile : tiles)
+        if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
+            while (const CastTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);
 }
 
 void CastEchoes::deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
@@ -341,7 +360,9 @@ void CastEchoes::depositPart(const Part& part, std::span<CastTile> tiles, Worker
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
     if (truth_) worker.shown->clear();
     deposit(tiles, false, part.first_beam, worker);
-    const int walls = plan_.has(Pass::Walls) ? plan_.config.max_walls : 0;
+    const bool apart = plan_.has(Pass::Walls) && rules_.laws.hasReturns();
+    if (apart) followWalls(tiles, part.first_beam, worker);
+    const int walls = plan_.has(Pass::Walls) && !apart ? plan_.config.max_walls : 0;
     for (int wall = 0; wall < walls && castThrough(tiles, worker); ++wall)
         deposit(tiles, true, part.first_beam, worker);
     if (!truth_) return;

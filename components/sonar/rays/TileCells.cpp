@@ -30,7 +30,7 @@ public:
         const uint32_t same = sameAsNext(*tile.hits);
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
-            const int merged = met ? sameFrom(same, i) : 1;
+            const int merged = met && !tile.apparent ? sameFrom(same, i) : 1;
             if (met)
                 addCell(tile, i, merged);
             else if (hears_misses_)
@@ -71,12 +71,15 @@ private:
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
         if (tile.passed) cells_.size[i] *= tile.meanPassed(sample, merged);
-        if (run.curves && curves_) cells_.setCurve(i, run.curves[tile.hits->triangle[sample]]);
+        if (tile.isApparent(sample)) putApparent(cells_, i, tile.apparent[sample]);
+        if (tile.late) moveAway(cells_, i, tile.meanLate(sample, merged));
+        if (!tile.isApparent(sample) && run.curves && curves_)
+            cells_.setCurve(i, run.curves[tile.hits->triangle[sample]]);
         if (mapped_) placeInMap(i, *tile.hits, sample, merged);
         if (mapped_ && scene_.paths) in_map_.setCosines(scene_, i, i + 1, cells_);
         if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
         if (deposit_.to().truth) {
-            cells_.object[i] = tile.passed ? object | behind_walls : object;
+            cells_.object[i] = object | tile.path;
             cells_.hits[i] = static_cast<uint32_t>(merged);
         }
         if (++cells_.count == Cells::capacity) finish();

@@ -33,7 +33,11 @@ struct CastTile {
     int first_column, first_row;
     int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
     TileHits* hits;
-    float* passed = nullptr;  ///< Share of each sample's energy that walls let through both ways; null: all [1].
+    float* passed = nullptr;      ///< Share of each sample's energy that walls let through both ways; null: all [1].
+    const float* late = nullptr;  ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
+    const ApparentPlane* apparent = nullptr;  ///< Where refraction in fills makes a surface seem to be; of samples
+                                              ///< without, and null: where it is.
+    uint32_t path = 0;                        ///< Of TruthTable.hpp: behind_walls, rung_in_wall, or 0.
 
     /** Mean share of `count` samples from one on [1]. */
     double meanPassed(int first, int count) const {
@@ -41,6 +45,13 @@ struct CastTile {
         for (int i = first; i < first + count; ++i) sum += static_cast<double>(passed[i]);
         return sum / count;
     }
+    /** The same of what is late [m]. */
+    double meanLate(int first, int count) const {
+        double sum = 0;
+        for (int i = first; i < first + count; ++i) sum += static_cast<double>(late[i]);
+        return sum / count;
+    }
+    bool isApparent(int sample) const { return apparent && apparent[sample].focus > 0; }
 };
 
 /** A ping that is ray-traced, at the quality in force. */
@@ -115,6 +126,30 @@ inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {
         __builtin_prefetch(&plane.normal);
         __builtin_prefetch(&plane.point);  // in the next line of the cache, perhaps
     }
+}
+
+/** Moves the plane of cell i away by a slant range [m], seen in its direction. */
+inline void moveAway(Cells& cells, int i, double late) {
+    const double facing =
+        (cells.normal_x[i] * cells.cos_az[i] + cells.normal_y[i] * cells.sin_az[i]) * cells.cos_el[i] +
+        cells.normal_z[i] * cells.sin_el[i];
+    const double range = cells.distance[i] / facing, moved = std::max(range + late, 1e-3);
+    cells.distance[i] *= moved / range;
+    const auto limit = [&](double inverse) { return inverse > 0 ? 1 / std::max(1 / inverse + late, 1e-3) : 0; };
+    cells.near_limit[i] = std::max(cells.near_limit[i], limit(cells.near_limit[i]));
+    cells.far_limit[i] = std::min(cells.far_limit[i], limit(cells.far_limit[i]));
+}
+
+/** Puts what refraction makes of a plane in the place of the plane of cell i. */
+inline void putApparent(Cells& cells, int i, const ApparentPlane& plane) {
+    cells.normal_x[i] = plane.normal.x;
+    cells.normal_y[i] = plane.normal.y;
+    cells.normal_z[i] = plane.normal.z;
+    cells.distance[i] = 1;
+    cells.size[i] *= plane.focus;
+    cells.mapped[i] = plane.cosine;
+    cells.near_limit[i] = 1e3;
+    cells.far_limit[i] = 0;
 }
 
 /** Adds the energies of tiles to sums. Neighbouring samples of one triangle in one beam may be one cell. Allocates

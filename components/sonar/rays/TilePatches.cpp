@@ -48,7 +48,7 @@ public:
             for (int i = 0; i < tile_samples; ++i)
                 same |= static_cast<uint32_t>((command_[i] == command_[first]) & (triangle_[i] == triangle_[first]))
                         << i;
-            same = partOf(tile, same & met);
+            same = tile.apparent ? 1u << first : partOf(tile, same & met);
             addPatch(tile, same);
             met &= ~same;
         }
@@ -132,6 +132,8 @@ private:
         cells_.setPlane(i, scene_.ranges[command_[first]], triangle_[first]);
         setLookDirection(view_, conical_, all, i, cells_);
         if (tile.passed) cells_.size[i] *= meanPassed(tile, samples);
+        if (tile.isApparent(sample_[first])) putApparent(cells_, i, tile.apparent[sample_[first]]);
+        if (tile.late) moveAway(cells_, i, meanLate(tile, samples));
         sources_[i] = {all, samplesIn(all, samples, tile), command.object, command.lattice};
         if (mapped_) placeInMap(i, *tile.hits, samples);
         count();
@@ -142,6 +144,14 @@ private:
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
             sum += tile.meanPassed(sample_[std::countr_zero(left)], 1);
+        return sum / std::popcount(samples);
+    }
+
+    /** Mean slant range of some samples beyond that of their surface [m]. */
+    double meanLate(const CastTile& tile, uint32_t samples) const {
+        double sum = 0;
+        for (uint32_t left = samples; left != 0; left &= left - 1)
+            sum += tile.meanLate(sample_[std::countr_zero(left)], 1);
         return sum / std::popcount(samples);
     }
 

@@ -17,6 +17,7 @@
 #include "components/sonar/ways/SharedBins.hpp"
 #include "components/sonar/ways/WayPatterns.hpp"
 #include "types/Angle.hpp"
+#include "types/Hash.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -36,9 +37,12 @@ struct Chain {
     double power = 1;           ///< What they leave of it [1].
     double widest = 0;          ///< Most of what a facet of them adds to a mean square slope, over its cosine [1].
     bool begins_lobed = false;  ///< The first of them has a lobe of its own.
+    int walls = 0;              ///< Thin walls that the ray has gone through [1].
+    uint64_t wall_names = 0;    ///< The same for all rays that go through the same ones.
 
     bool sameAs(const Chain& other) const {
-        return count == other.count && std::equal(names.begin(), names.begin() + count, other.names.begin());
+        return count == other.count && wall_names == other.wall_names &&
+               std::equal(names.begin(), names.begin() + count, other.names.begin());
     }
     glm::dvec3 image(glm::dvec3 place) const {
         for (int k = count; k-- > 0;) place = planes[static_cast<size_t>(k)].image(place);
@@ -77,6 +81,7 @@ private:
     const RenderPlan& plan_;
     std::optional<WayPatterns> patterns_;
     WaterMirror water_;
+    int max_walls_;                   ///< Thin walls that a way goes through [1].
     std::vector<double> reflected_;   ///< Share of the power that each material reflects as a mirror [1].
     size_t bin_count_ = 0;            ///< Sums of a cell [1].
     std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
@@ -100,13 +105,11 @@ public:
 
     void follow(const CastTile& tile) {
         if (!begin(tile)) return;
-        const int bounces = paths_.plan_.config.multipath->bounces;
-        for (int depth = 1; rays_.towards.active; ++depth) {
+        while (rays_.towards.active) {
             castOn();
             hear(tile);
-            if (depth == bounces) return;
             for (int i = 0; i < tile_samples; ++i)
-                if (isActive(i)) reflect(i, from(i), towards(i), hits_, false);
+                if (isActive(i)) goOn(i, from(i), towards(i), hits_);
         }
     }
 
@@ -119,11 +122,30 @@ private:
     void drop(int i) { rays_.towards.active &= ~(1u << i); }
 
     bool begin(const CastTile& tile);
+    /** Sends a ray on from what it has met: by a mirror, or through a wall; drops one that ends there. */
+    void goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
+    /** Whether sound goes on straight through a wall that is no mirror, into water. */
+    bool letsThrough(uint32_t command) const {
+        if (paths_.max_walls_ == 0 || command == TileHits::nothing || reflected(command) > 0) return false;
+        const WallLaw& wall = rules_.laws.walls[scene_.commands[command].material];
+        return wall.letsThrough() && !wall.fill;
+    }
+    /** Share of the energy that goes through a wall once [1]. */
+    double passedOnce(const TileHits& hits, int i, const glm::dvec3& way) const {
+        const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
+        return std::sqrt(rules_.laws.walls[scene_.commands[hits.command[i]].material].passedAt(cosine));
+    }
+    void pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
+    void aim(int i, const glm::dvec3& at, const glm::dvec3& on);
     /** Sends a ray on from the mirror that it has met; drops one that has met none in reach. */
     void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
     void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
     void castOn();
-    uint32_t openBack() const;
+    using Shares = std::array<double, tile_samples>;
+    /** Returns the share of the energy of each ray that has met something which comes back to the sonar directly, on
+     * the side that it met [1]. */
+    Shares openBack() const;
+    Shares through(PathRays& back) const;
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
     void deposit(const CellAngles& at, int i, double open);
@@ -161,15 +183,32 @@ bool PathEchoes::Tracer::begin(const CastTile& tile) {
     for (int i = 0; i < tile_samples; ++i) {
         const uint32_t command = tile.hits->command[i];
         const bool misses = command == TileHits::nothing;
-        if (misses ? !paths_.water_.reflects() : reflected(command) == 0) continue;
+        if (misses ? !paths_.water_.reflects() : reflected(command) == 0 && !letsThrough(command)) continue;
         const int column = tile.first_column + view_.shape.at[i].columns, row = tile.first_row + view_.shape.at[i].rows;
         if (column >= tile.end_column || row >= view_.cells.rows) continue;
         rays_.towards.active |= 1u << i;
         chains_[static_cast<size_t>(i)] = {};
         lengths_[static_cast<size_t>(i)] = 0;
-        reflect(i, glm::dvec3(0), view_.cells.direction(column, row), *tile.hits, true);
+        goOn(i, glm::dvec3(0), view_.cells.direction(column, row), *tile.hits);
     }
     return rays_.towards.active;
+}
+
+void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
+    const Chain& chain = chains_[static_cast<size_t>(i)];
+    if (letsThrough(hits.command[i])) return pass(i, from, way, hits);
+    if (chain.count == paths_.plan_.config.multipath->bounces) return drop(i);
+    reflect(i, from, way, hits, chain.count == 0);
+}
+
+void PathEchoes::Tracer::pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
+    constexpr double min_passed = 1e-3;  // of one way: 60 dB of both
+    Chain& chain = chains_[static_cast<size_t>(i)];
+    chain.power *= passedOnce(hits, i, way);
+    if (chain.walls == paths_.max_walls_ || !(chain.power >= min_passed)) return drop(i);
+    chain.wall_names = types::hashed(chain.wall_names, hits.command[i], static_cast<uint64_t>(++chain.walls));
+    lengths_[static_cast<size_t>(i)] += double{hits.distance[i]};
+    aim(i, from + double{hits.distance[i]} * way, way);
 }
 
 void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
@@ -207,9 +246,14 @@ void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3&
     const glm::dvec3 at = from + distance * way, on = plane.turned(way);
     double& length = lengths_[static_cast<size_t>(i)];
     length += distance;
-    const double left = 2 * rules_.bins.range_max - length;
-    if (!(left > 0)) return drop(i);
+    if (!(2 * rules_.bins.range_max - length > 0)) return drop(i);
     chain.planes[static_cast<size_t>(chain.count++)] = plane;
+    aim(i, at, on);
+}
+
+void PathEchoes::Tracer::aim(int i, const glm::dvec3& at, const glm::dvec3& on) {
+    const double length = lengths_[static_cast<size_t>(i)], left = 2 * rules_.bins.range_max - length;
+    if (!(left > 0)) return drop(i);
     const glm::vec3 begin(at), ahead(on);
     rays_.from_x[i] = begin.x, rays_.from_y[i] = begin.y, rays_.from_z[i] = begin.z;
     rays_.towards.x[i] = ahead.x, rays_.towards.y[i] = ahead.y, rays_.towards.z[i] = ahead.z;
@@ -219,13 +263,13 @@ void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3&
 
 void PathEchoes::Tracer::castOn() { visibility_.cast(rays_, hits_); }
 
-/** Returns the rays, as bits, that have met something with a free way back to the sonar, on the side that they met. */
-uint32_t PathEchoes::Tracer::openBack() const {
+PathEchoes::Tracer::Shares PathEchoes::Tracer::openBack() const {
     PathRays back{};
     back.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
         back.nearest[i] = 1, back.farthest[i] = 0;
-        if (!isActive(i) || hits_.command[i] == TileHits::nothing) continue;
+        if (!isActive(i) || hits_.command[i] == TileHits::nothing || chains_[static_cast<size_t>(i)].count == 0)
+            continue;
         const glm::dvec3 at = met(i);
         const double range = glm::length(at),
                      mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
@@ -240,7 +284,36 @@ uint32_t PathEchoes::Tracer::openBack() const {
         back.farthest[i] = static_cast<float>(1 - RayVisibility::nearest / range);
         back.towards.active |= 1u << i;
     }
-    return back.towards.active ? back.towards.active & ~visibility_.blocked(back) : 0;
+    Shares shares{};
+    if (!back.towards.active) return shares;
+    if (paths_.max_walls_ > 0) return through(back);
+    const uint32_t open = back.towards.active & ~visibility_.blocked(back);
+    for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = open >> i & 1;
+    return shares;
+}
+
+/** Follows ways back through thin walls. */
+PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
+    Shares shares{};
+    for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = back.towards.active >> i & 1;
+    TileHits hits;
+    for (int wall = 0; back.towards.active; ++wall) {
+        visibility_.cast(back, hits);
+        for (int i = 0; i < tile_samples; ++i) {
+            if (!(back.towards.active >> i & 1)) continue;
+            double& share = shares[static_cast<size_t>(i)];
+            const bool ends = hits.command[i] == TileHits::nothing;
+            if (!ends && (wall == paths_.max_walls_ || !letsThrough(hits.command[i])))
+                share = 0;
+            else if (!ends)
+                share *= passedOnce(hits, i, {back.towards.x[i], back.towards.y[i], back.towards.z[i]});
+            if (ends || share == 0)
+                back.towards.active &= ~(1u << i);
+            else
+                back.nearest[i] = hits.distance[i] * (1 + 1e-6f) + back.nearest[i];
+        }
+    }
+    return shares;
 }
 
 /** Samples from i on that are a rectangle which the same mirrors show of one triangle. */
@@ -256,15 +329,16 @@ int PathEchoes::Tracer::sameFrom(int i) const {
 }
 
 void PathEchoes::Tracer::hear(const CastTile& tile) {
-    const uint32_t open = openBack();
+    const Shares open = openBack();
     for (int i = 0; i < tile_samples;) {
-        if (!isActive(i) || hits_.command[i] == TileHits::nothing) {
+        if (!isActive(i) || hits_.command[i] == TileHits::nothing || chains_[static_cast<size_t>(i)].count == 0) {
             ++i;
             continue;
         }
         const int merged = sameFrom(i);
-        const uint32_t of_these = open >> i & ((1u << merged) - 1);
-        deposit(CellAngles(view_, tile, i, merged), i, static_cast<double>(std::popcount(of_these)) / merged);
+        double of_these = 0;
+        for (int k = i; k < i + merged; ++k) of_these += open[static_cast<size_t>(k)];
+        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged);
         i += merged;
     }
 }
@@ -352,7 +426,8 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     patterns.eachCell(by_itself, [&](size_t heard) { bins_.depositCell(cell, static_cast<uint>(heard), strength); });
 }
 
-PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), water_(plan.config) {
+PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
+    : plan_(plan), water_(plan.config), max_walls_(plan.has(Pass::Walls) ? plan.config.max_walls : 0) {
     for (const types::Material& material : geometry.materials)
         reflected_.push_back(reflectedPower(material, plan.config.multipath->bounces));
     takeQuality();

@@ -1,0 +1,145 @@
+#include "components/sonar/echo/WallLaws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+
+#include "components/acoustics/Plate.hpp"
+#include "components/acoustics/Pulse.hpp"
+#include "components/sonar/fan/BinGrid.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+constexpr double water_density = 1025;      ///< [kg/m^3]
+constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
+constexpr int entries = 1024;
+constexpr double min_first = 1e-4;  ///< Share of the first return, to which the others are relative [1].
+
+/** A wall between the sonar's water and what is behind it. */
+class Wall {
+public:
+    Wall(const types::Shell& shell, const SonarConfig& config)
+        : plate_{shell.thickness, shell.density, shell.sound_speed, shell.shear_speed, shell.loss},
+          water_{water_density, config.speedOfSound()},
+          behind_(shell.has_air            ? air
+                  : shell.fill_density > 0 ? acoustics::Fluid{shell.fill_density, shell.fill_speed}
+                                           : water_),
+          frequency_(1000 * *config.frequency_khz),
+          has_fluid_(shell.fill_density > 0) {}
+
+    double reflected() const { return std::norm(at(frequency_, 1).reflected); }
+    /** Means over steps of the cosine, so that no resonance falls between two entries; of `bands` frequencies over the
+     *  width of a resonance. */
+    std::vector<float> passed(int bands) const {
+        std::vector<float> table;
+        const double width = plate_.sound_speed / (2 * plate_.thickness);
+        const int per_entry = bands == 1 ? 8 : 2;
+        for (int i = 0; i < entries; ++i) {
+            double sum = 0;
+            for (int k = 0; k < per_entry * bands; ++k) {
+                const double cosine = (i + (k % per_entry + 0.5) / per_entry) / entries;
+                const double off = bands == 1 ? 0 : width * ((k / per_entry + 0.5) / bands - 0.5);
+                sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluids(cosine), 2);
+            }
+            table.push_back(static_cast<float>(sum / (per_entry * bands)));
+        }
+        return table;
+    }
+    double reflectedWithin() const {
+        return std::norm(acoustics::plateResponse(plate_, behind_, water_, frequency_, 1).reflected);
+    }
+    /** Whether returns are so far apart that a sonar shows them, and are pulses: half a period long at least. */
+    bool rings(const SonarConfig& config) const {
+        const BinGrid grid = makeBinGrid(config);
+        const double cell =
+            std::max(grid.bin_width,
+                     config.pulse ? acoustics::Pulse(*config.pulse, grid.speed_of_sound).resolution() : grid.bin_width);
+        const double spacing = plate_.thickness * water_.sound_speed / plate_.sound_speed;
+        return spacing > cell / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
+    }
+    acoustics::PlateReturns returns(bool from_within) const {
+        return acoustics::plateReturns(plate_, from_within ? behind_ : water_, from_within ? water_ : behind_,
+                                       frequency_, WallLaw::max_returns);
+    }
+
+private:
+    acoustics::PlateResponse at(double frequency, double cosine) const {
+        return acoustics::plateResponse(plate_, water_, behind_, frequency, cosine);
+    }
+
+    /** Impedance of the water over that of the fluid behind, both along the normal: |T|^2 times it is a share of
+     * energy; 0 where all is reflected [1]. */
+    double fluids(double cosine) const {
+        if (!has_fluid_) return 1;
+        const double sine_squared = (1 - cosine * cosine) * std::pow(behind_.sound_speed / water_.sound_speed, 2);
+        if (!(sine_squared < 1)) return 0;
+        return water_.density * water_.sound_speed * std::sqrt(1 - sine_squared) /
+               (behind_.density * behind_.sound_speed * cosine);
+    }
+
+    acoustics::Plate plate_;
+    acoustics::Fluid water_, behind_;
+    double frequency_;
+    bool has_fluid_;
+};
+
+double sumOf(const std::vector<double>& energies) { return std::accumulate(energies.begin(), energies.end(), 0.0); }
+
+Returns relative(const std::vector<double>& energies) {
+    const double sum = sumOf(energies);
+    if (!(sum > 0)) return {1};
+    const double first = std::max(energies.front(), min_first * sum), all = sum + first - energies.front();
+    Returns returns;
+    for (const double energy : energies) returns.push_back(static_cast<float>(energy / all));
+    returns.front() = static_cast<float>(first / all);
+    return returns;
+}
+
+WallFill fillOf(const types::Shell& shell, const SonarConfig& config, const WallLaw& law, const Wall& wall) {
+    constexpr double no_reflection = 1e-9;
+    const double within = law.rings() ? sumOf(wall.returns(true).reflected) : wall.reflectedWithin();
+    const double number = 2 * std::numbers::pi * 1000 * *config.frequency_khz / shell.fill_speed;  // [1/m]
+    return {.speed_ratio = shell.fill_speed / config.speedOfSound(),
+            .attenuation = 2 * number * shell.fill_loss,
+            .within = law.reflected > no_reflection ? within / law.reflected : 1};
+}
+
+}  // namespace
+
+double WallLaw::passedAt(double cosine) const {
+    if (passed.empty()) return 0;
+    return static_cast<double>(passed[static_cast<size_t>(
+        std::clamp(cosine * static_cast<double>(passed.size()), 0.0, static_cast<double>(passed.size() - 1)))]);
+}
+
+double WallLaw::spacing(double sine) const {
+    const double in_wall = sine * speed_ratio;
+    return in_wall < 1 ? thickness / speed_ratio * std::sqrt(1 - in_wall * in_wall) : 0;
+}
+
+WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) {
+    WallLaw law;
+    if (!material.shell || !config.frequency_khz) return law;
+    const Wall wall(*material.shell, config);
+    law.thickness = material.shell->thickness;
+    law.speed_ratio = material.shell->sound_speed / config.speedOfSound();
+    law.reflected = wall.reflected();
+    constexpr int bands_of_short_pulse = 16;
+    int bands = 1;
+    const acoustics::PlateReturns outside = wall.returns(false);
+    if (wall.rings(config) && (outside.reflected.size() > 1 || outside.passed.size() > 1)) {
+        law.reflected = sumOf(outside.reflected);
+        law.outside = relative(outside.reflected);
+        law.inside = relative(wall.returns(true).reflected);
+        law.behind = relative(outside.passed);
+        bands = bands_of_short_pulse;
+    }
+    if (!material.shell->has_air) law.passed = wall.passed(bands);
+    if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);
+    return law;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,245 @@
+#include "components/sonar/rays/WallRays.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace insonify::sonar {
+
+void EchoTrain::append(const Echo& echo, double resolution) {
+    const bool is_close = size_ > 0 && echo.late - echoes_[size_ - 1].late < resolution;
+    if (is_close || size_ == max_echoes)
+        echoes_[size_ - 1].weight += echo.weight;
+    else
+        echoes_[size_++] = echo;
+}
+
+EchoTrain EchoTrain::then(const Returns& returns, double spacing, double resolution) const {
+    std::array<Echo, max_echoes * max_echoes> all;
+    size_t count = 0;
+    for (size_t i = 0; i < size_; ++i)
+        for (size_t k = 0; k < std::min(returns.size(), max_echoes); ++k)
+            all[count++] = {echoes_[i].late + static_cast<double>(k) * spacing,
+                            echoes_[i].weight * static_cast<double>(returns[k])};
+    if (size_ > 1)
+        std::stable_sort(all.begin(), all.begin() + count,
+                         [](const Echo& a, const Echo& b) { return a.late < b.late; });
+    EchoTrain train;
+    train.size_ = 0;
+    for (size_t i = 0; i < count; ++i) train.append(all[i], resolution);
+    return train;
+}
+
+bool WallRays::begin(const CastTile& tile, const TileRays& rays) {
+    hits_ = *tile.hits;
+    bool any = false;
+    for (int i = 0; i < tile_samples; ++i) {
+        Ray& ray = rays_[static_cast<size_t>(i)];
+        ray.is_there = (rays.active >> i & 1) && hits_.command[i] != TileHits::nothing &&
+                       (wallOf(i).letsThrough() || wallOf(i).rings());
+        if (!ray.is_there) continue;
+        any = true;
+        const glm::dvec3 way(rays.x[i], rays.y[i], rays.z[i]);
+        const double length = glm::length(way);
+        hits_.distance[i] *= static_cast<float>(length);
+        ray.from = glm::dvec3(0);
+        ray.way = ray.look = way / length;
+        const glm::dvec3 up = std::abs(ray.look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+        ray.beside[0] = glm::normalize(glm::cross(up, ray.look));
+        ray.beside[1] = glm::cross(ray.look, ray.beside[0]);
+        for (int k = 0; k < 2; ++k) ray.per_from[k] = glm::dvec3(0), ray.per_way[k] = ray.beside[k];
+        ray.is_bent = false;
+        ray.range = 0;
+        ray.power = 1;
+        ray.medium = {};
+        ray.bodies_count = 0;
+        ray.train = {};
+    }
+    if (!any) return false;
+    tile_ = tile;
+    tile_.hits = &shown_;
+    tile_.passed = passed_.data();
+    walls_ = 0;
+    for (int i = 0; i < tile_samples; ++i)
+        if (rays_[static_cast<size_t>(i)].is_there) meet(i);
+    countEchoes();
+    for (Ray& ray : rays_)
+        if (ray.is_there) ray.echoes.take(1);  // is deposited already
+    return true;
+}
+
+const CastTile* WallRays::next() {
+    while (echo_ >= echoes_)
+        if (!goOn()) return nullptr;
+    return show(echo_++);
+}
+
+int WallRays::bodyOf(const Ray& ray, uint32_t object) {
+    for (int k = ray.bodies_count; k-- > 0;)
+        if (ray.bodies[k].object == object) return k;
+    return -1;
+}
+
+/** Takes a ray to the surface that it has met. */
+void WallRays::meet(int i) {
+    Ray& ray = rays_[static_cast<size_t>(i)];
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    const auto length = static_cast<double>(hits_.distance[i]);
+    const glm::dvec3 normal = glm::normalize(turned(run, run.planes[hits_.triangle[i]].normal));
+    ray.normal = glm::dot(normal, ray.way) > 0 ? -normal : normal;
+    ray.cosine = std::clamp(-glm::dot(ray.normal, ray.way), 1e-9, 1.0);
+    ray.from += length * ray.way;
+    for (int k = 0; k < 2; ++k) {
+        const glm::dvec3 moved = ray.per_from[k] + length * ray.per_way[k];
+        ray.per_from[k] = moved + glm::dot(ray.normal, moved) / ray.cosine * ray.way;
+    }
+    ray.range += length / ray.medium.speed;
+    ray.power *= std::exp(-2 * ray.medium.attenuation * length);
+    setEchoes(i);
+}
+
+void WallRays::setEchoes(int i) {
+    Ray& ray = rays_[static_cast<size_t>(i)];
+    const WallLaw& wall = wallOf(i);
+    ray.echoes = ray.train;
+    const bool from_within = bodyOf(ray, objectOf(i)) >= 0;
+    if (from_within && wall.fill) ray.echoes.scale(wall.fill->within);
+    if (!wall.rings()) return;
+    const Returns& returns = from_within ? wall.inside : wall.outside;
+    ray.echoes = ray.echoes.then(returns, wall.spacing(sineInWater(ray)), rules_.bins.bin_width / 2);
+    ray.echoes.scale(1 / static_cast<double>(wall.outside.front()));
+    if (from_within) {  // the wall is within the surface
+        const double chord = 0.5 * static_cast<double>(hits_.distance[i]);
+        ray.echoes.moveAway(-std::min(wall.thickness / ray.cosine, chord) / ray.medium.speed);
+    }
+}
+
+void WallRays::countEchoes() {
+    echo_ = echoes_ = 0;
+    for (const Ray& ray : rays_)
+        if (ray.is_there) echoes_ = std::max(echoes_, ray.echoes.size());
+}
+
+void WallRays::enter(Ray& ray, uint32_t object, const WallLaw& wall) const {
+    const int known = bodyOf(ray, object);
+    if (known >= 0) {
+        std::move(ray.bodies + known + 1, ray.bodies + ray.bodies_count, ray.bodies + known);
+        --ray.bodies_count;
+    } else if (ray.bodies_count < max_bodies) {
+        const Medium fill =
+            wall.fill ? Medium{wall.fill->speed_ratio, wall.fill->attenuation - absorption_ / wall.fill->speed_ratio}
+                      : Medium{};
+        ray.bodies[ray.bodies_count++] = {object, fill};
+    }
+}
+
+/** Turns a ray at the surface that it has met into a medium of another speed; false: it is reflected in all. */
+bool WallRays::refract(int i, double speed) {
+    Ray& ray = rays_[static_cast<size_t>(i)];
+    const double ratio = speed / ray.medium.speed, square = 1 - ratio * ratio * (1 - ray.cosine * ray.cosine);
+    if (!(square > 1e-6)) return false;
+    const double cosine = std::sqrt(square), along = ratio * ray.cosine - cosine;
+    // The normal of a smooth convex body turns by S dx, S = w + b b^T (shaders/interface.glsl, CurveRecord).
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    const vec4 curve = run.curves ? run.curves[hits_.triangle[i]].bend : vec4(0, 0, 0, 0);
+    const glm::dvec3 bend = turned(run, curve);
+    const double outward = glm::dot(turned(run, run.planes[hits_.triangle[i]].normal), ray.normal) > 0 ? 1 : -1;
+    for (int k = 0; k < 2; ++k) {
+        const glm::dvec3& moved = ray.per_from[k];
+        const glm::dvec3 per_normal = outward * (static_cast<double>(curve.w) * moved + glm::dot(bend, moved) * bend);
+        const double per_cosine = -(glm::dot(per_normal, ray.way) + glm::dot(ray.normal, ray.per_way[k]));
+        const double per_along = (ratio - ratio * ratio * ray.cosine / cosine) * per_cosine;
+        ray.per_way[k] = ratio * ray.per_way[k] + per_along * ray.normal + along * per_normal;
+    }
+    ray.way = glm::normalize(ratio * ray.way + along * ray.normal);
+    ray.is_bent = true;
+    return true;
+}
+
+void WallRays::pass(int i, PathRays& on) {
+    Ray& ray = rays_[static_cast<size_t>(i)];
+    const WallLaw& wall = wallOf(i);
+    ray.is_there = false;
+    const double sine = sineInWater(ray);
+    if (!wall.letsThrough() || !(sine < 1)) return;
+    const double cosine = std::sqrt(1 - sine * sine);
+    ray.power *= wall.passedAt(cosine);
+    if (!(ray.power >= min_passed)) return;
+    if (wall.rings()) {
+        const double spacing = wall.spacing(sine);
+        ray.train = ray.train.then(wall.behind, spacing, rules_.bins.bin_width / 2);
+        // From d c cos(theta_l) / c_l, sound takes as long as through so much water, of which d cos(theta) is there.
+        if (spacing > 0) ray.train.moveAway(spacing - wall.thickness * cosine);
+    }
+    enter(ray, objectOf(i), wall);
+    const Medium next = ray.bodies_count > 0 ? ray.bodies[ray.bodies_count - 1].fill : Medium{};
+    if (next.speed != ray.medium.speed && !refract(i, next.speed)) return;
+    ray.medium = next;
+    const double begin = RayVisibility::nearest / 10 + 1e-5 * ray.range,
+                 end = std::min((rules_.bins.range_max - ray.range) * next.speed, surface_.distance(ray.from, ray.way));
+    if (!(begin < end)) return;
+    const glm::vec3 from(ray.from), way(ray.way);
+    on.from_x[i] = from.x, on.from_y[i] = from.y, on.from_z[i] = from.z;
+    on.towards.x[i] = way.x, on.towards.y[i] = way.y, on.towards.z[i] = way.z;
+    on.nearest[i] = static_cast<float>(begin);
+    on.farthest[i] = static_cast<float>(end);
+    on.towards.active |= 1u << i;
+}
+
+bool WallRays::goOn() {
+    if (walls_ == max_walls_) return false;
+    PathRays on{};
+    on.towards.active = 0;
+    for (int i = 0; i < tile_samples; ++i) {
+        on.nearest[i] = 1;  // of rays that end
+        if (rays_[static_cast<size_t>(i)].is_there) pass(i, on);
+    }
+    if (!on.towards.active) return false;
+    visibility_.cast(on, hits_);
+    ++walls_;
+    for (int i = 0; i < tile_samples; ++i) {
+        Ray& ray = rays_[static_cast<size_t>(i)];
+        ray.is_there = (on.towards.active >> i & 1) && hits_.command[i] != TileHits::nothing;
+        if (ray.is_there) meet(i);
+    }
+    countEchoes();
+    return true;
+}
+
+ApparentPlane WallRays::apparent(const Ray& ray) const {
+    ApparentPlane plane;
+    plane.normal = ray.look / ray.range;
+    for (int k = 0; k < 2; ++k)
+        plane.normal -= glm::dot(ray.way, ray.per_from[k]) / (ray.medium.speed * ray.range * ray.range) * ray.beside[k];
+    plane.cosine = ray.cosine;
+    const double area = std::abs(glm::dot(glm::cross(ray.per_from[0], ray.per_from[1]), ray.way));  // of a steradian
+    // Back from a fluid of another speed, the rays of one steradian there spread otherwise: reciprocity.
+    const double fluid = ray.medium.speed * ray.medium.speed;
+    plane.focus = fluid * std::min(ray.range * ray.range / std::max(area, 1e-30), max_focus);
+    return plane;
+}
+
+const CastTile* WallRays::show(size_t echo) {
+    bool any_late = false, any_bent = false;
+    shown_ = hits_;
+    for (int i = 0; i < tile_samples; ++i) {
+        const auto k = static_cast<size_t>(i);
+        const Ray& ray = rays_[k];
+        passed_[k] = late_[k] = 0;
+        apparent_[k] = {};
+        if (!ray.is_there || echo >= ray.echoes.size() || !(ray.echoes[echo].weight > min_passed)) {
+            shown_.command[i] = TileHits::nothing;
+            continue;
+        }
+        passed_[k] = static_cast<float>(ray.power * ray.echoes[echo].weight);
+        late_[k] = static_cast<float>(ray.echoes[echo].late);
+        any_late |= late_[k] != 0;
+        any_bent |= ray.is_bent;
+        if (ray.is_bent) apparent_[k] = apparent(ray);
+    }
+    tile_.late = any_late ? late_.data() : nullptr;
+    tile_.apparent = any_bent ? apparent_.data() : nullptr;
+    tile_.path = walls_ == 0 ? rung_in_wall : behind_walls;
+    return &tile_;
+}
+
+}  // namespace insonify::sonar
