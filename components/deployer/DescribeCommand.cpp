@@ -13,6 +13,7 @@
 #include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/Properties.hpp"
+#include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Acoustics.hpp"
 
 namespace insonify::deployer {
@@ -140,6 +141,9 @@ int describe(const std::string& type, bool json) {
         json ? print(task) : printTask(task);
         return 0;
     }
+    if (const std::string owner = type.substr(0, type.find(':'));
+        loader::findComponent(owner) && !loader::isPresent(owner))
+        throw types::ConfigError("", type, "is in " + loader::absence(owner));
     std::vector<std::string> known{"materials"};
     for (const auto& entry : registry.list()) known.push_back(entry.type);
     throw types::ConfigError("", type, "is no task type; " + framework::suggestion(type, known));

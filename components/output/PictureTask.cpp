@@ -14,6 +14,7 @@
 namespace insonify::output {
 
 bool PictureTask::configureHook() {
+    prepareFiles(pictureConfig());
     painter_ = makePainter();
     return true;
 }

@@ -3,8 +3,15 @@
 #include <utility>
 
 #include "components/framework/MayLose.hpp"
+#include "types/ConfigError.hpp"
 
 namespace insonify::output {
+
+void RecordingTask::prepareFiles(const RecordingConfig& config) const try {
+    if (config.video) loadCodecs();
+} catch (const types::ConfigError& error) {
+    throw types::ConfigError("", name() + ".video", error.diagnostics().front().text());
+}
 
 void RecordingTask::openFiles(const RecordingConfig& config) {
     health_ = {};

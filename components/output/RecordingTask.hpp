@@ -17,6 +17,9 @@ public:
     std::vector<std::string> notices() const override { return health_.notices(); }
 
 protected:
+    /** Loads what the files of a configuration need, so that a run without it does not begin: in configureHook. Throws
+     *  types::ConfigError at the property. */
+    void prepareFiles(const RecordingConfig& config) const;
     /** Opens the files of a configuration, if it names any: in startHook. */
     void openFiles(const RecordingConfig& config);
     bool hasFiles() const { return writer_ != nullptr; }

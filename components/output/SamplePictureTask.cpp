@@ -6,6 +6,7 @@ namespace insonify::output {
 
 template <class Picture>
 bool SamplePictureTask<Picture>::configureHook() {
+    prepareFiles(*config);
     picture_ = std::make_unique<Picture>(config->width, config->colour_map);
     return true;
 }

@@ -12,17 +12,19 @@ namespace {
 
 using OpenVideo = VideoEncoder*(const char* file, double rate, int width, int height);
 
-OpenVideo* loadCodecs() try {
-    return loader::load("video").entry<OpenVideo>("insonify_open_video");
-} catch (const types::ConfigError& error) {
-    throw std::runtime_error("cannot write videos: " + error.diagnostics().front().text());
+OpenVideo* codecs() {
+    static OpenVideo* const open = loader::load("video").entry<OpenVideo>("insonify_open_video");
+    return open;
 }
 
 }  // namespace
 
-std::unique_ptr<VideoEncoder> openVideo(const std::filesystem::path& file, double rate, cv::Size size) {
-    static const auto open = loadCodecs();
-    return std::unique_ptr<VideoEncoder>(open(file.c_str(), rate, size.width, size.height));
+void loadCodecs() { codecs(); }
+
+std::unique_ptr<VideoEncoder> openVideo(const std::filesystem::path& file, double rate, cv::Size size) try {
+    return std::unique_ptr<VideoEncoder>(codecs()(file.c_str(), rate, size.width, size.height));
+} catch (const types::ConfigError& error) {
+    throw std::runtime_error("cannot write videos: " + error.diagnostics().front().text());
 }
 
 namespace {

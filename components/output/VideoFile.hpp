@@ -16,9 +16,13 @@ public:
     virtual void write(const cv::Mat& picture) = 0;
 };
 
+/** Loads the component library video now rather than with the first video. Throws types::ConfigError when it is absent
+ *  or cannot be loaded. */
+void loadCodecs();
+
 /** What OpenCV writes: *.avi (motion JPEG) or *.mp4 (MPEG-4). The codecs bring more than 200 libraries with them, so
  *  they are in the component library video, which is loaded with the first one. Throws
- *  std::runtime_error when it is not there; null when the file cannot be written. `rate` in pictures a second. */
+ *  std::runtime_error when it cannot be loaded; null when the file cannot be written. `rate` in pictures a second. */
 std::unique_ptr<VideoEncoder> openVideo(const std::filesystem::path& file, double rate, cv::Size size);
 
 /** A video file that is opened with the second picture, when the rate is known.

@@ -1,7 +1,11 @@
 // Component libraries as users meet them: by the command and by Python, there, absent and broken.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <map>
+
 #include "tests/deployer/Wall.hpp"
+#include "tests/support/Needs.hpp"
 #include "tests/support/Paths.hpp"
 
 namespace insonify::deployer {
@@ -155,8 +159,45 @@ TEST_F(ComponentLibraryTest, AnAbsentOneIsAnsweredWithWhatInstallsIt) {
                                               ", which is not here"));
     }
     EXPECT_THAT(call({"--help"}).out, HasSubstr("(not installed)"));
+    const Outcome described = call({"describe", "nav::ImuTask"});
+    EXPECT_EQ(described.code, 2);
+    EXPECT_THAT(described.err, HasSubstr("nav::ImuTask: is in the component library nav, which is not here"));
+    for (const char* list : {"describe", "schema"})
+        EXPECT_THAT(call({list}).out, testing::AllOf(HasSubstr("sonar::SonarTask"), Not(HasSubstr("nav::ImuTask"))));
     add("nav");
+    EXPECT_THAT(call({"describe", "nav::ImuTask"}).out, HasSubstr("ports"));
     EXPECT_EQ(check("nav::ImuTask").err.find("not here"), std::string::npos);
+}
+
+TEST_F(ComponentLibraryTest, APropertyThatNeedsAnAbsentOneIsAnsweredAtItsPlaceBeforeThereIsAPing) {
+    writeFile(folder_ / "wall.gltf", wallGltf());
+    writeFile(folder_ / "a.sdf", "<sdf/>\n");
+    const std::string file = "file: wall.gltf", sonar = "  sonar:\n";
+    for (const auto& [property, library] : std::map<std::string, std::string>{
+             {"bathymetry: {file: floor.tif}", "survey"}, {"gazebo: {world: sea}", "gazebo"}, {"file: a.sdf", "sdf"}}) {
+        writeFile(folder_ / "a.yml", replaced(wall_deployment, file, property));
+        const Outcome outcome = call({"check", "a.yml"});
+        EXPECT_EQ(outcome.code, 2) << property;
+        EXPECT_THAT(outcome.err, HasSubstr("needs the component library " + library + ", which is not here; `apt "));
+    }
+    const std::string picture = "  fan: {type: output::FanImageTask, properties: {video: fan.mp4}}\n";
+    writeFile(folder_ / "a.yml",
+              replaced(wall_deployment, sonar, picture + sonar) + "  - {from: sonar.ping, to: fan.ping}\n");
+    const Outcome outcome = call({"run", "a.yml", "--pings", "1"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.fan.properties.video: needs the component library video, which is not"));
+    INSONIFY_NEEDS("video");
+    add("video");
+    EXPECT_EQ(call({"run", "a.yml", "--pings", "2"}).code, 0);
+}
+
+TEST_F(ComponentLibraryTest, TheCoreIsLinkedWithNoLibraryOfAComponents) {
+    const std::string linked = Process({"ldd", build / "bin/insonify"}, folder_.path()).wait().out;
+    ASSERT_THAT(linked, HasSubstr("libinsonify.so"));
+    EXPECT_LE(std::ranges::count(linked, '\n'), 40) << linked;
+    for (const char* library : {"gdal", "assimp", "sdformat", "ddsc", "zmq", "protobuf", "boost", "snappy", "avcodec",
+                                "opencv_videoio", "opencv_imgcodecs"})
+        EXPECT_THAT(linked, Not(HasSubstr(library)));
 }
 
 TEST_F(ComponentLibraryTest, PythonAnswersAsTheCommandDoes) {
