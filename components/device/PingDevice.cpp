@@ -8,7 +8,7 @@
 namespace insonify::device {
 namespace {
 
-constexpr size_t max_payload = 64;  ///< Of what goes to a device.
+constexpr size_t max_payload_to_device = 64;  ///< [bytes]
 
 types::Time after(types::Time now, double seconds) { return now + types::Time::fromSeconds(seconds); }
 
@@ -78,9 +78,9 @@ bool PingTurn::failed(types::Time now) {
 
 void PingDevice::receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time now) {
     if (datagram) {
-        for (const PingFrame& frame : pingFrames(bytes, max_payload)) handle(client, frame, now);
+        for (const PingFrame& frame : pingFrames(bytes, max_payload_to_device)) handle(client, frame, now);
     } else {
-        PingFrameReader& reader = readers_.try_emplace(client, max_payload).first->second;
+        PingFrameReader& reader = readers_.try_emplace(client, max_payload_to_device).first->second;
         reader.add(bytes);
         while (const auto frame = reader.next()) handle(client, *frame, now);
     }
