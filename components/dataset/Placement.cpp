@@ -16,8 +16,9 @@ namespace {
 
 constexpr uint64_t tries = 1000, words_per_try = 4;
 constexpr uint64_t stream = 0x706c6163650000;  ///< Stream of the random words of places; groups and objects are added.
-constexpr uint64_t tilt_words = uint64_t{1} << 40;  ///< Where the words of roll and pitch begin, behind all others.
-constexpr double out_of_hearing = 1e5;              ///< How far below its place an object is that is not there [m].
+constexpr uint64_t tilt_words = uint64_t{1} << 40;   ///< Where the words of roll and pitch begin, behind all others.
+constexpr uint64_t scale_words = uint64_t{1} << 41;  ///< Where those of scales begin.
+constexpr double out_of_hearing = 1e5;               ///< How far below its place an object is that is not there [m].
 
 /** Radius and lowest point of an object after a turn, without its points. */
 Placeable turned(const Placeable& object, const glm::dquat& turn) {
@@ -120,12 +121,14 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
         at = {vehicle_.position.x + c * at.x - s * at.y, vehicle_.position.y + s * at.x + c * at.y};
     }
     const glm::dquat turn = turnOf(group, word);
-    const Placeable object = group.tilts() ? turned(filed, turn) : filed;
+    Placeable object = group.tilts() ? turned(filed, turn) : filed;
+    const double scale = group.scale.empty() ? 1 : between(group.scale, word + scale_words);
+    object.radius *= scale, object.low *= scale;
     const Circle circle{at.x, at.y, object.radius};
     if (!isFree(group, circle)) return std::nullopt;
     const std::optional<double> z = heightOf(group, object, circle, word + 2);
     if (!z) return std::nullopt;
-    PlacedObject placed{name, object.filed, true};
+    PlacedObject placed{name, object.filed, true, scale};
     placed.at.position = {at.x, at.y, *z};
     placed.at.orientation = turn * placed.at.orientation;
     taken_.push_back(circle);

@@ -165,6 +165,7 @@ Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const
     for (const PlacedObject& object : sample.objects) {
         Json placed{{"name", object.name}, {"present", object.present}};
         if (object.present) placed.update(toJson(object.at));
+        if (object.present) placed["scale"] = object.scale;
         record["objects"].push_back(std::move(placed));
     }
     for (const Annotation& each : annotated.annotations)

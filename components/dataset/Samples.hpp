@@ -34,6 +34,7 @@ struct PlacedObject {
     std::string name;
     types::Pose at;
     bool present = true;  ///< Else it is out of hearing, far below.
+    double scale = 1;     ///< How many times as large as in the file [1].
 };
 
 /** Where the vehicle is, and when since the start [s]. */

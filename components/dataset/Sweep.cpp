@@ -80,6 +80,7 @@ void ObjectGroup::check(types::Diagnostics& diagnostics) const {
     checkSpan("roll_deg", roll_deg, false, diagnostics);
     checkSpan("pitch_deg", pitch_deg, false, diagnostics);
     checkSpan("yaw_deg", yaw_deg, false, diagnostics);
+    checkSpan("scale", scale, false, diagnostics);
     checkSpan("count", count, false, diagnostics);
     for (const auto& [name, span] :
          {std::pair{"roll_deg", &roll_deg}, {"pitch_deg", &pitch_deg}, {"yaw_deg", &yaw_deg}})

@@ -114,7 +114,7 @@ struct ObjectGroup {
     std::vector<std::string> names, avoid;
     std::optional<std::string> ground;
     Frame frame = Frame::World;
-    std::vector<double> x, y, z, roll_deg, pitch_deg, yaw_deg;
+    std::vector<double> x, y, z, roll_deg, pitch_deg, yaw_deg, scale;
     bool any_turn = false;
     double gap = 0.1;
     std::vector<uint32_t> count;
@@ -138,6 +138,8 @@ struct ObjectGroup {
         visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [least, most]", -360, 360},
               self.pitch_deg);
         visit(Field{"any_turn", "", "instead of the three: turned any way, each equally likely"}, self.any_turn);
+        visit(Field{"scale", "1", "how many times as large as in the file: [least, most], another for each", 1e-3, 1e3},
+              self.scale);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
         visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
         visit(Field{"avoid", "", "nodes that stay where they are, from whose boxes they keep off"}, self.avoid);

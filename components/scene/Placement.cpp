@@ -7,6 +7,7 @@
 
 #include "components/scene/Gltf.hpp"
 #include "types/Angle.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -53,6 +54,41 @@ Scene placed(const Scene& scene, const Placement& placement) {
         if (node.parent < 0) node.parent_from_node = placed_from_scene * node.parent_from_node;
     result.geometry = std::move(geometry);
     result.z_up_from_file = z_up_from_file;
+    return result;
+}
+
+Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, types::Diagnostics& diagnostics) {
+    Scene result = scene;
+    auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+    std::vector<std::string> names;
+    for (const Node& node : scene.nodes) names.push_back(node.name);
+    for (const auto& [name, factor] : factors)
+        if (findNode(scene, name) < 0)
+            diagnostics.push_back({"scale." + name, "is no node of the scene; " + types::didYouMean(name, names) +
+                                                        "insonify scene lists them"});
+    std::vector<glm::dmat4> world_from_node;  // with the nodes above as large as they are now
+    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // of what is below a node, in the world
+    for (size_t i = 0; i < scene.nodes.size(); ++i) {
+        Node& node = result.nodes[i];
+        const bool has_parent = node.parent >= 0;
+        const auto parent = static_cast<size_t>(node.parent);
+        world_from_node.push_back(has_parent ? world_from_node[parent] * node.parent_from_node : node.parent_from_node);
+        if (has_parent) resized[i] = resized[parent];
+        const auto factor = factors.find(node.name);
+        if (factor == factors.end()) continue;
+        const glm::dmat4 about_origin = glm::scale(glm::dmat4(1), glm::dvec3(factor->second));
+        resized[i] = world_from_node[i] * about_origin * glm::inverse(world_from_node[i]) * resized[i];
+        node.parent_from_node = node.parent_from_node * about_origin;
+        node.scale *= factor->second;
+        world_from_node[i] = world_from_node[i] * about_origin;
+    }
+    for (size_t i = 0; i < geometry->objects.size(); ++i) {
+        const int node = result.object_nodes[i];
+        if (node >= 0 && resized[static_cast<size_t>(node)] != glm::dmat4(1))
+            geometry->objects[i].world_from_object =
+                resized[static_cast<size_t>(node)] * geometry->objects[i].world_from_object;
+    }
+    result.geometry = std::move(geometry);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/vec3.hpp>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -39,6 +40,11 @@ struct Placement {
 
 /** The scene at another place. Meshes are shared; nodes that poses move are affected by `up` alone. */
 Scene placed(const Scene& scene, const Placement& placement);
+
+/** The scene with some nodes, and what is below them, larger or smaller about their origins, which stay. Meshes are
+ *  shared.
+ *  @param factors by name of a node, above 0. Names that no node has are added to `diagnostics` as `scale.<name>`. */
+Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, types::Diagnostics& diagnostics);
 
 /** How a scene lies, in words: "the file's x is north, its -z west, its y up". `poses`: the axes of the poses as they
  * are sent, of which x is named where they are not the world's. */

@@ -71,6 +71,7 @@ struct SceneConfig {
     std::optional<GazeboConfig> gazebo;
     std::optional<BathymetryConfig> bathymetry;
     std::optional<Placement> placement;
+    std::map<std::string, double> scale;
     Mount mount;
     std::optional<double> water_surface, pose_timeout, extrapolate;
     std::map<std::string, Acoustics> materials;
@@ -94,6 +95,10 @@ struct SceneConfig {
               self.bathymetry);
         visit(Field{"placement", "", "where the scene of file or gazebo lies in the world; absent: as it has itself"},
               self.placement);
+        visit(Field{"scale", "1",
+                    "by name of a node: how many times as large it and what is below it are, about its origin", 1e-3,
+                    1e3},
+              self.scale);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"pose_timeout", "s",

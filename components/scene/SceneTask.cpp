@@ -46,6 +46,10 @@ std::shared_ptr<const Scene> SceneTask::loadModels() const {
         }
     }
     if (models && config->placement) models = std::make_shared<const Scene>(placed(*models, *config->placement));
+    if (!models || config->scale.empty()) return models;
+    types::Diagnostics diagnostics;
+    models = std::make_shared<const Scene>(scaled(*models, config->scale, diagnostics));
+    if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
     return models;
 }
 
@@ -53,7 +57,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     const bool has_survey = config->bathymetry.has_value();
     if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
-        scene_placement_ == config->placement)
+        scene_placement_ == config->placement && scene_scale_ == config->scale)
         return scene_;
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
@@ -71,6 +75,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     scene_gazebo_ = config->gazebo;
     scene_has_survey_ = has_survey;
     scene_placement_ = config->placement;
+    scene_scale_ = config->scale;
     return scene_;
 }
 
@@ -117,8 +122,9 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& each : error.diagnostics())
-        diagnostics.push_back(config->gazebo ? types::Diagnostic{each.path, each.message}
-                                             : types::Diagnostic{"file", each.text()});
+        diagnostics.push_back(config->gazebo || each.path.starts_with("scale.")
+                                  ? types::Diagnostic{each.path, each.message}
+                                  : types::Diagnostic{"file", each.text()});
 }
 
 std::string SceneTask::indivisible() const {

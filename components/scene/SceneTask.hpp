@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,7 +78,7 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
-    /** What file or Gazebo have, placed; null without them. */
+    /** What file or Gazebo have, placed and scaled; null without them. */
     std::shared_ptr<const Scene> loadModels() const;
     /** Asks Gazebo anew where it has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
@@ -97,6 +98,7 @@ private:
     mutable std::optional<types::ConfigError>
         gazebo_failure_;  ///< Why scene_gazebo_ is not there; kept, for it has cost a wait.
     mutable std::optional<Placement> scene_placement_;
+    mutable std::map<std::string, double> scene_scale_;
     std::string lay_;                        ///< How the scene lies; empty: as everywhere.
     mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
     types::GeometryPtr geometry_;            ///< From file or gazebo, with all materials.

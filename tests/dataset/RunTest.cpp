@@ -25,7 +25,7 @@ types::SonarTruthPtr truthOf(const types::Sonar& ping, int32_t object) {
 }
 
 TEST(RunTest, ItsPingHoldsTheBeamsOfAllInOrder) {
-    Run run;
+    dataset::Run run;
     for (int i = 0; i < 3; ++i) {
         const auto line = lineOf(static_cast<float>(i));
         run.add(line, truthOf(*line, i % 2));
@@ -42,7 +42,7 @@ TEST(RunTest, ItsPingHoldsTheBeamsOfAllInOrder) {
 }
 
 TEST(RunTest, PingsOfOtherBinsAreRefused) {
-    Run run;
+    dataset::Run run;
     for (const uint32_t bins : {5, 6}) {
         const auto line = lineOf(1, bins);
         if (bins == 5)

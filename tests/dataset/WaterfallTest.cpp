@@ -112,6 +112,31 @@ TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
     }
 }
 
+/** Rocks of twice their size leave boxes of about twice as many lines. */
+TEST_F(WaterfallTest, ScaledObjectsAreAsLargeAsTheRecordSays) {
+    std::map<std::string, double> lines_of[2];
+    for (const int large : {0, 1}) {
+        std::string text = sweep;
+        text.replace(text.find("gap: 0.5"), 8, large ? "gap: 0.5, scale: [2, 2]" : "gap: 1.5");
+        text.replace(text.find("count: [6, 8]"), 13, "count: [3, 3]");
+        writeFile(folder_ / "sweep.yml", text);
+        for (const auto& [name, bytes] : made(large ? "large" : "small")) {
+            if (!name.ends_with(".json") || !name.starts_with("00")) continue;
+            const json record = json::parse(bytes);
+            for (const json& object : record["objects"])
+                if (object["present"].get<bool>()) EXPECT_EQ(object["scale"], large ? 2 : 1);
+            for (const json& each : record["annotations"])
+                if (!each["shadow"].get<bool>()) lines_of[large][each["name"]] = each["bbox"][3].get<double>();
+        }
+    }
+    double small = 0, large = 0;
+    for (const auto& [name, count] : lines_of[0])
+        if (lines_of[1].contains(name)) small += count, large += lines_of[1][name];
+    std::cout << "lines of rocks: " << small << ", of twice their size: " << large << "\n";
+    ASSERT_GT(small, 0);
+    EXPECT_NEAR(large / small, 2, 0.5);
+}
+
 /** Along a trajectory a run goes on from its pose, and must end before the trajectory does. */
 TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     writeFile(folder_ / "t.csv", "time,x,y,z,qw,qx,qy,qz\n0,2,-14,-5,1,0,0,0\n20,32,-14,-5,1,0,0,0\n");

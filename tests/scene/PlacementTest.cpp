@@ -1,6 +1,8 @@
 // Where a scene lies in the world.
 #include <gmock/gmock.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <random>
 
 #include "components/scene/Placement.hpp"
@@ -121,6 +123,49 @@ TEST_F(PlacementTest, TheTaskPlacesItsSceneAndSaysSo) {
     task.config.set(config);
     ASSERT_TRUE(task.configure()) << task.lastError();
     EXPECT_THAT(task.notices(), testing::Contains(testing::HasSubstr("the file's z is north, its x west")));
+}
+
+/** Random turns of the file, of nodes and of scales, also of a node within another. */
+TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-3, 3);
+    for (int round = 0; round < 50; ++round) {
+        Scene file = scene();
+        auto geometry = std::make_shared<types::Geometry>(*file.geometry);
+        glm::dmat4 world_from_node(1);
+        for (Node& node : file.nodes) {
+            const glm::dquat turn =
+                glm::normalize(glm::dquat(uniform(random), uniform(random), uniform(random), uniform(random)));
+            node.parent_from_node =
+                glm::translate(glm::dmat4(1), glm::dvec3(uniform(random), uniform(random), uniform(random))) *
+                glm::mat4_cast(turn);
+            world_from_node = world_from_node * node.parent_from_node;
+        }
+        geometry->objects[0].world_from_object = world_from_node * file.node_from_object[0];
+        file.geometry = geometry;
+        const glm::dvec3 boat(file.nodes[0].parent_from_node[3]), mast(world_from_node[3]), before = corner(file);
+        types::Diagnostics none;
+        expectNear(corner(scaled(file, {{"boat", 2.5}}, none)), boat + 2.5 * (before - boat));
+        expectNear(corner(scaled(file, {{"mast", 0.5}}, none)), mast + 0.5 * (before - mast));
+        const glm::dvec3 moved_mast = boat + 2.5 * (mast - boat);
+        expectNear(corner(scaled(file, {{"mast", 0.5}, {"boat", 2.5}}, none)), moved_mast + 1.25 * (before - mast));
+        const Scene same = scaled(file, {{"boat", 1}}, none);
+        expectNear(corner(same), before);
+        // A pose of the body leaves the scale.
+        const Scene large = scaled(file, {{"mast", 3}}, none);
+        const Part was = partsOf(file, 1).front(), is = partsOf(large, 1).front();
+        for (int column = 0; column < 3; ++column)
+            expectNear(glm::dvec3(is.body_from_object[column]), 3.0 * glm::dvec3(was.body_from_object[column]));
+        EXPECT_TRUE(none.empty());
+    }
+}
+
+TEST_F(PlacementTest, ANodeThatIsNotThereIsNotScaled) {
+    types::Diagnostics found;
+    const Scene file = scene(), result = scaled(file, {{"bot", 2}}, found);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].text(), "scale.bot: is no node of the scene; did you mean boat? insonify scene lists them");
+    EXPECT_EQ(result.geometry->objects[0].world_from_object, file.geometry->objects[0].world_from_object);
 }
 
 }  // namespace

@@ -276,7 +276,19 @@ std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
     std::ranges::copy(deployer::pinnedRays(spec_), std::back_inserter(all));
     for (const auto& [property, value] : choice.set) all.push_back(property + "=" + value.yaml);
     for (const auto& [property, value] : sample.settings) all.push_back(property + "=" + value);
+    if (std::ranges::any_of(sample.objects, [](const PlacedObject& object) { return object.scale != 1; }))
+        for (const std::string& task : tasksOfType(scene_type)) all.push_back(task + ".scale=" + scaleOf(task, sample));
     return all;
+}
+
+/** The scales of a scene's nodes as its task has them, and those of a sample's objects. */
+std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) const {
+    command::Json scales = command::Json::object();
+    const YAML::Node own = child(spec_.task(task)->properties, "scale");
+    if (own.IsMap())
+        for (const auto& entry : own) scales[entry.first.Scalar()] = entry.second.as<double>();
+    for (const PlacedObject& object : sample.objects) scales[object.name] = object.scale;
+    return scales.dump();
 }
 
 /** Keeps the simulation before until there is the next one, so that a scene that both have stays loaded. */

@@ -57,6 +57,7 @@ private:
     SceneFile readScene(const std::string& file) const;
     std::string digestOfAll() const;
     std::vector<std::string> overridesOf(const Sample& sample) const;
+    std::string scaleOf(const std::string& task, const Sample& sample) const;
     std::vector<std::string> tasksOfType(const std::string& type) const;
     void simulate(const Sample& sample);
 
