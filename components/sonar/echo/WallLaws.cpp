@@ -7,8 +7,7 @@
 #include <numeric>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/acoustics/Pulse.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/echo/RangeResponse.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -51,14 +50,10 @@ public:
     double reflectedWithin() const {
         return std::norm(acoustics::plateResponse(plate_, behind_, water_, frequency_, 1).reflected);
     }
-    /** Whether returns are so far apart that a sonar shows them, and are pulses: half a period long at least. */
+    /** Whether returns are so far apart that a sonar shows them, and each has half a period at least. */
     bool rings(const SonarConfig& config) const {
-        const BinGrid grid = makeBinGrid(config);
-        const double cell =
-            std::max(grid.bin_width,
-                     config.pulse ? acoustics::Pulse(*config.pulse, grid.speed_of_sound).resolution() : grid.bin_width);
         const double spacing = plate_.thickness * water_.sound_speed / plate_.sound_speed;
-        return spacing > cell / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
+        return spacing > rangeCellOf(config) / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
     }
     acoustics::PlateReturns returns(bool from_within) const {
         return acoustics::plateReturns(plate_, from_within ? behind_ : water_, from_within ? water_ : behind_,
