@@ -122,7 +122,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
     law.thickness = material.shell->thickness;
     law.speed_ratio = material.shell->sound_speed / config.speedOfSound();
     law.reflected = wall.reflected();
-    constexpr int bands_of_short_pulse = 16;
+    constexpr int bands_of_resonance = 16;
     int bands = 1;
     const acoustics::PlateReturns outside = wall.returns(false);
     if (wall.rings(config) && (outside.reflected.size() > 1 || outside.passed.size() > 1)) {
@@ -130,7 +130,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
         law.outside = relative(outside.reflected);
         law.inside = relative(wall.returns(true).reflected);
         law.behind = relative(outside.passed);
-        bands = bands_of_short_pulse;
+        bands = bands_of_resonance;
     }
     if (!material.shell->has_air) law.passed = wall.passed(bands);
     if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);
