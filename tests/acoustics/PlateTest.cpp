@@ -127,12 +127,12 @@ TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
 TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
     Draw draw;
     double worst = 0;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 100; ++i) {
         const Plate plate{draw.between(1e-3, 0.1), draw.between(900, 9000), draw.between(1000, 7000), 0, 0};
         const Fluid before{draw.between(800, 2000), draw.between(1000, 2000)};
         const Fluid behind{draw.between(800, 2000), draw.between(1000, 2000)};
         const double frequency = draw.between(1e5, 3e6), width = plate.sound_speed / (2 * plate.thickness);
-        constexpr int steps = 4000;
+        constexpr int steps = 2000;
         double reflected = 0, passed = 0;
         for (int k = 0; k < steps; ++k) {
             const double at = frequency + width * (k + 0.5) / steps;
@@ -149,7 +149,6 @@ TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
         EXPECT_LE(all + through, 1 + 1e-9);
         worst = std::max({worst, std::abs(all - reflected), std::abs(through - passed)});
     }
-    RecordProperty("worst", std::to_string(worst));
     std::cout << "worst difference from the mean over a resonance: " << worst << "\n";
 }
 

@@ -1,4 +1,6 @@
 // Acoustic extras and normal maps.
+#include <array>
+
 #include "tests/scene/SceneFiles.hpp"
 
 namespace insonify::scene {

@@ -113,7 +113,7 @@ TEST(WallReturnsTest, TheFarWallOfABodyIsMetFromWithin) {
 }
 
 /** A wall whose returns are less than half a bin apart, or less than half of what the pulse resolves, has one. */
-TEST(WallReturnsTest, ReturnsThatNoBinTellsApartAreOneByTheResponseAtTheFrequency) {
+TEST(WallReturnsTest, ReturnsWithinHalfABinAreOneByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
         types::Shell shell = slab;
         shell.thickness = 2 * spacing;

@@ -10,6 +10,7 @@ BinLevels::BinLevels(const SonarConfig& config, const BinGrid& grid)
     : factor_(static_cast<size_t>(grid.bin_count), 1.0) {
     if (config.model == Model::Cerqueira2017) return;
     const acoustics::Absorption absorption = makeAbsorption(config);
+    loss_ = absorption.db_per_m * std::log(10.0) / 10;
     for (int j = 0; j < grid.bin_count; ++j) {
         const double r = grid.centre(j);
         factor_[static_cast<size_t>(j)] = std::pow(10, (-20 * std::log10(r) - 2 * absorption.db_per_m * r) / 10);

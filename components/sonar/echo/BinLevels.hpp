@@ -27,11 +27,15 @@ public:
     /** Spreading and absorption of bin j, of intensity [1/m^2]. */
     double factor(size_t j) const { return factor_[j]; }
 
+    /** Loss of energy in the water, one way [Np/m]. */
+    double lossOfWater() const { return loss_; }
+
     /** One beam's bins from its sums in quanta, EchoRules::sumCount() of them, of cells of `solid_angle` [sr]. Returns
      *  whether there is any echo. Allocates nothing. */
     bool fill(const EchoRules& rules, const uint64_t* sums, double solid_angle, std::span<float> bins) const;
 
 private:
+    double loss_ = 0;             ///< As lossOfWater() says.
     std::vector<double> factor_;  ///< Spreading and absorption of each bin [1].
 };
 

@@ -29,4 +29,7 @@ private:
 /** Whether the pulse is so short that the bins, not it, are what range resolution there is. */
 bool isShort(const acoustics::Pulse& pulse, const BinGrid& grid);
 
+/** Slant range that a sonar resolves: a bin, or that of its pulse where that is longer [m]. */
+double rangeCellOf(const SonarConfig& config);
+
 }  // namespace insonify::sonar

@@ -7,8 +7,7 @@
 #include <numeric>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/acoustics/Pulse.hpp"
-#include "components/sonar/fan/BinGrid.hpp"
+#include "components/sonar/echo/RangeResponse.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -51,14 +50,10 @@ public:
     double reflectedWithin() const {
         return std::norm(acoustics::plateResponse(plate_, behind_, water_, frequency_, 1).reflected);
     }
-    /** Whether returns are so far apart that a sonar shows them, and are pulses: half a period long at least. */
+    /** Whether returns are so far apart that a sonar shows them, and each has half a period at least. */
     bool rings(const SonarConfig& config) const {
-        const BinGrid grid = makeBinGrid(config);
-        const double cell =
-            std::max(grid.bin_width,
-                     config.pulse ? acoustics::Pulse(*config.pulse, grid.speed_of_sound).resolution() : grid.bin_width);
         const double spacing = plate_.thickness * water_.sound_speed / plate_.sound_speed;
-        return spacing > cell / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
+        return spacing > rangeCellOf(config) / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
     }
     acoustics::PlateReturns returns(bool from_within) const {
         return acoustics::plateReturns(plate_, from_within ? behind_ : water_, from_within ? water_ : behind_,
@@ -127,7 +122,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
     law.thickness = material.shell->thickness;
     law.speed_ratio = material.shell->sound_speed / config.speedOfSound();
     law.reflected = wall.reflected();
-    constexpr int bands_of_short_pulse = 16;
+    constexpr int bands_of_resonance = 16;
     int bands = 1;
     const acoustics::PlateReturns outside = wall.returns(false);
     if (wall.rings(config) && (outside.reflected.size() > 1 || outside.passed.size() > 1)) {
@@ -135,7 +130,7 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
         law.outside = relative(outside.reflected);
         law.inside = relative(wall.returns(true).reflected);
         law.behind = relative(outside.passed);
-        bands = bands_of_short_pulse;
+        bands = bands_of_resonance;
     }
     if (!material.shell->has_air) law.passed = wall.passed(bands);
     if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);

@@ -335,9 +335,8 @@ bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
 }
 
 void CastEchoes::followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const {
-    const double absorption = makeAbsorption(plan_.config).db_per_m * std::log(10.0) / 10;
     const PlacedScene scene = this->scene();
-    WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, absorption);
+    WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, levels_.lossOfWater());
     for (const CastTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
             while (const CastTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);

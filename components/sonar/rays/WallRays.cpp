@@ -126,7 +126,7 @@ void WallRays::enter(Ray& ray, uint32_t object, const WallLaw& wall) const {
         --ray.bodies_count;
     } else if (ray.bodies_count < max_bodies) {
         const Medium fill =
-            wall.fill ? Medium{wall.fill->speed_ratio, wall.fill->attenuation - absorption_ / wall.fill->speed_ratio}
+            wall.fill ? Medium{wall.fill->speed_ratio, wall.fill->attenuation - loss_of_water_ / wall.fill->speed_ratio}
                       : Medium{};
         ray.bodies[ray.bodies_count++] = {object, fill};
     }

@@ -48,15 +48,15 @@ public:
     static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].
     static constexpr double max_focus = 30;     ///< At a caustic rays would give infinitely much [1].
 
-    /** `surface`: where rays end; `absorption`: of energy in the sonar's water, one way [Np/m]. */
+    /** `surface`: where rays end; `loss_of_water`: of energy in the sonar's water, one way [Np/m]. */
     WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
-             const WaterMirror& surface, int max_walls, double absorption)
+             const WaterMirror& surface, int max_walls, double loss_of_water)
         : rules_(rules),
           visibility_(visibility),
           scene_(scene),
           surface_(surface),
           max_walls_(max_walls),
-          absorption_(absorption) {}
+          loss_of_water_(loss_of_water) {}
 
     /** Begins with what a tile has met, the first return of which is deposited already. Returns whether any of it is a
      *  wall that rings or lets sound through. */
@@ -117,7 +117,7 @@ private:
     const PlacedScene& scene_;
     const WaterMirror& surface_;
     int max_walls_;
-    double absorption_;
+    double loss_of_water_;
     int walls_ = 0;  ///< Through which the rays of this layer have gone [1].
     size_t echo_ = 0, echoes_ = 0;
     TileHits hits_{}, shown_{};
