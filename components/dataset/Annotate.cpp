@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace insonify::dataset {
@@ -56,7 +55,7 @@ private:
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
     bool isGhost(size_t bin) const {
-        return !truth_.path.empty() && truth_.path[bin] != 0 && truth_.path[bin] != types::SonarTruth::through_wall;
+        return !truth_.path.empty() && truth_.path[bin] != 0 && truth_.path[bin] < types::SonarTruth::through_wall;
     }
     bool counts(size_t bin) const {
         const int32_t instance = instanceAt(bin);
@@ -85,30 +84,18 @@ private:
     /** Labels the cells of ghosts, each with a number of its own behind those of shadows. */
     void findGhosts() {
         const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
-        const std::vector<uint32_t> order = neighbours();
-        cv::Mat is_ghost(static_cast<int>(order.size()), static_cast<int>(cells), CV_8U, cv::Scalar(0)), numbers;
-        for (size_t row = 0; row < order.size(); ++row)
-            for (uint32_t cell = 0; cell < cells; ++cell) {
-                const size_t first = size_t{order[row]} * ping_.bin_count + size_t{cell} * step;
-                const size_t last = std::min(first + step, (size_t{order[row]} + 1) * ping_.bin_count);
-                bool ghost = picture_.levels()[size_t{order[row]} * cells + cell] >= config_.min_level;
-                for (size_t bin = first; bin < last && ghost; ++bin) ghost = isGhost(bin);
-                is_ghost.at<uint8_t>(static_cast<int>(row), static_cast<int>(cell)) = ghost;
-            }
-        cv::connectedComponents(is_ghost, numbers);
-        for (size_t row = 0; row < order.size(); ++row)
-            for (uint32_t cell = 0; cell < cells; ++cell)
-                if (const int32_t number = numbers.at<int32_t>(static_cast<int>(row), static_cast<int>(cell)))
-                    object_of_[size_t{order[row]} * cells + cell] = 2 * first_shadow_ + number - 1;
-    }
-
-    /** The beams in an order in which those that are beside each other in the picture follow each other. */
-    std::vector<uint32_t> neighbours() const {
-        std::vector<uint32_t> order;
+        std::vector<uint8_t> are_ghosts;
         for (uint32_t beam = 0; beam < ping_.beam_count; ++beam)
-            if (!ping_.bearings[beam].isUnknown()) order.push_back(beam);
-        std::ranges::stable_sort(order, {}, [this](uint32_t beam) { return picture_.bearing(beam); });
-        return order;
+            for (uint32_t cell = 0; cell < cells; ++cell) {
+                const size_t start = size_t{beam} * ping_.bin_count, first = start + size_t{cell} * step;
+                bool is_ghost = picture_.levels()[are_ghosts.size()] >= config_.min_level;
+                for (size_t bin = first; bin < std::min(first + step, start + ping_.bin_count) && is_ghost; ++bin)
+                    is_ghost = isGhost(bin);
+                are_ghosts.push_back(is_ghost);
+            }
+        const std::vector<int32_t> groups = picture_.groupsOf(are_ghosts);
+        for (size_t at = 0; at < groups.size(); ++at)
+            if (groups[at] > 0) object_of_[at] = 2 * first_shadow_ + groups[at] - 1;
     }
 
     /** Finds for each bin of a beam whose shadow it is. The sound that just passes the object meets what lies behind

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace insonify::output {
@@ -163,6 +165,22 @@ cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
     const int x = static_cast<int>(std::lround(origin_.x - distance * std::sin(bearing)));
     const int y = static_cast<int>(std::lround(origin_.y - distance * std::cos(bearing)));
     return {std::clamp(x, 0, static_cast<int>(width_) - 1), std::clamp(y, 0, static_cast<int>(height_) - 1)};
+}
+
+std::vector<int32_t> PlainPicture::groupsOf(const std::vector<uint8_t>& chosen) const {
+    std::vector<uint32_t> order(bearing_of_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::erase_if(order, [&](uint32_t beam) { return std::isnan(bearing_of_[beam]); });
+    std::ranges::stable_sort(order, {}, [&](uint32_t beam) { return bearing_of_[beam]; });
+    std::vector<int32_t> groups(chosen.size(), 0);
+    if (order.empty()) return groups;
+    cv::Mat in_order(static_cast<int>(order.size()), static_cast<int>(cells_), CV_8U), numbers;
+    for (size_t row = 0; row < order.size(); ++row)
+        std::copy_n(&chosen[size_t{order[row]} * cells_], cells_, in_order.ptr<uint8_t>(static_cast<int>(row)));
+    cv::connectedComponents(in_order, numbers);
+    for (size_t row = 0; row < order.size(); ++row)
+        std::copy_n(numbers.ptr<int32_t>(static_cast<int>(row)), cells_, &groups[size_t{order[row]} * cells_]);
+    return groups;
 }
 
 types::Image PlainPicture::image() const {

@@ -69,6 +69,10 @@ public:
     double bearing(uint32_t beam) const { return bearing_of_[beam]; }
     /** The pixel nearest to the middle of a cell, {column, row}; inside of the picture. */
     cv::Point pixelOf(uint32_t beam, uint32_t cell) const;
+    /** Numbers from 1 of groups of chosen cells that touch: of one beam or of neighbours in the picture, the corners of
+     *  cells included; 0 for a cell that is not chosen. The order of the beams in the ping changes no group.
+     *  @param chosen one for each cell, 0: it is not */
+    std::vector<int32_t> groupsOf(const std::vector<uint8_t>& chosen) const;
     /** The level of white [dB]; 0 where bins are codes. */
     double referenceDb() const { return reference_db_; }
     /** The picture. */

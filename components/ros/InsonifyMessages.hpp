@@ -46,7 +46,8 @@ struct SonarTruth {
         visit(Field{"share", "1", "of that object in the energy"}, self.share);
         visit(Field{"hits", "1", "samples"}, self.hits);
         visit(Field{"grazing", "rad"}, self.grazing);
-        visit(Field{"path", "1", "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall"},
+        visit(Field{"path", "1",
+                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall"},
               self.path);
         visit(Field{"shadow", "", "1: nothing heard though nearer than the last echo"}, self.shadow);
     }

@@ -269,6 +269,13 @@ void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
     if (!material && !(density && sound_speed))
         diagnostics.push_back({"material", "is missing; or give density and sound_speed"});
     const double speed = sound_speed.value_or(is_wall ? acoustics::propertiesOf(*material).sound_speed : INFINITY);
+    checkFill(diagnostics);
+    if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
+        diagnostics.push_back(
+            {"shear_speed", fmt::format("is {}; must be below 0.87 times the sound_speed of {}", *shear_speed, speed)});
+}
+
+void ShellAcoustics::checkFill(types::Diagnostics& diagnostics) const {
     const bool has_fluid = fill_density || fill_sound_speed || fill_loss;
     if (has_fluid && fill == Fill::Air)
         diagnostics.push_back({"fill",
@@ -278,9 +285,6 @@ void ShellAcoustics::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({"fill_density",
                                "needs a fill of oil, sand or mud, or both fill_density and "
                                "fill_sound_speed"});
-    if (shear_speed && !(*shear_speed < 0.87 * speed))  // or its compressibility is negative
-        diagnostics.push_back(
-            {"shear_speed", fmt::format("is {}; must be below 0.87 times the sound_speed of {}", *shear_speed, speed)});
 }
 
 types::Shell ShellAcoustics::shell() const {

@@ -74,6 +74,9 @@ struct ShellAcoustics {
               self.fill_sound_speed);
         visit(Field{"fill_loss", "1", "imaginary over real part of its wave number", 0, 1}, self.fill_loss);
     }
+
+private:
+    void checkFill(types::Diagnostics& diagnostics) const;
 };
 
 /** The acoustic values that a file or a property gives to a material. What is absent stays as it was.

@@ -242,8 +242,9 @@ TEST_F(AnnotateTest, WhatCameByMirrorsIsNoObjectAndWhereAskedForAGhost) {
             for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) truth_.path[size_t{beam} * bins + bin] = path;
     };
     const auto energyOfRock = [&] { return annotated().annotations.at(0).energy; };
-    came(types::SonarTruth::through_wall, {20, 24}, {50, 60});
-    EXPECT_NEAR(energyOfRock(), 40, 1e-3) << "through a wall it is the object still";
+    came(types::SonarTruth::through_wall, {20, 22}, {50, 60});
+    came(types::SonarTruth::through_wall + 1, {22, 24}, {50, 60});
+    EXPECT_NEAR(energyOfRock(), 40, 1e-3) << "through a wall, or rung in one, it is the object still";
     came(1, {20, 24}, {80, 90});
     came(3, {30, 33}, {20, 30});
     EXPECT_NEAR(energyOfRock(), 40, 1e-3);

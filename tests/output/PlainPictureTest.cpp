@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <set>
 
 #include "components/output/PlainPicture.hpp"
 #include "tests/support/Pings.hpp"
@@ -107,6 +108,26 @@ TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
             EXPECT_EQ(picture.pixelOf(beam, 11),
                       cv::Point(static_cast<int>(column), static_cast<int>(lines - 1 - line)));
         }
+    }
+}
+
+TEST(PlainPictureTest, GroupsAreOfCellsThatTouchWhateverTheOrderOfTheBeams) {
+    const types::Sonar ping = emptyPing(120, 30, 40);
+    const std::vector<std::pair<uint32_t, uint32_t>> chosen = {{3, 5}, {4, 6}, {5, 6}, {20, 30}, {22, 30}};
+    for (const uint32_t step : {1u, 7u, 11u}) {  // beam k of the fan is beam k * step % 30 of the ping
+        types::Sonar shuffled = ping;
+        for (uint32_t beam = 0; beam < 30; ++beam) shuffled.bearings[beam * step % 30] = ping.bearings[beam];
+        const PlainPicture picture = pictureOf(shuffled, configOf(PlainShape::Fan, 100));
+        std::vector<uint8_t> cells(size_t{30} * picture.cellsPerBeam(), 0);
+        const auto at = [&](size_t i) {
+            return size_t{chosen[i].first * step % 30} * picture.cellsPerBeam() + chosen[i].second;
+        };
+        for (size_t i = 0; i < chosen.size(); ++i) cells[at(i)] = 1;
+        const std::vector<int32_t> groups = picture.groupsOf(cells);
+        EXPECT_EQ(std::ranges::count(groups, 0), static_cast<long>(groups.size() - chosen.size()));
+        EXPECT_EQ(groups[at(0)], groups[at(1)]) << "they touch at a corner";
+        EXPECT_EQ(groups[at(1)], groups[at(2)]);
+        EXPECT_EQ((std::set{groups[at(0)], groups[at(3)], groups[at(4)]}), (std::set{1, 2, 3}));
     }
 }
 
