@@ -201,7 +201,7 @@ std::string absence(const std::string& name) {
         std::error_code none;
         return fs::exists(around / file, none);
     };
-    if (has("../insonify.libs"))
+    if (has("__init__.py") || has("../insonify.libs"))  // by pip, from a wheel or the sources; or an archive
         return "the component library " + name +
                ", which wheels and archives do not hold; the Debian packages do, as insonify-" + name;
     return "the component library " + name + ", which is not here; `" +

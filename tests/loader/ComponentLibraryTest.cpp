@@ -191,6 +191,12 @@ TEST_F(ComponentLibraryTest, APropertyThatNeedsAnAbsentOneIsAnsweredAtItsPlaceBe
     EXPECT_EQ(call({"run", "a.yml", "--pings", "2"}).code, 0);
 }
 
+TEST_F(ComponentLibraryTest, InAPythonPackageAptInstallsNone) {
+    writeFile(folder_ / "__init__.py", "");
+    EXPECT_THAT(check("nav::ImuTask").err,
+                HasSubstr("nav, which wheels and archives do not hold; the Debian packages do, as insonify-nav"));
+}
+
 TEST_F(ComponentLibraryTest, TheCoreIsLinkedWithNoLibraryOfAComponents) {
     const std::string linked = Process({"ldd", build / "bin/insonify"}, folder_.path()).wait().out;
     ASSERT_THAT(linked, HasSubstr("libinsonify.so"));
