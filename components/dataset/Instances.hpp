@@ -36,7 +36,7 @@ private:
         std::string name;
         uint32_t category, shadow;
     };
-    std::vector<Instance> instances_;  ///< Of each object.
+    std::vector<Instance> instances_;  ///< One for each object.
 };
 
 }  // namespace insonify::dataset

@@ -89,8 +89,8 @@ private:
     FanShape shape_;
     std::vector<double> bearing_of_;   ///< The bearing of each of the ping's beams, on the arc [rad].
     std::vector<uint32_t> column_of_;  ///< Of each beam in a polar picture.
-    std::vector<uint32_t> line_of_;    ///< Of each beam in a waterfall, from the oldest.
-    uint32_t port_cells_ = 0;          ///< Of a row of a waterfall that are to port, left [px].
+    std::vector<uint32_t> line_of_;    ///< The line of each beam in a waterfall, from the oldest.
+    uint32_t port_cells_ = 0;          ///< Pixels of a row of a waterfall that are to port, left [px].
     uint32_t bins_per_cell_ = 1, cells_ = 0, width_ = 0, height_ = 0;
     cv::Point2d origin_{};  ///< The sonar in a fan [px].
     double radius_ = 0;     ///< Of a fan [px].

@@ -66,7 +66,7 @@ private:
     const Sweep sweep_;
     const Format format_;
     framework::DeploymentSpec spec_;
-    std::vector<Instances> instances_;  ///< Of each scene.
+    std::vector<Instances> instances_;  ///< One for each scene.
     std::vector<SceneFile> scenes_;
     std::optional<Samples> samples_;
     std::optional<Classes> classes_;

@@ -10,7 +10,7 @@ namespace insonify::sonar {
 /** What is behind a wall where that is neither water nor air (ACOUSTICS.md 5.26). */
 struct WallFill {
     double speed_ratio = 1;  ///< Its speed of sound over that of the sonar's water [1].
-    double attenuation = 0;  ///< Of energy, one way [Np/m].
+    double attenuation = 0;  ///< Energy, one way [Np/m].
     double within = 1;       ///< Reflection of the wall from within over that from outside, of energy [1].
 };
 
@@ -28,7 +28,7 @@ struct WallLaw {
     double thickness = 0;       ///< [m]
     double speed_ratio = 1;     ///< Speed of sound of the wall over that of the water [1].
     Returns outside, inside;    ///< Reflected at its two faces; empty: they are in one bin.
-    Returns behind;             ///< Of an echo from behind, out and back through the wall; empty likewise.
+    Returns behind;             ///< Those of an echo from behind, out and back through the wall; empty likewise.
     std::optional<WallFill> fill;  ///< None: water, or air, which nothing passes into.
 
     bool letsThrough() const { return !passed.empty(); }

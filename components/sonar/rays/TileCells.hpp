@@ -37,7 +37,7 @@ struct CastTile {
     const float* late = nullptr;  ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
     const ApparentPlane* apparent = nullptr;  ///< Where refraction in fills makes a surface seem to be; of samples
                                               ///< without, and null: where it is.
-    uint32_t path = 0;                        ///< Of TruthTable.hpp: behind_walls, rung_in_wall, or 0.
+    uint32_t path = 0;                        ///< behind_walls, rung_in_wall (TruthTable.hpp), or 0.
 
     /** Mean share of `count` samples from one on [1]. */
     double meanPassed(int first, int count) const {

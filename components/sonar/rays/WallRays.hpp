@@ -70,7 +70,7 @@ private:
     /** A fluid that sound is in. */
     struct Medium {
         double speed = 1;        ///< Over that of the water [1].
-        double attenuation = 0;  ///< Of energy, one way, beyond that of the water over the same slant range [Np/m].
+        double attenuation = 0;  ///< Energy, one way, beyond that of the water over the same slant range [Np/m].
     };
     /** A body that sound is in. */
     struct Body {
@@ -89,8 +89,8 @@ private:
         Medium medium;
         int bodies_count = 0;
         Body bodies[max_bodies];
-        EchoTrain train, echoes;  ///< Of sound that arrives; of what returns from here.
-        glm::dvec3 normal;        ///< Of the surface, unit, against the ray.
+        EchoTrain train, echoes;  ///< Sound that arrives; what returns from here.
+        glm::dvec3 normal;        ///< The surface's, unit, against the ray.
         double cosine;            ///< Between that and the ray [1].
     };
 
