@@ -39,12 +39,11 @@ Classes::Classes(const Sweep& sweep, const std::vector<std::string>& objects, co
 }
 
 void Classes::refuseTwice(const Sweep& sweep) const {
-    for (size_t i = 0; i < names_.size(); ++i)
-        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) !=
-            names_.begin() + static_cast<std::ptrdiff_t>(i))
-            throw types::ConfigError(
-                sweep.file, "classes",
-                "has " + names_[i] + ", which is the class of shadows or ghosts; name it otherwise");
+    std::set<std::string> known;
+    for (const std::string& name : names_)
+        if (!known.insert(name).second)
+            throw types::ConfigError(sweep.file, "classes",
+                                     "has " + name + ", which is the class of shadows or ghosts; name it otherwise");
 }
 
 uint32_t Classes::of(const std::string& object) const {

@@ -22,10 +22,10 @@ void Run::add(const types::SonarPtr& added, const types::SonarTruthPtr& its_trut
         throw std::runtime_error("the pings of one sample differ in their beams or bins");
     pings_.push_back(added);
     truths_.push_back(its_truth);
-    if (pings_.size() == 1) {
-        ping_ = ping;
-        truth_ = truth;
-        return;
+    if (pings_.size() == 1) return;
+    if (pings_.size() == 2) {
+        ping_ = *pings_[0];
+        truth_ = *truths_[0];
     }
     ping_.beam_count += ping.beam_count;
     append(ping_.bearings, ping.bearings);

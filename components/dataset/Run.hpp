@@ -17,13 +17,13 @@ public:
     uint32_t size() const { return static_cast<uint32_t>(pings_.size()); }  ///< Pings.
     const std::vector<types::SonarPtr>& pings() const { return pings_; }
     const std::vector<types::SonarTruthPtr>& truths() const { return truths_; }
-    const types::Sonar& ping() const { return ping_; }
-    const types::SonarTruth& truth() const { return truth_; }
+    const types::Sonar& ping() const { return size() == 1 ? *pings_[0] : ping_; }
+    const types::SonarTruth& truth() const { return size() == 1 ? *truths_[0] : truth_; }
 
 private:
     std::vector<types::SonarPtr> pings_;
     std::vector<types::SonarTruthPtr> truths_;
-    types::Sonar ping_;
+    types::Sonar ping_;  ///< All as one; empty for one alone, as the truth.
     types::SonarTruth truth_;
 };
 

@@ -225,11 +225,12 @@ std::optional<types::Time> MicronEmulator::tick(types::Time now) {
         warned_ = true;
         askForPing(now);
     }
-    if (now >= next_alive_ && (!line_ || warned_)) tellAlive(now);
+    const bool is_late = line_ && line_->asked.size() > 1;
+    if (now >= next_alive_ && (!line_ || is_late)) tellAlive(now);
     if (!line_) return next_alive_;
     if (line_->data) return line_->whole;
     if (line_->asked.empty()) return line_->ready;
-    return warned_ ? std::min(line_->asked.deadline(), next_alive_) : line_->asked.deadline();
+    return is_late ? std::min(line_->asked.deadline(), next_alive_) : line_->asked.deadline();
 }
 
 }  // namespace insonify::device

@@ -60,6 +60,14 @@ TEST(SweepScenesTest, AGroundWithoutASurfaceIsRefusedAtItsPlace) {
     }
 }
 
+TEST(SweepScenesTest, AnObjectHasItsNodesNamesUpToTheRoot) {
+    scene::Scene scene = floors();
+    scene.nodes.push_back({.name = "sea"});
+    scene.nodes[2].parent = 3;
+    scene.nodes[0].parent = 2;
+    EXPECT_EQ(lineagesOf(scene), (std::vector<Lineage>{{"floor_low", "frame", "sea"}, {"floor_high"}}));
+}
+
 TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
     const types::Geometry plain = [] {
         types::Geometry geometry = *floors().geometry;
@@ -79,6 +87,16 @@ TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
         [](auto& changed) {
             changed.materials[0].measured = {{10, -30}};
         },
+        [](auto& changed) { changed.materials[0].shell = types::Shell{}; },
+        [](auto& changed) { changed.materials[0].shell = {.thickness = 0.01}; },
+        [](auto& changed) { changed.materials[0].shell = {.density = 1000}; },
+        [](auto& changed) { changed.materials[0].shell = {.sound_speed = 2000}; },
+        [](auto& changed) { changed.materials[0].shell = {.shear_speed = 900}; },
+        [](auto& changed) { changed.materials[0].shell = {.loss = 0.1}; },
+        [](auto& changed) { changed.materials[0].shell = {.has_air = true}; },
+        [](auto& changed) { changed.materials[0].shell = {.fill_density = 900}; },
+        [](auto& changed) { changed.materials[0].shell = {.fill_speed = 1400}; },
+        [](auto& changed) { changed.materials[0].shell = {.fill_loss = 0.1}; },
         [](auto& changed) { changed.materials[0].normal_map = 0; },
         [](auto& changed) { changed.materials[0].normal_scale = 2; },
         [](auto& changed) { std::swap(changed.normal_maps[0].width, changed.normal_maps[0].height); },

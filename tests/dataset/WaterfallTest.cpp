@@ -6,6 +6,7 @@
 
 #include "tests/deployer/Command.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
 using testing::HasSubstr;
@@ -153,6 +154,15 @@ TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     EXPECT_EQ(std::ranges::count_if(files, [](const auto& each) { return each.first.ends_with(".npz"); }), 4)
         << "at 0, 5, 10 and 15 s";
     for (const auto& [name, bytes] : files) EXPECT_FALSE(name.starts_with("tracks")) << name;
+    const std::string file = std::ranges::find_if(files, [](const auto& each) {
+                                 return each.first.starts_with("000002") && each.first.ends_with(".npz");
+                             })->first;
+    const std::string look = "import numpy; d = numpy.load('" + (folder_ / "out" / file).string() +
+                             "'); print(d['bins'].shape, d['object'].shape, d['bearings'].shape, d['positions'][49], "
+                             "d['times'][[0, 49]])";
+    EXPECT_EQ(insonify::pythonSays("-c \"" + look + "\"", folder_ / "answer"),
+              "(50, 2, 400) (50, 2, 400) (2,) [ 24.35 -14.    -5.  ] [10.  14.9]\n")
+        << "1.5 m/s along the trajectory";
     const auto refused = [&] {
         const Outcome outcome = callInsonify(folder_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "bad"});
         EXPECT_EQ(outcome.code, 2);

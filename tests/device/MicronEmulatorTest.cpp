@@ -357,6 +357,10 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
     driver_.request();
     for (int i = 0; i < 100; ++i) advance(2);
     driver_.configure({});
+    sent_.clear();
+    driver_.request();
+    for (int i = 0; i < 3; ++i) advance(0.5);
+    EXPECT_THAT(sent_[client], IsEmpty()) << "no mtAlive of a head that scans and is not late";
     driver_.reboot();
     answers_ = true;
     asked_.clear();

@@ -232,6 +232,31 @@ TEST_F(SceneTaskTest, AnUnknownMaterialIsSeenWithoutConfiguring) {
     EXPECT_FALSE(task_.configure());
 }
 
+TEST_F(SceneTaskTest, NodesAreScaledByNameAndAnUnknownOneIsSeenWithoutConfiguring) {
+    start();
+    const auto plain = ping(at(1, {0, 0, 0}));
+    task_.stop();
+    task_.cleanup();
+    config_.scale = {{"boat", 2.0}};
+    start();
+    const auto scaled = ping(at(2, {0, 0, 0}));
+    bool any_larger = false;
+    for (size_t i = 0; i < plain->geometry->objects.size(); ++i) {
+        const double was = glm::determinant(plain->geometry->objects[i].world_from_object),
+                     is = glm::determinant(scaled->geometry->objects[i].world_from_object);
+        EXPECT_TRUE(is == was || std::abs(is / was - 8) < 1e-9) << is / was;
+        any_larger |= is != was;
+    }
+    EXPECT_TRUE(any_larger);
+    config_.scale = {{"bot", 2.0}};
+    task_.config.set(config_);
+    types::Diagnostics diagnostics;
+    task_.check(diagnostics);
+    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_EQ(diagnostics[0].text(),
+              "scale.bot: is no node of the scene; did you mean boat? insonify scene lists them");
+}
+
 TEST_F(SceneTaskTest, NoticesAreThoseOfTheLoader) {
     config_.file = write("empty.gltf", R"({"asset":{"version":"2.0"}})").string();
     start();

@@ -91,6 +91,10 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
                          material.reflection, material.roughness_slope.value_or(-1), material.mirror,
                          material.reflectivity, material.has_acoustics, material.normal_map, material.normal_scale));
     if (!material.matter.empty()) hash.add(fmt::format("matter {}\n", material.matter));
+    if (const auto& shell = material.shell)
+        hash.add(fmt::format("shell {} {} {} {} {} {} {} {} {}\n", shell->thickness, shell->density, shell->sound_speed,
+                             shell->shear_speed, shell->loss, shell->has_air, shell->fill_density, shell->fill_speed,
+                             shell->fill_loss));
     addBytes(hash, material.measured);
 }
 
