@@ -1,0 +1,1 @@
+"""Makes sea floors with things on them as glTF: `insonify scene make`."""

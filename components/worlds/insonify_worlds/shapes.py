@@ -1,0 +1,121 @@
+"""Closed solids, each a manifold3d.Manifold: x ahead, y to port, z up, in metres. Booleans come from manifold3d."""
+import math
+
+import numpy as np
+from manifold3d import CrossSection, Manifold, Mesh, OpType
+
+from .glb import rotation, unit  # noqa: F401: for the things
+
+TURN = 2 * math.pi
+
+
+def moved(solid, at=(0, 0, 0), turn=None):
+    """The solid turned about the origin, then moved."""
+    turn = np.eye(3) if turn is None else np.asarray(turn)
+    return solid.transform(np.column_stack([turn, np.asarray(at, float)]))
+
+
+def box(size, at=(0, 0, 0)):
+    return Manifold.cube(size, True).translate(at)
+
+
+def cylinder(radius, length, at=(0, 0, 0), axis="z", sides=32, top_radius=None):
+    """About its middle `at`, along an axis; a cone where the top radius differs."""
+    solid = Manifold.cylinder(length, radius, radius if top_radius is None else top_radius, sides, True)
+    turns = {"z": (0, 0, 0), "x": (0, 90, 0), "y": (-90, 0, 0)}
+    return solid.rotate(turns[axis]).translate(at)
+
+
+def ball(radius, at=(0, 0, 0), sides=32):
+    return Manifold.sphere(radius, sides).translate(at)
+
+
+def revolved(profile, sides=48):
+    """A closed polygon of (radius, height) turned about the z axis."""
+    section = CrossSection([np.asarray(profile, float)])
+    if section.area() < 1e-12:  # the polygon is clockwise
+        section = CrossSection([np.asarray(profile, float)[::-1]])
+    return Manifold.revolve(section, sides)
+
+
+def extruded(outline, height):
+    """A polygon of (x, y), raised from z = 0."""
+    outline = np.asarray(outline, float)
+    x, y = outline.T
+    if np.dot(x, np.roll(y, -1)) < np.dot(y, np.roll(x, -1)):
+        outline = outline[::-1]
+    return CrossSection([outline]).extrude(height)
+
+
+def circle(sides, radius=1.0):
+    angle = np.arange(sides) * TURN / sides
+    return radius * np.stack([np.cos(angle), np.sin(angle)], 1)
+
+
+def from_mesh(positions, faces):
+    return Manifold(Mesh(np.asarray(positions, np.float32), np.asarray(faces, np.uint32)))
+
+
+def loft(rings, closed=False):
+    """A skin over rings [m, n, 3], each counter-clockwise seen from the last; flat ends unless it is closed."""
+    rings = np.asarray(rings, float)
+    m, n = rings.shape[:2]
+    i, j = np.mgrid[: m if closed else m - 1, :n]
+    here, right = i * n + j, i * n + (j + 1) % n
+    above, diagonal = (i + 1) % m * n + j, (i + 1) % m * n + (j + 1) % n
+    faces = [np.stack([here, right, diagonal], -1).reshape(-1, 3), np.stack([here, diagonal, above], -1).reshape(-1, 3)]
+    positions = rings.reshape(-1, 3)
+    if not closed:
+        positions = np.vstack([positions, rings[0].mean(0), rings[-1].mean(0)])
+        k, following, last = np.arange(n), (np.arange(n) + 1) % n, (m - 1) * n
+        faces += [np.stack([following, k, np.full(n, m * n)], -1),
+                  np.stack([last + k, last + following, np.full(n, m * n + 1)], -1)]
+    return from_mesh(positions, np.vstack(faces))
+
+
+def tube(path, radius, sides=12, closed=False):
+    """A round bar along a path [m, 3]; `radius` is one, or one for each point."""
+    path = np.asarray(path, float)
+    ahead = unit(np.roll(path, -1, 0) - np.roll(path, 1, 0) if closed else np.gradient(path, axis=0))
+    mean = np.abs(ahead).mean(0)
+    left = unit(np.cross(np.eye(3)[mean.argmin()], ahead[0]))
+    lefts = []
+    for direction in ahead:  # carried along, so that the bar has no twist
+        left = unit(left - direction * np.dot(left, direction))
+        lefts.append(left)
+    lefts = np.array(lefts)
+    if closed:  # what is left over of the twist goes evenly round
+        first = unit(left - ahead[0] * np.dot(left, ahead[0]))
+        angle = math.atan2(np.dot(np.cross(first, lefts[0]), ahead[0]), np.dot(first, lefts[0]))
+        share = np.arange(len(path))[:, None] / len(path) * angle
+        lefts = lefts * np.cos(share) + np.cross(ahead, lefts) * np.sin(share)
+    ups = np.cross(ahead, lefts)
+    ring = circle(sides)[None] * np.broadcast_to(radius, len(path))[:, None, None]
+    return loft(path[:, None] + ring[..., :1] * lefts[:, None] + ring[..., 1:] * ups[:, None], closed)
+
+
+def bar(start, end, radius, sides=8):
+    return tube([start, end], radius, sides)
+
+
+def torus(major, minor, sides=48, section_sides=16):
+    """About the z axis."""
+    return Manifold.revolve(CrossSection([circle(section_sides, minor) + (major, 0)]), sides)
+
+
+def union(solids):
+    return Manifold.batch_boolean(list(solids), OpType.Add)
+
+
+def hull(points):
+    return Manifold.hull_points(np.asarray(points, float))
+
+
+def bounds(solids):
+    """Lowest and highest corner of all."""
+    boxes = np.array([solid.bounding_box() for solid in solids])
+    return boxes[:, :3].min(0), boxes[:, 3:].max(0)
+
+
+def vertices(solids):
+    return np.vstack([solid.to_mesh().vert_properties[:, :3] for solid in solids]).astype(float)
