@@ -213,6 +213,8 @@ struct DrawnSetting {
 /** One of the scenes: a file, and properties that go with it. */
 struct SceneChoice {
     std::string file;                                  ///< Empty: that of the deployment.
+    std::string recipe = {};                           ///< By which the file is made; empty: it is there.
+    uint64_t seed = 1;                                 ///< Of the recipe.
     std::vector<std::pair<std::string, Written>> set;  ///< "task.property.path"
     int line = 0, column = 0;
 };

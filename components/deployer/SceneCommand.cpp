@@ -1,4 +1,4 @@
-// insonify scene FILE
+// insonify scene FILE, insonify scene make RECIPE
 #include "components/deployer/SceneCommand.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +11,8 @@
 
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/RunCommand.hpp"
+#include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/MaterialNames.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/Extent.hpp"
@@ -234,16 +236,74 @@ int showScene(const std::string& file, bool json) {
     return 0;
 }
 
+namespace {
+
+struct MakeOptions {
+    std::string recipe, thing, out, seed;
+    std::vector<std::string> set;
+    bool list = false, json = false, quiet = false;
+};
+
+/** What is wrong with options together; empty when nothing is. */
+std::string refusalOf(const MakeOptions& options) {
+    if (options.list) return options.recipe.empty() ? "" : "--list needs no RECIPE";
+    if (options.recipe.empty() == options.thing.empty()) return "give a RECIPE, or a --thing, or --list";
+    if (!options.set.empty() && options.thing.empty()) return "--set is for a --thing; a recipe has its own values";
+    if (scene::extensionOf(options.out) != ".glb")
+        return fmt::format("--out is {}; must be a file that ends in .glb", options.out.empty() ? "missing" : options.out);
+    return "";
+}
+
+/** Hands the options to the component library worlds. */
+int makeScene(const MakeOptions& options) {
+    if (const std::string refusal = refusalOf(options); !refusal.empty())
+        throw types::ConfigError("", "scene make", refusal);
+    std::vector<std::string> words;
+    const auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) words.push_back(fmt::format("--{}={}", name, value));
+    };
+    add("recipe", options.recipe), add("thing", options.thing), add("seed", options.seed), add("out", options.out);
+    for (const std::string& assignment : options.set) add("set", assignment);
+    for (const auto& [flag, is_set] :
+         {std::pair("--list", options.list), std::pair("--json", options.json), std::pair("--quiet", options.quiet)})
+        if (is_set) words.emplace_back(flag);
+    loader::load("worlds").entry<void(const std::vector<std::string>&)>("insonify_make_scene")(words);
+    return 0;
+}
+
+void addMakeCommand(CLI::App& scene, Action& action) {
+    const auto options = std::make_shared<MakeOptions>();
+    CLI::App* command = scene.add_subcommand("make", "Makes a sea floor with things on it, by a recipe and a seed");
+    command->add_option("RECIPE", options->recipe, "a YAML file with floor and things");
+    command->add_option("--seed", options->seed, "of all that the recipe leaves to chance (1)")
+        ->type_name("N")
+        ->check(refuseUnlessWhole);
+    command->add_option("--out", options->out, "the scene to write, a .glb file");
+    command->add_option("--thing", options->thing, "makes this thing alone, without a recipe");
+    command->add_option("--set", options->set, "parameter=value of the thing; may be repeated")->allow_extra_args(false);
+    command->add_flag("--list", options->list, "lists things with their parameters, defaults and bounds");
+    command->add_flag("--json", options->json, "for machines");
+    command->add_flag("--quiet", options->quiet, "no summary");
+    command->callback([options, &action] { action = [options] { return makeScene(*options); }; });
+}
+
+}  // namespace
+
 void addSceneCommand(CLI::App& app, Action& action) {
     struct Options {
         std::string file;
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects");
-    command->add_option("FILE", options->file, "a .gltf, .glb, .world or .sdf file")->required();
+    CLI::App* command = app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects; or makes one");
+    command->add_option("FILE", options->file, "a .gltf, .glb, .world or .sdf file");
     command->add_flag("--json", options->json, "for machines");
-    command->callback([options, &action] { action = [options] { return showScene(options->file, options->json); }; });
+    addMakeCommand(*command, action);
+    command->callback([options, command, &action] {
+        if (!command->get_subcommands().empty()) return;
+        if (options->file.empty()) throw CLI::RequiredError("FILE");
+        action = [options] { return showScene(options->file, options->json); };
+    });
 }
 
 }  // namespace insonify::deployer

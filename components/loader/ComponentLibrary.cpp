@@ -33,6 +33,7 @@ constexpr Component all_components[] = {
     {"survey", "surveys of the sea floor"},
     {"video", "videos", {".avi", ".mp4"}},
     {"viewer", "the live view"},
+    {"worlds", "scenes by recipe"},
 };
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& why) {

@@ -45,6 +45,7 @@ const std::map<std::string, std::set<std::string>> neighbours = {
     {"survey", {"scene"}},
     {"video", {"output"}},
     {"viewer", {"ros"}},
+    {"worlds", {"command", "loader"}},
 };
 
 /** Folders that a file may include from, besides its own and `types`. */

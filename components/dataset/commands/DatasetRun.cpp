@@ -9,6 +9,7 @@
 
 #include "components/command/Json.hpp"
 #include "components/command/Sha256.hpp"
+#include "components/dataset/commands/MadeScenes.hpp"
 #include "components/dataset/commands/SweepFile.hpp"
 #include "components/dataset/commands/SweepScenes.hpp"
 #include "components/deployer/DeploymentFile.hpp"
@@ -124,7 +125,7 @@ const std::string& onlyOf(const std::vector<std::string>& names, const std::stri
 DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, Format format, Changes changes)
     : deployment_(deployer::deploymentIn(deployment)),
       changes_(std::move(changes)),
-      sweep_(seeded(readSweep(sweep), changes_.seed)),
+      sweep_(withMadeScenes(seeded(readSweep(sweep), changes_.seed))),
       format_(format),
       spec_(loaded()) {
     framework::Registry registry = deployer::coreTasks();
@@ -262,6 +263,7 @@ std::string DatasetRun::digestOfAll() const {
             text += fmt::format("file {}\n", command::sha256OfFile(folder / file));
     }
     addFiles(sweep_, folder, text);
+    text += originsOf(sweep_);
     for (const SceneFile& scene : scenes_) text += fmt::format("scene {} {}\n", scene.name, scene.digest);
     if (sweep_.trajectory) text += fmt::format("trajectory {}\n", command::sha256OfFile(sweep_.trajectory->file));
     return command::sha256Of(text);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "components/framework/ConfigReader.hpp"
 #include "components/framework/YamlText.hpp"
@@ -54,12 +55,23 @@ struct PoseKeys {
 };
 
 struct SceneKeys {
-    std::string file;
+    std::string file, make;
+    std::vector<uint32_t> seeds;
+    std::optional<uint32_t> count;
     YAML::Node set = absent();
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"file", "", "scene, relative to the sweep; absent: that of the deployment"}, self.file);
+        visit(Field{"make", "", "instead: recipe of scenes, relative to the sweep"}, self.make);
+        visit(Field{"seeds", "", "of the recipe: a scene for each"}, self.seeds);
+        visit(Field{"count", "1", "instead: the seeds 1 to this number", 1, 100000}, self.count);
         visit(Field{"set", "", "values by task.property"}, self.set);
+    }
+    void check(types::Diagnostics& diagnostics) const {
+        if (!file.empty() && !make.empty()) diagnostics.push_back({"make", "is given beside file; give one of them"});
+        if (!seeds.empty() + count.has_value() != !make.empty())
+            diagnostics.push_back({"", make.empty() ? "has seeds or count without make, the recipe that they are for"
+                                                    : "must have one of seeds and count beside make"});
     }
 };
 
@@ -132,13 +144,22 @@ private:
             keys.file = node.Scalar();
         else
             reader_.read(node, path, keys);
-        SceneChoice& scene = sweep_.scenes.emplace_back();
+        SceneChoice scene;
         scene.line = node.Mark().line + 1, scene.column = node.Mark().column + 1;
-        if (!keys.file.empty()) scene.file = inFolder(keys.file);
-        if (!keys.file.empty() && !std::filesystem::is_regular_file(scene.file))
-            reader_.report(node, path, "is " + keys.file + "; there is no such file, which is relative to the sweep");
-        if (!keys.set.IsDefined() || !reader_.isMap(keys.set, path + ".set")) return;
-        for (const auto& entry : keys.set) scene.set.emplace_back(entry.first.Scalar(), written(entry.second));
+        for (const auto& [key, file] : {std::pair(&keys.file, &scene.file), std::pair(&keys.make, &scene.recipe)}) {
+            if (key->empty()) continue;
+            *file = inFolder(*key);
+            if (!std::filesystem::is_regular_file(*file))
+                reader_.report(node, path, "is " + *key + "; there is no such file, which is relative to the sweep");
+        }
+        if (keys.set.IsDefined() && reader_.isMap(keys.set, path + ".set"))
+            for (const auto& entry : keys.set) scene.set.emplace_back(entry.first.Scalar(), written(entry.second));
+        if (keys.make.empty()) return sweep_.scenes.push_back(std::move(scene));
+        for (uint32_t i = 0; i < keys.count.value_or(0); ++i) keys.seeds.push_back(i + 1);
+        for (const uint32_t seed : keys.seeds) {
+            scene.seed = seed;
+            sweep_.scenes.push_back(scene);
+        }
     }
 
     void readPoses(const YAML::Node& poses) {

@@ -224,7 +224,7 @@ class Switch(Choice):
         return law
 
     def fallback(self):
-        return Law("choice", [self.default])
+        return Law("choice", [self.default == "true"])
 
 
 @dataclass

@@ -16,6 +16,7 @@ from .things.catalogue import CREASE_DEG, ENTRY
 KEYS = ("floor", "things", "max_triangles")
 MOST_TRIANGLES = 8_000_000
 STONE_SHAPES = 8
+SMALLEST_M = 1e-5  # shorter edges, which booleans leave, are taken out
 
 
 @dataclass
@@ -40,7 +41,7 @@ class Site:
 
 def surface_of(solid):
     """Triangles with normals, which are smooth where edges are blunt."""
-    mesh = solid.calculate_normals(0, CREASE_DEG).to_mesh()
+    mesh = solid.simplify(SMALLEST_M).calculate_normals(0, CREASE_DEG).to_mesh()
     return Surface(mesh.vert_properties[:, :3], mesh.tri_verts, mesh.vert_properties[:, 3:6])
 
 
