@@ -1,4 +1,5 @@
 """What `insonify scene make` starts: python3 -m insonify_worlds, with the options that the command has read."""
+
 import argparse
 import json
 import sys
@@ -14,9 +15,9 @@ except ImportError:
     sys.exit(LACKING)
 
 from .parameters import Item, RecipeError, read_yaml  # noqa: E402
-from .recipe import make_thing, make_world, may_be_thing  # noqa: E402
+from .recipe import make_thing, make_world  # noqa: E402
 from .things import THINGS  # noqa: E402
-from .things.catalogue import ENTRY  # noqa: E402
+from .things.catalogue import ENTRY, may_be_thing  # noqa: E402
 
 
 def default_of(parameter):
@@ -26,13 +27,25 @@ def default_of(parameter):
 
 
 def described(parameter):
-    return {"name": parameter.name, "unit": parameter.unit(), "default": default_of(parameter), "may_be": parameter.may_be(),
-            "about": parameter.about}
+    return {
+        "name": parameter.name,
+        "unit": parameter.unit(),
+        "default": default_of(parameter),
+        "may_be": parameter.may_be(),
+        "about": parameter.about,
+    }
 
 
 def listing(names):
-    return [{"thing": name, "about": THINGS[name].about, "placed_as": THINGS[name].kind,
-             "parameters": [described(each) for each in THINGS[name].all_parameters()]} for name in names]
+    return [
+        {
+            "thing": name,
+            "about": THINGS[name].about,
+            "placed_as": THINGS[name].kind,
+            "parameters": [described(each) for each in THINGS[name].all_parameters()],
+        }
+        for name in names
+    ]
 
 
 def print_listing(names):
@@ -46,7 +59,9 @@ def print_listing(names):
     if len(names) > 1:
         print("of each in a recipe:")
         for each in map(described, ENTRY):
-            print(f"  {each['name']:18} {'' if each['default'] is None else each['default']!s:12} {each['may_be']}; {each['about']}")
+            print(
+                f"  {each['name']:18} {'' if each['default'] is None else each['default']!s:12} {each['may_be']}; {each['about']}"
+            )
 
 
 def assignments(texts):
@@ -79,10 +94,21 @@ def summary(world, out):
 
 
 def report(world, out):
-    return {"file": out, "seed": world.seed, "triangles": world.triangles(), "bytes": Path(out).stat().st_size,
-            "nodes": [{"name": each.name, "position": [round(float(x), 6) for x in each.at],
-                       "triangles": sum(len(surface.faces) for surface, _ in each.surfaces),
-                       "materials": sorted({material.name for _, material in each.surfaces})} for each in world.placed]}
+    return {
+        "file": out,
+        "seed": world.seed,
+        "triangles": world.triangles(),
+        "bytes": Path(out).stat().st_size,
+        "nodes": [
+            {
+                "name": each.name,
+                "position": [round(float(x), 6) for x in each.at],
+                "triangles": sum(len(surface.faces) for surface, _ in each.surfaces),
+                "materials": sorted({material.name for _, material in each.surfaces}),
+            }
+            for each in world.placed
+        ],
+    }
 
 
 def made(options):

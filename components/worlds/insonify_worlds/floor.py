@@ -2,6 +2,7 @@
 
 The water surface is z = 0; the mean floor is at -depth_m.
 """
+
 import math
 from dataclasses import dataclass
 
@@ -9,11 +10,11 @@ import numpy as np
 
 from . import materials, shapes
 from .glb import unit
-from .parameters import Number, Point, Choice, RecipeError, generator, read_parameters
+from .parameters import Number, Point, Choice, generator, read_parameters
 
 MAX_CELLS = 2_000_000
 TILE_WAVES, TILE_STEPS = 16, 16  # a tile of ripples: wavelengths on a side, points to a wavelength
-STRIP = 60_000                   # vertices of a part of the grid, so that its indices are short
+STRIP = 60_000  # vertices of a part of the grid, so that its indices are short
 
 FLOOR = [
     Point("size_m", (60, 40), "extent north and west", 1, 5000),
@@ -64,6 +65,7 @@ MAX_ROCKS, MAX_PEBBLES = 5000, 50_000
 @dataclass
 class Surface:
     """Triangles with normals, and the places of a normal map."""
+
     positions: np.ndarray
     faces: np.ndarray
     normals: np.ndarray
@@ -91,7 +93,7 @@ class Ripples:
         self.tile = TILE_WAVES * self.length
         n = TILE_WAVES * TILE_STEPS
         k = np.fft.fftfreq(n) * n
-        near = np.exp(-np.hypot(k[:, None], k[None]) ** 2 / (2 * (TILE_WAVES / 8) ** 2))
+        near = np.exp(-(np.hypot(k[:, None], k[None]) ** 2) / (2 * (TILE_WAVES / 8) ** 2))
         wander = np.fft.ifft2(np.fft.fft2(rng.standard_normal((n, n))) * near).real
         wander *= values["wander"] * 0.5 / max(wander.std(), 1e-12)
         phase = 2 * np.pi * (np.arange(n)[:, None] / TILE_STEPS + wander)
@@ -148,7 +150,8 @@ class Floor:
             smallest = math.sqrt(self.size[0] * self.size[1] / MAX_CELLS)
             block.get("cell_m", item).fail(
                 f"makes {cells} cells of a floor of {self.size[0]:g} x {self.size[1]:g} m; must make 3 points on a side and at "
-                f"most {MAX_CELLS} cells: from {smallest:.2g} m to {min(self.size) / 2:g} m")
+                f"most {MAX_CELLS} cells: from {smallest:.2g} m to {min(self.size) / 2:g} m"
+            )
         self.steps = tuple(side / (n - 1) for side, n in zip(self.size, self.shape))
         self.low = tuple(middle - side / 2 for middle, side in zip(self.centre, self.size))
         self.x = self.low[0] + self.steps[0] * np.arange(self.shape[0])[:, None] + np.zeros(self.shape)
@@ -160,7 +163,9 @@ class Floor:
         self.add_pockmarks(seed, block)
         self.add_ripples(seed, block)
         if self.z.max() > -0.1:
-            item.fail(f"rises to z = {self.z.max():.2f} m; must stay 0.1 m below the water surface: give a larger depth_m")
+            item.fail(
+                f"rises to z = {self.z.max():.2f} m; must stay 0.1 m below the water surface: give a larger depth_m"
+            )
 
     def laws_of(self, block, name):
         """One block, or for ripples a list of blocks."""
@@ -184,7 +189,8 @@ class Floor:
             longest = values["longest_m"] or max(self.size)
             if longest < 4 * max(self.steps):
                 block["fractal"].value["longest_m"].fail(
-                    f"is {longest:g}; must be 0 or at least four cells, {4 * max(self.steps):g} m")
+                    f"is {longest:g}; must be 0 or at least four cells, {4 * max(self.steps):g} m"
+                )
             self.z += power_law_relief(rng, self.shape, sum(self.steps) / 2, values["slope"], values["rms_m"], longest)
 
     def add_pockmarks(self, seed, block):
@@ -196,14 +202,19 @@ class Floor:
                 radius = values["diameter_m"] / 2
                 if radius < 2 * max(self.steps):
                     item.value.get("diameter_m", item).fail(
-                        f"is {2 * radius:.3g} m; must be at least four cells of the floor, {4 * max(self.steps):.3g} m")
+                        f"is {2 * radius:.3g} m; must be at least four cells of the floor, {4 * max(self.steps):.3g} m"
+                    )
                 for _ in range(1000):
-                    x, y = (rng.uniform(low + radius, low + side - radius) if side > 2 * radius else math.nan
-                            for low, side in zip(self.low, self.size))
+                    x, y = (
+                        rng.uniform(low + radius, low + side - radius) if side > 2 * radius else math.nan
+                        for low, side in zip(self.low, self.size)
+                    )
                     if all(math.hypot(x - a, y - b) > radius + r for a, b, r in places) and not math.isnan(x + y):
                         break
                 else:
-                    item.fail(f"{number} pockmarks found room, the next did not in 1000 tries; ask for fewer or smaller ones")
+                    item.fail(
+                        f"{number} pockmarks found room, the next did not in 1000 tries; ask for fewer or smaller ones"
+                    )
                 places.append((x, y, radius))
                 share = np.clip(1 - ((self.x - x) ** 2 + (self.y - y) ** 2) / radius**2, 0, None)
                 self.z -= values["depth_m"] * share**2
@@ -217,8 +228,10 @@ class Floor:
             elif self.small_ripples is None:
                 self.small_ripples = ripples
             else:
-                item.fail(f"are the second with a wavelength below six cells ({6 * max(self.steps):.3g} m), which are a normal map; "
-                          "one is allowed")
+                item.fail(
+                    f"are the second with a wavelength below six cells ({6 * max(self.steps):.3g} m), which are a normal map; "
+                    "one is allowed"
+                )
 
     def height(self, x, y):
         """Of the triangles at these places [m]."""
@@ -246,8 +259,12 @@ class Floor:
             b, c, d = corner + columns, corner + columns + 1, corner + 1
             faces = np.vstack([np.stack([corner, b, c], 1), np.stack([corner, c, d], 1)])
             keep = slice(first, first + count + 1)
-            yield Surface(points[keep].reshape(-1, 3), faces, normals[keep].reshape(-1, 3),
-                          None if uvs is None else uvs[keep].reshape(-1, 2))
+            yield Surface(
+                points[keep].reshape(-1, 3),
+                faces,
+                normals[keep].reshape(-1, 3),
+                None if uvs is None else uvs[keep].reshape(-1, 2),
+            )
 
     def stones(self, seed, name, word, most):
         """Diameters and values of rocks or pebbles, the largest first; none where the recipe has none."""
@@ -256,8 +273,10 @@ class Floor:
             values = laws.draw(rng)
             count = int(round(values["per_m2"] * self.size[0] * self.size[1]))
             if count > most:
-                item.fail(f"are {count} on {self.size[0] * self.size[1]:g} m2; at most {most}: give per_m2 up to "
-                          f"{most / (self.size[0] * self.size[1]):.3g}")
+                item.fail(
+                    f"are {count} on {self.size[0] * self.size[1]:g} m2; at most {most}: give per_m2 up to "
+                    f"{most / (self.size[0] * self.size[1]):.3g}"
+                )
             if values["min_m"] > values["max_m"]:
                 item.fail(f"have min_m {values['min_m']:g} above max_m {values['max_m']:g}")
             sizes = sizes_by_power(rng, count, values["min_m"], values["max_m"], values["exponent"])

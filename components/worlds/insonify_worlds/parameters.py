@@ -2,6 +2,7 @@
 
 A number is one value, [lowest, highest], {uniform: [lowest, highest]}, {normal: [mean, deviation]} or {choice: [...]}.
 """
+
 import difflib
 import math
 from dataclasses import dataclass, field
@@ -24,6 +25,7 @@ class RecipeError(Exception):
 @dataclass
 class Item:
     """A value of a recipe with its place: `value` is a text, a list of items or a dict of items by name."""
+
     value: object
     place: str
     path: str
@@ -83,7 +85,9 @@ def read_yaml(text, name):
         for token in yaml.scan(text):
             if isinstance(token, (yaml.AliasToken, yaml.AnchorToken)):
                 mark = token.start_mark
-                raise RecipeError(f"{name}:{mark.line + 1}:{mark.column + 1}", "", "is an anchor or alias; write the value out")
+                raise RecipeError(
+                    f"{name}:{mark.line + 1}:{mark.column + 1}", "", "is an anchor or alias; write the value out"
+                )
         node = yaml.compose(text, yaml.SafeLoader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
@@ -113,6 +117,7 @@ def number_in(item, low, high, whole=False):
 @dataclass
 class Law:
     """How values are drawn: uniform, normal within the bounds, or one of a list."""
+
     kind: str
     values: list
     low: float = -math.inf
@@ -178,13 +183,15 @@ class Number(Parameter):
         block = item.block(kinds)
         if len(block) != 1:
             item.fail(f"must have one of {', '.join(kinds)}")
-        (kind, items), = block.items()
+        ((kind, items),) = block.items()
         if not isinstance(items.value, list) or (kind == "choice" and not items.value):
             items.fail(f"is {items.said()}; must be a list")
         if kind == "choice":
             return Law("choice", [one(each) for each in items.value])
         if len(items.value) != 2:
-            items.fail(f"has {len(items.value)} values; {pair}: {'[mean, deviation]' if kind == 'normal' else '[lowest, highest]'}")
+            items.fail(
+                f"has {len(items.value)} values; {pair}: {'[mean, deviation]' if kind == 'normal' else '[lowest, highest]'}"
+            )
         if kind == "uniform":
             return law(kind, items)
         deviation = number_in(items.value[1], 0, self.high - self.low)
@@ -230,6 +237,7 @@ class Switch(Choice):
 @dataclass
 class Point(Parameter):
     """A fixed place or size, [x, y]."""
+
     low: float = -1000
     high: float = 1000
 
@@ -249,7 +257,12 @@ class Text(Parameter):
 
     def read(self, item):
         text = item.value
-        if not isinstance(text, str) or not text.isascii() or not text.replace("_", "a").isalnum() or not text[:1].isalpha():
+        if (
+            not isinstance(text, str)
+            or not text.isascii()
+            or not text.replace("_", "a").isalnum()
+            or not text[:1].isalpha()
+        ):
             item.fail(f"is {item.said()}; must be {self.may_be()}")
         return Law("choice", [text])
 
@@ -257,6 +270,7 @@ class Text(Parameter):
 @dataclass
 class Drawn:
     """The laws of some parameters, read of a block."""
+
     laws: dict = field(default_factory=dict)
 
     def draw(self, rng):

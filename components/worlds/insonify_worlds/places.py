@@ -1,4 +1,5 @@
 """Where things are: outlines that keep clear of each other, and bodies that come to rest on the floor."""
+
 import math
 
 import numpy as np
@@ -58,8 +59,12 @@ class Taken:
         for polygon in polygons:
             low, high = polygon.min(0), polygon.max(0)
             gaps = np.maximum(self.gaps, gap)
-            near = np.flatnonzero((self.boxes[:, 0] - gaps <= high[0]) & (self.boxes[:, 2] + gaps >= low[0])
-                                  & (self.boxes[:, 1] - gaps <= high[1]) & (self.boxes[:, 3] + gaps >= low[1]))
+            near = np.flatnonzero(
+                (self.boxes[:, 0] - gaps <= high[0])
+                & (self.boxes[:, 2] + gaps >= low[0])
+                & (self.boxes[:, 1] - gaps <= high[1])
+                & (self.boxes[:, 3] + gaps >= low[1])
+            )
             if any(distance(polygon, self.polygons[i]) < gaps[i] + 1e-6 for i in near):
                 return False
         return True
@@ -123,7 +128,11 @@ class Body:
 
     def rest(self, ground, at, buried, height):
         """The turn and the position of its origin: on the floor at one point at least, then lower by the buried share."""
-        turn = floor_turn(ground, convex_hull((self.core @ self.turn.T)[:, :2] + at)) @ self.turn if height == 0 else self.turn
+        turn = (
+            floor_turn(ground, convex_hull((self.core @ self.turn.T)[:, :2] + at)) @ self.turn
+            if height == 0
+            else self.turn
+        )
         turned = self.points @ turn.T
         above = ground.height(turned[:, 0] + at[0], turned[:, 1] + at[1]) - turned[:, 2]
         tall = turned[:, 2].max() - turned[:, 2].min()

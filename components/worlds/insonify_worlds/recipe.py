@@ -1,257 +1,13 @@
-"""Reads a recipe, puts its floor and things together, and writes them as one .glb file."""
-import math
-from dataclasses import dataclass
+"""Reads recipes."""
 
-import numpy as np
-
-from . import floor as floors
-from . import materials, shapes
-from .floor import Floor, Surface, boulder
-from .glb import Glb, rotation
 from .parameters import Item, RecipeError, generator, number_in, read_parameters
-from .places import (TRIES, Body, FlatGround, Taken, is_inside, path_between, strip_outlines, tilt_about)
+from .places import FlatGround
 from .things import THINGS
-from .things.catalogue import CREASE_DEG, ENTRY
+from .things.catalogue import may_be_thing
+from .world import World
 
 KEYS = ("floor", "things", "max_triangles")
 MOST_TRIANGLES = 8_000_000
-STONE_SHAPES = 8
-SMALLEST_M = 1e-5  # shorter edges, which booleans leave, are taken out
-
-
-@dataclass
-class Placed:
-    """One node of the scene."""
-    name: str
-    surfaces: list  # pairs of surface and material
-    at: tuple
-    turn: np.ndarray
-
-
-@dataclass
-class Site:
-    """What a builder may know of the place."""
-    ground: object
-    at: tuple = (0.0, 0.0)
-
-    @property
-    def depth(self):
-        return -float(self.ground.height(*self.at))
-
-
-def surface_of(solid):
-    """Triangles with normals, which are smooth where edges are blunt."""
-    mesh = solid.simplify(SMALLEST_M).calculate_normals(0, CREASE_DEG).to_mesh()
-    return Surface(mesh.vert_properties[:, :3], mesh.tri_verts, mesh.vert_properties[:, 3:6])
-
-
-def surfaces_of(model):
-    return [(surface_of(solid), material) for solid, material in model.parts if solid.num_tri() > 0]
-
-
-class World:
-    def __init__(self, seed):
-        self.seed = seed
-        self.ground = FlatGround()
-        self.placed, self.taken, self.numbers = [], Taken(), {}
-        self.shared = {}  # surfaces of stones by their shape
-
-    def number(self, name):
-        self.numbers[name] = self.numbers.get(name, 0) + 1
-        return f"{name}_{self.numbers[name]}"
-
-    # The floor and what belongs to it.
-
-    def add_floor(self, item):
-        self.ground = Floor(item, self.seed)
-        self.placed.append(Placed("sea_floor", [(each, materials.sediment(self.ground.material))
-                                                for each in self.ground.surfaces()], (0, 0, 0), np.eye(3)))
-
-    def add_stones(self):
-        """After the things, which need more room."""
-        self.add_rocks(self.ground.stones(self.seed, "rocks", 5, floors.MAX_ROCKS))
-        self.add_pebbles(self.ground.stones(self.seed, "pebbles", 6, floors.MAX_PEBBLES))
-
-    def add_rocks(self, stones):
-        if not stones:
-            return
-        item, values, sizes, rng = stones
-        models = [surface_of(boulder(rng)) for _ in range(STONE_SHAPES)]
-        matter = materials.solid(values["material"])
-        for number, size in enumerate(sizes):
-            turn = rotation(*rng.uniform(-180, 180, 3)) * size
-            shape = models[number % STONE_SHAPES]
-            turned = shape.positions @ turn.T
-            outline = shapes_outline(turned)
-            for _ in range(TRIES):
-                at = self.random_place(rng)
-                if is_inside([outline + at], self.ground) and self.taken.is_clear([outline + at], 0.0):
-                    break
-            else:
-                item.fail(f"are {len(sizes)}, of which {number} found room; ask for fewer or smaller ones")
-            self.taken.add([outline + at], 0.0)
-            tall = np.ptp(turned[:, 2])
-            z = (self.ground.height(*(turned[:, :2] + at).T) - turned[:, 2]).max() - values["buried"] * tall
-            self.placed.append(Placed(f"rock_{number + 1}", [(Surface(turned, shape.faces, shape.normals @ (turn / size).T), matter)],
-                                      (*at, z), np.eye(3)))
-
-    def add_pebbles(self, stones):
-        """All in one node; they may touch each other, as pebbles do."""
-        if not stones:
-            return
-        _, values, sizes, rng = stones
-        if not len(sizes):
-            return
-        models = [surface_of(boulder(rng, 8)) for _ in range(STONE_SHAPES)]
-        low, size = np.array(self.ground.low), np.array(self.ground.size)
-        reach = sizes.max() / 2
-        at = low + reach + rng.uniform(0, 1, (len(sizes), 2)) * (size - 2 * reach)
-        z = self.ground.height(*at.T) + (0.45 - values["buried"]) * sizes
-        yaw = rng.uniform(-math.pi, math.pi, len(sizes))
-        matter = materials.solid(values["material"])
-        surfaces = []
-        for kind, shape in enumerate(models):
-            mine = np.arange(kind, len(sizes), STONE_SHAPES)
-            if not len(mine):
-                continue
-            c, s = np.cos(yaw[mine])[:, None], np.sin(yaw[mine])[:, None]
-
-            def turned(vectors):
-                x, y, up = vectors.T
-                return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(up, c.shape[:1] + up.shape)], -1)
-
-            points = turned(shape.positions) * sizes[mine, None, None] + np.c_[at, z][mine, None]
-            faces = shape.faces[None] + (np.arange(len(mine)) * len(shape.positions))[:, None, None]
-            surfaces.append((Surface(points.reshape(-1, 3), faces.reshape(-1, 3), turned(shape.normals).reshape(-1, 3)), matter))
-        self.placed.append(Placed("pebbles", surfaces, (0, 0, 0), np.eye(3)))
-
-    def random_place(self, rng):
-        return rng.uniform(self.ground.low, np.array(self.ground.low) + self.ground.size)
-
-    # Things.
-
-    def add_entry(self, item, index):
-        name = item.value.get("thing") if isinstance(item.value, dict) else None
-        if name is None:
-            item.fail("must be a block with the key thing" if not isinstance(item.value, dict)
-                      else f"has no key thing, which may be {', '.join(THINGS)}")
-        if not isinstance(name.value, str) or name.value not in THINGS:
-            name.fail(f"is {name.said()}; {may_be_thing(name.value)}")
-        thing = THINGS[name.value]
-        parameters = thing.all_parameters() + ENTRY
-        block = item.block(["thing", *(each.name for each in parameters)])
-        laws = read_parameters(block, parameters)
-        count = laws.laws["count"].draw(generator(self.seed, 10, index))
-        for number in range(count):
-            rng = generator(self.seed, 11, index, number)
-            values = laws.draw(rng)
-            node = self.number(values["name"] or thing.name)
-            placed = {"body": self.place_body, "line": self.place_line, "structure": self.place_structure}[thing.kind]
-            if not placed(thing, values, rng, node):
-                item.fail(f"asks for {count}, of which {number} found room in {TRIES} tries; give a larger floor, fewer of them, "
-                          "smaller ones, or a smaller gap_m")
-
-    def place_of(self, values, laws_rng):
-        at = self.random_place(laws_rng)
-        for axis, key in enumerate(("x_m", "y_m")):
-            if values[key] is not None:
-                at[axis] = values[key]
-        return at
-
-    def place_body(self, thing, values, rng, node):
-        model = thing.build(rng, values)
-        heading = rng.uniform(-180, 180) if values["heading_deg"] is None else values["heading_deg"]
-        body = Body(model, tilt_about(rng.uniform(-180, 180), values["tilt_deg"]) @ rotation(yaw=heading))
-        for _ in range(TRIES):
-            at = self.place_of(values, rng)
-            if not self.is_free(body.outlines(body.turn, at), values["gap_m"]):
-                continue
-            turn, position = body.rest(self.ground, at, values["buried"], values["height_m"])
-            outlines = body.outlines(turn, at)
-            if self.is_free(outlines, values["gap_m"]):
-                self.taken.add(outlines, values["gap_m"])
-                self.placed.append(Placed(node, surfaces_of(model), tuple(position), turn))
-                return True
-            if values["x_m"] is not None and values["y_m"] is not None:
-                return False
-        return False
-
-    def is_free(self, outlines, gap):
-        return is_inside(outlines, self.ground) and self.taken.is_clear(outlines, gap)
-
-    def place_structure(self, thing, values, rng, node):
-        turn = rotation(yaw=values["heading_deg"])
-        for _ in range(TRIES):
-            at = self.place_of(values, rng)
-            model = thing.build(rng, values, Site(self.ground, tuple(at)))
-            outlines = Body(model, turn).outlines(turn, at)
-            if self.is_free(outlines, values["gap_m"]):
-                self.taken.add(outlines, values["gap_m"])
-                self.placed.append(Placed(node, surfaces_of(model), (*at, 0.0), turn))
-                return True
-            if values["x_m"] is not None and values["y_m"] is not None:
-                return False
-        return False
-
-    def ends_of(self, values, rng):
-        length = values["length_m"]
-        start, end = values["from_m"], values["to_m"]
-        heading = math.radians(rng.uniform(-180, 180) if values["heading_deg"] is None else values["heading_deg"])
-        ahead = np.array([math.cos(heading), math.sin(heading)]) * length
-        if start is None and end is None:
-            middle = self.place_of(values, rng)
-            return middle - ahead / 2, middle + ahead / 2
-        if start is None:
-            return np.array(end) - ahead, np.array(end)
-        return np.array(start), np.array(start) + ahead if end is None else np.array(end)
-
-    def place_line(self, thing, values, rng, node):
-        for _ in range(TRIES):
-            start, end = self.ends_of(values, rng)
-            path = path_between(rng, start, end, values["meander_m"], 0.1)
-            outlines = strip_outlines(path, thing.half_width(values))
-            if not self.is_free(outlines, values["gap_m"]):
-                continue
-            self.taken.add(outlines, values["gap_m"])
-            model = thing.build(rng, values, self.ground, path)
-            middle = path[len(path) // 2]
-            origin = np.array([*middle, float(self.ground.height(*middle))])
-            model.parts = [(solid.translate(-origin), material) for solid, material in model.parts]
-            self.placed.append(Placed(node, surfaces_of(model), tuple(origin), np.eye(3)))
-            return True
-        return False
-
-    # The file.
-
-    def triangles(self):
-        return sum(len(surface.faces) for placed in self.placed for surface, _ in placed.surfaces)
-
-    def write(self, path):
-        glb = Glb()
-        used = {}
-        ripples = getattr(self.ground, "small_ripples", None)
-        normal_map = glb.normal_map(ripples.normal_map()) if ripples else None
-        for placed in self.placed:
-            pairs = []
-            for surface, material in placed.surfaces:
-                if material not in used:
-                    is_floor = placed.name == "sea_floor"
-                    used[material] = glb.material(material.name, material.acoustics(), material.colour, normal_map if is_floor else None)
-                pairs.append((surface, used[material]))
-            mesh = glb.mesh_of(placed.name, pairs)
-            glb.node(placed.name, mesh, placed.at, placed.turn)
-        glb.write(path)
-
-
-def shapes_outline(points):
-    from .places import convex_hull
-    return convex_hull(points[:, :2])
-
-
-def may_be_thing(given):
-    import difflib
-    near = difflib.get_close_matches(given, THINGS, 1) if isinstance(given, str) else []
-    return (f"did you mean {near[0]}? " if near else "") + f"may be {', '.join(THINGS)}"
 
 
 def make_world(recipe, seed):
@@ -272,8 +28,11 @@ def make_world(recipe, seed):
         world.add_stones()
     count = world.triangles()
     if count > most:
-        raise RecipeError(recipe.place, "max_triangles",
-                          f"is {most}; the recipe makes {count}: give a larger cell_m, fewer things, or up to {MOST_TRIANGLES}")
+        raise RecipeError(
+            recipe.place,
+            "max_triangles",
+            f"is {most}; the recipe makes {count}: give a larger cell_m, fewer things, or up to {MOST_TRIANGLES}",
+        )
     return world
 
 
@@ -291,7 +50,6 @@ def make_thing(name, assignments, seed):
     values |= {"x_m": 0.0, "y_m": 0.0, "gap_m": 0.0, "buried": 0.0}
     if values.get("heading_deg", 0) is None:
         values["heading_deg"] = 0.0
-    placed = {"body": world.place_body, "line": world.place_line, "structure": world.place_structure}[thing.kind]
-    if not placed(thing, values, rng, name):
+    if not world.place(thing, values, rng, name):
         raise RecipeError("", "--thing", f"is {name}; it is larger than {world.ground.size[0]:g} m")
     return world

@@ -1,4 +1,5 @@
 """Closed solids, each a manifold3d.Manifold: x ahead, y to port, z up, in metres. Booleans come from manifold3d."""
+
 import math
 
 import numpy as np
@@ -68,8 +69,10 @@ def loft(rings, closed=False):
     if not closed:
         positions = np.vstack([positions, rings[0].mean(0), rings[-1].mean(0)])
         k, following, last = np.arange(n), (np.arange(n) + 1) % n, (m - 1) * n
-        faces += [np.stack([following, k, np.full(n, m * n)], -1),
-                  np.stack([last + k, last + following, np.full(n, m * n + 1)], -1)]
+        faces += [
+            np.stack([following, k, np.full(n, m * n)], -1),
+            np.stack([last + k, last + following, np.full(n, m * n + 1)], -1),
+        ]
     return from_mesh(positions, np.vstack(faces))
 
 

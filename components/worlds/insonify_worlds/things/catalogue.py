@@ -1,4 +1,6 @@
 """How a thing is described, and the table of all."""
+
+import difflib
 from dataclasses import dataclass
 from typing import Callable
 
@@ -14,6 +16,7 @@ class Model:
     """Closed solids with their materials, in axes of the thing's own: z up, standing on z = 0 or so, x ahead.
 
     `outlines` are convex polygons [n, 2] that other things keep off; absent, the convex hull of all from above."""
+
     parts: list
     outlines: list = None
 
@@ -21,7 +24,8 @@ class Model:
 @dataclass
 class Thing:
     """`kind` says how it is placed and what it is built from: a body (rng, values) stands on the floor, a line (rng, values,
-    ground, path) is laid along a path on it, a structure (rng, values, site) has its z from the water surface."""
+    ground, path) is laid along a path on it, a structure (rng, values, depth) has its z from the water surface."""
+
     name: str
     about: str
     parameters: list
@@ -34,7 +38,9 @@ class Thing:
 
 
 COMMON = [
-    Choice("surface", "weathered", "of its materials: clean, weathered (rough, Lambert's law), fouled (overgrown)", STATES),
+    Choice(
+        "surface", "weathered", "of its materials: clean, weathered (rough, Lambert's law), fouled (overgrown)", STATES
+    ),
 ]
 PLACING = {
     "body": [
@@ -65,8 +71,16 @@ ENTRY = [
 
 def thing(name, about, *parameters, kind="body", half_width=lambda values: values["diameter_m"] / 2):
     """Adds the function below it to the table."""
+
     def add(build):
         assert name not in THINGS
         THINGS[name] = Thing(name, about, list(parameters), build, kind, half_width)
         return build
+
     return add
+
+
+def may_be_thing(given):
+    """What stands in place of a wrong name, for messages."""
+    near = difflib.get_close_matches(given, THINGS, 1) if isinstance(given, str) else []
+    return (f"did you mean {near[0]}? " if near else "") + f"may be {', '.join(THINGS)}"
