@@ -219,10 +219,11 @@ void findCoarseMesh(types::Mesh& mesh) {
     mesh.coarse_indices.clear();
     for (size_t root = 0; root < mesh.cluster_nodes.size(); root = mesh.cluster_nodes[root].next) {
         const std::span<const uint32_t> fine = trianglesOf(mesh, mesh.cluster_nodes[root]);
-        std::vector<uint32_t> coarse(fine.size());
-        coarse.resize(meshopt_simplifySloppy(coarse.data(), fine.data(), fine.size(), &mesh.positions[0].x,
-                                             mesh.positions.size(), sizeof(glm::vec3), 3 * max_coarse_triangles, 1.0f,
-                                             nullptr));
+        std::vector<uint32_t> coarse(fine.begin(), fine.end());
+        if (fine.size() > 3 * max_coarse_triangles)  // meshoptimizer aborts where it is asked for more than there are
+            coarse.resize(meshopt_simplifySloppy(coarse.data(), fine.data(), fine.size(), &mesh.positions[0].x,
+                                                 mesh.positions.size(), sizeof(glm::vec3), 3 * max_coarse_triangles,
+                                                 1.0f, nullptr));
         mesh.coarse_indices.insert(mesh.coarse_indices.end(), coarse.begin(), coarse.end());
     }
 }

@@ -43,5 +43,19 @@ TEST(CoarseMeshTest, EveryMaterialKeepsItsPart) {
     EXPECT_GT(mesh.coarse_indices.size() / 3, max_coarse_triangles / 5);
 }
 
+TEST(CoarseMeshTest, ASmallPartOfALargeMeshStaysAsItIs) {
+    types::Mesh mesh = test::sphere(2, 160);
+    const auto all = static_cast<uint32_t>(mesh.indices.size());
+    constexpr uint32_t few = 3 * 100;
+    mesh.clusters = {{.first_index = 0, .index_count = all - few, .material = 0},
+                     {.first_index = all - few, .index_count = few, .material = 1}};
+    buildClusters(mesh);
+    uint32_t kept = 0;
+    for (const types::Cluster& cluster : mesh.clusters) kept += cluster.material == 1 ? cluster.index_count : 0;
+    EXPECT_EQ(kept, few);
+    EXPECT_GT(mesh.coarse_indices.size(), few);
+    EXPECT_LT(mesh.coarse_indices.size(), 3 * max_coarse_triangles + few + 1);
+}
+
 }  // namespace
 }  // namespace insonify::scene

@@ -89,7 +89,7 @@ class World:
             z = (self.ground.height(*(turned[:, :2] + at).T) - turned[:, 2]).max() - values["buried"] * tall
             self.placed.append(
                 Placed(
-                    f"rock_{number + 1}",
+                    self.number("rock"),
                     [(Surface(turned, shape.faces, shape.normals @ (turn / size).T), matter)],
                     (*at, z),
                     np.eye(3),
