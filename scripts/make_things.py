@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes deploy/pictures/things.png: the things of `insonify scene make`, each on sand as a forward-looking sonar of 1.2 MHz
+"""Makes deploy/pictures/things.png: the things of `insonify scene make`, each on clay as a forward-looking sonar of 1.2 MHz
 records it from 2.2 of its lengths away. The range is up, port is left. Needs matplotlib and insonify in the path.
 
     scripts/make_things.py [--out FILE] [THING...]
@@ -19,8 +19,8 @@ LEFT_OUT = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of th
 DEPTH = 30.0
 SETTINGS = {  # by thing: what shows it best
     "pipeline": {"length_m": 12}, "cable": {"length_m": 4}, "rope": {"length_m": 2.5, "meander_m": 0.5}, "chain": {"length_m": 2.5},
-    "mooring": {"line_m": 2.5}, "moored_mine": {"line_m": 1.5}, "diver": {"height_m": 0.6}, "rov": {"height_m": 0.3},
-    "auv": {"height_m": 0.3}, "wreck": {"length_m": 12},
+    "mooring": {"line_m": 2.5, "lean_deg": 30, "heading_deg": 90}, "moored_mine": {"line_m": 1.5, "lean_deg": 40, "heading_deg": 90}, "diver": {"height_m": 0.6}, "rov": {"height_m": 0.3},
+    "auv": {"height_m": 0.3}, "net": {"length_m": 2.5, "width_m": 1.6, "mesh_m": 0.1}, "wreck": {"length_m": 12},
 }
 DEPLOYMENT = """
 tasks:
@@ -30,7 +30,7 @@ tasks:
     type: sonar::SonarTask
     properties:
       range: %(range)g
-      range_rounding: exact
+      range_rounding: sample
       bin_count: %(bins)d
       beam_count: 256
       field_of_view_deg: %(view)g
@@ -39,7 +39,7 @@ tasks:
       max_walls: 4
       quality: {rows: 600, columns_per_beam: 3}
       pulse: {bandwidth_khz: %(bandwidth)g, window: hann}
-      beam_pattern: {receive: {azimuth: {aperture_m: 0.16}}}
+      beam_pattern: {receive: {azimuth: {weighting: taylor, sidelobe_db: -35, aperture_m: 0.2}}}
       speckle: {coherent: true}
   log: {type: logger::LoggerTask, properties: {file: ping.log}}
 connections:
@@ -54,12 +54,12 @@ def run(*words, folder):
 
 
 def scene_of(folder, name, heading, values, size):
-    """A patch of sand with the thing in its middle, `far` from the origin."""
+    """A patch of clay with the thing in its middle, `far` from the origin."""
     far = 2.2 * size
     side = 4.5 * size
-    entry = {"thing": name, "x_m": far, "y_m": 0, "heading_deg": heading, **values}
-    floor = {"size_m": [side, side], "centre_m": [far, 0], "depth_m": DEPTH, "cell_m": side / 400,
-             "fractal": {"slope": 3.2, "rms_m": 0.004 * size}, "material": "sand"}
+    entry = {"thing": name, "x_m": far, "y_m": 0, "heading_deg": heading} | values
+    floor = {"size_m": [side, side], "centre_m": [far, 0], "depth_m": DEPTH, "cell_m": max(side / 400, 0.005),
+             "fractal": {"slope": 3.2, "rms_m": 0.004 * size}, "material": "clay"}
     (folder / "scene.yml").write_text(json.dumps({"floor": floor, "things": [entry]}))
     run("scene", "make", "scene.yml", "--out", "scene.glb", "--quiet", folder=folder)
 
@@ -74,20 +74,22 @@ def size_of(folder, name, values):
 def ping_of(folder, name, heading):
     """Bins [beams, bins] of one ping, with bearings [rad] and ranges [m]; the size of the thing [m]."""
     values = SETTINGS.get(name, {})
-    size = size_of(folder, name, values)
+    size = max(size_of(folder, name, values), 0.3)  # small things from 0.66 m
     scene_of(folder, name, heading, values, size)
     far, height = 2.2 * size, 1.1 * size
     pitch = math.atan2(height - 0.2 * size, far)
+    reach = math.hypot(far, height) + 1.2 * size
+    step = 1.5e-3 * max(1, round(reach / 900 / 1.5e-3))  # of bins: the way of sound in whole microseconds
+    bins = math.ceil(reach / step)
     (folder / "run.yml").write_text(DEPLOYMENT % {
-        "z": height - DEPTH, "pitch": math.degrees(pitch), "range": math.hypot(far, height) + 1.2 * size,
-        "bins": 900, "view": 56, "bandwidth": min(300, 110 / size)})  # 1/150 of the thing, or 2.5 mm
+        "z": height - DEPTH, "pitch": math.degrees(pitch), "range": bins * step, "bins": bins, "view": 56, "bandwidth": min(300, 110 / size)})  # 1/150 of the thing, or 2.5 mm
     run("run", "run.yml", "--pings", 1, "--out", "out", folder=folder)
     run("log", "export", "out/ping.log", "--stream", "sonar.ping", "--to", "ping.npz", folder=folder)
     return dict(np.load(folder / "ping.npz")), size
 
 
 def draw(axis, name, ping, size):
-    """The part of the fan about the thing, 42 dB of grey levels below its brightest 0.1 %."""
+    """The part of the fan about the thing, 45 dB of levels below its brightest 0.2 %."""
     far, height = 2.2 * size, 1.1 * size
     ranges, bearings = ping["range_m"][0], ping["bearings"][0]
     level = 10 * np.log10(np.maximum(ping["bins"][0], 1e-30)) + 40 * np.log10(np.maximum(ranges, 0.1))
@@ -100,8 +102,8 @@ def draw(axis, name, ping, size):
     b, k = np.clip(beam.astype(int), 0, len(bearings) - 2), np.clip(bin_.astype(int), 0, len(ranges) - 2)
     u, v = beam - b, bin_ - k
     picture = (1 - u) * ((1 - v) * level[b, k] + v * level[b, k + 1]) + u * ((1 - v) * level[b + 1, k] + v * level[b + 1, k + 1])
-    white = np.percentile(picture, 99.9)
-    axis.imshow(picture, cmap="afmhot", vmin=white - 42, vmax=white)
+    white = np.percentile(picture, 99.8)
+    axis.imshow(picture, cmap="afmhot", vmin=white - 45, vmax=white)
     axis.set_title(f"{name}, {size:.2g} m", fontsize=8, pad=2)
 
 

@@ -159,19 +159,23 @@ def random_values(rng, thing):
     return values
 
 
+@pytest.fixture(scope="module")
+def one_of_each(tmp_path_factory):
+    """Every thing as it is, and with random values."""
+    rng, scenes = np.random.default_rng(5), []
+    for number in range(3):
+        entries = [{"thing": name} | (random_values(rng, thing) if number else {}) for name, thing in THINGS.items()]
+        scenes.append(Glb(make(tmp_path_factory.mktemp("each"), json.dumps({"things": entries}), seed=number)).nodes)
+    return scenes
+
+
 @pytest.mark.parametrize("name", THINGS)
-def test_things_are_closed_and_face_outwards(tmp_path, name):
-    rng = np.random.default_rng(len(name))
-    for turn in range(2):
-        values = random_values(rng, THINGS[name]) if turn else {}
-        values.pop("buried", None)
-        out = tmp_path / "thing.glb"
-        settings = itertools.chain.from_iterable(("--set", f"{key}={value}") for key, value in values.items())
-        answer("scene", "make", "--thing", name, *settings, "--out", out)
-        (node,) = Glb(out).nodes.values()
+def test_things_are_closed_and_face_outwards(one_of_each, name):
+    for nodes in one_of_each:
+        node = nodes[f"{name}_1"]
         for points, faces in node.parts:
-            assert unbalanced_edges(points, faces) == 0, values
-            assert volume(points, faces) > 0, values
+            assert unbalanced_edges(points, faces) == 0
+            assert volume(points, faces) > 0
         a, b, c = np.moveaxis(node.positions[node.faces], 1, 0)
         facing = np.einsum("ij,ij->i", np.cross(b - a, c - a), node.normals[node.faces].mean(1))
         areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -187,7 +191,7 @@ def test_things_are_closed_and_face_outwards(tmp_path, name):
         (["ball", "diameter_m=1"], (1, 1, 1)),
         (["container"], (6.06, 2.44, 2.59)),
         (["artillery_shell", "diameter_m=0.155"], (0.7, 0.16, 0.16)),
-        (["moored_mine", "diameter_m=1", "line_m=5", "lean_deg=0"], (1.26, 1.26, 6.81)),
+        (["moored_mine", "diameter_m=1", "line_m=5", "lean_deg=0"], (1.04, 1.04, 6.77)),
     ],
 )
 def test_things_have_the_size_that_is_asked_for(tmp_path, words, size):
@@ -360,37 +364,31 @@ def test_the_simulator_knows_all_that_is_made(tmp_path):
     assert scene["triangles"] < 1_000_000
 
 
-def test_each_matter_has_the_reflection_that_the_simulator_has(tmp_path):
-    """Weathered things have a Lambert parameter by a table of the package."""
-    from importlib import util
-
-    spec = util.spec_from_file_location("materials", PACKAGE / "materials.py")
-    materials = util.module_from_spec(spec)
-    spec.loader.exec_module(materials)
+def test_weathered_surfaces_reflect_as_the_simulator_has_their_matter(tmp_path):
+    entries = "things:\n" + "\n".join(f"  - {{thing: {name}, surface: %s}}" for name in THINGS)
+    of = {}
+    for state in ("clean", "weathered"):
+        scene = json.loads(answer("scene", make(tmp_path, entries.replace("%s", state)), "--json"))
+        named = {each["name"].removeprefix("weathered "): each["lambert_db"] for each in scene["materials"]}
+        of[state] = {name: value for name, value in named.items() if " " not in name}
     known = json.loads(answer("describe", "materials", "--json"))
-    text = json.dumps(known)
-    for name in [*materials.REFLECTION, *materials.SEDIMENTS, *materials.COMMON_NAMES.values()]:
-        assert f'"{name}"' in text, name
-    for name, reflection in materials.REFLECTION.items():
-        (row,) = [row for row in matter_rows(known) if row["name"] == name]
-        assert row["reflection"] == pytest.approx(reflection, abs=1e-9), name
+    assert set(of["clean"]) <= set(known["materials"])
+    assert len(of["weathered"]) >= 12
+    for matter, lambert_db in of["weathered"].items():
+        assert lambert_db == pytest.approx(of["clean"][matter], abs=0.02), matter
 
 
-def matter_rows(known):
-    if isinstance(known, dict):
-        known = list(known.values())
-    rows = []
-    for each in known if isinstance(known, list) else []:
-        if isinstance(each, dict) and "reflection" in each and "name" in each:
-            rows.append(each)
-        else:
-            rows += matter_rows(each)
-    return rows
+def test_floors_are_of_every_sediment_that_the_simulator_has(tmp_path):
+    known = json.loads(answer("describe", "materials", "--json"))["sediments"]
+    for name in [*(each for each in known if each != "mackenzie"), "sand", "gravel", "mud", "silt"]:
+        out = make(tmp_path, f"floor: {{size_m: [4, 4], material: {name}}}")
+        (material,) = json.loads(answer("scene", out, "--json"))["materials"]
+        assert material["sediment"] in known and (name not in known or material["sediment"] == name)
 
 
 BAD = [
-    ("floor: {depth: 8}", "1:16: floor.depth: is an unknown key (did you mean depth_m?); may be size_m"),
-    ("flor: {depth_m: 8}", "1:7: flor: is an unknown key (did you mean floor?); may be floor, things, max_triangles"),
+    ("floor: {depth: 8}", "1:9: floor.depth: is not a key here; did you mean depth_m? may be size_m"),
+    ("flor: {depth_m: 8}", "1:1: flor: is not a key here; did you mean floor? may be floor, things, max_triangles"),
     ("floor: {depth_m: -1}", "1:18: floor.depth_m: is -1; must be a number from 0.5 to 11000"),
     ("floor: {depth_m: deep}", "1:18: floor.depth_m: is deep; must be a number from 0.5 to 11000"),
     ("floor: {depth_m: .nan}", "1:18: floor.depth_m: is .nan; must be a number"),
@@ -400,7 +398,7 @@ BAD = [
     ("floor: {fractal: {slope: 9}}", "1:26: floor.fractal.slope: is 9; must be a number from 1 to 5"),
     ("floor: {size_m: [1000, 1000], cell_m: 0.1}", "1:39: floor.cell_m: makes 100000000 cells"),
     ("floor: {depth_m: 1, fractal: {rms_m: 2}}", "1:8: floor: rises to z ="),
-    ("floor: {depth_m: 8, depth_m: 9}", "1:30: floor.depth_m: is given twice"),
+    ("floor: {depth_m: 8, depth_m: 9}", "1:21: floor.depth_m: is given twice"),
     ("floor: {depth_m: 8", "is no YAML:"),
     ("", "is empty; a recipe has a floor, things or both"),
     ("things: []", "makes nothing"),
@@ -408,11 +406,11 @@ BAD = [
     ("things: [tire]", "1:10: things[0]: must be a block with the key thing"),
     ("things: [{count: 2}]", "1:10: things[0]: has no key thing, which may be pipeline"),
     ("things: [{thing: tyre}]", "1:18: things[0].thing: is tyre; did you mean tire? may be pipeline"),
-    ("things:\n  - {thing: tire, diameter: 1}", "2:29: things[0].diameter: is an unknown key (did you mean diameter_m?)"),
+    ("things:\n  - {thing: tire, diameter: 1}", "2:19: things[0].diameter: is not a key here; did you mean diameter_m?"),
     ("things:\n  - {thing: tire, diameter_m: 9}", "2:31: things[0].diameter_m: is 9; must be a number from 0.3 to 4"),
     ("things:\n  - {thing: tire, diameter_m: [1, 9]}", "2:35: things[0].diameter_m[1]: is 9; must be a number from 0.3 to 4"),
     ("things:\n  - {thing: tire, diameter_m: [2, 1]}", "2:31: things[0].diameter_m: is [2, 1]; the lowest value is first"),
-    ("things:\n  - {thing: tire, diameter_m: {norm: [1, 1]}}", "2:38: things[0].diameter_m.norm: is an unknown key"),
+    ("things:\n  - {thing: tire, diameter_m: {norm: [1, 1]}}", "2:32: things[0].diameter_m.norm: is not a key here; did you mean normal?"),
     ("things:\n  - {thing: tire, count: 1.5}", "2:26: things[0].count: is 1.5; must be a whole number from 0 to 2000"),
     ("things:\n  - {thing: tire, upright: maybe}", "2:28: things[0].upright: is maybe; may be true, false"),
     ("things:\n  - {thing: tire, surface: rusty}", "2:28: things[0].surface: is rusty; may be clean, weathered, fouled"),
@@ -443,7 +441,7 @@ def test_a_bad_recipe_gets_one_line_with_its_place(tmp_path, text, expected):
         (["--thing", "tire", "--out", "a.obj"], "scene make: --out is a.obj; must be a file that ends in .glb"),
         (["--thing", "tyre", "--out", "a.glb"], "--thing: is tyre; did you mean tire? may be pipeline"),
         (["--thing", "tire", "--set", "diameter_m=9", "--out", "a.glb"], "diameter_m: is 9; must be a number from 0.3 to 4"),
-        (["--thing", "tire", "--set", "size=9", "--out", "a.glb"], "size: is an unknown key"),
+        (["--thing", "tire", "--set", "size=9", "--out", "a.glb"], "size: is not a key here; may be"),
         (["--thing", "tire", "--out", "/absent/a.glb"], "/absent/a.glb: cannot be written: No such file or directory"),
     ],
 )
@@ -476,15 +474,72 @@ tasks:
   vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, 0, -7]}]}}
   scene: {type: scene::SceneTask, properties: {file: bay.glb}}
   sonar: {type: sonar::SonarTask, properties: {range: 20, bin_count: 1000, beam_count: 256, frequency_khz: 900}}
-  log: {type: logger::LoggerTask, properties: {file: pings.log}}
+  log: {type: logger::LoggerTask, properties: {file: ping.log}}
 connections:
   - {from: vehicle.pose, to: scene.pose}
   - {from: scene.snapshot, to: sonar.snapshot}
-log: {task: log, streams: [sonar.ping]}
+  - {from: sonar.ping, to: log.ping}
 """)
-    from test_worlds_log import strongest
-
-    bin_range, bearing = strongest(tmp_path)
+    answer("run", tmp_path / "run.yml", "--pings", 1, "--out", tmp_path / "out")
+    answer("log", "export", tmp_path / "out/ping.log", "--stream", "sonar.ping", "--to", tmp_path / "ping.npz")
+    ping = np.load(tmp_path / "ping.npz")
+    bins = ping["bins"][0] * (ping["range_m"][0] > 2)  # beyond the floor below the sonar
+    beam, bin_ = np.unravel_index(bins.argmax(), bins.shape)
     place = np.array([12, -2])
-    assert bin_range == pytest.approx(np.hypot(*place) - 0.58 / 2, abs=0.1)
-    assert bearing == pytest.approx(np.arctan2(place[1], place[0]), abs=0.02)
+    assert ping["range_m"][0][bin_] == pytest.approx(np.hypot(*place) - 0.585 / 2, abs=0.05)
+    assert ping["bearings"][0][beam] == pytest.approx(np.arctan2(place[1], place[0]), abs=0.02)
+
+
+SWEEP = """
+scenes: [{make: bay.yml, seeds: [1, 2]}, {make: bay.yml, count: 1, set: {sonar.range: 12}}]
+poses: {grid: {z: -6}}
+classes: {tire: tire_*, crate: crate_*}
+picture: {height: 120}
+"""
+
+
+def test_a_sweep_makes_its_scenes_by_recipe(tmp_path):
+    (tmp_path / "bay.yml").write_text(
+        "floor: {size_m: [30, 20], centre_m: [12, 0], depth_m: 8, cell_m: 0.5}\n"
+        "things: [{thing: tire, count: 4, upright: true, gap_m: 1}, {thing: crate, count: 3, gap_m: 1}]\n"
+    )
+    (tmp_path / "sweep.yml").write_text(SWEEP)
+    cache = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+
+    def dataset(out, *words):
+        done = insonify("dataset", ROOT / "deploy/truth.yml", "--sweep", tmp_path / "sweep.yml", "--out", out, *words, **cache)
+        assert done.returncode == 0, done.stderr
+        return {file.name: file.read_bytes() for file in out.iterdir()}
+
+    whole = dataset(tmp_path / "whole")
+    scenes = [json.loads(data)["scene"] for name, data in sorted(whole.items()) if name[:6].isdigit() and name.endswith(".json")]
+    assert scenes == ["bay_1.glb", "bay_2.glb", "bay_1.glb"]
+    assert len(list((tmp_path / "cache").rglob("*.glb"))) == 2, "the same recipe and seed is made once"
+    dataset(tmp_path / "parts", "--shard", "0/2")
+    assert dataset(tmp_path / "parts", "--shard", "1/2") == whole
+
+    recipe = (tmp_path / "bay.yml").read_text()
+    (tmp_path / "bay.yml").write_text(recipe.replace("count: 3", "count: 2"))
+    assert not set(dataset(tmp_path / "other")) & {name for name in whole if name[:6].isdigit()}, "another recipe, another hash"
+    (tmp_path / "bay.yml").write_text(recipe.replace("tire", "tyre"))
+    done = insonify("dataset", ROOT / "deploy/truth.yml", "--sweep", tmp_path / "sweep.yml", "--out", tmp_path / "bad", **cache)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    assert "bay.yml:2:18: things[0].thing: is tyre; did you mean tire?" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "scene, expected",
+    [
+        ("{make: bay.yml}", "must have one of seeds and count beside make"),
+        ("{make: bay.yml, seeds: [1], count: 2}", "must have one of seeds and count beside make"),
+        ("{file: bay.yml, count: 2}", "has seeds or count without make"),
+        ("{file: bay.yml, make: bay.yml, count: 2}", "is given beside file; give one of them"),
+        ("{make: none.yml, count: 2}", "is none.yml; there is no such file, which is relative to the sweep"),
+    ],
+)
+def test_a_wrong_scene_of_a_sweep_gets_one_line(tmp_path, scene, expected):
+    (tmp_path / "bay.yml").write_text("things: [{thing: tire}]")
+    (tmp_path / "sweep.yml").write_text(f"scenes: [{scene}]\nposes: {{grid: {{z: -6}}}}\n")
+    done = insonify("dataset", ROOT / "deploy/truth.yml", "--sweep", tmp_path / "sweep.yml", "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1 and "sweep.yml:1:" in done.stderr and "scenes[0]" in done.stderr and expected in done.stderr

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import materials, shapes
 from .glb import unit
-from .parameters import Number, Point, Choice, generator, read_parameters
+from .parameters import Choice, Number, Point, generator, read_parameters
 
 MAX_CELLS = 2_000_000
 TILE_WAVES, TILE_STEPS = 16, 16  # a tile of ripples: wavelengths on a side, points to a wavelength

@@ -29,6 +29,7 @@ class Item:
     value: object
     place: str
     path: str
+    key_place: str = ""  # of its key, where it has one
 
     def fail(self, message):
         raise RecipeError(self.place, self.path, message)
@@ -48,8 +49,8 @@ class Item:
         for name, item in self.value.items():
             if name not in known:
                 near = difflib.get_close_matches(name, known, 1)
-                meant = f" (did you mean {near[0]}?)" if near else ""
-                item.fail(f"is an unknown key{meant}; may be {', '.join(known)}")
+                meant = f"did you mean {near[0]}? " if near else ""
+                raise RecipeError(item.key_place, item.path, f"is not a key here; {meant}may be {', '.join(known)}")
         return self.value
 
 
@@ -76,6 +77,7 @@ class _Composer:
             if key.value in items:
                 raise RecipeError(self.place(key), below, "is given twice")
             items[key.value] = self.item(value, below)
+            items[key.value].key_place = self.place(key)
         return Item(items, place, path)
 
 

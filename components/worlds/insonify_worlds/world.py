@@ -10,9 +10,20 @@ from . import materials
 from .floor import Floor, Surface, boulder
 from .glb import Glb, rotation
 from .parameters import generator, read_parameters
-from .places import TRIES, Body, FlatGround, Taken, convex_hull, is_inside, path_between, strip_outlines, tilt_about
+from .places import (
+    TRIES,
+    Body,
+    FlatGround,
+    Taken,
+    convex_hull,
+    is_inside,
+    path_between,
+    strip_outlines,
+    tilt_about,
+)
+from .shapes import bounds
 from .things import THINGS
-from .things.catalogue import CREASE_DEG, ENTRY, may_be_thing
+from .things.catalogue import CREASE_DEG, ENTRY, Model, may_be_thing
 
 STONE_SHAPES = 8
 SMALLEST_M = 1e-5  # shorter edges, which booleans leave, are taken out
@@ -29,13 +40,39 @@ class Placed:
 
 
 def surface_of(solid):
-    """Triangles with normals, which are smooth where edges are blunt."""
+    """Triangles with normals, which are smooth where edges are blunt; those that single precision leaves no area are
+    taken out."""
     mesh = solid.simplify(SMALLEST_M).calculate_normals(0, CREASE_DEG).to_mesh()
-    return Surface(mesh.vert_properties[:, :3], mesh.tri_verts, mesh.vert_properties[:, 3:6])
+    points = mesh.vert_properties[:, :3]
+    a, b, c = np.moveaxis(points[mesh.tri_verts].astype(float), 1, 0)
+    faces = mesh.tri_verts[np.any(np.cross(b - a, c - a) != 0, axis=1)]
+    return Surface(points, faces, mesh.vert_properties[:, 3:6])
+
+
+def joined(surfaces):
+    starts = np.cumsum([0] + [len(each.positions) for each in surfaces])
+    return Surface(
+        np.vstack([each.positions for each in surfaces]),
+        np.vstack([each.faces + start for each, start in zip(surfaces, starts)]),
+        np.vstack([each.normals for each in surfaces]),
+    )
 
 
 def surfaces_of(model):
-    return [(surface_of(solid), material) for solid, material in model.parts if solid.num_tri() > 0]
+    """One surface of each material."""
+    by_material = {}
+    for solid, material in model.parts:
+        if solid.num_tri() > 0:
+            by_material.setdefault(material, []).append(surface_of(solid))
+    return [(joined(surfaces), material) for material, surfaces in by_material.items()]
+
+
+def centred(model):
+    """The model with the middle of its box above its origin."""
+    low, high = bounds([solid for solid, _ in model.parts])
+    offset = [*(-(low + high)[:2] / 2), 0]
+    outlines = model.outlines and [outline + offset[:2] for outline in model.outlines]
+    return Model([(solid.translate(offset), material) for solid, material in model.parts], outlines)
 
 
 class World:
@@ -43,7 +80,6 @@ class World:
         self.seed = seed
         self.ground = FlatGround()
         self.placed, self.taken, self.numbers = [], Taken(), {}
-        self.shared = {}  # surfaces of stones by their shape
 
     def number(self, name):
         self.numbers[name] = self.numbers.get(name, 0) + 1
@@ -171,7 +207,7 @@ class World:
         return at
 
     def place_body(self, thing, values, rng, node):
-        model = thing.build(rng, values)
+        model = centred(thing.build(rng, values))
         heading = rng.uniform(-180, 180) if values["heading_deg"] is None else values["heading_deg"]
         body = Body(model, tilt_about(rng.uniform(-180, 180), values["tilt_deg"]) @ rotation(yaw=heading))
         for _ in range(TRIES):

@@ -13,7 +13,7 @@ CREASE_DEG = 40.0  # edges that are blunter are smooth
 
 @dataclass
 class Model:
-    """Closed solids with their materials, in axes of the thing's own: z up, standing on z = 0 or so, x ahead.
+    """Pairs of a closed solid and its material, in axes of the thing's own: z up, standing on z = 0 or so, x ahead.
 
     `outlines` are convex polygons [n, 2] that other things keep off; absent, the convex hull of all from above."""
 

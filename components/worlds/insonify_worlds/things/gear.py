@@ -117,7 +117,7 @@ def chain(rng, p, ground, path):
     path = along(path, 4 * d)
     z = ground.height(path[:, 0], path[:, 1]) + d * 3.5 * 0.5 * (1 - 2 * p["buried"])
     links = chain_along(np.c_[path, z], d / 2)
-    return Model([(union(links), solid("carbon_steel", p["surface"]))])
+    return Model([(each, solid("carbon_steel", p["surface"])) for each in links])
 
 
 @thing(
@@ -215,8 +215,8 @@ def propeller(rng, p):
     return Model([(union([hub, *blades]), solid("bronze", p["surface"]))])
 
 
-def twine(points, radius, closed=False):
-    return tube(points, radius, 4, closed)
+def twine(points, radius):
+    return tube(points, radius, 4)
 
 
 @thing(
@@ -249,7 +249,7 @@ def net(rng, p):
     floats = [ball(0.07, head[i] + (0, 0, 0.03), 16) for i in range(1, columns, max(1, columns // 7))]
     return Model(
         [
-            (union(lines + knots), solid("net", p["surface"])),
+            *((each, solid("net", p["surface"])) for each in lines + knots),
             (tube(head, 3 * r, 6), solid("rope", p["surface"])),
             (union(floats), solid("closed_cell_foam", "clean")),
         ]
@@ -295,7 +295,7 @@ def lobster_pot(rng, p):
     return Model(
         [
             (union(frame + [entrance]), solid("carbon_steel", p["surface"])),
-            (union(mesh), solid("net", p["surface"])),
+            *((each, solid("net", p["surface"])) for each in mesh),
             (floor, solid("wood", p["surface"])),
         ]
     )

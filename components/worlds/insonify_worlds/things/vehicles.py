@@ -6,7 +6,20 @@ import numpy as np
 
 from ..materials import solid, wall
 from ..parameters import Choice, Number, Switch
-from ..shapes import ball, bar, box, cylinder, extruded, hull, loft, moved, revolved, rotation, tube, union
+from ..shapes import (
+    ball,
+    bar,
+    box,
+    cylinder,
+    extruded,
+    hull,
+    loft,
+    moved,
+    revolved,
+    rotation,
+    tube,
+    union,
+)
 from .catalogue import Model, thing
 
 
