@@ -5,6 +5,7 @@ records it from 2.2 of its lengths away. The range is up, port is left. Needs ma
     scripts/make_things.py [--out FILE] [THING...]
 """
 import argparse
+import io
 import json
 import math
 import subprocess
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import pyplot
+from PIL import Image
 
 PICTURES = Path(__file__).resolve().parent.parent / "deploy" / "pictures"
 LEFT_OUT = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or plain
@@ -124,7 +126,9 @@ def main():
             ping, size = ping_of(Path(folder), name, options.heading_deg)
         draw(axis, name, ping, size)
     figure.subplots_adjust(0.003, 0.003, 0.997, 0.975, 0.02, 0.1)
-    figure.savefig(options.out, dpi=88)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=88)
+    Image.open(drawn).convert("RGB").quantize(24).save(options.out, optimize=True)  # speckle packs badly
 
 
 if __name__ == "__main__":

@@ -57,6 +57,7 @@ foreach(package ${packages})
 endforeach()
 set(CPACK_DEBIAN_SDF_PACKAGE_RECOMMENDS insonify-meshes)
 set(CPACK_DEBIAN_GAZEBO_PACKAGE_RECOMMENDS insonify-meshes)
+set(CPACK_DEBIAN_WORLDS_PACKAGE_RECOMMENDS "python3-numpy, python3-venv, python3-yaml")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME insonify-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Headers and libraries of Insonify, to write components with

@@ -386,6 +386,14 @@ def test_floors_are_of_every_sediment_that_the_simulator_has(tmp_path):
         assert material["sediment"] in known and (name not in known or material["sediment"] == name)
 
 
+def test_the_recipe_of_the_page_makes_what_the_page_says(tmp_path):
+    page = (ROOT / "components/worlds/README.md").read_text()
+    recipe = page.split("```yaml\n")[1].split("```")[0]
+    glb = Glb(make(tmp_path, recipe, seed=3))
+    assert f"has {sum(len(node.faces) for node in glb.nodes.values()):,} with seed 3" in page
+    assert {"sea_floor", "quay_1", "pipeline_1", "tire_1", "wreck_1", "moored_mine_1", "rock_1", "pebbles"} <= set(glb.nodes)
+
+
 BAD = [
     ("floor: {depth: 8}", "1:9: floor.depth: is not a key here; did you mean depth_m? may be size_m"),
     ("flor: {depth_m: 8}", "1:1: flor: is not a key here; did you mean floor? may be floor, things, max_triangles"),
