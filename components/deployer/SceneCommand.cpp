@@ -250,7 +250,8 @@ std::string refusalOf(const MakeOptions& options) {
     if (options.recipe.empty() == options.thing.empty()) return "give a RECIPE, or a --thing, or --list";
     if (!options.set.empty() && options.thing.empty()) return "--set is for a --thing; a recipe has its own values";
     if (scene::extensionOf(options.out) != ".glb")
-        return fmt::format("--out is {}; must be a file that ends in .glb", options.out.empty() ? "missing" : options.out);
+        return fmt::format("--out is {}; must be a file that ends in .glb",
+                           options.out.empty() ? "missing" : options.out);
     return "";
 }
 
@@ -258,6 +259,7 @@ std::string refusalOf(const MakeOptions& options) {
 int makeScene(const MakeOptions& options) {
     if (const std::string refusal = refusalOf(options); !refusal.empty())
         throw types::ConfigError("", "scene make", refusal);
+    if (!loader::isPresent("worlds")) throw types::ConfigError("", "scene make", "is in " + loader::absence("worlds"));
     std::vector<std::string> words;
     const auto add = [&](const char* name, const std::string& value) {
         if (!value.empty()) words.push_back(fmt::format("--{}={}", name, value));
@@ -280,7 +282,8 @@ void addMakeCommand(CLI::App& scene, Action& action) {
         ->check(refuseUnlessWhole);
     command->add_option("--out", options->out, "the scene to write, a .glb file");
     command->add_option("--thing", options->thing, "makes this thing alone, without a recipe");
-    command->add_option("--set", options->set, "parameter=value of the thing; may be repeated")->allow_extra_args(false);
+    command->add_option("--set", options->set, "parameter=value of the thing; may be repeated")
+        ->allow_extra_args(false);
     command->add_flag("--list", options->list, "lists things with their parameters, defaults and bounds");
     command->add_flag("--json", options->json, "for machines");
     command->add_flag("--quiet", options->quiet, "no summary");
@@ -295,7 +298,8 @@ void addSceneCommand(CLI::App& app, Action& action) {
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects; or makes one");
+    CLI::App* command =
+        app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects; or makes one");
     command->add_option("FILE", options->file, "a .gltf, .glb, .world or .sdf file");
     command->add_flag("--json", options->json, "for machines");
     addMakeCommand(*command, action);

@@ -32,11 +32,14 @@ fs::path packageFolder() {
     for (const fs::path& folder : loader::folders())
         if (std::error_code none; fs::is_regular_file(folder / "python" / package_name / "__main__.py", none))
             return folder / "python";
-    throw types::ConfigError("", "", fmt::format("the Python package {} is not beside the component library worlds; "
-                                                 "install the library anew", package_name));
+    throw types::ConfigError("", "",
+                             fmt::format("the Python package {} is not beside the component library worlds; "
+                                         "install the library anew",
+                                         package_name));
 }
 
-/** Pythons to try, in this order: the given one alone, or that of scripts/setup in a build folder and those of the path. */
+/** Pythons to try, in this order: the given one alone, or that of scripts/setup in a build folder and those of the
+ * path. */
 std::vector<std::string> pythons() {
     if (const char* given = std::getenv(python_variable); given && *given) return {given};
     std::vector<std::string> all;
@@ -119,8 +122,10 @@ std::string remedy() {
     std::error_code none;
     if (fs::exists(around / "build.ninja", none)) return "`scripts/setup worlds` installs them";
     if (fs::exists(around / "__init__.py", none)) return "`pip install 'insonify[worlds]'` installs them";
-    return fmt::format("`python3 -m venv ~/worlds && ~/worlds/bin/pip install numpy pyyaml manifold3d` installs them, and "
-                       "{}=~/worlds/bin/python3 names that Python", python_variable);
+    return fmt::format(
+        "`python3 -m venv ~/worlds && ~/worlds/bin/pip install numpy pyyaml manifold3d` installs them, and "
+        "{}=~/worlds/bin/python3 names that Python",
+        python_variable);
 }
 
 std::string withoutLineEnd(std::string text) {
@@ -138,12 +143,14 @@ void generate(const std::vector<std::string>& options) {
         if (outcome.code == no_program || outcome.code == lacks_packages) continue;
         if (outcome.code == 2) throw types::ConfigError("", "", withoutLineEnd(outcome.errors));
         if (outcome.code != 0)
-            throw std::runtime_error(fmt::format("{} ended with {}: {}", python, outcome.code, withoutLineEnd(outcome.errors)));
+            throw std::runtime_error(
+                fmt::format("{} ended with {}: {}", python, outcome.code, withoutLineEnd(outcome.errors)));
         std::cerr << outcome.errors;
         return;
     }
-    throw types::ConfigError("", "scene make", fmt::format("needs a Python 3 with numpy, PyYAML and manifold3d, which {} {} not; {}",
-                                                           fmt::join(tried, " and "), tried.size() == 1 ? "is" : "are", remedy()));
+    throw types::ConfigError("", "scene make",
+                             fmt::format("needs a Python 3 with numpy, PyYAML and manifold3d, which {} {} not; {}",
+                                         fmt::join(tried, " and "), tried.size() == 1 ? "is" : "are", remedy()));
 }
 
 std::string generatorDigest() {

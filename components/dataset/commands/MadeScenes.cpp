@@ -35,7 +35,8 @@ std::string originOf(const SceneChoice& scene, const std::string& generator) {
     return fmt::format("recipe {} seed {} generator {}\n", command::sha256OfFile(scene.recipe), scene.seed, generator);
 }
 
-/** The file of a scene, which is made where it is not there yet. It comes to its name whole: others may make it as well. */
+/** The file of a scene, which is made where it is not there yet. It comes to its name whole: others may make it as
+ * well. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
     const fs::path folder = cacheFolder() / command::sha256Of(originOf(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);
@@ -44,7 +45,9 @@ std::string madeFile(const SceneChoice& scene, const std::string& generator) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error)
-        throw types::ConfigError(folder.string(), "", fmt::format("cannot be made: {}; XDG_CACHE_HOME names another cache", error.message()));
+        throw types::ConfigError(
+            folder.string(), "",
+            fmt::format("cannot be made: {}; XDG_CACHE_HOME names another cache", error.message()));
     loader::load("worlds").entry<void(const std::vector<std::string>&)>("insonify_make_scene")(
         {"--recipe=" + scene.recipe, fmt::format("--seed={}", scene.seed), "--out=" + passing.string(), "--quiet"});
     fs::rename(passing, file);
