@@ -269,6 +269,15 @@ def test_the_same_seed_makes_the_same_bytes_and_another_one_other_places(tmp_pat
     assert all(np.abs(np.array(a) - np.array(b)).max() > 0.5 for a, b in itertools.combinations(places, 2))
 
 
+def test_places_are_within_what_is_asked_for(tmp_path):
+    text = "floor: {size_m: [40, 40]}\nthings: [{thing: ball, count: 20, x_m: [5, 15], y_m: {choice: [-3, 3]}, buried: 0, gap_m: 0.3}]"
+    middles = np.array([node.positions.mean(0) for name, node in Glb(make(tmp_path, text)).nodes.items() if name != "sea_floor"])
+    assert len(middles) == 20
+    assert 4.99 < middles[:, 0].min() < 8 and 12 < middles[:, 0].max() < 15.01
+    assert np.allclose(np.abs(middles[:, 1]), 3, atol=0.01)
+    assert np.allclose(middles[:, 2], -10 + 0.15, atol=0.01)
+
+
 def test_another_thing_leaves_the_others_where_they_are(tmp_path):
     head = "floor: {size_m: [30, 30]}\nthings:\n  - {thing: tire, count: 3}\n"
     before = Glb(make(tmp_path, head, name="a"))
@@ -378,12 +387,15 @@ def test_weathered_surfaces_reflect_as_the_simulator_has_their_matter(tmp_path):
         assert lambert_db == pytest.approx(of["clean"][matter], abs=0.02), matter
 
 
-def test_floors_are_of_every_sediment_that_the_simulator_has(tmp_path):
-    known = json.loads(answer("describe", "materials", "--json"))["sediments"]
-    for name in [*(each for each in known if each != "mackenzie"), "sand", "gravel", "mud", "silt"]:
+def test_floors_may_be_of_every_sediment_that_the_simulator_has(tmp_path):
+    known = [name for name in json.loads(answer("describe", "materials", "--json"))["sediments"] if name != "mackenzie"]
+    (tmp_path / "bad.yml").write_text("floor: {material: cheese}")
+    refusal = insonify("scene", "make", tmp_path / "bad.yml", "--out", tmp_path / "bad.glb").stderr
+    assert sorted(refusal.split("may be ")[1].strip().split(", ")) == sorted([*known, "sand", "gravel", "mud", "silt"])
+    for name, meant in (("mud", "clay"), ("gravel", "sandy_gravel"), ("fine_silt", "fine_silt")):
         out = make(tmp_path, f"floor: {{size_m: [4, 4], material: {name}}}")
         (material,) = json.loads(answer("scene", out, "--json"))["materials"]
-        assert material["sediment"] in known and (name not in known or material["sediment"] == name)
+        assert material["sediment"] == meant
 
 
 def test_the_recipe_of_the_page_makes_what_the_page_says(tmp_path):
@@ -424,8 +436,11 @@ BAD = [
     ("things:\n  - {thing: tire, surface: rusty}", "2:28: things[0].surface: is rusty; may be clean, weathered, fouled"),
     ("things:\n  - {thing: tire, name: 3 tires}", "2:25: things[0].name: is 3 tires; must be letters, digits and _"),
     ("things:\n  - &a {thing: tire}\n  - *a", "2:5: is an anchor or alias; write the value out"),
-    ("floor: {size_m: [4, 4]}\nthings:\n  - {thing: container, count: 3}", "3:5: things[0]: asks for 3, of which 0 found room"),
-    ("floor: {size_m: [40, 40]}\nmax_triangles: 100", "max_triangles: is 100; the recipe makes 80000"),
+    ("floor: {size_m: [4, 4]}\nthings:\n  - {thing: container, count: 3}", "3:5: things[0]: asks for 3, of which 0 found room in 1000 tries"),
+    ("floor: {size_m: [40, 40]}\nmax_triangles: 100", "max_triangles: is 100; the recipe makes at least 80000"),
+    ("floor: {depth_m: 1_0}", "1:18: floor.depth_m: is 1_0; must be a number"),
+    ("floor: {size_m: [9, 9]}\nthings: [{thing: can, x_m: 20, y_m: 0}]", "2:10: things[0]: asks for 1, of which 0 found room at its place"),
+    ("[" * 5000, "has blocks in blocks without end"),
 ]
 
 

@@ -90,14 +90,14 @@ def summary(world, out):
     for placed in world.placed:
         kinds.setdefault(placed.name.rstrip("0123456789").rstrip("_"), []).append(placed)
     counts = ", ".join(f"{len(all_)} {name}" if len(all_) > 1 else name for name, all_ in kinds.items())
-    return f"{out}: {world.triangles()} triangles, {len(world.placed)} nodes, {Path(out).stat().st_size / 1e6:.2f} MB, seed {world.seed}: {counts}"
+    return f"{out}: {world.triangles} triangles, {len(world.placed)} nodes, {Path(out).stat().st_size / 1e6:.2f} MB, seed {world.seed}: {counts}"
 
 
 def report(world, out):
     return {
         "file": out,
         "seed": world.seed,
-        "triangles": world.triangles(),
+        "triangles": world.triangles,
         "bytes": Path(out).stat().st_size,
         "nodes": [
             {

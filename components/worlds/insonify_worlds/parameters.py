@@ -91,15 +91,17 @@ def read_yaml(text, name):
                     f"{name}:{mark.line + 1}:{mark.column + 1}", "", "is an anchor or alias; write the value out"
                 )
         node = yaml.compose(text, yaml.SafeLoader)
+        if node is not None:
+            return _Composer(name).item(node, "")
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
         raise RecipeError(place, "", f"is no YAML: {error.problem or error.context}") from None
-    except (yaml.YAMLError, RecursionError) as error:
+    except yaml.YAMLError as error:
         raise RecipeError(name, "", f"is no YAML: {str(error).splitlines()[0]}") from None
-    if node is None:
-        raise RecipeError(name, "", "is empty; a recipe has a floor, things or both")
-    return _Composer(name).item(node, "")
+    except RecursionError:
+        raise RecipeError(name, "", "has blocks in blocks without end") from None
+    raise RecipeError(name, "", "is empty; a recipe has a floor, things or both")
 
 
 def number_in(item, low, high, whole=False):
@@ -108,7 +110,7 @@ def number_in(item, low, high, whole=False):
     if not isinstance(item.value, str):
         item.fail(f"is {item.said()}; {may}")
     try:
-        value = float(item.value)
+        value = math.nan if "_" in item.value else float(item.value)
     except ValueError:
         value = math.nan
     if math.isnan(value) or not low <= value <= high or (whole and value != int(value)):
@@ -125,6 +127,12 @@ class Law:
     low: float = -math.inf
     high: float = math.inf
     whole: bool = False
+
+    def is_fixed(self):
+        return self.kind == "choice" and len(self.values) == 1 and not self.is_absent()
+
+    def is_absent(self):
+        return self.values == [None]
 
     def draw(self, rng):
         if self.kind == "choice":

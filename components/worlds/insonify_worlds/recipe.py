@@ -1,10 +1,10 @@
 """Reads recipes."""
 
-from .parameters import Item, RecipeError, generator, number_in, read_parameters
+from .parameters import Item, Law, RecipeError, generator, number_in, read_parameters
 from .places import FlatGround
 from .things import THINGS
 from .things.catalogue import may_be_thing
-from .world import World
+from .world import Spot, World
 
 KEYS = ("floor", "things", "max_triangles")
 MOST_TRIANGLES = 8_000_000
@@ -16,7 +16,15 @@ def make_world(recipe, seed):
     if "floor" not in block and "things" not in block:
         recipe.fail("is empty; a recipe has a floor, things or both")
     most = number_in(block["max_triangles"], 1, MOST_TRIANGLES, True) if "max_triangles" in block else 2_000_000
-    world = World(seed)
+
+    def refuse(count):
+        raise RecipeError(
+            recipe.place,
+            "max_triangles",
+            f"is {most}; the recipe makes at least {count}: give a larger cell_m, fewer things, or up to {MOST_TRIANGLES}",
+        )
+
+    world = World(seed, most, refuse)
     if "floor" in block:
         world.add_floor(block["floor"])
     things = block.get("things", Item([], recipe.place, "things"))
@@ -26,13 +34,6 @@ def make_world(recipe, seed):
         world.add_entry(each, index)
     if "floor" in block:
         world.add_stones()
-    count = world.triangles()
-    if count > most:
-        raise RecipeError(
-            recipe.place,
-            "max_triangles",
-            f"is {most}; the recipe makes {count}: give a larger cell_m, fewer things, or up to {MOST_TRIANGLES}",
-        )
     return world
 
 
@@ -45,11 +46,11 @@ def make_thing(name, assignments, seed):
     block = Item(assignments, "", "--set").block([each.name for each in parameters])
     rng = generator(seed, 11, 0, 0)
     values = read_parameters(block, parameters).draw(rng)
-    world = World(seed)
+    world, origin = World(seed), Law("choice", [0.0])
     world.ground = FlatGround(0.0 if thing.kind != "structure" else 10.0)
-    values |= {"x_m": 0.0, "y_m": 0.0, "gap_m": 0.0, "buried": 0.0}
+    values |= {"gap_m": 0.0, "buried": 0.0}
     if values.get("heading_deg", 0) is None:
         values["heading_deg"] = 0.0
-    if not world.place(thing, values, rng, name):
+    if not world.place(thing, values, rng, name, Spot(origin, origin)):
         raise RecipeError("", "--thing", f"is {name}; it is larger than {world.ground.size[0]:g} m")
     return world

@@ -75,11 +75,42 @@ def centred(model):
     return Model([(solid.translate(offset), material) for solid, material in model.parts], outlines)
 
 
+class Spot:
+    """Where a thing may be: x_m and y_m of an entry, and anywhere on the floor where these are absent."""
+
+    def __init__(self, x=None, y=None):
+        self.laws = (x, y)
+
+    def is_fixed(self):
+        return all(law and law.is_fixed() for law in self.laws)
+
+    def draw(self, rng, ground):
+        at = rng.uniform(ground.low, np.array(ground.low) + ground.size)
+        for axis, law in enumerate(self.laws):
+            if law and not law.is_absent():
+                at[axis] = law.draw(rng)
+        return at
+
+    def tries(self):
+        return 1 if self.is_fixed() else TRIES
+
+
+ANYWHERE = Spot()
+
+
 class World:
-    def __init__(self, seed):
-        self.seed = seed
+    """`most` triangles, beyond which `refuse` is called with their number."""
+
+    def __init__(self, seed, most=math.inf, refuse=None):
+        self.seed, self.most, self.refuse, self.triangles = seed, most, refuse, 0
         self.ground = FlatGround()
         self.placed, self.taken, self.numbers = [], Taken(), {}
+
+    def add(self, name, surfaces, at=(0, 0, 0), turn=np.eye(3)):
+        self.triangles += sum(len(surface.faces) for surface, _ in surfaces)
+        if self.triangles > self.most:
+            self.refuse(self.triangles)
+        self.placed.append(Placed(name, surfaces, at, turn))
 
     def number(self, name):
         self.numbers[name] = self.numbers.get(name, 0) + 1
@@ -89,14 +120,8 @@ class World:
 
     def add_floor(self, item):
         self.ground = Floor(item, self.seed)
-        self.placed.append(
-            Placed(
-                "sea_floor",
-                [(each, materials.sediment(self.ground.material)) for each in self.ground.surfaces()],
-                (0, 0, 0),
-                np.eye(3),
-            )
-        )
+        matter = materials.sediment(self.ground.material)
+        self.add("sea_floor", [(each, matter) for each in self.ground.surfaces()])
 
     def add_stones(self):
         """After the things, which need more room."""
@@ -115,7 +140,7 @@ class World:
             turned = shape.positions @ turn.T
             outline = convex_hull(turned[:, :2])
             for _ in range(TRIES):
-                at = self.random_place(rng)
+                at = ANYWHERE.draw(rng, self.ground)
                 if is_inside([outline + at], self.ground) and self.taken.is_clear([outline + at], 0.0):
                     break
             else:
@@ -123,14 +148,8 @@ class World:
             self.taken.add([outline + at], 0.0)
             tall = np.ptp(turned[:, 2])
             z = (self.ground.height(*(turned[:, :2] + at).T) - turned[:, 2]).max() - values["buried"] * tall
-            self.placed.append(
-                Placed(
-                    self.number("rock"),
-                    [(Surface(turned, shape.faces, shape.normals @ (turn / size).T), matter)],
-                    (*at, z),
-                    np.eye(3),
-                )
-            )
+            surface = Surface(turned, shape.faces, shape.normals @ (turn / size).T)
+            self.add(self.number("rock"), [(surface, matter)], (*at, z))
 
     def add_pebbles(self, stones):
         """All in one node; they may touch each other, as pebbles do."""
@@ -162,10 +181,7 @@ class World:
             surfaces.append(
                 (Surface(points.reshape(-1, 3), faces.reshape(-1, 3), turned(shape.normals).reshape(-1, 3)), matter)
             )
-        self.placed.append(Placed("pebbles", surfaces, (0, 0, 0), np.eye(3)))
-
-    def random_place(self, rng):
-        return rng.uniform(self.ground.low, np.array(self.ground.low) + self.ground.size)
+        self.add("pebbles", surfaces)
 
     # Things.
 
@@ -183,79 +199,72 @@ class World:
         parameters = thing.all_parameters() + ENTRY
         block = item.block(["thing", *(each.name for each in parameters)])
         laws = read_parameters(block, parameters)
+        spot = Spot(laws.laws.pop("x_m"), laws.laws.pop("y_m"))
         count = laws.laws["count"].draw(generator(self.seed, 10, index))
         for number in range(count):
             rng = generator(self.seed, 11, index, number)
             values = laws.draw(rng)
             node = self.number(values["name"] or thing.name)
-            if not self.place(thing, values, rng, node):
+            if not self.place(thing, values, rng, node, spot):
+                tries = "at its place" if spot.is_fixed() else f"in {TRIES} tries"
                 item.fail(
-                    f"asks for {count}, of which {number} found room in {TRIES} tries; give a larger floor, fewer of them, "
-                    "smaller ones, or a smaller gap_m"
+                    f"asks for {count}, of which {number} found room {tries}: on the floor, and gap_m or more from others; "
+                    "give a larger floor, fewer things, smaller ones, or a smaller gap_m"
                 )
 
-    def place(self, thing, values, rng, node):
+    def place(self, thing, values, rng, node, spot):
         """Whether it found room."""
         placed = {"body": self.place_body, "line": self.place_line, "structure": self.place_structure}[thing.kind]
-        return placed(thing, values, rng, node)
+        return placed(thing, values, rng, node, spot)
 
-    def place_of(self, values, rng):
-        at = self.random_place(rng)
-        for axis, key in enumerate(("x_m", "y_m")):
-            if values[key] is not None:
-                at[axis] = values[key]
-        return at
-
-    def place_body(self, thing, values, rng, node):
+    def place_body(self, thing, values, rng, node, spot):
         model = centred(thing.build(rng, values))
         heading = rng.uniform(-180, 180) if values["heading_deg"] is None else values["heading_deg"]
         body = Body(model, tilt_about(rng.uniform(-180, 180), values["tilt_deg"]) @ rotation(yaw=heading))
-        for _ in range(TRIES):
-            at = self.place_of(values, rng)
+        for _ in range(spot.tries()):
+            at = spot.draw(rng, self.ground)
             if not self.is_free(body.outlines(body.turn, at), values["gap_m"]):
                 continue
             turn, position = body.rest(self.ground, at, values["buried"], values["height_m"])
             outlines = body.outlines(turn, at)
             if self.is_free(outlines, values["gap_m"]):
                 self.taken.add(outlines, values["gap_m"])
-                self.placed.append(Placed(node, surfaces_of(model), tuple(position), turn))
+                self.add(node, surfaces_of(model), tuple(position), turn)
                 return True
-            if values["x_m"] is not None and values["y_m"] is not None:
-                return False
         return False
 
     def is_free(self, outlines, gap):
         return is_inside(outlines, self.ground) and self.taken.is_clear(outlines, gap)
 
-    def place_structure(self, thing, values, rng, node):
+    def place_structure(self, thing, values, rng, node, spot):
         turn = rotation(yaw=values["heading_deg"])
-        for _ in range(TRIES):
-            at = self.place_of(values, rng)
-            model = thing.build(rng, values, -float(self.ground.height(*at)))
-            outlines = Body(model, turn).outlines(turn, at)
+        body = None
+        for _ in range(spot.tries()):
+            at = spot.draw(rng, self.ground)
+            depth = -float(self.ground.height(*at))
+            body = body or Body(thing.build(rng, values, depth), turn)  # outlines do not depend on the depth
+            outlines = body.outlines(turn, at)
             if self.is_free(outlines, values["gap_m"]):
                 self.taken.add(outlines, values["gap_m"])
-                self.placed.append(Placed(node, surfaces_of(model), (*at, 0.0), turn))
+                self.add(node, surfaces_of(thing.build(rng, values, depth)), (*at, 0.0), turn)
                 return True
-            if values["x_m"] is not None and values["y_m"] is not None:
-                return False
         return False
 
-    def ends_of(self, values, rng):
+    def ends_of(self, values, rng, spot):
         length = values["length_m"]
         start, end = values["from_m"], values["to_m"]
         heading = math.radians(rng.uniform(-180, 180) if values["heading_deg"] is None else values["heading_deg"])
         ahead = np.array([math.cos(heading), math.sin(heading)]) * length
         if start is None and end is None:
-            middle = self.place_of(values, rng)
+            middle = spot.draw(rng, self.ground)
             return middle - ahead / 2, middle + ahead / 2
         if start is None:
             return np.array(end) - ahead, np.array(end)
         return np.array(start), np.array(start) + ahead if end is None else np.array(end)
 
-    def place_line(self, thing, values, rng, node):
+    def place_line(self, thing, values, rng, node, spot):
         for _ in range(TRIES):
-            start, end = self.ends_of(values, rng)
+            start, end = self.ends_of(values, rng, spot)
             path = path_between(rng, start, end, values["meander_m"], 0.1)
             outlines = strip_outlines(path, thing.half_width(values))
             if not self.is_free(outlines, values["gap_m"]):
@@ -265,14 +274,11 @@ class World:
             middle = path[len(path) // 2]
             origin = np.array([*middle, float(self.ground.height(*middle))])
             model.parts = [(solid.translate(-origin), material) for solid, material in model.parts]
-            self.placed.append(Placed(node, surfaces_of(model), tuple(origin), np.eye(3)))
+            self.add(node, surfaces_of(model), tuple(origin))
             return True
         return False
 
     # The file.
-
-    def triangles(self):
-        return sum(len(surface.faces) for placed in self.placed for surface, _ in placed.surfaces)
 
     def write(self, path):
         glb = Glb()
