@@ -42,7 +42,8 @@ std::vector<std::string> wordsAfter(const std::string& command) {
 /** One case of the script for a command, and those of its subcommands. `path`: "", " log", " log info". */
 std::string cases(const CLI::App& app, const std::string& path) {
     std::vector<std::string> words = subcommands(app);
-    const bool takes_files = words.empty() && path != " describe" && path != " completion";
+    const bool asks_for_one_more = app.get_require_subcommand_min() > 0;
+    const bool takes_files = !asks_for_one_more && path != " describe" && path != " completion";
     for (const auto& more : {flags(app), wordsAfter(path)}) words.insert(words.end(), more.begin(), more.end());
     std::string text = fmt::format("        \"{}\") words=\"{}\"{} ;;\n", path, fmt::join(words, " "),
                                    takes_files ? " files=yes" : "");

@@ -51,7 +51,7 @@ struct Commands {
 
     Commands() {
         add("");
-        for (const char* parent : {"log", "study", "device"}) add(parent);
+        for (const char* parent : {"log", "study", "device", "scene"}) add(parent);
     }
     /** The longest of its commands that a call begins with. */
     std::string nameOf(const std::vector<std::string>& words) const {
@@ -64,7 +64,8 @@ struct Commands {
         return name;
     }
     bool asksForOneMore(const std::string& name) const {
-        return help.at(name).find("Subcommands:") != std::string::npos;
+        const std::string& text = help.at(name);
+        return text.find("Subcommands:") != std::string::npos && text.find("[SUBCOMMAND]") == std::string::npos;
     }
     bool knows(const std::string& name, const std::string& option) const {
         return std::regex_search(help.at(name), std::regex(option + "[^-\\w]"));
