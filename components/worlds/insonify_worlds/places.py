@@ -16,15 +16,19 @@ def convex_hull(points):
     if len(points) < 3:
         return points
 
+    def turns_left(a, b, c):
+        return (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0])
+
     def chain(ordered):
         kept = []
         for p in ordered:
-            while len(kept) > 1 and np.cross(kept[-1] - kept[-2], p - kept[-2]) <= 0:
+            while len(kept) > 1 and not turns_left(kept[-2], kept[-1], p):
                 kept.pop()
             kept.append(p)
         return kept[:-1]
 
-    return np.array(chain(points) + chain(points[::-1]))
+    ordered = points.tolist()
+    return np.array(chain(ordered) + chain(ordered[::-1]))
 
 
 def _axes(polygon):

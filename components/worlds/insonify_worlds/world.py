@@ -46,7 +46,8 @@ def surface_of(solid):
     points = mesh.vert_properties[:, :3]
     a, b, c = np.moveaxis(points[mesh.tri_verts].astype(float), 1, 0)
     faces = mesh.tri_verts[np.any(np.cross(b - a, c - a) != 0, axis=1)]
-    return Surface(points, faces, mesh.vert_properties[:, 3:6])
+    normals = mesh.vert_properties[:, 3:6].round(6) + 0.0  # without the last bits, in which versions of numpy differ
+    return Surface(points, faces, normals)
 
 
 def joined(surfaces):
