@@ -3,8 +3,11 @@
 import itertools
 import json
 import os
+import random
+import re
 import struct
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -453,6 +456,36 @@ def test_a_bad_recipe_gets_one_line_with_its_place(tmp_path, text, expected):
     assert len(done.stderr.splitlines()) == 1 and done.stdout == ""
     assert done.stderr.startswith(str(recipe)) and expected in done.stderr
     assert not (tmp_path / "bad.glb").exists()
+
+
+MUTATED = """floor: {size_m: [9, 8], depth_m: 3, cell_m: 0.5, fractal: {slope: 3.2, longest_m: 8}, ripples: [{length_m: 4}, {length_m: 0.3}],
+  pockmarks: {count: 1, diameter_m: [3, 4]}, rocks: {per_m2: 0.05, max_m: 0.4}, pebbles: {per_m2: 1}}
+things:
+  - {thing: pile, x_m: 0, y_m: 3}
+  - {thing: rope, from_m: [-3, -2], to_m: [3, -1], diameter_m: 0.04}
+  - {thing: can, count: [1, 2], diameter_m: {uniform: [0.05, 0.08]}, buried: [0, 0.3]}
+  - {thing: tire, diameter_m: {normal: [0.6, 0.05]}, upright: {choice: [true, false]}, name: wheel, height_m: 0.2}
+max_triangles: 100000
+"""
+
+
+def test_damaged_recipes_are_refused_in_one_line_or_made():
+    sys.path.insert(0, str(PACKAGE.parent))
+    from insonify_worlds.parameters import RecipeError, read_yaml
+    from insonify_worlds.recipe import make_world
+
+    rng, made, refused = random.Random(3), 0, 0
+    bits = ["", "{", "}", "[", ":", "null", "1e9", "-1", "0", "true", "x", "\n", ",", "1e-300", "'", "!!int", "{}", "[]", ".inf", "é", *(["0.2", "1", "2", "4"] * 4)]
+    for _ in range(250):
+        word = rng.choice(list(re.finditer(r"-?\d+\.?\d*|\w+|[\[\]{}:,]", MUTATED)))
+        try:
+            world = make_world(read_yaml(MUTATED[: word.start()] + rng.choice(bits) + MUTATED[word.end() :], "f.yml"), 1)
+            assert world.triangles <= 100000
+            made += 1
+        except RecipeError as error:
+            assert error.text().startswith("f.yml") and "\n" not in error.text()
+            refused += 1
+    assert made > 20 and refused > 100, (made, refused)
 
 
 @pytest.mark.parametrize(
