@@ -507,6 +507,13 @@ def test_wrong_options_get_one_line(words, expected):
     assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith(expected)
 
 
+def test_a_list_may_be_read_in_part():
+    done = subprocess.run(
+        ["bash", "-c", f"{INSONIFY} scene make --list --json | head -n 1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert (done.stdout, done.stderr) == ("[\n", "")
+
+
 def test_without_the_packages_the_answer_says_what_installs_them(tmp_path):
     python = tmp_path / "python3"
     python.write_text("#!/bin/sh\nexit 97\n")  # as the package does where an import fails

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -157,8 +158,8 @@ def main():
     except RecipeError as error:
         print(error.text(), file=sys.stderr)
         sys.exit(2)
-    except BrokenPipeError:
-        sys.exit(1)
+    except BrokenPipeError:  # whoever reads has enough: `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 if __name__ == "__main__":
