@@ -16,7 +16,7 @@ class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
               const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-              output::BinScale scale, double bin_width)
+              output::BinScale scale, double bin_width, std::span<const float> ranges)
         : ping_(ping),
           truth_(truth),
           picture_(picture),
@@ -25,7 +25,8 @@ public:
           first_shadow_(static_cast<int32_t>(truth.objects.size())),
           config_(config),
           decibel_(scale == output::BinScale::Decibel),
-          bin_width_(bin_width) {
+          bin_width_(bin_width),
+          ranges_(ranges) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
     }
@@ -149,7 +150,8 @@ private:
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
         const double bearing = picture_.bearing(beam);
-        const double near = first * bin_width_, far = last * bin_width_;
+        const double near = ranges_.empty() ? first * bin_width_ : static_cast<double>(ranges_[beam]);
+        const double far = ranges_.empty() ? last * bin_width_ : near;
         Annotation& annotation = annotationOf(object, bearing, near);
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);
@@ -243,7 +245,8 @@ private:
     const int32_t first_shadow_;  ///< Number of objects of the truth.
     const AnnotationConfig& config_;
     const bool decibel_;
-    const double bin_width_;  ///< [m]
+    const double bin_width_;               ///< [m]
+    const std::span<const float> ranges_;  ///< Of each beam, in place of its bin's [m].
     /** What each cell shows: an instance; from first_shadow_ on the shadow of one; from 2 * first_shadow_ on a ghost.
      */
     std::vector<int32_t> object_of_;
@@ -255,8 +258,8 @@ private:
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, double bin_width) {
-    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width).annotated();
+                   output::BinScale scale, double bin_width, std::span<const float> ranges) {
+    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width, ranges).annotated();
 }
 
 }  // namespace insonify::dataset

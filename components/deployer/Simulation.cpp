@@ -173,6 +173,10 @@ void Simulation::connectReaders(bool truth) {
                                      "comes from no sonar that tells its truth");
         told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
         reader.sonar = dynamic_cast<const sonar::AimedTask*>(&told->owner());
+        if (framework::OutputPortBase* const image = told->owner().output("range_image")) {
+            image->connectTo(reader.range_image, framework::ConnPolicy::buffer(4));
+            told->owner().output("range_truth")->connectTo(reader.range_truth, framework::ConnPolicy::buffer(4));
+        }
     }
 }
 
@@ -224,6 +228,8 @@ std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at,
     for (size_t i = 0; i < readers_.size(); ++i) {
         readers_[i]->ping.readNewest(made[i].ping, false);
         readers_[i]->truth.readNewest(made[i].truth, false);
+        readers_[i]->range_image.readNewest(made[i].range_image, false);
+        readers_[i]->range_truth.readNewest(made[i].range_truth, false);
         if (made[i].ping && made[i].truth) made[i].bin_width = binWidthOf(*readers_[i], *made[i].ping);
     }
     return made;
@@ -240,7 +246,8 @@ void Simulation::reset(std::optional<uint64_t> seed) {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
     throwAny(deployment_->stop());
-    for (const auto& reader : readers_) reader->ping.clear(), reader->truth.clear();
+    for (const auto& reader : readers_)
+        reader->ping.clear(), reader->truth.clear(), reader->range_image.clear(), reader->range_truth.clear();
     for (const auto& task : deployment_->tasks()) {
         if (deployment_->spec().task(task->name())->type == scene_type) continue;
         if (const framework::Outcome outcome = task->cleanup(); !outcome) throw std::runtime_error(outcome.reason);

@@ -73,12 +73,17 @@ public:
     SonarConfig locatedConfig() const;
 
 protected:
-    /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
+    /** Whether a ping is one rendering. What each of several left out is not reported. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
-    /** Makes the ping of `scene`; whether it has any echo. */
-    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
+    /** Makes the ping of `scene`, and its truth unless `told` is null; returns whether it has any echo. */
+    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                            types::SonarTruth* told);
+    /** Whether somebody is connected who takes truth. */
+    virtual bool wantsTruth() const { return truth.connected() || returns.connected(); }
+    /** Gives a truth the names of all objects. */
+    void nameObjects(types::SonarTruth& told) const;
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** A ping has been rendered or rehearsed: a head that turns goes on. */
