@@ -14,6 +14,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
+#include "components/sonar/PingTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -250,11 +251,14 @@ void Simulation::reset(std::optional<uint64_t> seed) {
         reader->ping.clear(), reader->truth.clear(), reader->range_image.clear(), reader->range_truth.clear();
     for (const auto& task : deployment_->tasks()) {
         if (deployment_->spec().task(task->name())->type == scene_type) continue;
-        if (const framework::Outcome outcome = task->cleanup(); !outcome) throw std::runtime_error(outcome.reason);
+        auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get());
+        const framework::Outcome cleaned = sonar ? sonar->restart() : task->cleanup();
+        if (!cleaned) throw std::runtime_error(cleaned.reason);
         for (framework::PropertiesBase* properties : task->properties())
             for (const framework::PropertyInfo& property : properties->list())
                 if (seed && property.name == "seed" && !own_seeds_.contains(task->name()))
                     properties->set("seed", std::to_string(framework::seedOf(*seed, task->name())));
+        if (sonar) continue;
         if (const framework::Outcome outcome = task->configure(); !outcome) throw std::runtime_error(outcome.reason);
     }
     start();

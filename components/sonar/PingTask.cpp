@@ -81,6 +81,17 @@ bool PingTask::configureHook() {
     return true;
 }
 
+framework::Outcome PingTask::restart() {
+    std::unique_ptr<SonarRenderer> kept;
+    if (renderer_ && !quality_ && renderer_->forget()) kept = std::move(renderer_);
+    if (framework::Outcome outcome = cleanup(); !outcome) return outcome;
+    if (framework::Outcome outcome = configure(); !outcome || !kept) return outcome;
+    renderer_ = std::move(kept);
+    diagnostics_.emplace(*geometry_, pingsPerTurn());
+    takePlan();
+    return {};
+}
+
 void PingTask::updateHook() {
     if (others.connected()) return listen();
     if (takeNext() && begin()) complete();

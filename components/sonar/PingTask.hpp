@@ -69,6 +69,10 @@ public:
     std::vector<std::string> notices() const override;
     std::string indivisible() const override;
 
+    /** Of a task that is stopped, `cleanup` and `configure`: as if nothing had been before. What a renderer has made of
+     *  the scene is kept where its pings do not depend on the pings before. */
+    framework::Outcome restart();
+
     /** The sonar as configured, its files found from where the deployment is. */
     SonarConfig locatedConfig() const;
 

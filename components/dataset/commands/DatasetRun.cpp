@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "components/command/Json.hpp"
 #include "components/command/Sha256.hpp"
@@ -291,14 +292,14 @@ std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) c
     return scales.dump();
 }
 
-/** Keeps the simulation before until there is the next one, so that a scene that both have stays loaded. */
+/** Keeps the simulation before, so that what both have of a scene is not made again: it, trees, facts of its meshes. */
 void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
     options.overrides = overridesOf(sample);
     options.truth = true;
     options.objects = samples_->objectsOf(sample.scene);
     if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
-    simulation_ = std::make_unique<deployer::Simulation>(deployment_, options);
+    before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
     overrides_ = options.overrides, scene_ = sample.scene;
 }
 
@@ -334,6 +335,7 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
                                                    deployment_, made.ping->beam_count),
                                        sweep_.file, sweep_.lines->line, sweep_.lines->column}});
         run.add(made.ping, made.truth);
+        before_.reset();
     }
     std::vector<std::pair<std::string, Json>> settings;
     for (const auto& [property, yaml] : sample.settings)

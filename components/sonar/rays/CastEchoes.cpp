@@ -56,6 +56,7 @@ public:
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
     const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
@@ -178,6 +179,14 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     runs_.reserve(visibility_.commands().size());
     if (ray_paths_) ray_paths_->takeScene(*geometry_);
     if (!same_plan) takePlan();
+    return true;
+}
+
+bool CastEchoes::forget() {
+    if (ray_paths_) return false;
+    visibility_.forget();
+    rules_ = makeEchoRules(plan_, effects_);
+    if (truth_rules_) truth_rules_ = makeEnergyRules(plan_, effects_);
     return true;
 }
 
