@@ -44,8 +44,9 @@ void normalise(Surface& surface) {
     for (glm::vec3& normal : surface.normals) normal = unitOr(normal, {0, 1, 0});
     for (glm::vec4& tangent : surface.tangents)
         tangent = glm::vec4(unitOr(glm::vec3(tangent), {1, 0, 0}), tangent.w < 0 ? -1.0f : 1.0f);
-    for (glm::vec2& uv : surface.uvs)
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
+    for (auto* const uvs : {&surface.uvs, &surface.map_uvs})
+        for (glm::vec2& uv : *uvs)
+            if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
 }
 
 }  // namespace
@@ -72,12 +73,15 @@ int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string
     return default_material_;
 }
 
-int GltfMeshes::withoutMap(int material) {
+int GltfMeshes::withoutMap(int material, bool of_surface) {
     ++omissions_.unmapped_primitives;
-    const auto [known, is_new] = unmapped_.try_emplace(material, static_cast<int>(geometry_.materials.size()));
+    const auto [known, is_new] = unmapped_.try_emplace({material, of_surface}, static_cast<int>(geometry_.materials.size()));
     if (is_new) {
         types::Material plain = geometry_.materials[static_cast<size_t>(material)];
-        plain.normal_map = -1;
+        if (of_surface)
+            plain.max_map_strength = 0;
+        else
+            plain.normal_map = -1;
         geometry_.materials.push_back(std::move(plain));
     }
     return known->second;
@@ -101,11 +105,15 @@ struct GltfMeshes::Attributes {
                         fmt::format("has {} elements; POSITION has {}", values.size(), count));
         return values;
     }
+    std::vector<glm::vec2> uvs(const NormalMapping& mapping) const {
+        auto uvs = read<glm::vec2>(fmt::format("TEXCOORD_{}", mapping.uv_set));
+        for (glm::vec2& uv : uvs) uv = mapping.transform * glm::vec3(uv, 1);
+        return uvs;
+    }
     /** What a normal map needs. */
     void readMapped(const NormalMapping& mapping, Surface& surface) const {
-        surface.uvs = read<glm::vec2>(fmt::format("TEXCOORD_{}", mapping.uv_set));
+        surface.uvs = uvs(mapping);
         if (surface.uvs.empty()) return;
-        for (glm::vec2& uv : surface.uvs) uv = mapping.transform * glm::vec3(uv, 1);
         surface.normals = read<glm::vec3>("NORMAL");
         if (!surface.normals.empty()) surface.tangents = read<glm::vec4>("TANGENT");
     }
@@ -141,17 +149,22 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
     if (surface.indices.empty()) return;
 
     int index = material(primitive, path);
-    const auto& mapping =
-        static_cast<size_t>(index) < mappings_.size() ? mappings_[static_cast<size_t>(index)] : std::nullopt;
-    if (mapping) {
-        Attributes{primitive, *this, path, count}.readMapped(*mapping, surface);
-        normalise(surface);
+    const MaterialMaps* const maps = mapsOf(index);
+    const Attributes attributes{primitive, *this, path, count};
+    if (maps && maps->surface) surface.map_uvs = attributes.uvs(maps->on_surface);
+    if (maps && maps->normals) attributes.readMapped(*maps->normals, surface);
+    normalise(surface);
+    if (maps && maps->normals) {
         if (surface.uvs.empty())
-            index = withoutMap(index);
+            index = withoutMap(index, false);
         else if (surface.normals.empty())
             makeFlatNormals(surface);
         if (!surface.uvs.empty() && surface.tangents.empty()) makeTangents(surface);
     }
+    if (maps && maps->surface && surface.map_uvs.empty())
+        index = withoutMap(index, true);
+    else if (maps && maps->surface && std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
+        mesh.maps.push_back({index, maps->surface});
     appendSurface(surface, index, mesh);
 }
 

@@ -25,6 +25,7 @@ const Effect& slabs();
 const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
+const Effect& surfaceMaps();
 const Effect& pointTargets();
 const Effect& edgeDiffraction();
 const Effect& imperfections();
@@ -38,7 +39,7 @@ struct List {
     std::vector<const Effect*> all{&absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),
                                    &pulse(),         &ringDown(),    &volume(),         &speckle(),
                                    &multipath(),     &thinWalls(),   &slabs(),          &refraction(),
-                                   &motionInPing(),  &normalMaps(),  &pointTargets(),   &edgeDiffraction(),
+                                   &motionInPing(),  &normalMaps(), &surfaceMaps(),  &pointTargets(),   &edgeDiffraction(),
                                    &imperfections(), &crosstalk(),   &truth()};
 };
 

@@ -11,6 +11,7 @@
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/field/ScattererLattice.hpp"
+#include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 #include "components/sonar/ways/PathCells.hpp"
@@ -148,7 +149,8 @@ private:
     Shares through(PathRays& back) const;
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
-    void deposit(const CellAngles& at, int i, double open);
+    /** `gain`: factor by surface maps [1]. */
+    void deposit(const CellAngles& at, int i, double open, double gain);
     LobeSlopes lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
                           double range) const;
     MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
@@ -330,6 +332,15 @@ int PathEchoes::Tracer::sameFrom(int i) const {
 
 void PathEchoes::Tracer::hear(const CastTile& tile) {
     const Shares open = openBack();
+    const TileHits as_met = hits_;
+    CastTile seen = tile;
+    seen.hits = &hits_;
+    if (scene_.maps) {
+        thread_local MappedTiles mapped;
+        mapped.take(view_, scene_, {&seen, 1}, true);
+        seen = mapped.whole().front();
+        hits_ = *seen.hits;
+    }
     for (int i = 0; i < tile_samples;) {
         if (!isActive(i) || hits_.command[i] == TileHits::nothing || chains_[static_cast<size_t>(i)].count == 0) {
             ++i;
@@ -338,9 +349,10 @@ void PathEchoes::Tracer::hear(const CastTile& tile) {
         const int merged = sameFrom(i);
         double of_these = 0;
         for (int k = i; k < i + merged; ++k) of_these += open[static_cast<size_t>(k)];
-        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged);
+        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged, seen.meanGain(i, merged));
         i += merged;
     }
+    hits_ = as_met;
 }
 
 Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {
@@ -352,7 +364,7 @@ Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfW
                               run.near_limit, 1 / (1 / run.far_limit + image), near_edge_, far_edge_, size);
 }
 
-void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open) {
+void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open, double gain) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
     const MirrorPlane seen = planeMet(scene_, hits_, i);
     const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(seen.normal);
@@ -363,10 +375,10 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open) {
     recordWay(i, true);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength =
-        rules_.strength_scale * chain.power * chain.power *
+        gain * rules_.strength_scale * chain.power * chain.power *
         rules_.laws.overCosine(run.material, std::abs(facing), lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
     bins_.depositCell(footprint(at, i, twice, at.weighted), static_cast<uint>(at.cell), strength / twice.inverse);
-    if (open > 0) depositOnce(at, i, plane, open);
+    if (open > 0) depositOnce(at, i, plane, gain * open);
 }
 
 /** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
