@@ -10,7 +10,6 @@ using testing::HasSubstr;
 
 namespace {
 
-const fs::path root = insonify::test::source_dir;
 
 class RangeImageTest : public testing::Test {
 protected:
@@ -23,7 +22,7 @@ protected:
                shape + "}\n";
     }
     Outcome make(const std::string& out, const std::string& format) const {
-        return callInsonify(folder_, {"dataset", root / "deploy/harbour_sonar3d.yml", "--sweep", "sweep.yml", "--out",
+        return callInsonify(folder_, {"dataset", insonify::test::sourceFile("deploy/harbour_sonar3d.yml"), "--sweep", "sweep.yml", "--out",
                                       out, "--format", format});
     }
 
