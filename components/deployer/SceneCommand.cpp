@@ -143,7 +143,8 @@ std::string axesOf(const std::string& file) {
 
 /** A scene file as a sonar will meet it, in the world's axes: {file, axes, bounds: {min, max, size, centre} [m] or
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
- *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles, area_m2}], objects:
+ *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles,
+ * area_m2}], objects:
  *  [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move], not_understood: [],
  * warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {

@@ -49,19 +49,20 @@ PostWindow clipped(PostWindow posts, const Survey& survey) {
 void checkUnit(const Survey& survey, const std::filesystem::path& file) {
     static const std::set<std::string> metres = {"", "m", "metre", "metres", "meter", "meters"};
     if (!metres.contains(survey.unit()))
-        throw types::ConfigError(file.string(), "",
-                                 "has elevations in " + survey.unit() +
-                                     "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
+        throw types::ConfigError(
+            file.string(), "",
+            "has elevations in " + survey.unit() + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
 /** `tile`: what a tile of the survey measures [m]. */
 void checkTexels(const Survey& mosaic, const std::filesystem::path& file, const glm::dvec2& tile) {
     const glm::dvec2 texels = tile / glm::abs(mosaic.spacing());
     if (std::max(texels.x, texels.y) > max_posts)
-        throw types::ConfigError(file.string(), "",
-                                 fmt::format("has {:.0f} x {:.0f} values on a tile of the survey; at most {:.0f} a side: lower "
-                                             "`tile`, or thin it out with gdalwarp -tr",
-                                             texels.x, texels.y, max_posts));
+        throw types::ConfigError(
+            file.string(), "",
+            fmt::format("has {:.0f} x {:.0f} values on a tile of the survey; at most {:.0f} a side: lower "
+                        "`tile`, or thin it out with gdalwarp -tr",
+                        texels.x, texels.y, max_posts));
 }
 
 }  // namespace
@@ -140,8 +141,8 @@ std::vector<Bathymetry::Tile> Bathymetry::tilesOf(const PostWindow& posts) const
 void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface,
                         types::Mesh& mesh) const {
     const glm::dvec2 first = mosaic_->postAt(survey_->place(posts.column, posts.row)),
-                     last = mosaic_->postAt(
-                         survey_->place(posts.column + posts.columns - 1, posts.row + posts.rows - 1));
+                     last =
+                         mosaic_->postAt(survey_->place(posts.column + posts.columns - 1, posts.row + posts.rows - 1));
     const glm::dvec2 low = glm::min(first, last), high = glm::max(first, last);
     const int column = wholeDown(low.x), row = wholeDown(low.y);
     const PostWindow texels{column, row, wholeDown(high.x) + 2 - column, wholeDown(high.y) + 2 - row};
@@ -269,8 +270,8 @@ types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::Geome
     const PostWindow window = is_there ? *window_ : clipped(wholeTiles(needed), *survey_);
     const int early = (config_.tile + 1) / 2;
     std::vector<Tile> tiles = tilesOf(window);
-    around_ = tilesOf(
-        clipped({needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}, *survey_));
+    around_ = tilesOf(clipped(
+        {needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}, *survey_));
     std::erase_if(around_, [&](const Tile& tile) { return std::ranges::find(tiles, tile) != tiles.end(); });
     if (!is_there) ask(tiles, true);
     ask(around_, false);

@@ -25,8 +25,8 @@ namespace insonify::scene {
  *  floor about a place does not depend on time. */
 class Bathymetry {
 public:
-    /** `map`: file of the mosaic on it, where the configuration has one. Throws types::ConfigError for whatever is wrong
-     *  with the files, or when `reach` holds too many posts. */
+    /** `map`: file of the mosaic on it, where the configuration has one. Throws types::ConfigError for whatever is
+     * wrong with the files, or when `reach` holds too many posts. */
     Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file, const std::filesystem::path& map);
     ~Bathymetry();
     Bathymetry(const Bathymetry&) = delete;
@@ -71,7 +71,7 @@ private:
 
     BathymetryConfig config_;
     std::unique_ptr<const Survey> survey_, mosaic_;  ///< Read by the worker alone; null: there is no mosaic.
-    glm::dvec2 zero_;                       ///< Easting and northing of the world's zero [m].
+    glm::dvec2 zero_;                                ///< Easting and northing of the world's zero [m].
     std::optional<PostWindow> window_;
     types::GeometryPtr geometry_, rest_;  ///< Of the window, and what it was made with.
     std::vector<Tile> around_;            ///< Tiles that the next window may have beside those of this one.

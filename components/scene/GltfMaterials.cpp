@@ -14,8 +14,8 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/PictureFormat.hpp"
 #include "components/scene/SurfaceMaps.hpp"
-#include "types/DidYouMean.hpp"
 #include "types/ConfigError.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -225,7 +225,8 @@ private:
         }
         for (const std::string& key : map.Keys())
             if (std::ranges::find(keys, key) == keys.end())
-                refuse(key, fmt::format("is not known; {}may be {}", types::didYouMean(key, keys), fmt::join(keys, ", ")));
+                refuse(key,
+                       fmt::format("is not known; {}may be {}", types::didYouMean(key, keys), fmt::join(keys, ", ")));
         meaning.decibels = numbersOf(map, "decibels", {});
         meaning.values = numbersOf(map, "values", meaning.values);
         for (const double each : meaning.decibels)
@@ -239,7 +240,8 @@ private:
                 if (name.IsString())
                     meaning.classes[value] = name.Get<std::string>();
                 else
-                    refuse("classes." + value, "must be the name of a sediment, of matter, or of a material of the file");
+                    refuse("classes." + value,
+                           "must be the name of a sediment, of matter, or of a material of the file");
             }
         types::Diagnostics found;
         meaning.check(found);
@@ -257,11 +259,13 @@ private:
         } else {
             const tinygltf::TextureInfo& texture = from.pbrMetallicRoughness.baseColorTexture;
             if (texture.index < 0)
-                throw std::runtime_error("has no image, and the material no texture of its base colour; give one of them");
+                throw std::runtime_error(
+                    "has no image, and the material no texture of its base colour; give one of them");
             pixels = readTexture(gltf_, accessors_, texture.index, 1, true, repeat_u, repeat_v);
             on_surface = mapping(texture);
         }
-        if (map.Has("texcoord") && map.Get("texcoord").IsInt()) on_surface.uv_set = map.Get("texcoord").GetNumberAsInt();
+        if (map.Has("texcoord") && map.Get("texcoord").IsInt())
+            on_surface.uv_set = map.Get("texcoord").GetNumberAsInt();
         std::vector<float> values(pixels.bytes.begin(), pixels.bytes.end());
         for (const uint16_t word : pixels.words) values.push_back(static_cast<float>(word) * (255.0f / 65535));
         types::SurfaceMap result = surfaceMapOf(values, pixels.width, pixels.height, meaning, std::move(classes));
@@ -287,9 +291,9 @@ private:
     void noteUnknown(const std::string& material, const types::SurfaceMap& map) const {
         const auto unknown = std::ranges::count(map.classes, types::SurfaceMap::no_class);
         if (unknown > 0)
-            geometry_.notices.push_back(
-                fmt::format("material \"{}\": {:.3g} % of its map has values without a class; there it is as without the map",
-                            material, 100 * static_cast<double>(unknown) / static_cast<double>(map.classes.size())));
+            geometry_.notices.push_back(fmt::format(
+                "material \"{}\": {:.3g} % of its map has values without a class; there it is as without the map",
+                material, 100 * static_cast<double>(unknown) / static_cast<double>(map.classes.size())));
     }
 
     static constexpr uintmax_t max_image_bytes = uintmax_t{1} << 30;

@@ -24,9 +24,9 @@ struct MaterialMaps {
 };
 
 /** Adds the file's materials, in its order, then those of classes of surface maps, and normal maps to `geometry`; a
- *  normal map that cannot be read is a notice. Returns the maps of each material of the file. `extras.acoustics` that is
- *  wrong, and a surface map that cannot be read, are a ConfigError. */
+ *  normal map that cannot be read is a notice. Returns the maps of each material of the file. `extras.acoustics` that
+ * is wrong, and a surface map that cannot be read, are a ConfigError. */
 std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
-                                                        types::Geometry& geometry);
+                                        types::Geometry& geometry);
 
 }  // namespace insonify::scene

@@ -75,7 +75,8 @@ int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string
 
 int GltfMeshes::withoutMap(int material, bool of_surface) {
     ++omissions_.unmapped_primitives;
-    const auto [known, is_new] = unmapped_.try_emplace({material, of_surface}, static_cast<int>(geometry_.materials.size()));
+    const auto [known, is_new] =
+        unmapped_.try_emplace({material, of_surface}, static_cast<int>(geometry_.materials.size()));
     if (is_new) {
         types::Material plain = geometry_.materials[static_cast<size_t>(material)];
         if (of_surface)
@@ -163,7 +164,8 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
     }
     if (maps && maps->surface && surface.map_uvs.empty())
         index = withoutMap(index, true);
-    else if (maps && maps->surface && std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
+    else if (maps && maps->surface &&
+             std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
         mesh.maps.push_back({index, maps->surface});
     appendSurface(surface, index, mesh);
 }

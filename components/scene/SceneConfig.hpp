@@ -46,7 +46,8 @@ struct MosaicConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "", "strengths or classes on the same map as the survey, in a format of surveys"}, self.file);
+        visit(Field{"file", "", "strengths or classes on the same map as the survey, in a format of surveys"},
+              self.file);
         visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
         MapValues::describe(self.meaning, visit);
     }
@@ -81,8 +82,9 @@ struct BathymetryConfig {
         visit(Field{"tile", "1", "posts by which the part that is there grows on each side when it is read anew", 1,
                     2048},
               self.tile);
-        visit(Field{"map", "", "how strong the floor's echo is, or of what it is, from place to place; absent: everywhere "
-                               "the same"},
+        visit(Field{"map", "",
+                    "how strong the floor's echo is, or of what it is, from place to place; absent: everywhere "
+                    "the same"},
               self.map);
     }
     void check(types::Diagnostics& diagnostics) const;

@@ -58,8 +58,7 @@ std::shared_ptr<const Scene> SceneTask::load() const {
     const bool has_survey = config->bathymetry.has_value();
     const std::optional<MosaicConfig> map = has_survey ? config->bathymetry->map : std::nullopt;
     if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
-        scene_map_ == map &&
-        scene_placement_ == config->placement && scene_scale_ == config->scale)
+        scene_map_ == map && scene_placement_ == config->placement && scene_scale_ == config->scale)
         return scene_;
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
@@ -130,8 +129,7 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& each : error.diagnostics())
-        diagnostics.push_back(config->gazebo || each.path.starts_with("scale.") ||
-                                          each.path.starts_with("bathymetry.")
+        diagnostics.push_back(config->gazebo || each.path.starts_with("scale.") || each.path.starts_with("bathymetry.")
                                   ? types::Diagnostic{each.path, each.message}
                                   : types::Diagnostic{"file", each.text()});
 }

@@ -96,9 +96,9 @@ std::vector<int> materialsOf(const MapValues& meaning, const std::string& path, 
             names.insert(names.end(), std::begin(types::EnumNames<Matter>::names),
                          std::end(types::EnumNames<Matter>::names));
             for (const types::Material& material : geometry.materials) names.push_back(material.name);
-            diagnostics.push_back({path + "." + value, fmt::format("is {}; {}may be {}", name,
-                                                                   types::didYouMean(name, names),
-                                                                   fmt::join(names, ", "))});
+            diagnostics.push_back(
+                {path + "." + value,
+                 fmt::format("is {}; {}may be {}", name, types::didYouMean(name, names), fmt::join(names, ", "))});
             continue;
         }
         types::Material material;

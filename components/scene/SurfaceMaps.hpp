@@ -13,7 +13,7 @@ namespace insonify::scene {
 
 /** What the values of a map on a surface mean: decibels, between two values of which it is linear, or classes. */
 struct MapValues {
-    static constexpr double max_db = 40;      ///< Of a map, above its surface's material [dB].
+    static constexpr double max_db = 40;  ///< Of a map, above its surface's material [dB].
     static constexpr size_t max_classes = 16;
 
     std::vector<double> decibels;                ///< At the two `values` [dB].
@@ -40,8 +40,8 @@ struct MapValues {
     bool operator==(const MapValues&) const = default;
 };
 
-/** A map of `width` x `height` values, rows from the top; NaN: of the surface's own material. `materials`: of each class,
- *  in the order of MapValues::classes. */
+/** A map of `width` x `height` values, rows from the top; NaN: of the surface's own material. `materials`: of each
+ * class, in the order of MapValues::classes. */
 types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int height, const MapValues& meaning,
                                std::vector<int> materials);
 

@@ -10,7 +10,6 @@ using testing::HasSubstr;
 
 namespace {
 
-
 class RangeImageTest : public testing::Test {
 protected:
     RangeImageTest() { writeFile(folder_ / "sweep.yml", sweep("range")); }
@@ -22,8 +21,8 @@ protected:
                shape + "}\n";
     }
     Outcome make(const std::string& out, const std::string& format) const {
-        return callInsonify(folder_, {"dataset", insonify::test::sourceFile("deploy/harbour_sonar3d.yml"), "--sweep", "sweep.yml", "--out",
-                                      out, "--format", format});
+        return callInsonify(folder_, {"dataset", insonify::test::sourceFile("deploy/harbour_sonar3d.yml"), "--sweep",
+                                      "sweep.yml", "--out", out, "--format", format});
     }
 
     const TestFolder folder_;

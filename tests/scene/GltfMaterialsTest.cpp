@@ -118,7 +118,8 @@ protected:
     static std::string painted(const std::string& map, const std::string& more = "", bool uvs = true) {
         return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0)" +
                std::string(uvs ? R"(,"TEXCOORD_0":1)" : "") +
-               R"(}}]}],"materials":[{"name":"floor","extras":{"acoustics":{"lambert_db":-15,"map":)" + map + "}}" + more +
+               R"(}}]}],"materials":[{"name":"floor","extras":{"acoustics":{"lambert_db":-15,"map":)" + map + "}}" +
+               more +
                R"(},{"name":"weed","extras":{"acoustics":{"lambert_db":-22}}}],
             "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":")" +
                png + R"("}],
@@ -149,8 +150,7 @@ TEST_F(SurfaceMapsTest, TheTextureOfTheBaseColourIsTakenInGrey) {
 }
 
 TEST_F(SurfaceMapsTest, ClassesAreSedimentsMatterOrMaterialsOfTheFile) {
-    const auto geometry =
-        load(painted(R"({"classes":{"18":"weed","165":"clay","7":"steel"}})", coloured));
+    const auto geometry = load(painted(R"({"classes":{"18":"weed","165":"clay","7":"steel"}})", coloured));
     const types::SurfaceMap& map = *geometry->meshes[0].maps.at(0).map;
     ASSERT_EQ(map.materials.size(), 3u);
     const auto nameAt = [&](size_t texel) {

@@ -24,16 +24,14 @@ float linear(double decibels) { return static_cast<float>(std::pow(10, decibels 
 /** Ground of `size` x `size` metres at z = -5 about the origin; its map's u runs along x, v along y. */
 types::Mesh mappedGround(double size) {
     types::Mesh mesh = test::ground(-5, static_cast<float>(size));
-    for (const glm::vec3& at : mesh.positions)
-        mesh.map_uvs.emplace_back(at.x / size + 0.5, at.y / size + 0.5);
+    for (const glm::vec3& at : mesh.positions) mesh.map_uvs.emplace_back(at.x / size + 0.5, at.y / size + 0.5);
     return mesh;
 }
 
 std::shared_ptr<types::Geometry> groundWith(const SurfaceMap& map, double size = 80) {
     auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mappedGround(size)}, -15));
     geometry->meshes[0].maps = {{0, std::make_shared<const SurfaceMap>(map)}};
-    geometry->materials[0].max_map_strength =
-        map.strengths.empty() ? 1 : *std::ranges::max_element(map.strengths);
+    geometry->materials[0].max_map_strength = map.strengths.empty() ? 1 : *std::ranges::max_element(map.strengths);
     return geometry;
 }
 
@@ -48,8 +46,7 @@ int addMaterial(types::Geometry& geometry, float lambert_db) {
 }
 
 SonarConfig fanOver(int beams = 16) {
-    SonarConfig config =
-        test::sonarOf({.beams = beams, .width_deg = 90, .height_deg = 60, .rows = 128, .columns = 4});
+    SonarConfig config = test::sonarOf({.beams = beams, .width_deg = 90, .height_deg = 60, .rows = 128, .columns = 4});
     config.visibility = Visibility::Cpu;
     return config;
 }
@@ -121,7 +118,7 @@ TEST(SurfaceMapTest, ClassesAreAsLoudAsTheirMaterials) {
                 continue;
             }
             const float expected = beam < 8 ? of_class[at] : own[at];  // beam 0 is at starboard, where y is negative
-            if (k < 100 || expected == 0) continue;                     // near nadir even these beams see the border
+            if (k < 100 || expected == 0) continue;                    // near nadir even these beams see the border
             worst = std::max(worst, std::abs(mapped[at] / static_cast<double>(expected) - 1));
         }
     EXPECT_LT(worst, 1e-6);
@@ -147,7 +144,8 @@ TEST(SurfaceMapTest, WhatIsFinerThanASampleCountsByItsMean) {
     EXPECT_NEAR(sum(binsOf(of_classes, config)) / mean, 1, 0.01);
 }
 
-/** A board of random places, sizes, turns and mirrorings, painted in blocks, against as many boards as it has blocks. */
+/** A board of random places, sizes, turns and mirrorings, painted in blocks, against as many boards as it has blocks.
+ */
 TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
     std::mt19937 random(11);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -175,14 +173,17 @@ TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
         whole->materials[0].max_map_strength = 10;
         const auto apart = std::make_shared<types::Geometry>();
         for (size_t i = 0; i < db.size(); ++i) {
-            const auto row = static_cast<float>(i / blocks), column = static_cast<float>(i % blocks), step = 2.0f / blocks;
+            const auto row = static_cast<float>(i / blocks), column = static_cast<float>(i % blocks),
+                       step = 2.0f / blocks;
             // The map's rows run down, as v of the wall does.
-            apart->meshes.push_back(test::quad({0, -1 + column * step, 1 - (row + 1) * step}, {0, step, 0}, {0, 0, step}));
+            apart->meshes.push_back(
+                test::quad({0, -1 + column * step, 1 - (row + 1) * step}, {0, step, 0}, {0, 0, step}));
             apart->meshes[i].clusters[0].material = static_cast<int>(i);
             apart->objects.push_back({"block_" + std::to_string(i), static_cast<int>(i), place});
             apart->materials.emplace_back().lambert_db = static_cast<float>(-10 + db[i]);
         }
-        SonarConfig config = test::sonarOf({.beams = 24, .width_deg = 100, .height_deg = 90, .rows = 256, .columns = 4});
+        SonarConfig config =
+            test::sonarOf({.beams = 24, .width_deg = 100, .height_deg = 90, .rows = 256, .columns = 4});
         config.visibility = Visibility::Cpu;
         const auto echo = [&](const types::GeometryPtr& geometry) {
             return test::pingOf(config, test::snapshotOf(geometry)).bins;
@@ -251,7 +252,8 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
 TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {
     for (const float uv : {NAN, INFINITY, 1e30f, -1e30f, 1e7f})
         for (const float strength : {0.0f, 1e-20f, 1e4f}) {
-            auto geometry = groundWith({.width = 2, .height = 2, .strengths = {strength, strength, strength, strength}});
+            auto geometry =
+                groundWith({.width = 2, .height = 2, .strengths = {strength, strength, strength, strength}});
             geometry->meshes[0].map_uvs[1] = {uv, uv};
             for (const float bin : binsOf(geometry)) {
                 ASSERT_TRUE(std::isfinite(bin)) << uv << " " << strength;
@@ -287,8 +289,9 @@ TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanWhateverItsSize) {
         const MapLevels levels(map);
         const MapLevels::Look all = levels.look({{0.5f, 0.5f}, {0, 100}, {100, 0}});
         EXPECT_NEAR(all.strength, mean, 1e-4 * mean) << width << " x " << height;
-        EXPECT_FLOAT_EQ(levels.look({{0.5f / static_cast<float>(width), 0.5f / static_cast<float>(height)}, {}, {}}).strength,
-                        map.strengths[0]);
+        EXPECT_FLOAT_EQ(
+            levels.look({{0.5f / static_cast<float>(width), 0.5f / static_cast<float>(height)}, {}, {}}).strength,
+            map.strengths[0]);
     }
 }
 

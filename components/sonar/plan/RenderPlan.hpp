@@ -140,6 +140,6 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull",  "surface", "rays",  "surface_maps", "deposit", "walls",
-                                                 "paths", "beams",   "beamform", "pulse",   "ring_down"};
+    static constexpr std::string_view names[] = {"cull",  "surface", "rays",     "surface_maps", "deposit",  "walls",
+                                                 "paths", "beams",   "beamform", "pulse",        "ring_down"};
 };

@@ -95,7 +95,12 @@ private:
     void placeRuns();
     void makeTruth();
     PlacedScene scene() const {
-        return {surface_maps_ ? surface_maps_->commands() : visibility_.commands(), runs_, places_->records(), *normal_maps_, water_, bent(),
+        return {surface_maps_ ? surface_maps_->commands() : visibility_.commands(),
+                runs_,
+                places_->records(),
+                *normal_maps_,
+                water_,
+                bent(),
                 surface_maps_ ? &*surface_maps_ : nullptr};
     }
     CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }

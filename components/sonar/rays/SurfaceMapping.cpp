@@ -31,10 +31,7 @@ float knownAt(float coordinate) { return std::abs(coordinate) < 1e6f ? coordinat
 }  // namespace
 
 MapLevels::MapLevels(const types::SurfaceMap& map)
-    : channels_(1 + map.materials.size()),
-      repeat_u_(map.repeat_u),
-      repeat_v_(map.repeat_v),
-      materials_(map.materials) {
+    : channels_(1 + map.materials.size()), repeat_u_(map.repeat_u), repeat_v_(map.repeat_v), materials_(map.materials) {
     const size_t texels = static_cast<size_t>(map.width) * static_cast<size_t>(map.height);
     if (texels == 0 || (!map.strengths.empty() && map.strengths.size() != texels) ||
         (!map.classes.empty() && map.classes.size() != texels) || map.materials.size() > max_classes)
@@ -120,8 +117,8 @@ SurfaceMapping::SurfaceMapping(const types::Geometry& geometry, std::span<const 
     for (size_t i = 0; i < commands.size(); ++i) {
         const CommandRecord& command = commands[i];
         const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(geometry.objects[command.object].mesh)];
-        const auto of_material = std::ranges::find(mesh.maps, static_cast<int>(command.material),
-                                                   &types::MappedMaterial::material);
+        const auto of_material =
+            std::ranges::find(mesh.maps, static_cast<int>(command.material), &types::MappedMaterial::material);
         if (of_material == mesh.maps.end()) continue;
         of_command_[i] = maps_.emplace_back(sharedLevels(of_material->map)).get();
         first_class_[i] = static_cast<uint32_t>(commands_.size());
@@ -149,8 +146,8 @@ MapLevels::Look SurfaceMapping::look(const CastView& view, const PlacedScene& sc
     const glm::vec2 uv = mesh.map_uvs[corners[0]], uv_b = mesh.map_uvs[corners[1]] - uv,
                     uv_c = mesh.map_uvs[corners[2]] - uv;
     const double* const eye = scene.ranges[command].eye;
-    const glm::dvec3 way = a + static_cast<double>(u) * to_b + static_cast<double>(v) * to_c -
-                           glm::dvec3(eye[0], eye[1], eye[2]);
+    const glm::dvec3 way =
+        a + static_cast<double>(u) * to_b + static_cast<double>(v) * to_c - glm::dvec3(eye[0], eye[1], eye[2]);
     const glm::dvec3 normal = glm::normalize(glm::cross(to_b, to_c));
     const double range = glm::length(way), cosine = std::max(std::abs(glm::dot(way, normal)) / range, 0.01);
     glm::dvec3 ahead = way - normal * glm::dot(way, normal);

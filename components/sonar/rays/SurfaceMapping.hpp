@@ -16,8 +16,8 @@ public:
     static constexpr size_t max_classes = 16;  ///< Of one map [1].
     static constexpr int max_probes = 8;       ///< Texels along a long footprint [1].
 
-    /** What a place of a map shows: factor of the intensity, and shares of the surface's own material and of each class,
-     *  whose sum is 1 [1]. */
+    /** What a place of a map shows: factor of the intensity, and shares of the surface's own material and of each
+     * class, whose sum is 1 [1]. */
     struct Look {
         float strength = 1;
         std::array<float, max_classes + 1> shares{1};
@@ -67,7 +67,9 @@ public:
     uint32_t commandOf(uint32_t command, size_t class_number) const {
         return class_number == 0 ? command : first_class_[command] + static_cast<uint32_t>(class_number) - 1;
     }
-    size_t classesOf(uint32_t command) const { return of_command_[command] ? of_command_[command]->materials().size() : 0; }
+    size_t classesOf(uint32_t command) const {
+        return of_command_[command] ? of_command_[command]->materials().size() : 0;
+    }
 
 private:
     const types::Geometry& geometry_;
@@ -81,8 +83,9 @@ private:
  *  from ping to ping. */
 class MappedTiles {
 public:
-    /** Takes some tiles of a scene with maps, which must outlive their use here. `apart`: each sample is of one of its materials, as many
-     *  samples of each as its share: for fields, to which two materials at one place would not add as energies. */
+    /** Takes some tiles of a scene with maps, which must outlive their use here. `apart`: each sample is of one of its
+     * materials, as many samples of each as its share: for fields, to which two materials at one place would not add as
+     * energies. */
     void take(const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles, bool apart);
     /** One for each tile, with all its samples, each of the material that it sees most of. */
     std::span<const CastTile> whole() const { return whole_; }

@@ -35,9 +35,9 @@ struct CastTile {
     int first_column, first_row;
     int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
     TileHits* hits;
-    float* passed = nullptr;      ///< Share of each sample's energy that walls let through both ways; null: all [1].
-    const float* gains = nullptr;   ///< Factor of each sample's echo by surface maps; null: 1 [1].
-    const float* late = nullptr;  ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
+    float* passed = nullptr;       ///< Share of each sample's energy that walls let through both ways; null: all [1].
+    const float* gains = nullptr;  ///< Factor of each sample's echo by surface maps; null: 1 [1].
+    const float* late = nullptr;   ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
     const ApparentPlane* apparent = nullptr;  ///< Where refraction in fills makes a surface seem to be; of samples
                                               ///< without, and null: where it is.
     uint32_t path = 0;                        ///< behind_walls, rung_in_wall (TruthTable.hpp), or 0.
