@@ -86,7 +86,7 @@ Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::pa
       zero_(survey_->place((survey_->columns() - 1) / 2.0, (survey_->rows() - 1) / 2.0)) {
     if (config.easting) zero_ = {*config.easting, *config.northing};
     checkUnit(*survey_, file);
-    if (mosaic_) checkTexels(*mosaic_, map, config.tile * glm::abs(survey_->spacing()));
+    if (mosaic_) checkTexels(*mosaic_, map, double(config.tile) * glm::abs(survey_->spacing()));
     const glm::dvec2 spacing = glm::abs(survey_->spacing());
     const double posts = 2 * config.reach / std::min(spacing.x, spacing.y) + 2 * config.tile;
     if (posts > max_posts)

@@ -27,7 +27,8 @@ class Bathymetry {
 public:
     /** `map`: file of the mosaic on it, where the configuration has one. Throws types::ConfigError for whatever is
      * wrong with the files, or when `reach` holds too many posts. */
-    Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file, const std::filesystem::path& map);
+    Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file,
+               const std::filesystem::path& map = {});
     ~Bathymetry();
     Bathymetry(const Bathymetry&) = delete;
     Bathymetry& operator=(const Bathymetry&) = delete;

@@ -249,6 +249,26 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
         if (plain.object[k] >= 0) EXPECT_NEAR(mapped.elevation[k], plain.elevation[k], 0.02) << k;
 }
 
+TEST(SurfaceMapTest, WaysByMirrorsAreMappedAsWell) {
+    SonarConfig config = fanOver(8);
+    config.multipath = MultipathConfig{};
+    const auto ghostsOf = [&](const types::GeometryPtr& geometry) {
+        types::Snapshot snapshot = test::snapshotOf(geometry, {0, 0, 0});
+        snapshot.water_surface = 3;
+        SonarConfig direct = config;
+        direct.multipath.reset();
+        return sum(test::pingOf(config, snapshot).bins) - sum(test::pingOf(direct, snapshot).bins);
+    };
+    const double plain = ghostsOf(plainGround());
+    ASSERT_GT(plain, 0);
+    EXPECT_NEAR(ghostsOf(groundWith({.width = 1, .height = 1, .strengths = {0.1f}})) / plain, 0.1, 1e-4);
+    SurfaceMap map{.width = 1, .height = 1, .classes = {0}};
+    auto geometry = groundWith(map);
+    map.materials = {addMaterial(*geometry, -25)};
+    geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
+    EXPECT_NEAR(ghostsOf(geometry) / plain, 0.1, 1e-4);
+}
+
 TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {
     for (const float uv : {NAN, INFINITY, 1e30f, -1e30f, 1e7f})
         for (const float strength : {0.0f, 1e-20f, 1e4f}) {
