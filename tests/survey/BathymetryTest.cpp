@@ -105,7 +105,7 @@ protected:
         config.reach = 20;
         return config;
     }();
-    types::GeometryPtr rest_ = [] {
+    types::GeometryPtr rest_ = [this] {
         Scene scene;
         scene.geometry = std::make_shared<const types::Geometry>();
         Bathymetry::addMaterials(scene, config_);

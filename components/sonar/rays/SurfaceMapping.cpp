@@ -54,35 +54,40 @@ MapLevels::Level MapLevels::halved(const Level& finer) const {
     level.channels.resize(static_cast<size_t>(level.width) * static_cast<size_t>(level.height) * channels_);
     const double per_x = static_cast<double>(finer.width) / level.width,
                  per_y = static_cast<double>(finer.height) / level.height;
+    std::vector<double> sums(channels_);
     for (int y = 0; y < level.height; ++y)
         for (int x = 0; x < level.width; ++x) {
-            float* const to = &level.channels[static_cast<size_t>(y * level.width + x) * channels_];
             const double left = x * per_x, top = y * per_y, right = left + per_x, bottom = top + per_y;
+            std::ranges::fill(sums, 0.0);
             for (int v = static_cast<int>(top); v < std::min<double>(bottom, finer.height); ++v)
                 for (int u = static_cast<int>(left); u < std::min<double>(right, finer.width); ++u) {
                     const double wide = std::min(right, u + 1.0) - std::max<double>(left, u),
                                  tall = std::min(bottom, v + 1.0) - std::max<double>(top, v);
-                    const auto weight = static_cast<float>(wide * tall / (per_x * per_y));
                     const float* const from = &finer.channels[static_cast<size_t>(v * finer.width + u) * channels_];
-                    for (size_t c = 0; c < channels_; ++c) to[c] += weight * from[c];
+                    for (size_t c = 0; c < channels_; ++c) sums[c] += wide * tall * static_cast<double>(from[c]);
                 }
+            float* const to = &level.channels[static_cast<size_t>(y * level.width + x) * channels_];
+            for (size_t c = 0; c < channels_; ++c) to[c] = static_cast<float>(sums[c] / (per_x * per_y));
         }
     return level;
 }
 
-void MapLevels::addTexels(const Level& level, glm::vec2 at, float weight, float* sums) const {
+void MapLevels::addTexels(const Level& level, glm::vec2 at, float* sums) const {
     const glm::vec2 place(knownAt(at.x), knownAt(at.y));
     const glm::vec2 wrapped(repeat_u_ ? place.x - std::floor(place.x) : std::clamp(place.x, 0.0f, 1.0f),
                             repeat_v_ ? place.y - std::floor(place.y) : std::clamp(place.y, 0.0f, 1.0f));
     const glm::vec2 texel = wrapped * glm::vec2(level.width, level.height) - 0.5f, low = glm::floor(texel),
                     share = texel - low;
+    const float* corners[4];
     for (int corner = 0; corner < 4; ++corner) {
-        const int dx = corner & 1, dy = corner >> 1;
-        const int x = texelAt(static_cast<int>(low.x) + dx, level.width, repeat_u_),
-                  y = texelAt(static_cast<int>(low.y) + dy, level.height, repeat_v_);
-        const float by = weight * (dx ? share.x : 1 - share.x) * (dy ? share.y : 1 - share.y);
-        const float* const from = &level.channels[static_cast<size_t>(y * level.width + x) * channels_];
-        for (size_t c = 0; c < channels_; ++c) sums[c] += by * from[c];
+        const int x = texelAt(static_cast<int>(low.x) + (corner & 1), level.width, repeat_u_),
+                  y = texelAt(static_cast<int>(low.y) + (corner >> 1), level.height, repeat_v_);
+        corners[corner] = &level.channels[static_cast<size_t>(y * level.width + x) * channels_];
+    }
+    for (size_t c = 0; c < channels_; ++c) {  // so that texels of one value have this value between them
+        const float upper = corners[0][c] + share.x * (corners[1][c] - corners[0][c]),
+                    lower = corners[2][c] + share.x * (corners[3][c] - corners[2][c]);
+        sums[c] += upper + share.y * (lower - upper);
     }
 }
 
@@ -99,13 +104,14 @@ MapLevels::Look MapLevels::look(const Footprint& footprint) const {
     for (int probe = 0; probe < probes; ++probe) {
         const float off = (static_cast<float>(probe) + 0.5f) / static_cast<float>(probes) - 0.5f;
         const glm::vec2 at = probes > 1 ? footprint.at + off * sides[longer] : footprint.at;
-        addTexels(levels_[level], at, 1 / static_cast<float>(probes), sums.data());
+        addTexels(levels_[level], at, sums.data());
     }
     Look seen;
-    seen.strength = sums[0];
+    const auto count = static_cast<float>(probes);
+    seen.strength = sums[0] / count;
     for (size_t c = 1; c < channels_; ++c) {
-        seen.shares[c] = sums[c];
-        seen.shares[0] -= sums[c];
+        seen.shares[c] = sums[c] / count;
+        seen.shares[0] -= seen.shares[c];
     }
     return seen;
 }

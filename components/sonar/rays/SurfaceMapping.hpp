@@ -41,7 +41,8 @@ private:
         std::vector<float> channels;
     };
     Level halved(const Level& finer) const;
-    void addTexels(const Level& level, glm::vec2 at, float weight, float* sums) const;
+    /** Adds what is at a place of a level, bilinear. */
+    void addTexels(const Level& level, glm::vec2 at, float* sums) const;
 
     size_t channels_;
     bool repeat_u_, repeat_v_;
