@@ -108,6 +108,8 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     for (const std::string& port : poses_)
         feeds_.push_back(&dynamic_cast<PoseFeed&>(*deployment_->task(splitPort(port).first)));
     connectReaders(options.truth);
+    for (const auto& task : deployment_->tasks())
+        if (auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get())) sonar->useThreads(options.threads);
     deployment_->configure();
     start();
 }

@@ -20,6 +20,7 @@ struct SimulationOptions {
     uint64_t seed = 0;                   ///< As of `insonify run --seed`; 0: the deployment's own.
     std::vector<std::string> overrides;  ///< "task.property=value", as of `insonify run --set`.
     bool truth = false;                  ///< Whether pings come with what they show.
+    int threads = 0;                     ///< Of each sonar; 0: as many as the machine has cores [1].
     std::optional<double> period;        ///< Between two steps; none: that of the poses it replaces, or 0.1 [s].
     std::vector<std::string>
         objects;  ///< Nodes of the scene that the caller places as well, see Simulation::objectPort.

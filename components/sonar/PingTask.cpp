@@ -195,7 +195,9 @@ void PingTask::prepareRenderer() {
     const SonarConfig config = locatedConfig();
     quality_.reset();
     diagnostics_.emplace(*geometry_, pingsPerTurn());
-    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_);
+    RenderOptions options;
+    options.threads = threads_;
+    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_, options);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     takePlan();
 }

@@ -69,6 +69,8 @@ public:
     std::vector<std::string> notices() const override;
     std::string indivisible() const override;
 
+    /** Renders on so many threads from the next renderer on; 0: as many as the machine has cores. */
+    void useThreads(int threads) { threads_ = threads; }
     /** Of a task that is stopped, `cleanup` and `configure`: as if nothing had been before. What a renderer has made of
      *  the scene is kept where its pings do not depend on the pings before. */
     framework::Outcome restart();
@@ -143,6 +145,7 @@ private:
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     std::optional<PingDiagnostics> diagnostics_;
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
+    int threads_ = 0;                  ///< Of the renderer [1].
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.
