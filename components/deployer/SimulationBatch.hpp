@@ -16,7 +16,8 @@ namespace insonify::deployer {
  *  the machine has. Their pings are those of single simulations, bit for bit. Used by one thread at a time. */
 class SimulationBatch {
 public:
-    /** Simulation i has the seed seedOf(options.seed, i). Throws as Simulation does, and std::invalid_argument for a count of 0. */
+    /** Simulation i has the seed seedOf(options.seed, i). Throws as Simulation does, and std::invalid_argument for a
+     * count of 0. */
     SimulationBatch(const std::string& deployment, const SimulationOptions& options, size_t count);
 
     size_t size() const { return simulations_.size(); }

@@ -177,8 +177,7 @@ size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
 Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
                             int truth, const double* period) {
     return guarded(nullptr, [&]() -> Handle* {
-        return new SimulationHandle(
-            deployment, optionsOf(seed, overrides, override_count, truth, period));
+        return new SimulationHandle(deployment, optionsOf(seed, overrides, override_count, truth, period));
     });
 }
 

@@ -164,7 +164,8 @@ TEST_F(SurfaceMapsTest, ClassesAreSedimentsMatterOrMaterialsOfTheFile) {
 
 TEST_F(SurfaceMapsTest, AnImageOfItsOwnLiesBesideTheScene) {
     write("paint.png", std::string("\x89PNG\r\n\x1a\n", 8));
-    EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"paint.png","decibels":[-30,0]})")).find("its image is neither PNG nor JPEG"),
+    EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"paint.png","decibels":[-30,0]})"))
+                  .find("its image is neither PNG nor JPEG"),
               std::string::npos);
     EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"../paint.png","decibels":[-30,0]})")).find("there is no such file"),
               std::string::npos);

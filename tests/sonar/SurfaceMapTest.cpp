@@ -203,7 +203,8 @@ TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
         ASSERT_GT(sum(expected), 0) << trial;
         double apart_sum = 0;
         for (size_t k = 0; k < painted.size(); ++k) apart_sum += std::abs(painted[k] - expected[k]);
-        std::cout << trial << ": bins " << apart_sum / sum(expected) << " apart, all " << sum(painted) / sum(expected) - 1 << '\n';
+        std::cout << trial << ": bins " << apart_sum / sum(expected) << " apart, all "
+                  << sum(painted) / sum(expected) - 1 << '\n';
         EXPECT_LT(apart_sum / sum(expected), 0.03) << trial;
         EXPECT_NEAR(sum(painted) / sum(expected), 1, 0.01) << trial;
     }
