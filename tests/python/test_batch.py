@@ -50,7 +50,7 @@ def test_some_begin_anew_and_the_others_go_on(deploy):
     single = insonify.Simulation(file, 99, QUICK)
     np.testing.assert_array_equal(pings.bins[1], single.step(pose(second[1])).bins)
     assert pings.times[1] < pings.times[0]
-    batch.reset()
+    batch.reset(range(3), batch.seeds)
     np.testing.assert_array_equal(batch.step(first).bins, insonify.SimulationBatch(file, 3, 2, QUICK).step(first).bins)
 
 

@@ -12,7 +12,14 @@ import insonify
 import insonify.gym
 
 SECTORS = 8
-FAN = {"sonar.beam_count": 96, "sonar.bin_count": 128, "sonar.range": 20, "sonar.quality": {"rows": 64, "columns_per_beam": 1}}
+FAN = {  # level and so flat that it hears what is in the way, and not the floor
+    "scene.mount": {"position": [0.4, 0, 0]},
+    "sonar.beam_count": 96,
+    "sonar.bin_count": 128,
+    "sonar.beam_height_deg": 8,
+    "sonar.range": 20,
+    "sonar.quality": {"rows": 64, "columns_per_beam": 1},
+}
 
 
 def nearest(observations, threshold=130):
@@ -47,7 +54,7 @@ def learn(deployment, vehicles, rounds, steps, seed):
     rng = np.random.default_rng(seed)
     env = insonify.gym.SonarVectorEnv(
         deployment,
-        insonify.Pose.from_euler([4, -6, -5.5], yaw=0),
+        insonify.Pose.from_euler([4, -6, -5.5], yaw=1.0),  # towards the quay
         vehicles,
         overrides=FAN,
         scatter=3,
