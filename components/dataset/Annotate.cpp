@@ -52,12 +52,12 @@ private:
     }
     /** The instance that a bin shows; none where that is no part of the file's scene, as the floor of a survey. */
     int32_t instanceAt(size_t bin) const {
-        const int32_t object = truth_.object[bin];
+        const int32_t object = directAt(bin);
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
-    bool isGhost(size_t bin) const {
-        return !truth_.path.empty() && truth_.path[bin] != 0 && truth_.path[bin] < types::SonarTruth::through_wall;
-    }
+    bool isGhost(size_t bin) const { return !truth_.path.empty() && truth_.isByMirror(bin); }
+    /** The object that a bin shows directly. */
+    int32_t directAt(size_t bin) const { return isGhost(bin) ? none : truth_.object[bin]; }
     bool counts(size_t bin) const {
         const int32_t instance = instanceAt(bin);
         return instance != none && instances_.category(instance) != 0 && !isGhost(bin) &&
@@ -116,14 +116,17 @@ private:
      *  what lies behind them as well, as where a floor is uneven. Of echoes whose elevations differ from that behind by
      *  no more than one bin's there, the last one hides it: sound passed the others already. */
     int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
-        const auto elevation = [&](uint32_t k) { return static_cast<double>(truth_.elevation[start + k]); };
+        const auto elevation = [&](uint32_t k) {
+            return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
+                                      : static_cast<double>(truth_.elevation[start + k]);
+        };
         const auto apart = [&](uint32_t k) { return std::abs(elevation(k) - elevation(behind)); };
         double nearest = std::numeric_limits<double>::infinity();
         for (uint32_t k = 0; k < first; ++k)
-            if (truth_.object[start + k] != none && apart(k) <= nearest) nearest = apart(k);
+            if (directAt(start + k) != none && apart(k) <= nearest) nearest = apart(k);
         if (behind + 1 < ping_.bin_count && std::isfinite(apart(behind + 1))) nearest += apart(behind + 1);
         for (uint32_t k = first; k-- > 0;) {
-            if (truth_.object[start + k] == none || !(apart(k) <= nearest)) continue;
+            if (directAt(start + k) == none || !(apart(k) <= nearest)) continue;
             const int32_t caster = instanceAt(start + k);
             if (caster == none || caster == instanceAt(start + behind)) return none;
             return instances_.shadow(caster) == 0 ? none : caster + first_shadow_;

@@ -1,6 +1,8 @@
 // A simulation that begins anew, against one that has just been made.
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "components/deployer/Simulation.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -71,6 +73,36 @@ INSTANTIATE_TEST_SUITE_P(
                         "Grid", "harbour_sonar3d.yml", {"sonar.horizontal={beam_count: 20, field_of_view_deg: 90}"}},
                     Restarted{"Mirrors", "tank_multipath.yml"}, Restarted{"ThinWalls", "vessels.yml"}),
     [](const auto& tested) { return std::string(tested.param.name); });
+
+class WholeLabelsTest : public testing::TestWithParam<Restarted> {};
+
+TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyIsOfAnObject) {
+    SimulationOptions options;
+    options.overrides = GetParam().set;
+    options.truth = true;
+    Simulation simulation(test::sourceFile(std::string("deploy/") + GetParam().deployment), options);
+    std::map<std::string, types::Pose> at;
+    for (const std::string& port : simulation.poses())
+        at[port].position = {0, 0, GetParam().name == std::string("Tank") ? 0 : -5.5};
+    const SteppedPing made = simulation.step(at, {}).front();
+    double all = 0, labelled = 0, ghosts = 0;
+    for (size_t k = 0; k < made.ping->bins.size(); ++k) {
+        const auto energy = std::max(0.0, static_cast<double>(made.ping->bins[k]));
+        all += energy;
+        if (made.truth->object[k] < 0) continue;
+        labelled += energy;
+        if (made.truth->isByMirror(k)) ghosts += energy;
+    }
+    std::cout << GetParam().deployment << ": " << 100 * labelled / all << " % of an object, " << 100 * ghosts / all
+              << " % by mirrors\n";
+    EXPECT_GT(labelled, 0.99 * all);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WholeLabelsTest,
+                         testing::Values(Restarted{"Tank", "tank_multipath.yml"},
+                                         Restarted{"Harbour", "harbour_fls.yml", {"noise.speckle=null"}},
+                                         Restarted{"ThinWalls", "vessels.yml"}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace insonify::deployer

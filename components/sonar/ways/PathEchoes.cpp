@@ -156,13 +156,18 @@ private:
     MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
-    void recordWay(int i, bool twice) {
+    /** Prepares the sums for echoes of what ray i has met: heard in a direction, seen at a cosine. */
+    void recordWay(int i, bool twice, const glm::dvec3& heard, double cosine) {
         if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
         bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+        bins_.truth = &*paths_.truth_;
+        bins_.object = scene_.commands[hits_.command[i]].object;
+        bins_.sine_elevation = heard.z;
+        bins_.sine_grazing = cosine;
     }
 
     PathEchoes& paths_;
@@ -372,7 +377,7 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open, doubl
     const double facing = glm::dot(plane.normal, at.middle);
     if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    recordWay(i, true);
+    recordWay(i, true, at.middle, std::abs(facing));
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength =
         gain * rules_.strength_scale * chain.power * chain.power *
@@ -421,7 +426,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     const MaterialLaws::Bistatic given = section(at, i, plane, way);
     const double scale =
         rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
-    recordWay(i, false);
+    recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
     const WayPatterns& patterns = *paths_.patterns_;
     const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
     const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
@@ -430,6 +435,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
         bins_.depositCell(footprint(at, i, way, at.size * back), static_cast<uint>(at.cell),
                           scale * (given.diffuse + given.lobe));
     if (!(there > 0)) return;
+    bins_.sine_elevation = chain.turnedBack(way.from_focus).z;
     // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
     const bool comes_itself =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
