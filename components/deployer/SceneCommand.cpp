@@ -228,7 +228,7 @@ void printScene(const Json& scene) {
 
 bool isSceneName(const std::string& name) {
     const std::string extension = scene::extensionOf(name);
-    return isGltf(name) || extension == ".world" || extension == ".sdf";
+    return isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
 }
 
 int showScene(const std::string& file, bool json) {
@@ -244,7 +244,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects");
-    command->add_option("FILE", options->file, "a .gltf, .glb, .world or .sdf file")->required();
+    command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file")->required();
     command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] { action = [options] { return showScene(options->file, options->json); }; });
 }

@@ -40,6 +40,10 @@ glm::vec3 unitOr(glm::vec3 vector, glm::vec3 otherwise) {
     return std::isfinite(length) && length > 1e-12f ? vector / length : otherwise;
 }
 
+int modeOf(const tinygltf::Primitive& primitive) {
+    return primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+}
+
 void normalise(Surface& surface) {
     for (glm::vec3& normal : surface.normals) normal = unitOr(normal, {0, 1, 0});
     for (glm::vec4& tangent : surface.tangents)
@@ -123,17 +127,24 @@ struct GltfMeshes::Attributes {
 void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh) {
     const auto positions = primitive.attributes.find("POSITION");
     if (positions == primitive.attributes.end()) return;
-    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    const int mode = modeOf(primitive);
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) fail(path + ".mode", fmt::format("is {}; may be 0 to 6", mode));
     if (mode < TINYGLTF_MODE_TRIANGLES) return void(++omissions_.other_primitives);
 
+    Surface surface = surfaceOf(primitive, positions->second, path);
+    if (surface.indices.empty()) return;
+    appendSurface(surface, mapped(primitive, path, surface, mesh), mesh);
+}
+
+Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path) {
     Surface surface;
-    surface.positions = accessors_.vectors<glm::vec3>(positions->second);
+    surface.positions = accessors_.vectors<glm::vec3>(positions);
     const size_t count = surface.positions.size();
     charge(count, path);
     constexpr uint32_t no_restart = ~0u;
     std::vector<uint32_t> corners;
     uint32_t restart = no_restart;
+    const int mode = modeOf(primitive);
     if (primitive.indices >= 0) {
         corners = accessors_.indices(primitive.indices);
         if (mode != TINYGLTF_MODE_TRIANGLES) restart = accessors_.restartIndex(primitive.indices);
@@ -147,27 +158,30 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
             fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
     surface.indices = triangulate(corners, mode, restart);
     cleanUp(surface, omissions_.dropped);
-    if (surface.indices.empty()) return;
+    return surface;
+}
 
+int GltfMeshes::mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface,
+                       types::Mesh& mesh) {
     int index = material(primitive, path);
     const MaterialMaps* const maps = mapsOf(index);
-    const Attributes attributes{primitive, *this, path, count};
-    if (maps && maps->surface) surface.map_uvs = attributes.uvs(maps->on_surface);
-    if (maps && maps->normals) attributes.readMapped(*maps->normals, surface);
+    if (!maps || (!maps->surface && !maps->normals)) return index;
+    const Attributes attributes{primitive, *this, path, surface.positions.size()};
+    if (maps->surface) surface.map_uvs = attributes.uvs(maps->on_surface);
+    if (maps->normals) attributes.readMapped(*maps->normals, surface);
     normalise(surface);
-    if (maps && maps->normals) {
+    if (maps->normals) {
         if (surface.uvs.empty())
             index = withoutMap(index, false);
         else if (surface.normals.empty())
             makeFlatNormals(surface);
         if (!surface.uvs.empty() && surface.tangents.empty()) makeTangents(surface);
     }
-    if (maps && maps->surface && surface.map_uvs.empty())
+    if (maps->surface && surface.map_uvs.empty())
         index = withoutMap(index, true);
-    else if (maps && maps->surface &&
-             std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
+    else if (maps->surface && std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
         mesh.maps.push_back({index, maps->surface});
-    appendSurface(surface, index, mesh);
+    return index;
 }
 
 types::Mesh GltfMeshes::read(size_t index) {

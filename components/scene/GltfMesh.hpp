@@ -35,6 +35,9 @@ public:
 private:
     void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
     int material(const tinygltf::Primitive& primitive, const std::string& path);
+    Surface surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path);
+    /** Gives a surface what the maps of its material need, and the mesh the map; returns the material. */
+    int mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface, types::Mesh& mesh);
     int withoutMap(int material, bool of_surface);
     const MaterialMaps* mapsOf(int material) const {
         return static_cast<size_t>(material) < maps_.size() ? &maps_[static_cast<size_t>(material)] : nullptr;

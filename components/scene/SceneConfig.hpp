@@ -106,7 +106,7 @@ struct SceneConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "",
-                    "scene: .gltf, .glb, .world or .sdf, relative to the deployment; may be absent beside gazebo or "
+                    "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent beside gazebo or "
                     "bathymetry"},
               self.file);
         visit(
