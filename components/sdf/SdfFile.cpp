@@ -147,8 +147,7 @@ std::string joined(const std::string& text) {
 /** Loads `file`, or `text` in its place where there is one. Libsdformat throws what is no std::exception, and more than
  *  it documents: returns the reason, empty when there is none. */
 std::string load(::sdf::Root& root, const std::filesystem::path& file, const std::string& text, ::sdf::Errors& errors) {
-    ::sdf::ParserConfig config = ::sdf::ParserConfig::GlobalConfig();
-    config.URDFSetPreserveFixedJoint(true);  // each link keeps its name and its place
+    const ::sdf::ParserConfig& config = ::sdf::ParserConfig::GlobalConfig();
     try {
         errors = text.empty() ? root.Load(file.string(), config) : root.LoadSdfString(text, config);
         return "";

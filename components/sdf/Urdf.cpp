@@ -34,6 +34,18 @@ void addInertia(XMLElement& link) {
     for (const char* const product : {"ixy", "ixz", "iyz"}) inertia->SetAttribute(product, 0);
 }
 
+/** Each link keeps its name and its place: else what is fixed to another becomes part of it. */
+void keepFixedJoints(XMLElement& robot) {
+    std::vector<std::string> fixed;
+    for (const XMLElement* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))
+        if (joint->Attribute("type", "fixed")) fixed.push_back(nameOf(joint));
+    for (const std::string& name : fixed) {
+        XMLElement* const settings = robot.InsertNewChildElement("gazebo");
+        settings->SetAttribute("reference", name.c_str());
+        settings->InsertNewChildElement("preserveFixedJoint")->SetText(true);
+    }
+}
+
 }  // namespace
 
 bool isUrdf(const std::filesystem::path& file) { return scene::extensionOf(file) == ".urdf"; }
@@ -57,6 +69,7 @@ Urdf readUrdf(const std::filesystem::path& file, const std::string& text) {
              visual = visual->NextSiblingElement("visual"))
             materials.push_back(nameOf(visual->FirstChildElement("material")));
     }
+    keepFixedJoints(*robot);
     if (urdf.materials.empty()) refuse("is a robot without links", robot->GetLineNum());
     tinyxml2::XMLPrinter printer;
     document.Print(&printer);

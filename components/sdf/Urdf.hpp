@@ -8,7 +8,8 @@ namespace insonify::sdf {
 
 /** A robot in URDF, as libsdformat takes it. */
 struct Urdf {
-    std::string text;  ///< With an inertia for each link that has none: libsdformat leaves such links out.
+    std::string text;  ///< With an inertia for each link that has none, for libsdformat leaves such links out; fixed
+                       ///< joints stay.
     std::map<std::string, std::vector<std::string>> materials;  ///< Of each link's visuals, by the name of the link.
 };
 

@@ -83,7 +83,7 @@ TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyIsOfAnObject) {
     Simulation simulation(test::sourceFile(std::string("deploy/") + GetParam().deployment), options);
     std::map<std::string, types::Pose> at;
     for (const std::string& port : simulation.poses())
-        at[port].position = {0, 0, GetParam().name == std::string("Tank") ? 0 : -5.5};
+        at[port].position = {0, 0, GetParam().name == std::string("Harbour") ? -5.5 : 0};
     const SteppedPing made = simulation.step(at, {}).front();
     double all = 0, labelled = 0, ghosts = 0;
     for (size_t k = 0; k < made.ping->bins.size(); ++k) {

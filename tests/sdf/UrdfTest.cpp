@@ -91,7 +91,7 @@ TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
 
 TEST_F(UrdfTest, WhatIsNoRobotIsRefusedAtItsLine) {
     EXPECT_THAT(diagnosticOf(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
-                testing::AllOf(HasSubstr("cut.urdf:3"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
+                testing::AllOf(HasSubstr("cut.urdf:2"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
     EXPECT_THAT(diagnosticOf(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));
     EXPECT_THAT(diagnosticOf(write("world.urdf", "<sdf version='1.9'/>")), HasSubstr("holds no <robot>"));
     EXPECT_THAT(diagnosticOf(robot("")), HasSubstr("is a robot without links"));
