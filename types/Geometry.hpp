@@ -46,6 +46,7 @@ struct Material {
     bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
     int normal_map = -1;                        ///< Index into Geometry::normal_maps, -1 for none [1].
     float normal_scale = 1;                     ///< Scale of the map's x and y [1].
+    float max_map_strength = 0;                 ///< Surfaces of it have maps, with factors up to this; 0: none [1].
 
     bool operator==(const Material&) const = default;
 };
@@ -55,6 +56,24 @@ struct NormalMap {
     int width = 0, height = 0;
     std::vector<uint8_t> rgb;
     bool repeat_u = true, repeat_v = true;  ///< Else clamped to the edge.
+};
+
+/** A picture on a surface: how much of its echo each place returns, of which material it is, or both. Rows from top to
+ *  bottom. */
+struct SurfaceMap {
+    static constexpr uint8_t no_class = 255;  ///< Of the surface's own material.
+
+    int width = 0, height = 0;
+    std::vector<float> strengths;           ///< Factor of each texel's intensity, at least 0 [1]; or empty: 1.
+    std::vector<uint8_t> classes;           ///< Index of each texel into `materials`, or no_class; or empty.
+    std::vector<int> materials;             ///< Of each class an index into Geometry::materials.
+    bool repeat_u = true, repeat_v = true;  ///< Else clamped to the edge.
+};
+
+/** The map of a mesh's triangles of one material. */
+struct MappedMaterial {
+    int material;  ///< Index into Geometry::materials.
+    std::shared_ptr<const SurfaceMap> map;
 };
 
 /** A run of triangles of one material that is drawn or culled as one. */
@@ -86,6 +105,8 @@ struct Mesh {
     std::vector<glm::vec3> normals;    ///< Per vertex, unit, for normal maps; empty or as many as positions [1].
     std::vector<glm::vec4> tangents;   ///< Per vertex, w = handedness; empty or as many as positions [1].
     std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
+    std::vector<glm::vec2> map_uvs;          ///< Of `maps`, transform applied; empty or as many as positions [1].
+    std::vector<MappedMaterial> maps;        ///< At most one of a material.
     std::vector<uint32_t> indices;           ///< Three a triangle.
     std::vector<Cluster> clusters;           ///< Together they cover all indices, in order.
     std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each patch before its parts; or none.

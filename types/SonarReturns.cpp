@@ -31,10 +31,14 @@ void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
         const auto begin = static_cast<ptrdiff_t>(beam * ping.bin_count), end = begin + ping.bin_count;
         const auto strongest = std::max_element(ping.bins.begin() + begin, ping.bins.begin() + end);
-        const auto shown = [](int32_t object) { return object != SonarTruth::no_object; };
-        const auto first = std::find_if(truth.object.begin() + begin, truth.object.begin() + end, shown);
-        if (first != truth.object.begin() + end)
-            tell(ping, truth, static_cast<size_t>(first - truth.object.begin()),
+        const auto shown = [&](ptrdiff_t bin) {
+            const auto at = static_cast<size_t>(bin);
+            return truth.object[at] != SonarTruth::no_object && !truth.isByMirror(at);
+        };
+        auto first = begin;
+        while (first < end && !shown(first)) ++first;
+        if (first < end)
+            tell(ping, truth, static_cast<size_t>(first),
                  {first_range[beam], first_level[beam], first_elevation[beam]});
         if (strongest != ping.bins.begin() + end && *strongest > 0)
             tell(ping, truth, static_cast<size_t>(strongest - ping.bins.begin()),

@@ -11,7 +11,8 @@
 
 namespace insonify::types {
 
-/** What the bins of a ping show: for each of them what sent the echo back, from which elevation, at which angle.
+/** What the bins of a ping show: for each of them what sent the echo back, from which elevation, at which angle; of a
+ *  bin most of whose energy came by a mirror what is seen in it, and from where that is heard.
  *
  *  Beam-first as the ping's own bins: what is told of bin k of beam b stands at [b * bin_count + k]. A bin that has
  *  heard nothing has object -1, share 0, no hits, and NaN for its angles. */
@@ -40,6 +41,8 @@ struct SonarTruth {
     /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
     std::vector<size_t> shape() const { return {beam_count, bin_count}; }
+    /** Whether most of a bin's energy came by the water surface or another mirror. */
+    bool isByMirror(size_t bin) const { return path[bin] != 0 && path[bin] < through_wall; }
     /** Takes the grid of a ping, and makes room for as many bins; allocates nothing when it had this shape. */
     void takeGrid(const Sonar& ping);
     /** What is wrong with the lists, after "a sample"; null: nothing. */

@@ -16,7 +16,7 @@ class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
               const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-              output::BinScale scale, double bin_width)
+              output::BinScale scale, double bin_width, std::span<const float> ranges)
         : ping_(ping),
           truth_(truth),
           picture_(picture),
@@ -25,7 +25,8 @@ public:
           first_shadow_(static_cast<int32_t>(truth.objects.size())),
           config_(config),
           decibel_(scale == output::BinScale::Decibel),
-          bin_width_(bin_width) {
+          bin_width_(bin_width),
+          ranges_(ranges) {
         if (truth.beam_count != ping.beam_count || truth.bin_count != ping.bin_count)
             throw std::runtime_error("a ping has other beams or bins than its truth");
     }
@@ -51,12 +52,12 @@ private:
     }
     /** The instance that a bin shows; none where that is no part of the file's scene, as the floor of a survey. */
     int32_t instanceAt(size_t bin) const {
-        const int32_t object = truth_.object[bin];
+        const int32_t object = directAt(bin);
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
-    bool isGhost(size_t bin) const {
-        return !truth_.path.empty() && truth_.path[bin] != 0 && truth_.path[bin] < types::SonarTruth::through_wall;
-    }
+    bool isGhost(size_t bin) const { return !truth_.path.empty() && truth_.isByMirror(bin); }
+    /** The object that a bin shows directly. */
+    int32_t directAt(size_t bin) const { return isGhost(bin) ? none : truth_.object[bin]; }
     bool counts(size_t bin) const {
         const int32_t instance = instanceAt(bin);
         return instance != none && instances_.category(instance) != 0 && !isGhost(bin) &&
@@ -115,14 +116,17 @@ private:
      *  what lies behind them as well, as where a floor is uneven. Of echoes whose elevations differ from that behind by
      *  no more than one bin's there, the last one hides it: sound passed the others already. */
     int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
-        const auto elevation = [&](uint32_t k) { return static_cast<double>(truth_.elevation[start + k]); };
+        const auto elevation = [&](uint32_t k) {
+            return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
+                                      : static_cast<double>(truth_.elevation[start + k]);
+        };
         const auto apart = [&](uint32_t k) { return std::abs(elevation(k) - elevation(behind)); };
         double nearest = std::numeric_limits<double>::infinity();
         for (uint32_t k = 0; k < first; ++k)
-            if (truth_.object[start + k] != none && apart(k) <= nearest) nearest = apart(k);
+            if (directAt(start + k) != none && apart(k) <= nearest) nearest = apart(k);
         if (behind + 1 < ping_.bin_count && std::isfinite(apart(behind + 1))) nearest += apart(behind + 1);
         for (uint32_t k = first; k-- > 0;) {
-            if (truth_.object[start + k] == none || !(apart(k) <= nearest)) continue;
+            if (directAt(start + k) == none || !(apart(k) <= nearest)) continue;
             const int32_t caster = instanceAt(start + k);
             if (caster == none || caster == instanceAt(start + behind)) return none;
             return instances_.shadow(caster) == 0 ? none : caster + first_shadow_;
@@ -149,7 +153,8 @@ private:
 
     void addCell(uint32_t beam, uint32_t cell, uint32_t first, uint32_t last, int32_t object) {
         const double bearing = picture_.bearing(beam);
-        const double near = first * bin_width_, far = last * bin_width_;
+        const double near = ranges_.empty() ? first * bin_width_ : static_cast<double>(ranges_[beam]);
+        const double far = ranges_.empty() ? last * bin_width_ : near;
         Annotation& annotation = annotationOf(object, bearing, near);
         annotation.bearing_min = std::min(annotation.bearing_min, bearing);
         annotation.bearing_max = std::max(annotation.bearing_max, bearing);
@@ -243,7 +248,8 @@ private:
     const int32_t first_shadow_;  ///< Number of objects of the truth.
     const AnnotationConfig& config_;
     const bool decibel_;
-    const double bin_width_;  ///< [m]
+    const double bin_width_;               ///< [m]
+    const std::span<const float> ranges_;  ///< Of each beam, in place of its bin's [m].
     /** What each cell shows: an instance; from first_shadow_ on the shadow of one; from 2 * first_shadow_ on a ghost.
      */
     std::vector<int32_t> object_of_;
@@ -255,8 +261,8 @@ private:
 
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, double bin_width) {
-    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width).annotated();
+                   output::BinScale scale, double bin_width, std::span<const float> ranges) {
+    return Annotator(ping, truth, picture, classes, instances, config, scale, bin_width, ranges).annotated();
 }
 
 }  // namespace insonify::dataset

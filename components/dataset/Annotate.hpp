@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,10 +44,10 @@ struct Annotated {
  * if its share there is at least `min_share`, it has a class, and the cell's grey level is at least `min_level`. Where
  * most of a bin's energy came by a mirror, it is no object's: cells of such bins that touch are a ghost. What has fewer
  *  than `min_pixels` pixels is not annotated, and its pixels belong to none.
- *  @param picture that took the ping; @param bin_width exact [m]. Throws std::runtime_error for a truth of another
- * grid. */
+ *  @param picture that took the ping; @param bin_width exact [m]; @param ranges of each beam of a range image, which
+ * has one bin [m]. Throws std::runtime_error for a truth of another grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
                    const Classes& classes, const Instances& instances, const AnnotationConfig& config,
-                   output::BinScale scale, double bin_width);
+                   output::BinScale scale, double bin_width, std::span<const float> ranges = {});
 
 }  // namespace insonify::dataset

@@ -85,6 +85,27 @@ void addLines(log::NpzFile& npz, const std::vector<TimedPose>& run) {
     npz.array("orientations_wxyz", {run.size(), 4}, orientations);
 }
 
+template <class Number>
+void addTruth(log::NpzFile& npz, const std::string& name, const auto& numbers, const std::vector<size_t>& shape) {
+    npz.begin(name, log::numpyType<Number>(), shape);
+    npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
+    npz.end();
+}
+
+/** A range image, rows from the top, each from port to starboard, and the truth of its cells as range_object and so
+ * on. */
+void addRangeImage(log::NpzFile& npz, const types::DepthMap& image, const types::SonarTruth& truth) {
+    const std::vector<size_t> shape{image.vertical_size, image.horizontal_size};
+    npz.array("distances", shape, image.distances);
+    npz.array("remissions", shape, image.remissions);
+    npz.array("vertical_interval", {image.vertical_interval.size()}, image.vertical_interval);
+    npz.array("horizontal_interval", {image.horizontal_interval.size()}, image.horizontal_interval);
+    types::SonarTruth::forEachArray(
+        truth, [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
+            addTruth<Number>(npz, std::string("range_") + name, numbers, shape);
+        });
+}
+
 void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta) {
     const types::Sonar& ping = heard.run.ping();
     const uint32_t lines = heard.run.size(), beams = ping.beam_count / lines;
@@ -99,10 +120,9 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
     npz.array("range_m", {ranges.size()}, ranges);
     types::SonarTruth::forEachArray(
         heard.run.truth(), [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
-            npz.begin(name, log::numpyType<Number>(), shape);
-            npz.append(numbers.data(), numbers.size() * sizeof(numbers[0]));
-            npz.end();
+            addTruth<Number>(npz, name, numbers, shape);
         });
+    if (heard.range_image) addRangeImage(npz, *heard.range_image, *heard.range_truth);
     if (lines > 1) addLines(npz, heard.sample.run);
     npz.texts("objects", heard.run.truth().objects);
     npz.text("meta", meta);
@@ -116,6 +136,11 @@ void writeMcap(const fs::path& file, const Heard& heard) {
     const size_t ping = log->addStream<types::Sonar>("sonar.ping");
     const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
     const size_t pose = log->addStream<types::Pose>("vehicle.pose");
+    if (heard.range_image) {
+        const types::Time time = heard.run.pings()[0]->time;
+        log->write(log->addStream<types::DepthMap>("sonar.range_image"), time, *heard.range_image);
+        log->write(log->addStream<types::SonarTruth>("sonar.range_truth"), time, *heard.range_truth);
+    }
     for (uint32_t i = 0; i < heard.run.size(); ++i) {
         types::Pose at = heard.sample.run[i].at;
         at.time = heard.run.pings()[i]->time;
@@ -134,12 +159,28 @@ SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& class
     : sweep_(sweep), format_(format), classes_(classes), store_(store), picture_(sweep.picture) {}
 
 void SampleFiles::write(const Heard& heard) {
-    picture_.take(heard.run.ping());
-    const Annotated annotated = annotate(heard.run.ping(), heard.run.truth(), picture_, classes_, heard.instances,
-                                         sweep_.annotations, sweep_.picture.scale, heard.bin_width);
+    const Annotated annotated = annotatedOf(heard);
     Json record = recordOf(heard, annotated);
     record["files"] = writeFiles(store_.stemOf(heard.sample.index), heard, annotated, record);
     store_.putRecord(heard.sample.index, std::move(record));
+}
+
+Annotated SampleFiles::annotatedOf(const Heard& heard) {
+    const types::Sonar& ping = heard.run.ping();
+    if (sweep_.picture.shape == output::PlainShape::Range) {
+        const types::DepthMap& image = *heard.range_image;
+        picture_.take(image, ping.bin_count * heard.bin_width);
+        types::Sonar cells;
+        cells.bin_count = 1;
+        cells.beam_count = heard.range_truth->beam_count;
+        cells.bearings = heard.range_truth->bearings;
+        cells.bins = image.remissions;
+        return annotate(cells, *heard.range_truth, picture_, classes_, heard.instances, sweep_.annotations,
+                        output::BinScale::Linear, heard.bin_width, image.distances);
+    }
+    picture_.take(ping);
+    return annotate(ping, heard.run.truth(), picture_, classes_, heard.instances, sweep_.annotations,
+                    sweep_.picture.scale, heard.bin_width);
 }
 
 Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const {

@@ -7,6 +7,7 @@
 #include "components/dataset/Run.hpp"
 #include "components/dataset/Samples.hpp"
 #include "components/dataset/Store.hpp"
+#include "types/DepthMap.hpp"
 
 namespace insonify::dataset {
 
@@ -18,6 +19,8 @@ struct Heard {
     double bin_width;                                      ///< Exact [m].
     std::string scene;                                     ///< Name of its file.
     std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.
+    types::DepthMapPtr range_image{};                      ///< By a 3-D sonar, else null.
+    types::SonarTruthPtr range_truth{};                    ///< What its cells show, a bin for each.
 };
 
 /** Writes the files of samples in one format, and their records. */
@@ -28,6 +31,8 @@ public:
     void write(const Heard& heard);
 
 private:
+    /** Paints the picture, and finds what it shows. */
+    Annotated annotatedOf(const Heard& heard);
     Json recordOf(const Heard& heard, const Annotated& annotated) const;
     /** Files and their sums. */
     Json writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated, const Json& meta);

@@ -245,6 +245,7 @@ struct Sweep {
     Split split;
     std::vector<ClassRule> classes;
     output::PlainConfig picture;
+    int picture_line = 0, picture_column = 0;  ///< Where its shape stands in the sweep.
     AnnotationConfig annotations;
 };
 

@@ -82,6 +82,7 @@ Json jsonOf(const types::Material& material, size_t triangles, double area) {
             {"measured_angles", material.measured.size()},
             {"reflectivity", material.reflectivity},
             {"normal_map", material.normal_map >= 0},
+            {"surface_map", material.max_map_strength > 0},
             {"triangles", triangles},
             {"area_m2", area}};
 }
@@ -144,7 +145,8 @@ std::string axesOf(const std::string& file) {
 
 /** A scene file as a sonar will meet it, in the world's axes: {file, axes, bounds: {min, max, size, centre} [m] or
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
- *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, triangles, area_m2}], objects:
+ *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles,
+ * area_m2}], objects:
  *  [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move], not_understood: [],
  * warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
@@ -194,12 +196,13 @@ std::string lawText(const Json& material) {
 void printMaterial(const Json& material) {
     fmt::print(
         "  {:20} {:7.1f} dB lambert_db, reflection {:.2g}, roughness_slope {}, reflectivity {:.2g}, {} "
-        "triangles, {:.4g} m2{}{}\n",
+        "triangles, {:.4g} m2{}{}{}\n",
         material["name"].get<std::string>(), material["lambert_db"].get<double>(), material["reflection"].get<double>(),
         material["roughness_slope"].is_null() ? "none"
                                               : fmt::format("{:.2g}", material["roughness_slope"].get<double>()),
         material["reflectivity"].get<double>(), material["triangles"].get<size_t>(), material["area_m2"].get<double>(),
-        material["normal_map"].get<bool>() ? ", normal map" : "", lawText(material));
+        material["normal_map"].get<bool>() ? ", normal map" : "",
+        material["surface_map"].get<bool>() ? ", surface map" : "", lawText(material));
 }
 
 void printObjects(const Json& objects) {
@@ -227,7 +230,7 @@ void printScene(const Json& scene) {
 
 bool isSceneName(const std::string& name) {
     const std::string extension = scene::extensionOf(name);
-    return isGltf(name) || extension == ".world" || extension == ".sdf";
+    return isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
 }
 
 int showScene(const std::string& file, bool json) {
@@ -300,7 +303,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects; or makes one");
-    command->add_option("FILE", options->file, "a .gltf, .glb, .world or .sdf file");
+    command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file");
     command->add_flag("--json", options->json, "for machines");
     addMakeCommand(*command, action);
     command->callback([options, command, &action] {

@@ -7,7 +7,7 @@ namespace insonify::deployer {
  *  be read. */
 int showScene(const std::string& file, bool json);
 
-/** Whether a name is that of a scene: .gltf, .glb, .world or .sdf. */
+/** Whether a name is that of a scene: .gltf, .glb, .world, .sdf or .urdf. */
 bool isSceneName(const std::string& name);
 
 }  // namespace insonify::deployer

@@ -14,6 +14,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
+#include "components/sonar/PingTask.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::deployer {
@@ -107,6 +108,8 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
     for (const std::string& port : poses_)
         feeds_.push_back(&dynamic_cast<PoseFeed&>(*deployment_->task(splitPort(port).first)));
     connectReaders(options.truth);
+    for (const auto& task : deployment_->tasks())
+        if (auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get())) sonar->useThreads(options.threads);
     deployment_->configure();
     start();
 }
@@ -173,6 +176,10 @@ void Simulation::connectReaders(bool truth) {
                                      "comes from no sonar that tells its truth");
         told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
         reader.sonar = dynamic_cast<const sonar::AimedTask*>(&told->owner());
+        if (framework::OutputPortBase* const image = told->owner().output("range_image")) {
+            image->connectTo(reader.range_image, framework::ConnPolicy::buffer(4));
+            told->owner().output("range_truth")->connectTo(reader.range_truth, framework::ConnPolicy::buffer(4));
+        }
     }
 }
 
@@ -224,6 +231,8 @@ std::vector<SteppedPing> Simulation::step(std::map<std::string, types::Pose> at,
     for (size_t i = 0; i < readers_.size(); ++i) {
         readers_[i]->ping.readNewest(made[i].ping, false);
         readers_[i]->truth.readNewest(made[i].truth, false);
+        readers_[i]->range_image.readNewest(made[i].range_image, false);
+        readers_[i]->range_truth.readNewest(made[i].range_truth, false);
         if (made[i].ping && made[i].truth) made[i].bin_width = binWidthOf(*readers_[i], *made[i].ping);
     }
     return made;
@@ -240,14 +249,18 @@ void Simulation::reset(std::optional<uint64_t> seed) {
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
     throwAny(deployment_->stop());
-    for (const auto& reader : readers_) reader->ping.clear(), reader->truth.clear();
+    for (const auto& reader : readers_)
+        reader->ping.clear(), reader->truth.clear(), reader->range_image.clear(), reader->range_truth.clear();
     for (const auto& task : deployment_->tasks()) {
         if (deployment_->spec().task(task->name())->type == scene_type) continue;
-        if (const framework::Outcome outcome = task->cleanup(); !outcome) throw std::runtime_error(outcome.reason);
+        auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get());
+        const framework::Outcome cleaned = sonar ? sonar->restart() : task->cleanup();
+        if (!cleaned) throw std::runtime_error(cleaned.reason);
         for (framework::PropertiesBase* properties : task->properties())
             for (const framework::PropertyInfo& property : properties->list())
                 if (seed && property.name == "seed" && !own_seeds_.contains(task->name()))
                     properties->set("seed", std::to_string(framework::seedOf(*seed, task->name())));
+        if (sonar) continue;
         if (const framework::Outcome outcome = task->configure(); !outcome) throw std::runtime_error(outcome.reason);
     }
     start();

@@ -20,6 +20,7 @@ struct SimulationOptions {
     uint64_t seed = 0;                   ///< As of `insonify run --seed`; 0: the deployment's own.
     std::vector<std::string> overrides;  ///< "task.property=value", as of `insonify run --set`.
     bool truth = false;                  ///< Whether pings come with what they show.
+    int threads = 0;                     ///< Of each sonar; 0: as many as the machine has cores [1].
     std::optional<double> period;        ///< Between two steps; none: that of the poses it replaces, or 0.1 [s].
     std::vector<std::string>
         objects;  ///< Nodes of the scene that the caller places as well, see Simulation::objectPort.
@@ -28,8 +29,10 @@ struct SimulationOptions {
 /** One ping that a step has made. */
 struct SteppedPing {
     types::SonarPtr ping;
-    types::SonarTruthPtr truth;  ///< Null where it was not asked for.
-    double bin_width = 0;        ///< Exact, where the ping's `bin_duration` is rounded; 0 without the truth [m].
+    types::SonarTruthPtr truth;        ///< Null where it was not asked for.
+    types::DepthMapPtr range_image;    ///< With the truth, by a 3-D sonar; null by any other.
+    types::SonarTruthPtr range_truth;  ///< What each cell of it shows, a bin for each.
+    double bin_width = 0;              ///< Exact, where the ping's `bin_duration` is rounded; 0 without the truth [m].
 };
 
 /** A deployment that goes on by one pose at a time, given by who calls.
@@ -48,6 +51,8 @@ public:
     static std::string objectPort(const std::string& node);
     /** Ports whose pings come back, "task.port". */
     std::vector<std::string> pings() const;
+    /** Whether the sonar behind these pings, one of pings(), has range images. */
+    bool hasRangeImages(size_t ping) const { return readers_[ping]->range_image.connected(); }
     double period() const { return period_; }  ///< [s]
     double time() const { return time_; }      ///< Of the next step where nothing else is said [s].
 

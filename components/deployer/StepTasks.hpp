@@ -12,6 +12,7 @@
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
 #include "components/sonar/AimedTask.hpp"
+#include "types/DepthMap.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarTruth.hpp"
@@ -61,6 +62,10 @@ struct PingReader : framework::TaskContext {
     explicit PingReader(std::string source) : TaskContext(std::move(source)) {}
     framework::InputPort<types::SonarPtr> ping{this, "ping", "of the last step"};
     framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "of the same", framework::Need::Optional};
+    framework::InputPort<types::DepthMapPtr> range_image{this, "range_image", "of the same, by a 3-D sonar",
+                                                         framework::Need::Optional};
+    framework::InputPort<types::SonarTruthPtr> range_truth{this, "range_truth", "what that shows",
+                                                           framework::Need::Optional};
     const sonar::AimedTask* sonar = nullptr;  ///< The source of the truth; null where that is no task of ours.
 };
 

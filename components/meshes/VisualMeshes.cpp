@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <memory>
 
 #include "components/meshes/MeshFile.hpp"
 #include "components/scene/Clusters.hpp"
@@ -68,17 +70,23 @@ std::vector<Placing> VisualMeshes::merge(const types::Geometry& from, const std:
 
 int VisualMeshes::mergeMesh(const types::Geometry& from, int index, const Look& look, std::map<int, int>& materials) {
     types::Mesh mesh = from.meshes[static_cast<size_t>(index)];
-    for (types::Cluster& cluster : mesh.clusters) {
-        const auto [known, is_new] = materials.try_emplace(cluster.material, -1);
+    const auto merged = [&](int there) {
+        const auto [known, is_new] = materials.try_emplace(there, -1);
         if (is_new) {
-            types::Material own = from.materials[static_cast<size_t>(cluster.material)];
+            types::Material own = from.materials[static_cast<size_t>(there)];
             if (own.normal_map >= 0) {
                 geometry_.normal_maps.push_back(from.normal_maps[static_cast<size_t>(own.normal_map)]);
                 own.normal_map = static_cast<int>(geometry_.normal_maps.size()) - 1;
             }
             known->second = material(std::move(own), look);
         }
-        cluster.material = known->second;
+        return known->second;
+    };
+    for (types::Cluster& cluster : mesh.clusters) cluster.material = merged(cluster.material);
+    for (types::MappedMaterial& mapped : mesh.maps) {
+        types::SurfaceMap map = *mapped.map;
+        std::ranges::transform(map.materials, map.materials.begin(), merged);
+        mapped = {merged(mapped.material), std::make_shared<const types::SurfaceMap>(std::move(map))};
     }
     geometry_.meshes.push_back(std::move(mesh));
     return static_cast<int>(geometry_.meshes.size()) - 1;

@@ -73,8 +73,30 @@ void PlainPicture::take(const types::Sonar& ping) {
         case PlainShape::Fan: buildFan(); break;
         case PlainShape::Polar: buildPolar(); break;
         case PlainShape::Waterfall: buildWaterfall(ping); break;
+        case PlainShape::Range: throw std::runtime_error("a ping is no range image");
     }
     findLevels(ping);
+}
+
+void PlainPicture::take(const types::DepthMap& map, double range_max) {
+    if (const char* const diagnostic = map.diagnostic()) throw std::runtime_error(std::string("a map ") + diagnostic);
+    time_ = map.time;
+    shape_ = {};
+    shape_.bearings.assign(map.horizontal_interval.rbegin(), map.horizontal_interval.rend());
+    bins_per_cell_ = cells_ = 1;
+    width_ = map.horizontal_size, height_ = map.vertical_size;
+    reference_db_ = 0;
+    bearing_of_.clear();
+    levels_.clear();
+    for (size_t cell = 0; cell < map.distances.size(); ++cell) {
+        const auto distance = static_cast<double>(map.distances[cell]);
+        bearing_of_.push_back(map.horizontal_interval[cell % width_]);
+        levels_.push_back(std::isfinite(distance) ? static_cast<uint8_t>(std::lround(
+                                                        255 - 254 * std::clamp(distance / range_max, 0.0, 1.0)))
+                                                  : 0);
+    }
+    cell_of_.resize(map.distances.size());
+    std::iota(cell_of_.begin(), cell_of_.end(), 0);
 }
 
 void PlainPicture::buildFan() {
@@ -156,6 +178,7 @@ double PlainPicture::meanOf(const types::Sonar& ping, uint32_t beam, uint32_t ce
 }
 
 cv::Point PlainPicture::pixelOf(uint32_t beam, uint32_t cell) const {
+    if (config_.shape == PlainShape::Range) return {static_cast<int>(beam % width_), static_cast<int>(beam / width_)};
     if (config_.shape == PlainShape::Polar)
         return {static_cast<int>(column_of_[beam]), static_cast<int>(cells_ - 1 - cell)};
     if (config_.shape == PlainShape::Waterfall)

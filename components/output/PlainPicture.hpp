@@ -4,12 +4,13 @@
 
 #include "components/output/FanShape.hpp"
 #include "components/output/PictureConfig.hpp"
+#include "types/DepthMap.hpp"
 #include "types/Image.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::output {
 
-enum class PlainShape { Fan, Polar, Waterfall };
+enum class PlainShape { Fan, Polar, Waterfall, Range };
 
 /** How a plain picture looks. */
 struct PlainConfig {
@@ -28,7 +29,8 @@ struct PlainConfig {
         visit(Field{"shape", "",
                     "fan: as it was in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
                     "each line of "
-                    "a side-scan, the newest on top, port left"},
+                    "a side-scan, the newest on top, port left; range: a pixel for each beam of a 3-D sonar, nearest "
+                    "brightest"},
               self.shape);
         visit(Field{"height", "1", "pixels that the range takes, at most; a pixel is never longer than bins make it",
                     16, 8192},
@@ -53,6 +55,9 @@ public:
     /** Takes a ping with one bearing for each beam; of a waterfall all lines as one ping, line by line. A line has a
      *  beam to port, which is one of a bearing that is not negative, or one to starboard, or both. */
     void take(const types::Sonar& ping);
+    /** Takes a range image as if each of its cells were a beam of one bin, row by row: grey levels from 1 at
+     * `range_max` [m] to 255 at the sonar, 0 without a return. */
+    void take(const types::DepthMap& map, double range_max);
 
     uint32_t width() const { return width_; }    ///< [px]
     uint32_t height() const { return height_; }  ///< [px]
@@ -63,7 +68,8 @@ public:
     const std::vector<int32_t>& cells() const { return cell_of_; }
     /** Of each cell from black, 0, to white, 255. */
     const std::vector<uint8_t>& levels() const { return levels_; }
-    /** The ping's beams from starboard to port; of a waterfall those of its first line. */
+    /** The ping's beams from starboard to port; of a waterfall those of its first line, of a range image
+     *  its columns. */
     const types::BeamArc& arc() const { return shape_; }
     /** Bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
     double bearing(uint32_t beam) const { return bearing_of_[beam]; }
@@ -104,5 +110,5 @@ private:
 
 template <>
 struct insonify::types::EnumNames<insonify::output::PlainShape> {
-    static constexpr std::string_view names[] = {"fan", "polar", "waterfall"};
+    static constexpr std::string_view names[] = {"fan", "polar", "waterfall", "range"};
 };

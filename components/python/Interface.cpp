@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "components/deployer/Json.hpp"
-#include "components/deployer/Simulation.hpp"
+#include "components/deployer/SimulationBatch.hpp"
 #include "components/python/Samples.hpp"
 #include "types/ConfigError.hpp"
 
@@ -115,6 +115,49 @@ types::Pose poseOf(const double* numbers) {
     return pose;
 }
 
+deployer::SimulationOptions optionsOf(uint64_t seed, const char* const* overrides, size_t override_count, int truth,
+                                      const double* period) {
+    deployer::SimulationOptions options;
+    options.seed = seed;
+    options.overrides = {overrides, overrides + override_count};
+    options.truth = truth != 0;
+    options.period = unlessNull(period);
+    return options;
+}
+
+class BatchHandle final : public Handle {
+public:
+    BatchHandle(const std::string& deployment, const deployer::SimulationOptions& options, size_t count)
+        : batch(deployment, options, count) {
+        for (size_t i = 0; i < count; ++i) seeds_.push_back(deployer::SimulationBatch::seedOf(options.seed, i));
+        const deployer::Simulation& first = batch.front();
+        if (first.poses().size() != 1 || first.pings().size() != 1)
+            throw types::ConfigError(deployment, "",
+                                     "has several vehicles or sonars; a batch steps deployments of one of each");
+    }
+    Json facts() const override {
+        const deployer::Simulation& first = batch.front();
+        return {{"poses", first.poses()}, {"pings", first.pings()}, {"period", first.period()}, {"seeds", seeds_}};
+    }
+    std::unique_ptr<Handle> step(const double* poses) {
+        std::vector<std::map<std::string, types::Pose>> at(batch.size());
+        for (size_t i = 0; i < at.size(); ++i) at[i][batch.front().poses().front()] = poseOf(poses + 7 * i);
+        std::vector<types::SonarPtr> pings;
+        std::vector<types::SonarTruthPtr> truths;
+        for (const auto& made : batch.step(std::move(at))) {
+            if (!made.front().ping) throw std::runtime_error("a simulation made no ping");
+            pings.push_back(made.front().ping);
+            if (made.front().truth) truths.push_back(made.front().truth);
+        }
+        return pingsHandle(pings, truths);
+    }
+
+    deployer::SimulationBatch batch;
+
+private:
+    std::vector<uint64_t> seeds_;
+};
+
 }  // namespace
 
 const char* insonify_error() { return said.c_str(); }
@@ -134,8 +177,27 @@ size_t insonify_arrays(const Handle* handle, Array* arrays, size_t room) {
 Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
                             int truth, const double* period) {
     return guarded(nullptr, [&]() -> Handle* {
-        return new SimulationHandle(
-            deployment, {seed, {overrides, overrides + override_count}, truth != 0, unlessNull(period), {}});
+        return new SimulationHandle(deployment, optionsOf(seed, overrides, override_count, truth, period));
+    });
+}
+
+Handle* insonify_batch(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
+                       int truth, const double* period, size_t count) {
+    return guarded(nullptr, [&]() -> Handle* {
+        return new BatchHandle(deployment, optionsOf(seed, overrides, override_count, truth, period), count);
+    });
+}
+
+Handle* insonify_batch_step(Handle* batch, const double* poses) {
+    return guarded(nullptr, [&]() -> Handle* { return dynamic_cast<BatchHandle&>(*batch).step(poses).release(); });
+}
+
+int insonify_batch_reset(Handle* batch, const size_t* which, const uint64_t* seeds, size_t count) {
+    return guarded(-1, [&] {
+        std::vector<std::optional<uint64_t>> given(count);
+        for (size_t i = 0; seeds && i < count; ++i) given[i] = seeds[i];
+        dynamic_cast<BatchHandle&>(*batch).batch.reset({which, count}, given);
+        return 0;
     });
 }
 

@@ -30,6 +30,15 @@ int insonify_step(Handle* simulation, const char* const* ports, const double* po
                   const double* time, Handle** pings);
 /** @param seed null: the same. @return 0; -1 on errors. */
 int insonify_reset(Handle* simulation, const uint64_t* seed);
+/** Several simulations of one deployment on one scene, of one vehicle and one sonar. Its facts: `{poses, pings, period,
+ * seeds}`. */
+Handle* insonify_batch(const char* deployment, uint64_t seed, const char* const* overrides, size_t override_count,
+                       int truth, const double* period, size_t count);
+/** Steps all with seven numbers each, as insonify_step takes them. The pings as one sample: `bins` [simulations, beams,
+ *  bins], `bearings`, `ranges`, `times` [s], and the truth by its names where it was asked for. */
+Handle* insonify_batch_step(Handle* batch, const double* poses);
+/** @param which numbers of simulations; @param seeds one for each, not 0; null: the same. @return 0; -1 on errors. */
+int insonify_batch_reset(Handle* batch, const size_t* which, const uint64_t* seeds, size_t count);
 /** A ping painted as a fan: a sample with the array `pixels`. @param reference_db null: none. */
 Handle* insonify_fan(const Handle* ping, uint32_t width, double dynamic_range_db, const double* reference_db,
                      const char* colour_map, const char* scale, int code_bits);

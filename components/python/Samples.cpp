@@ -1,5 +1,6 @@
 #include "components/python/Samples.hpp"
 
+#include <map>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -64,6 +65,57 @@ private:
     types::SonarPtr ping_;
     types::SonarTruthPtr truth_;
     std::vector<double> ranges_;
+};
+
+/** Pings of one shape, copied into one array. */
+class PingsHandle final : public Handle {
+public:
+    PingsHandle(const std::vector<types::SonarPtr>& pings, const std::vector<types::SonarTruthPtr>& truths)
+        : first_(pings.front()), count_(pings.size()) {
+        for (uint32_t k = 0; k < first_->bin_count; ++k) ranges_.push_back(first_->binStart(k + 0.5));
+        bins_.reserve(count_ * first_->bins.size());
+        for (const types::SonarPtr& ping : pings) {
+            if (ping->bins.size() != first_->bins.size())
+                throw std::runtime_error("the pings of a batch differ in beams or bins");
+            times_.push_back(ping->time.seconds());
+            bins_.insert(bins_.end(), ping->bins.begin(), ping->bins.end());
+        }
+        if (!truths.empty()) objects_ = truths.front()->objects;
+        for (const types::SonarTruthPtr& truth : truths)
+            types::SonarTruth::forEachArray(*truth, [&](const char* name, const auto& numbers, auto) {
+                const auto* const bytes = reinterpret_cast<const char*>(numbers.data());
+                std::vector<char>& all = truth_[name];
+                all.insert(all.end(), bytes, bytes + numbers.size() * sizeof(numbers[0]));
+            });
+    }
+    Json facts() const override {
+        Json facts{{"kind", "pings"}, {"speed_of_sound", first_->speed_of_sound}, {"bin_length", first_->binStart(1)}};
+        if (!truth_.empty()) facts["objects"] = objects_;
+        return facts;
+    }
+    std::vector<Array> arrays() const override {
+        const auto cube = [&](const char* name, const char* type, const void* numbers) {
+            return Array{name, type, numbers, {count_, first_->beam_count, first_->bin_count}, 3};
+        };
+        std::vector<Array> arrays{cube("bins", "f4", bins_.data()), listOf("times", times_.data(), count_),
+                                  listOf("bearings", first_->bearings.data(), first_->bearings.size()),
+                                  listOf("ranges", ranges_.data(), ranges_.size())};
+        const types::SonarTruth shape;
+        types::SonarTruth::forEachArray(shape, [&](const char* name, const auto& numbers, auto) {
+            using Number = typename std::remove_cvref_t<decltype(numbers)>::value_type;
+            if (const auto found = truth_.find(name); found != truth_.end())
+                arrays.push_back(cube(found->first.c_str(), typeOf<Number>(), found->second.data()));
+        });
+        return arrays;
+    }
+
+private:
+    types::SonarPtr first_;
+    size_t count_;
+    std::vector<float> bins_;
+    std::vector<double> ranges_, times_;
+    std::vector<std::string> objects_;
+    std::map<std::string, std::vector<char>> truth_;
 };
 
 struct TruthHandle final : Handle {
@@ -153,6 +205,11 @@ struct MakeHandle {
 };
 
 }  // namespace
+
+std::unique_ptr<Handle> pingsHandle(const std::vector<types::SonarPtr>& pings,
+                                    const std::vector<types::SonarTruthPtr>& truths) {
+    return std::make_unique<PingsHandle>(pings, truths);
+}
 
 std::unique_ptr<Handle> pingHandle(types::SonarPtr ping, types::SonarTruthPtr truth) {
     return std::make_unique<PingHandle>(std::move(ping), std::move(truth));

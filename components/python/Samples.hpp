@@ -14,6 +14,11 @@ namespace insonify::python {
  *  range at the middle of each bin.
  *  @param truth null: none; otherwise its arrays are there as well, and its `objects` among the facts. */
 std::unique_ptr<Handle> pingHandle(types::SonarPtr ping, types::SonarTruthPtr truth);
+/** Pings of one shape as one: arrays `bins` [pings, beams, bins], `times` [s] of each, `bearings` and `ranges` of the
+ *  first.
+ *  @param truths empty: none; otherwise one for each, arrays of the shape of `bins`. */
+std::unique_ptr<Handle> pingsHandle(const std::vector<types::SonarPtr>& pings,
+                                    const std::vector<types::SonarTruthPtr>& truths);
 /** The ping of such a handle as a fan. Throws types::ConfigError for what no picture can be. */
 std::unique_ptr<Handle> fanHandle(const Handle& ping, const output::DisplayConfig& display);
 

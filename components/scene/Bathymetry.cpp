@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "components/scene/Clusters.hpp"
-#include "components/scene/Surface.hpp"
+#include "components/scene/SurfaceMaps.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -34,6 +35,36 @@ void addTriangles(const std::vector<float>& values, const PostWindow& posts, boo
                 });
 }
 
+/** The part of a window that a survey has. */
+PostWindow clipped(PostWindow posts, const Survey& survey) {
+    const int end_column = std::min(posts.column + posts.columns, survey.columns());
+    const int end_row = std::min(posts.row + posts.rows, survey.rows());
+    posts.column = std::max(posts.column, 0);
+    posts.row = std::max(posts.row, 0);
+    posts.columns = std::max(end_column - posts.column, 0);
+    posts.rows = std::max(end_row - posts.row, 0);
+    return posts.isEmpty() ? PostWindow{} : posts;
+}
+
+void checkUnit(const Survey& survey, const std::filesystem::path& file) {
+    static const std::set<std::string> metres = {"", "m", "metre", "metres", "meter", "meters"};
+    if (!metres.contains(survey.unit()))
+        throw types::ConfigError(
+            file.string(), "",
+            "has elevations in " + survey.unit() + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
+}
+
+/** `tile`: what a tile of the survey measures [m]. */
+void checkTexels(const Survey& mosaic, const std::filesystem::path& file, const glm::dvec2& tile) {
+    const glm::dvec2 texels = tile / glm::abs(mosaic.spacing());
+    if (std::max(texels.x, texels.y) > max_posts)
+        throw types::ConfigError(
+            file.string(), "",
+            fmt::format("has {:.0f} x {:.0f} values on a tile of the survey; at most {:.0f} a side: lower "
+                        "`tile`, or thin it out with gdalwarp -tr",
+                        texels.x, texels.y, max_posts));
+}
+
 }  // namespace
 
 void BathymetryConfig::check(types::Diagnostics& diagnostics) const {
@@ -42,11 +73,20 @@ void BathymetryConfig::check(types::Diagnostics& diagnostics) const {
         diagnostics.push_back({easting ? "northing" : "easting", "is missing; give both, or neither"});
 }
 
-Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file)
+void MosaicConfig::check(types::Diagnostics& diagnostics) const {
+    if (file.empty()) diagnostics.push_back({"file", "is missing; give the path of a mosaic"});
+    meaning.check(diagnostics);
+}
+
+Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file,
+                       const std::filesystem::path& map)
     : config_(config),
       survey_(openSurvey(file, config.band)),
+      mosaic_(config.map ? openSurvey(map, config.map->band) : nullptr),
       zero_(survey_->place((survey_->columns() - 1) / 2.0, (survey_->rows() - 1) / 2.0)) {
     if (config.easting) zero_ = {*config.easting, *config.northing};
+    checkUnit(*survey_, file);
+    if (mosaic_) checkTexels(*mosaic_, map, double(config.tile) * glm::abs(survey_->spacing()));
     const glm::dvec2 spacing = glm::abs(survey_->spacing());
     const double posts = 2 * config.reach / std::min(spacing.x, spacing.y) + 2 * config.tile;
     if (posts > max_posts)
@@ -57,12 +97,19 @@ Bathymetry::Bathymetry(const BathymetryConfig& config, const std::filesystem::pa
                         std::min(spacing.x, spacing.y), config.reach, config.tile, posts, max_posts));
 }
 
-void Bathymetry::addMaterial(Scene& scene) {
+void Bathymetry::addMaterials(Scene& scene, const BathymetryConfig& config) {
     if (findNode(scene, floor_name) >= 0)
         throw types::ConfigError("", "",
                                  fmt::format("has a node {}, which is the name of the survey's floor", floor_name));
     auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+    const size_t floor = geometry->materials.size();
     geometry->materials.emplace_back().name = floor_name;
+    if (config.map) {
+        types::Diagnostics diagnostics;
+        materialsOf(config.map->meaning, "bathymetry.map.classes", *geometry, diagnostics);
+        if (!diagnostics.empty()) throw types::ConfigError(diagnostics);
+        geometry->materials[floor].max_map_strength = config.map->meaning.maxStrength();
+    }
     scene.geometry = std::move(geometry);
 }
 
@@ -81,16 +128,6 @@ PostWindow Bathymetry::wholeTiles(const PostWindow& posts) const {
             multipleDown(posts.row + posts.rows - 2, tile) + tile + 1 - row};
 }
 
-PostWindow Bathymetry::clipped(PostWindow posts) const {
-    const int end_column = std::min(posts.column + posts.columns, survey_->columns());
-    const int end_row = std::min(posts.row + posts.rows, survey_->rows());
-    posts.column = std::max(posts.column, 0);
-    posts.row = std::max(posts.row, 0);
-    posts.columns = std::max(end_column - posts.column, 0);
-    posts.rows = std::max(end_row - posts.row, 0);
-    return posts.isEmpty() ? PostWindow{} : posts;
-}
-
 std::vector<Bathymetry::Tile> Bathymetry::tilesOf(const PostWindow& posts) const {
     std::vector<Tile> tiles;
     if (posts.isEmpty()) return tiles;
@@ -101,9 +138,37 @@ std::vector<Bathymetry::Tile> Bathymetry::tilesOf(const PostWindow& posts) const
     return tiles;
 }
 
-types::MeshPtr Bathymetry::meshOf(const Tile& tile, int material) const {
+void Bathymetry::addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface,
+                        types::Mesh& mesh) const {
+    const glm::dvec2 first = mosaic_->postAt(survey_->place(posts.column, posts.row)),
+                     last =
+                         mosaic_->postAt(survey_->place(posts.column + posts.columns - 1, posts.row + posts.rows - 1));
+    const glm::dvec2 low = glm::min(first, last), high = glm::max(first, last);
+    const int column = wholeDown(low.x), row = wholeDown(low.y);
+    const PostWindow texels{column, row, wholeDown(high.x) + 2 - column, wholeDown(high.y) + 2 - row};
+    const PostWindow known = clipped(texels, *mosaic_);
+    if (known.isEmpty()) return;
+    std::vector<float> values(static_cast<size_t>(texels.columns) * static_cast<size_t>(texels.rows), NAN);
+    const std::vector<float> read = mosaic_->read(known);
+    for (int y = 0; y < known.rows; ++y)
+        std::copy_n(read.begin() + std::ptrdiff_t{y} * known.columns, known.columns,
+                    values.begin() + std::ptrdiff_t{known.row + y - texels.row} * texels.columns + known.column -
+                        texels.column);
+    types::SurfaceMap map = surfaceMapOf(values, texels.columns, texels.rows, config_.map->meaning,
+                                         {materials.begin() + 1, materials.end()});
+    map.repeat_u = map.repeat_v = false;
+    mesh.maps.push_back({materials.front(), std::make_shared<const types::SurfaceMap>(std::move(map))});
+    for (int y = 0; y < posts.rows; ++y)
+        for (int x = 0; x < posts.columns; ++x) {
+            const glm::dvec2 at = mosaic_->postAt(survey_->place(posts.column + x, posts.row + y));
+            surface.map_uvs.emplace_back((at.x - texels.column + 0.5) / texels.columns,
+                                         (at.y - texels.row + 0.5) / texels.rows);
+        }
+}
+
+types::MeshPtr Bathymetry::meshOf(const Tile& tile, const std::vector<int>& materials) const {
     const PostWindow posts =
-        clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1});
+        clipped({tile.first * config_.tile, tile.second * config_.tile, config_.tile + 1, config_.tile + 1}, *survey_);
     if (posts.isEmpty()) return nullptr;
     const std::vector<float> values = survey_->read(posts);
     Surface surface;
@@ -120,7 +185,8 @@ types::MeshPtr Bathymetry::meshOf(const Tile& tile, int material) const {
     DroppedTriangles dropped;
     cleanUp(surface, dropped);
     if (surface.indices.empty()) return nullptr;
-    appendSurface(surface, material, mesh);
+    if (mosaic_) addMap(posts, materials, surface, mesh);
+    appendSurface(surface, materials.front(), mesh);
     buildClusters(mesh);
     return std::make_shared<types::Mesh>(std::move(mesh));
 }
@@ -139,18 +205,18 @@ void Bathymetry::work() {
         asked_.wait(lock, [this] { return quit_ || !queue_.empty(); });
         if (quit_) return;
         const Tile tile = queue_.front();
-        const int material = material_;
+        const std::vector<int> materials = materials_;
         queue_.pop_front();
         lock.unlock();
         Read read{true, nullptr, nullptr};
         try {
-            read.mesh = meshOf(tile, material);
+            read.mesh = meshOf(tile, materials);
         } catch (...) {
             read.failure = std::current_exception();
         }
         lock.lock();
         const auto wanted = tiles_.find(tile);
-        if (wanted != tiles_.end() && material == material_) wanted->second = std::move(read);
+        if (wanted != tiles_.end() && materials == materials_) wanted->second = std::move(read);
         read_.notify_all();
     }
 }
@@ -190,17 +256,22 @@ types::MeshPtr Bathymetry::wait(const Tile& tile) {
 types::GeometryPtr Bathymetry::about(const glm::dvec3& place, const types::GeometryPtr& rest) {
     const PostWindow needed = postsAbout(place);
     if (rest != rest_) {
-        const auto material = std::ranges::find(rest->materials, floor_name, &types::Material::name);
+        const auto indexOf = [&](const std::string& name) {
+            const auto material = std::ranges::find(rest->materials, name, &types::Material::name);
+            return static_cast<int>(material - rest->materials.begin());
+        };
         keep({});
         const std::lock_guard alone(mutex_);
-        material_ = static_cast<int>(material - rest->materials.begin());
+        materials_ = {indexOf(floor_name)};
+        for (const auto& [value, name] : config_.map ? config_.map->meaning.classes : MapValues().classes)
+            materials_.push_back(indexOf(name));
     }
-    const bool is_there = window_ && rest == rest_ && window_->holds(clipped(needed));
-    const PostWindow window = is_there ? *window_ : clipped(wholeTiles(needed));
+    const bool is_there = window_ && rest == rest_ && window_->holds(clipped(needed, *survey_));
+    const PostWindow window = is_there ? *window_ : clipped(wholeTiles(needed), *survey_);
     const int early = (config_.tile + 1) / 2;
     std::vector<Tile> tiles = tilesOf(window);
-    around_ = tilesOf(
-        clipped({needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}));
+    around_ = tilesOf(clipped(
+        {needed.column - early, needed.row - early, needed.columns + 2 * early, needed.rows + 2 * early}, *survey_));
     std::erase_if(around_, [&](const Tile& tile) { return std::ranges::find(tiles, tile) != tiles.end(); });
     if (!is_there) ask(tiles, true);
     ask(around_, false);

@@ -13,6 +13,7 @@
 
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
+#include "components/scene/Surface.hpp"
 #include "components/scene/Survey.hpp"
 #include "types/Geometry.hpp"
 
@@ -24,8 +25,10 @@ namespace insonify::scene {
  *  floor about a place does not depend on time. */
 class Bathymetry {
 public:
-    /** Throws types::ConfigError for whatever is wrong with the file, or when `reach` holds too many posts. */
-    Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file);
+    /** `map`: file of the mosaic on it, where the configuration has one. Throws types::ConfigError for whatever is
+     * wrong with the files, or when `reach` holds too many posts. */
+    Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file,
+               const std::filesystem::path& map = {});
     ~Bathymetry();
     Bathymetry(const Bathymetry&) = delete;
     Bathymetry& operator=(const Bathymetry&) = delete;
@@ -40,9 +43,9 @@ public:
     /** Begins anew: what is there next follows from the place alone. */
     void forget() { window_.reset(); }
 
-    /** Gives a scene the material that the floor has there. Throws types::ConfigError for one that has an object of the
-     *  floor's name. */
-    static void addMaterial(Scene& scene);
+    /** Gives a scene the material that the floor has there, and those of the classes of its mosaic. Throws
+     *  types::ConfigError for one that has an object of the floor's name, or for a class that is no material. */
+    static void addMaterials(Scene& scene, const BathymetryConfig& config);
 
 private:
     /** Column and row of the tile among all tiles of the survey. */
@@ -55,9 +58,10 @@ private:
     };
     PostWindow postsAbout(const glm::dvec3& place) const;
     PostWindow wholeTiles(const PostWindow& posts) const;
-    PostWindow clipped(PostWindow posts) const;
     std::vector<Tile> tilesOf(const PostWindow& posts) const;
-    types::MeshPtr meshOf(const Tile& tile, int material) const;
+    types::MeshPtr meshOf(const Tile& tile, const std::vector<int>& materials) const;
+    /** Lays the mosaic on a tile, whose positions are those of posts. */
+    void addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface, types::Mesh& mesh) const;
     /** Asks for tiles that are neither there nor asked for, before or after all others that are. */
     void ask(const std::vector<Tile>& tiles, bool first);
     /** Forgets all tiles but these. */
@@ -67,8 +71,8 @@ private:
     void work();
 
     BathymetryConfig config_;
-    std::unique_ptr<const Survey> survey_;  ///< Read by the worker alone.
-    glm::dvec2 zero_;                       ///< Easting and northing of the world's zero [m].
+    std::unique_ptr<const Survey> survey_, mosaic_;  ///< Read by the worker alone; null: there is no mosaic.
+    glm::dvec2 zero_;                                ///< Easting and northing of the world's zero [m].
     std::optional<PostWindow> window_;
     types::GeometryPtr geometry_, rest_;  ///< Of the window, and what it was made with.
     std::vector<Tile> around_;            ///< Tiles that the next window may have beside those of this one.
@@ -78,7 +82,7 @@ private:
     std::condition_variable asked_, read_;
     std::map<Tile, Read> tiles_;
     std::deque<Tile> queue_;
-    int material_ = 0;  ///< Of the floor, in `rest`.
+    std::vector<int> materials_{0};  ///< Of the floor and of the classes of its mosaic, in `rest`.
     bool quit_ = false;
     std::thread worker_;
 };

@@ -161,6 +161,7 @@ void orderVertices(types::Mesh& mesh) {
     remap(mesh.normals, new_place, used);
     remap(mesh.tangents, new_place, used);
     remap(mesh.uvs, new_place, used);
+    remap(mesh.map_uvs, new_place, used);
 }
 
 std::span<const uint32_t> trianglesOf(const types::Mesh& mesh, const types::ClusterNode& node) {
@@ -247,7 +248,7 @@ void findCones(types::Mesh& mesh) {
 void buildClusters(types::Mesh& mesh) {
     if (mesh.indices.size() / 3 > clustered_from) {
         for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 is 0, and not another place
-        if (mesh.uvs.empty()) weld(mesh);
+        if (mesh.uvs.empty() && mesh.map_uvs.empty()) weld(mesh);
         splitRuns(mesh);
     }
     for (types::Cluster& cluster : mesh.clusters) {

@@ -243,8 +243,7 @@ private:
         omissions.dropped.addTo(notices);
         count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
         count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
-        count(omissions.unmapped_primitives,
-              "primitives loaded without their normal map for want of texture coordinates");
+        count(omissions.unmapped_primitives, "primitives loaded without their map for want of texture coordinates");
         count(flat_objects_, "objects left out, their scale is zero in some direction");
         count(gltf_.model.animations.size(), "animations not played, the scene is loaded at rest");
         if (has_skin_) notices.push_back("skins not applied, the meshes are loaded at rest");

@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/mat3x2.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,15 +10,23 @@
 
 namespace insonify::scene {
 
-/** Which texture coordinates a material's normal map takes, and the transform of KHR_texture_transform on them. */
+/** Which texture coordinates a material's map takes, and the transform of KHR_texture_transform on them. */
 struct NormalMapping {
     int uv_set = 0;
     glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  ///< map uv = transform * (u, v, 1)
 };
 
-/** Adds the file's materials, in its order, and their normal maps to `geometry`; what cannot be read is a notice.
- *  Returns the mapping of each material that has a normal map. `extras.acoustics` that is wrong is a ConfigError. */
-std::vector<std::optional<NormalMapping>> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
-                                                        types::Geometry& geometry);
+/** The maps of a material, and how they lie on meshes. */
+struct MaterialMaps {
+    std::optional<NormalMapping> normals;  ///< None: it has no normal map.
+    NormalMapping on_surface;
+    std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: it has none.
+};
+
+/** Adds the file's materials, in its order, then those of classes of surface maps, and normal maps to `geometry`; a
+ *  normal map that cannot be read is a notice. Returns the maps of each material of the file. `extras.acoustics` that
+ * is wrong, and a surface map that cannot be read, are a ConfigError. */
+std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
+                                        types::Geometry& geometry);
 
 }  // namespace insonify::scene

@@ -40,12 +40,17 @@ glm::vec3 unitOr(glm::vec3 vector, glm::vec3 otherwise) {
     return std::isfinite(length) && length > 1e-12f ? vector / length : otherwise;
 }
 
+int modeOf(const tinygltf::Primitive& primitive) {
+    return primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+}
+
 void normalise(Surface& surface) {
     for (glm::vec3& normal : surface.normals) normal = unitOr(normal, {0, 1, 0});
     for (glm::vec4& tangent : surface.tangents)
         tangent = glm::vec4(unitOr(glm::vec3(tangent), {1, 0, 0}), tangent.w < 0 ? -1.0f : 1.0f);
-    for (glm::vec2& uv : surface.uvs)
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
+    for (auto* const uvs : {&surface.uvs, &surface.map_uvs})
+        for (glm::vec2& uv : *uvs)
+            if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = glm::vec2(0);
 }
 
 }  // namespace
@@ -72,12 +77,16 @@ int GltfMeshes::material(const tinygltf::Primitive& primitive, const std::string
     return default_material_;
 }
 
-int GltfMeshes::withoutMap(int material) {
+int GltfMeshes::withoutMap(int material, bool of_surface) {
     ++omissions_.unmapped_primitives;
-    const auto [known, is_new] = unmapped_.try_emplace(material, static_cast<int>(geometry_.materials.size()));
+    const auto [known, is_new] =
+        unmapped_.try_emplace({material, of_surface}, static_cast<int>(geometry_.materials.size()));
     if (is_new) {
         types::Material plain = geometry_.materials[static_cast<size_t>(material)];
-        plain.normal_map = -1;
+        if (of_surface)
+            plain.max_map_strength = 0;
+        else
+            plain.normal_map = -1;
         geometry_.materials.push_back(std::move(plain));
     }
     return known->second;
@@ -101,11 +110,15 @@ struct GltfMeshes::Attributes {
                         fmt::format("has {} elements; POSITION has {}", values.size(), count));
         return values;
     }
+    std::vector<glm::vec2> uvs(const NormalMapping& mapping) const {
+        auto uvs = read<glm::vec2>(fmt::format("TEXCOORD_{}", mapping.uv_set));
+        for (glm::vec2& uv : uvs) uv = mapping.transform * glm::vec3(uv, 1);
+        return uvs;
+    }
     /** What a normal map needs. */
     void readMapped(const NormalMapping& mapping, Surface& surface) const {
-        surface.uvs = read<glm::vec2>(fmt::format("TEXCOORD_{}", mapping.uv_set));
+        surface.uvs = uvs(mapping);
         if (surface.uvs.empty()) return;
-        for (glm::vec2& uv : surface.uvs) uv = mapping.transform * glm::vec3(uv, 1);
         surface.normals = read<glm::vec3>("NORMAL");
         if (!surface.normals.empty()) surface.tangents = read<glm::vec4>("TANGENT");
     }
@@ -114,17 +127,24 @@ struct GltfMeshes::Attributes {
 void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh) {
     const auto positions = primitive.attributes.find("POSITION");
     if (positions == primitive.attributes.end()) return;
-    const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+    const int mode = modeOf(primitive);
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) fail(path + ".mode", fmt::format("is {}; may be 0 to 6", mode));
     if (mode < TINYGLTF_MODE_TRIANGLES) return void(++omissions_.other_primitives);
 
+    Surface surface = surfaceOf(primitive, positions->second, path);
+    if (surface.indices.empty()) return;
+    appendSurface(surface, mapped(primitive, path, surface, mesh), mesh);
+}
+
+Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path) {
     Surface surface;
-    surface.positions = accessors_.vectors<glm::vec3>(positions->second);
+    surface.positions = accessors_.vectors<glm::vec3>(positions);
     const size_t count = surface.positions.size();
     charge(count, path);
     constexpr uint32_t no_restart = ~0u;
     std::vector<uint32_t> corners;
     uint32_t restart = no_restart;
+    const int mode = modeOf(primitive);
     if (primitive.indices >= 0) {
         corners = accessors_.indices(primitive.indices);
         if (mode != TINYGLTF_MODE_TRIANGLES) restart = accessors_.restartIndex(primitive.indices);
@@ -138,21 +158,30 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
             fail(path + ".indices", fmt::format("hold {}; the primitive has {} vertices", index, count));
     surface.indices = triangulate(corners, mode, restart);
     cleanUp(surface, omissions_.dropped);
-    if (surface.indices.empty()) return;
+    return surface;
+}
 
+int GltfMeshes::mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface,
+                       types::Mesh& mesh) {
     int index = material(primitive, path);
-    const auto& mapping =
-        static_cast<size_t>(index) < mappings_.size() ? mappings_[static_cast<size_t>(index)] : std::nullopt;
-    if (mapping) {
-        Attributes{primitive, *this, path, count}.readMapped(*mapping, surface);
-        normalise(surface);
+    const MaterialMaps* const maps = mapsOf(index);
+    if (!maps || (!maps->surface && !maps->normals)) return index;
+    const Attributes attributes{primitive, *this, path, surface.positions.size()};
+    if (maps->surface) surface.map_uvs = attributes.uvs(maps->on_surface);
+    if (maps->normals) attributes.readMapped(*maps->normals, surface);
+    normalise(surface);
+    if (maps->normals) {
         if (surface.uvs.empty())
-            index = withoutMap(index);
+            index = withoutMap(index, false);
         else if (surface.normals.empty())
             makeFlatNormals(surface);
         if (!surface.uvs.empty() && surface.tangents.empty()) makeTangents(surface);
     }
-    appendSurface(surface, index, mesh);
+    if (maps->surface && surface.map_uvs.empty())
+        index = withoutMap(index, true);
+    else if (maps->surface && std::ranges::find(mesh.maps, index, &types::MappedMaterial::material) == mesh.maps.end())
+        mesh.maps.push_back({index, maps->surface});
+    return index;
 }
 
 types::Mesh GltfMeshes::read(size_t index) {

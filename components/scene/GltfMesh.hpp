@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "components/scene/GltfAccessor.hpp"
@@ -14,7 +15,7 @@ namespace insonify::scene {
 struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
-    size_t unmapped_primitives = 0;  ///< With a normal map but no texture coordinates for it.
+    size_t unmapped_primitives = 0;  ///< With a map but no texture coordinates for it.
     size_t morphed_meshes = 0;       ///< With morph targets, loaded unmorphed.
 };
 
@@ -22,9 +23,9 @@ struct Omissions {
 class GltfMeshes {
 public:
     /** `geometry` holds the file's materials; a default material is added when a primitive has none. */
-    GltfMeshes(const GltfFile& gltf, const GltfAccessors& accessors, std::vector<std::optional<NormalMapping>> mappings,
+    GltfMeshes(const GltfFile& gltf, const GltfAccessors& accessors, std::vector<MaterialMaps> maps,
                types::Geometry& geometry)
-        : gltf_(gltf), accessors_(accessors), mappings_(std::move(mappings)), geometry_(geometry) {}
+        : gltf_(gltf), accessors_(accessors), maps_(std::move(maps)), geometry_(geometry) {}
 
     /** One mesh of the file with a cluster for each of its primitives; it may end up without triangles.
      *  Wrong indices are a types::ConfigError. */
@@ -34,19 +35,25 @@ public:
 private:
     void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
     int material(const tinygltf::Primitive& primitive, const std::string& path);
-    int withoutMap(int material);
+    Surface surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path);
+    /** Gives a surface what the maps of its material need, and the mesh the map; returns the material. */
+    int mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface, types::Mesh& mesh);
+    int withoutMap(int material, bool of_surface);
+    const MaterialMaps* mapsOf(int material) const {
+        return static_cast<size_t>(material) < maps_.size() ? &maps_[static_cast<size_t>(material)] : nullptr;
+    }
     void charge(size_t vertices, const std::string& path);
     struct Attributes;
     [[noreturn]] void fail(const std::string& path, const std::string& message) const;
 
     const GltfFile& gltf_;
     const GltfAccessors& accessors_;
-    std::vector<std::optional<NormalMapping>> mappings_;
+    std::vector<MaterialMaps> maps_;
     types::Geometry& geometry_;
     Omissions omissions_;
     size_t elements_ = 0;
     int default_material_ = -1;
-    std::map<int, int> unmapped_;  ///< Material without normal map, by material with.
+    std::map<std::pair<int, bool>, int> unmapped_;  ///< Material without normal map, or surface map, by material with.
 };
 
 }  // namespace insonify::scene

@@ -41,7 +41,7 @@ std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
     std::error_code unreadable;
     for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
         const std::string extension = extensionOf(entry.path());
-        if (std::ranges::count(std::array{".gltf", ".glb", ".world", ".sdf"}, extension) > 0)
+        if (std::ranges::count(std::array{".gltf", ".glb", ".world", ".sdf", ".urdf"}, extension) > 0)
             names.push_back(entry.path().filename().string());
     }
     std::ranges::sort(names);
@@ -55,7 +55,7 @@ void refuseMissing(const std::filesystem::path& file) {
     const std::string near = types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
     throw types::ConfigError(
         file.string(), "",
-        fmt::format("does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world or .sdf",
+        fmt::format("does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf",
                     near, place.string()));
 }
 
@@ -115,13 +115,13 @@ Scene readScene(const std::filesystem::path& file) {
     refuseMissing(file);
     const std::string extension = extensionOf(file);
     if (const SceneReader read = readerOf(extension)) return read(file);
-    if (extension == ".world" || extension == ".sdf") {
+    if (extension == ".world" || extension == ".sdf" || extension == ".urdf") {
         Scene scene;
         sdfReader(file)(file, scene);
         return scene;
     }
     throw types::ConfigError(file.string(), "",
-                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world or .sdf", extension));
+                             fmt::format("has extension \"{}\"; may be .gltf, .glb, .world, .sdf or .urdf", extension));
 }
 
 std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Placement.hpp"
+#include "components/scene/SurfaceMaps.hpp"
 #include "types/Mount.hpp"
 
 namespace insonify::scene {
@@ -36,6 +37,24 @@ struct TargetConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
+/** A mosaic on the floor of a survey: strengths or classes on the same map. */
+struct MosaicConfig {
+    std::string file;
+    int band = 1;
+    MapValues meaning;
+
+    template <class Self, class V>
+    static void describe(Self& self, V& visit) {
+        using types::Field;
+        visit(Field{"file", "", "strengths or classes on the same map as the survey, in a format of surveys"},
+              self.file);
+        visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
+        MapValues::describe(self.meaning, visit);
+    }
+    void check(types::Diagnostics& diagnostics) const;
+    bool operator==(const MosaicConfig&) const = default;
+};
+
 /** The sea floor of a survey, read as the vehicle comes. */
 struct BathymetryConfig {
     std::string file;
@@ -43,6 +62,7 @@ struct BathymetryConfig {
     int band = 1, tile = 64;
     bool positive_down = false;
     double reach = 200;
+    std::optional<MosaicConfig> map;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -62,6 +82,10 @@ struct BathymetryConfig {
         visit(Field{"tile", "1", "posts by which the part that is there grows on each side when it is read anew", 1,
                     2048},
               self.tile);
+        visit(Field{"map", "",
+                    "how strong the floor's echo is, or of what it is, from place to place; absent: everywhere "
+                    "the same"},
+              self.map);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -82,7 +106,7 @@ struct SceneConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"file", "",
-                    "scene: .gltf, .glb, .world or .sdf, relative to the deployment; may be absent beside gazebo or "
+                    "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent beside gazebo or "
                     "bathymetry"},
               self.file);
         visit(

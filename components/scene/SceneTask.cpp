@@ -56,24 +56,26 @@ std::shared_ptr<const Scene> SceneTask::loadModels() const {
 std::shared_ptr<const Scene> SceneTask::load() const {
     const std::string file = inputPath(config->file).string();
     const bool has_survey = config->bathymetry.has_value();
+    const std::optional<MosaicConfig> map = has_survey ? config->bathymetry->map : std::nullopt;
     if (scene_ && scene_file_ == file && scene_gazebo_ == config->gazebo && scene_has_survey_ == has_survey &&
-        scene_placement_ == config->placement && scene_scale_ == config->scale)
+        scene_map_ == map && scene_placement_ == config->placement && scene_scale_ == config->scale)
         return scene_;
     if (config->file.empty() && !config->gazebo && !has_survey)
         throw types::ConfigError(
             "", name() + ".file",
-            "is missing; give the path of a .gltf, .glb, .world or .sdf file, or gazebo, or bathymetry");
+            "is missing; give the path of a .gltf, .glb, .world, .sdf or .urdf file, or gazebo, or bathymetry");
     scene_ = loadModels();
     if (has_survey) {
         Scene scene;
         scene.geometry = std::make_shared<const types::Geometry>();
         if (scene_) scene = *scene_;
-        Bathymetry::addMaterial(scene);
+        Bathymetry::addMaterials(scene, *config->bathymetry);
         scene_ = std::make_shared<const Scene>(std::move(scene));
     }
     scene_file_ = file;
     scene_gazebo_ = config->gazebo;
     scene_has_survey_ = has_survey;
+    scene_map_ = map;
     scene_placement_ = config->placement;
     scene_scale_ = config->scale;
     return scene_;
@@ -108,7 +110,9 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
 
 std::unique_ptr<Bathymetry> SceneTask::openSurvey() const {
     if (!config->bathymetry) return nullptr;
-    return std::make_unique<Bathymetry>(*config->bathymetry, inputPath(config->bathymetry->file));
+    const auto& map = config->bathymetry->map;
+    return std::make_unique<Bathymetry>(*config->bathymetry, inputPath(config->bathymetry->file),
+                                        map ? inputPath(map->file) : std::filesystem::path());
 }
 
 void SceneTask::check(types::Diagnostics& diagnostics) const try {
@@ -116,13 +120,16 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
         openSurvey();
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
-            diagnostics.push_back({"bathymetry.file", each.text()});
+            diagnostics.push_back({config->bathymetry->map && each.file == inputPath(config->bathymetry->map->file)
+                                       ? "bathymetry.map.file"
+                                       : "bathymetry.file",
+                                   each.text()});
     }
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& each : error.diagnostics())
-        diagnostics.push_back(config->gazebo || each.path.starts_with("scale.")
+        diagnostics.push_back(config->gazebo || each.path.starts_with("scale.") || each.path.starts_with("bathymetry.")
                                   ? types::Diagnostic{each.path, each.message}
                                   : types::Diagnostic{"file", each.text()});
 }

@@ -101,7 +101,8 @@ private:
     mutable std::map<std::string, double> scene_scale_;
     std::string lay_;                        ///< How the scene lies; empty: as everywhere.
     mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
-    types::GeometryPtr geometry_;            ///< From file or gazebo, with all materials.
+    mutable std::optional<MosaicConfig> scene_map_;
+    types::GeometryPtr geometry_;  ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.

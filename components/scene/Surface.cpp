@@ -60,6 +60,7 @@ std::vector<bool> separateMirrored(Surface& surface) {
                     surface.positions.push_back(surface.positions[index]);
                     surface.normals.push_back(surface.normals[index]);
                     surface.uvs.push_back(surface.uvs[index]);
+                    if (!surface.map_uvs.empty()) surface.map_uvs.push_back(surface.map_uvs[index]);
                     mirrored.push_back(is_mirrored);
                 }
                 index = twin[index];
@@ -122,6 +123,7 @@ void appendSurface(const Surface& surface, int material, types::Mesh& mesh) {
     appendFilled(mesh.normals, surface.normals, base, glm::vec3(0, 1, 0));
     appendFilled(mesh.tangents, surface.tangents, base, glm::vec4(1, 0, 0, 1));
     appendFilled(mesh.uvs, surface.uvs, base, glm::vec2(0));
+    appendFilled(mesh.map_uvs, surface.map_uvs, base, glm::vec2(0));
     mesh.positions.insert(mesh.positions.end(), surface.positions.begin(), surface.positions.end());
     for (const uint32_t index : surface.indices) mesh.indices.push_back(static_cast<uint32_t>(base) + index);
 }
@@ -131,6 +133,7 @@ void fillAttributes(types::Mesh& mesh) {
     appendFilled(mesh.normals, {}, count, glm::vec3(0, 1, 0));
     appendFilled(mesh.tangents, {}, count, glm::vec4(1, 0, 0, 1));
     appendFilled(mesh.uvs, {}, count, glm::vec2(0));
+    appendFilled(mesh.map_uvs, {}, count, glm::vec2(0));
 }
 
 void makeFlatNormals(Surface& surface) {
@@ -144,6 +147,7 @@ void makeFlatNormals(Surface& surface) {
             flat.positions.push_back(surface.positions[corner[k]]);
             flat.normals.push_back(normal);
             if (!surface.uvs.empty()) flat.uvs.push_back(surface.uvs[corner[k]]);
+            if (!surface.map_uvs.empty()) flat.map_uvs.push_back(surface.map_uvs[corner[k]]);
             flat.indices.push_back(static_cast<uint32_t>(i + k));
         }
     }

@@ -15,6 +15,7 @@ struct Surface {
     std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
     std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
     std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
+    std::vector<glm::vec2> map_uvs;   ///< Empty, or as many as positions: of a surface map.
     std::vector<uint32_t> indices;
 };
 

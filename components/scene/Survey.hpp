@@ -36,6 +36,8 @@ public:
     int rows() const { return rows_; }
     /** From one post to the next, east and north; north is negative where rows go south, as they mostly do [m]. */
     glm::dvec2 spacing() const { return spacing_; }
+    /** Unit of its values, as the file names it; empty: it names none. */
+    const std::string& unit() const { return unit_; }
     /** Easting and northing of a post, whose numbers need not be whole [m]. */
     glm::dvec2 place(double column, double row) const { return first_ + spacing_ * glm::dvec2(column, row); }
     /** Column and row of an easting and northing. */
@@ -48,6 +50,7 @@ public:
 protected:
     int columns_ = 0, rows_ = 0;
     glm::dvec2 first_{0}, spacing_{1};
+    std::string unit_;
 };
 
 using SurveyOpener = std::unique_ptr<Survey> (*)(const std::filesystem::path& file, int band);

@@ -28,6 +28,7 @@
 #include "components/meshes/WorldBuilder.hpp"
 #include "components/scene/Surface.hpp"
 #include "components/sdf/SdfFile.hpp"
+#include "components/sdf/Urdf.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::sdf {
@@ -109,7 +110,8 @@ public:
 
     Scene read() {
         CerrCapture console;
-        const ::sdf::Root root = readSdfFile(file_, builder_.paths(), console, builder_.notices());
+        if (isUrdf(file_) && std::filesystem::is_regular_file(file_)) urdf_ = readUrdf(file_, textOf(file_));
+        const ::sdf::Root root = readSdfFile(file_, builder_.paths(), console, builder_.notices(), urdf_.text);
         if (const ::sdf::World* world = root.WorldByIndex(0))
             addWorld(*world);
         else
@@ -159,8 +161,13 @@ private:
             const ::sdf::Visual& visual = *link.VisualByIndex(i);
             const std::string visual_name = name + "::" + visual.Name();
             const glm::dmat4 link_from_visual = poseOf(visual, visual_name);
-            const meshes::Look look = lookOf(visual, visual_name);
-            const meshes::Shape shape = shapeOf(*visual.Geom());
+            meshes::Look look = lookOf(visual, visual_name);
+            if (const auto named = urdf_.materials.find(link.Name());
+                named != urdf_.materials.end() && i < named->second.size())
+                look.name = named->second[i];
+            meshes::Shape shape = shapeOf(*visual.Geom());
+            if (auto* const mesh = std::get_if<meshes::MeshShape>(&shape); mesh && !urdf_.text.empty())
+                mesh->named_in = file_;
             if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
                 fail(*visual.Element(), fmt::format("{}.{}", visual_name, fault.path), fault.message);
             builder_.addVisual(visual_name, node, link_from_visual, shape, look);
@@ -212,6 +219,7 @@ private:
     std::filesystem::path file_;
     meshes::WorldBuilder builder_;
     std::map<std::string, int> nodes_;  ///< By name in the file.
+    Urdf urdf_;                         ///< Empty where the file is in SDF.
     types::Diagnostics diagnostics_;
 };
 

@@ -32,15 +32,6 @@ constexpr size_t max_sdf_depth = 50;
 /** Larger files are refused, whatever is in them [bytes]. */
 constexpr size_t max_sdf_bytes = size_t{64} << 20;
 
-std::string textOf(const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::file_size(file, error) > max_sdf_bytes && !error)
-        throw types::ConfigError(file.string(), "",
-                                 fmt::format("is larger than {} MB; divide it", max_sdf_bytes >> 20));
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /** Counts what libsdformat will have to do with a file, and gathers the uris of its includes. */
 class Work final : public tinyxml2::XMLVisitor {
 public:
@@ -291,6 +282,15 @@ void noteDiagnostics(const types::Diagnostics& diagnostics, std::vector<std::str
 
 }  // namespace
 
+std::string textOf(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::file_size(file, error) > max_sdf_bytes && !error)
+        throw types::ConfigError(file.string(), "",
+                                 fmt::format("is larger than {} MB; divide it", max_sdf_bytes >> 20));
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 std::mutex CerrCapture::mutex_;
 
 CerrCapture::CerrCapture() : lock_(mutex_), before_(std::cerr.rdbuf(text_.rdbuf())) {}
@@ -303,12 +303,12 @@ std::string CerrCapture::take() {
 }
 
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        std::vector<std::string>& notices) {
+                        std::vector<std::string>& notices, const std::string& text) {
     if (!std::filesystem::is_regular_file(file))
-        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world or .sdf file");
+        throw types::ConfigError(file.string(), "", "is not a file; give the path of a .world, .sdf or .urdf file");
     checkIncludes(file, paths);
     std::set<std::string> unreadable;
-    std::string renamed;
+    std::string renamed = text;
     types::Diagnostics diagnostics;
     while (true) {
         const SearchConfig search(file, paths, unreadable);
@@ -321,7 +321,7 @@ std::string CerrCapture::take() {
         findUnreadable(diagnostics, unreadable);
         if (failure.empty() && (root.WorldCount() > 0 || root.Model())) {
             noteDiagnostics(diagnostics, notices);
-            if (!renamed.empty()) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
+            if (renamed != text) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
             return root;
         }
         if (unreadable.size() > known) continue;  // again without the include that costs the whole world

@@ -29,10 +29,13 @@ private:
     std::streambuf* before_;
 };
 
-/** Loads an SDF file with what it includes. What libsdformat finds wrong goes to `notices` when there is a world or a
- *  model nevertheless, and is thrown as types::ConfigError when there is none. An include that is not found or cannot
- *  be read is left out. */
+/** The bytes of a file. Throws types::ConfigError for one that is too large. */
+std::string textOf(const std::filesystem::path& file);
+
+/** Loads an SDF file with what it includes, or `text` in its place unless that is empty. What libsdformat finds wrong
+ * goes to `notices` when there is a world or a model nevertheless, and is thrown as types::ConfigError when there is
+ * none. An include that is not found or cannot be read is left out. */
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
-                        std::vector<std::string>& notices);
+                        std::vector<std::string>& notices, const std::string& text = {});
 
 }  // namespace insonify::sdf

@@ -34,6 +34,9 @@ public:
     /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
      *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
+    /** Forgets all pings, as if it had just been made, with effects that have just been made. Returns false where it
+     *  has to be made again. */
+    virtual bool forget() { return false; }
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Sets the truth that the next pings fill, in their own grid, which it has; null: no truth is recorded. */

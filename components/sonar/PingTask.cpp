@@ -63,9 +63,6 @@ bool PingTask::configureHook() {
         throw types::ConfigError("", name() + ".beam_pattern", why);
     if (const std::string why = whyStraight(locatedConfig()); !why.empty())
         throw types::ConfigError("", name() + ".water.profile", why);
-    if (!rendersOnce() && (truth.connected() || returns.connected()))
-        throw types::ConfigError("", name() + (truth.connected() ? ".truth" : ".returns"),
-                                 "is connected; a sonar that renders a ping in many parts tells no truth");
     if (elements.connected() && !sonarConfig().elements)
         throw types::ConfigError("", name() + ".elements",
                                  "is connected; the sonar has none: give it `elements`, or leave the connection out");
@@ -82,6 +79,17 @@ bool PingTask::configureHook() {
     plan_.reset();
     resetAim();
     return true;
+}
+
+framework::Outcome PingTask::restart() {
+    std::unique_ptr<SonarRenderer> kept;
+    if (renderer_ && !quality_ && renderer_->forget()) kept = std::move(renderer_);
+    if (framework::Outcome outcome = cleanup(); !outcome) return outcome;
+    if (framework::Outcome outcome = configure(); !outcome || !kept) return outcome;
+    renderer_ = std::move(kept);
+    diagnostics_.emplace(*geometry_, pingsPerTurn());
+    takePlan();
+    return {};
 }
 
 void PingTask::updateHook() {
@@ -187,7 +195,9 @@ void PingTask::prepareRenderer() {
     const SonarConfig config = locatedConfig();
     quality_.reset();
     diagnostics_.emplace(*geometry_, pingsPerTurn());
-    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_);
+    RenderOptions options;
+    options.threads = threads_;
+    renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_, options);
     if (config.choosesQuality()) quality_.emplace(config, pingsPerTurn());
     takePlan();
 }
@@ -212,7 +222,9 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
     plan_told_ = false;
 }
 
-bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) {
+bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                          types::SonarTruth* told) {
+    renderer.setTruth(sample, told);
     renderer.render(scene, sample);
     return renderer.hasEchoes() || renderer.othersHeard() > 0;
 }
@@ -228,9 +240,8 @@ void PingTask::render() {
     prepareRenderer();
     const auto sample = pool_.take();
     const auto told = takeTruth();
-    renderer_->setTruth(*sample, told.get());
     const auto start = std::chrono::steady_clock::now();
-    const bool heard = renderPing(*renderer_, aimed(), *sample);
+    const bool heard = renderPing(*renderer_, aimed(), *sample, told.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
@@ -253,15 +264,16 @@ void PingTask::render() {
     if (elements.connected()) writeElements(*sample);
 }
 
-std::shared_ptr<types::SonarTruth> PingTask::takeTruth() {
-    if (!truth.connected() && !returns.connected()) return nullptr;
-    return truths_.take();
+std::shared_ptr<types::SonarTruth> PingTask::takeTruth() { return wantsTruth() ? truths_.take() : nullptr; }
+
+void PingTask::nameObjects(types::SonarTruth& told) const {
+    told.objects.resize(geometry_->objects.size());
+    for (size_t i = 0; i < told.objects.size(); ++i) told.objects[i] = geometry_->objects[i].name;
 }
 
 void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {
     told->takeGrid(sample);
-    told->objects.resize(geometry_->objects.size());
-    for (size_t i = 0; i < told->objects.size(); ++i) told->objects[i] = geometry_->objects[i].name;
+    nameObjects(*told);
     truths_.stock(*told);
     if (truth.connected()) truth.write(told);
     if (!returns.connected()) return;

@@ -69,16 +69,27 @@ public:
     std::vector<std::string> notices() const override;
     std::string indivisible() const override;
 
+    /** Renders on so many threads from the next renderer on; 0: as many as the machine has cores. */
+    void useThreads(int threads) { threads_ = threads; }
+    /** Of a task that is stopped, `cleanup` and `configure`: as if nothing had been before. What a renderer has made of
+     *  the scene is kept where its pings do not depend on the pings before. */
+    framework::Outcome restart();
+
     /** The sonar as configured, its files found from where the deployment is. */
     SonarConfig locatedConfig() const;
 
 protected:
-    /** Whether a ping is one rendering. Of several the truth is not told, nor what each of them left out. */
+    /** Whether a ping is one rendering. What each of several left out is not reported. */
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
-    /** Makes the ping of `scene`; whether it has any echo. */
-    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample);
+    /** Makes the ping of `scene`, and its truth unless `told` is null; returns whether it has any echo. */
+    virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                            types::SonarTruth* told);
+    /** Whether somebody is connected who takes truth. */
+    virtual bool wantsTruth() const { return truth.connected() || returns.connected(); }
+    /** Gives a truth the names of all objects. */
+    void nameObjects(types::SonarTruth& told) const;
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** A ping has been rendered or rehearsed: a head that turns goes on. */
@@ -134,6 +145,7 @@ private:
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     std::optional<PingDiagnostics> diagnostics_;
     bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
+    int threads_ = 0;                  ///< Of the renderer [1].
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
     bool plan_told_ = false;           ///< Whether the record has the plan as it is.
     types::GeometryPtr geometry_;      ///< The renderer's.

@@ -4,6 +4,7 @@
 #include "components/framework/Properties.hpp"
 #include "components/sonar/PingTask.hpp"
 #include "components/sonar/echo/Detection.hpp"
+#include "components/sonar/echo/GridTruth.hpp"
 #include "types/DepthMap.hpp"
 #include "types/PointCloud.hpp"
 
@@ -55,8 +56,8 @@ struct Sonar3dConfig {
  *  in azimuth, the distance between two beams where it is not given, `beam_height_deg` that in elevation. The columns
  *  are rendered one after the other as upright fans, all at the time of the ping; `quality.rows` are over the width of
  *  one beam, `columns_per_beam` over its height, 4 and 4 where nothing is said. Out: `range_image`, of every beam the
- *  range and the intensity of the strongest bin; `soundings`, the same as points in the world; `ping`, of each azimuth
- *  the sum over all elevations. */
+ *  range and the intensity of the strongest bin; `range_truth`, what that bin shows; `soundings`, the same as points in
+ *  the world; `ping`, of each azimuth the sum over all elevations, with its `truth`. */
 class Sonar3dTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -64,6 +65,9 @@ public:
     framework::Properties<Sonar3dConfig> config{this};
     framework::OutputPort<types::DepthMapPtr> range_image{
         this, "range_image", "range and intensity of each beam's strongest return, rows from the top"};
+    framework::OutputPort<types::SonarTruthPtr> range_truth{
+        this, "range_truth",
+        "what each beam's strongest return shows: one bin for each cell of `range_image`, in its order"};
     framework::OutputPort<types::PointCloudPtr> soundings{this, "soundings", "the same as points in the world"};
 
     SonarConfig sonarConfig() const override { return config->upright(); }
@@ -71,26 +75,33 @@ public:
 protected:
     bool rendersOnce() const override { return false; }
     std::span<const Stage> renderStages(const SonarRenderer&) const override { return fan_stages_; }
-    bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample) override;
+    bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
+                    types::SonarTruth* told) override;
+    bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
     /** `field_of_view` and `beam_count` are those of a row of beams side by side, `beam_height` is that of one beam. */
     std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
 
 private:
-    /** Takes the returns of one upright fan into a column of the map. */
-    void detect(int column);
+    /** Takes the returns of one upright fan into a column of the map, and their truth if there is one. */
+    void detect(int column, bool tells);
     /** Adds one upright fan to its beam of the ping. */
     void addTo(types::Sonar& sample, int column) const;
     void shape(types::Sonar& sample);
     void writePoints(const types::Sonar& sample, const types::Pose& sonar);
-    bool wantsReturns() const { return range_image.connected() || soundings.connected(); }
+    void writeReturnTruth();
+    bool wantsReturns() const { return range_image.connected() || soundings.connected() || range_truth.connected(); }
 
     types::Sonar fan_;            ///< Of one azimuth.
     sonar::Stages fan_stages_{};  ///< Of all azimuths of the last ping.
     types::DepthMap map_;
+    GridTruth grid_truth_;
+    types::SonarTruth fan_truth_;     ///< Of one azimuth.
+    types::SonarTruth return_truth_;  ///< A bin for each cell of the map.
     framework::SamplePool<types::DepthMap> maps_;
     framework::SamplePool<types::PointCloud> clouds_;
+    framework::SamplePool<types::SonarTruth> return_truths_;
 };
 
 }  // namespace insonify::sonar

@@ -143,6 +143,11 @@ void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements&
     signals.time = ping.time;
 }
 
+bool SonarRenderer::forget() {
+    parts_->effects = PingEffects(parts_->plan, *parts_->geometry);
+    return parts_->echoes->forget();
+}
+
 bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->takeScene(std::move(geometry)); }
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {

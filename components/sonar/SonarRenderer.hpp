@@ -41,6 +41,10 @@ public:
      *  allocates. Throws std::logic_error where the sonar has none. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
 
+    /** Forgets all pings, as if it had just been made. Returns false where another one has to be made: with motion in
+     *  a ping, bent rays, or where it draws. */
+    bool forget();
+
     /** Renders another geometry from now on, at the quality in force. Threads, and with rays whatever is made of meshes
      *  that both geometries have, are kept. Takes more time where materials change, or where it draws. Returns
      *  whether the plan is another one. */

@@ -143,6 +143,7 @@ std::optional<double> floorBelow(const FitChain& chain) {
     sonar.beam_count = 1;
     sonar.beam_width_deg = sonar.beam_height_deg = 4;
     sonar.beam_pattern.reset();
+    sonar.pulse.reset();  // which would begin before the floor
     sonar.volume = {};
     down.snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
     const types::Sonar ping = meanEchoes(down);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr size_t first_slice = 3;        ///< Nearer, transmitters ring, and the gain changes within a slice.
 constexpr double huber_db = 3;           ///< Residuals beyond this count by their size, not their square.
+constexpr double uncut_deg = 110;        ///< Of a side-scan's beam, which ends nowhere but in its pattern [deg].
 constexpr double elevation_before = 15;  ///< Width of a beam in elevation of which nothing is known [deg].
 
 double medianLevel(std::vector<double> values) {
@@ -176,7 +177,7 @@ public:
         acoustics::BeamLaw& law = chain.sonar.beam_pattern->receive.azimuth.emplace();
         law.weighting = acoustics::Weighting::Gaussian;
         law.width_deg = std::min(width_deg, 170.0);
-        chain.sonar.beam_width_deg = std::clamp(4 * width_deg, *chain.sonar.beam_width_deg, 110.0);
+        chain.sonar.beam_width_deg = std::max(*chain.sonar.beam_width_deg, uncut_deg);
     }
     static void setElevation(double width_deg, FitChain& chain) {
         sonar::BeamPatternConfig& pattern =
@@ -255,6 +256,7 @@ public:
     size_t rows() const { return recorded_.slices - first_slice; }
     const FitChain& chain() const { return chain_; }
 
+    double pullWeight() const { return pull_weight_; }
     /** Weighs pulls as many deviations of the residuals, as far as those are independent: a scene that is not quite
      *  the recorded one must not overrule what is known before. */
     void weighPulls(double variance) { pull_weight_ = std::max(1.0, variance); }
@@ -435,6 +437,45 @@ cv::Mat jacobian(LevelModel& model, const Values& at, const Chosen& chosen) {
     return derivatives;
 }
 
+/** The least cost near some values, by all chosen ones at a time: Levenberg and Marquardt's steps (Marquardt 1963) with
+ *  the weights of cost(). A simplex in few of them, within which others are fitted only about, ends beside it. */
+Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::function<void()>& progress) {
+    constexpr int max_steps = 20;
+    model.look(at);
+    double least = model.cost(at), damping = 1e-3;
+    for (int step = 0; step < max_steps && damping < 1e4; ++step) {
+        const std::vector<double> off = model.residuals(at), pulls = model.pulls(at);
+        cv::Mat derivatives = jacobian(model, at, chosen),
+                right(static_cast<int>(off.size() + pulls.size()), 1, CV_64F);
+        for (int row = 0; row < right.rows; ++row) {
+            const auto i = static_cast<size_t>(row);
+            const double value = i < off.size() ? off[i] : pulls[i - off.size()];
+            const double weight = i < off.size() ? std::sqrt(std::min(1.0, huber_db / std::max(std::abs(value), 1e-9)))
+                                                 : std::sqrt(model.pullWeight());
+            derivatives.row(row) *= weight;
+            right.at<double>(row) = -weight * value;
+        }
+        cv::Mat normal = derivatives.t() * derivatives, gradient = derivatives.t() * right, change;
+        for (int i = 0; i < normal.rows; ++i) normal.at<double>(i, i) *= 1 + damping;
+        cv::solve(normal, gradient, change, cv::DECOMP_SVD);
+        Values tried = at;
+        for (size_t i = 0; i < chosen.size(); ++i) tried[chosen[i]] += change.at<double>(static_cast<int>(i));
+        model.look(tried);
+        progress();
+        const double cost = model.cost(tried);
+        if (!(cost < least)) {
+            damping *= 10;
+            model.look(at);
+            continue;
+        }
+        const bool is_there = least - cost < 1e-6 * least;
+        least = cost, at = tried, damping /= 10;
+        if (is_there) break;
+    }
+    model.look(at);
+    return at;
+}
+
 Fitted around(double value, double deviation) { return {value, value - z_95 * deviation, value + z_95 * deviation}; }
 
 /** Values with their intervals. */
@@ -528,6 +569,9 @@ LevelFit fitLevels(const LevelBlocks& recorded, const CodedPing& law, const FitC
         values = fitScene(model, values, progress);
         model.weighPulls(varianceOf(model, values));
         values = fitInner(model, values, 1500, 2);
+        Chosen all = model.levels();
+        for (const size_t i : model.looks()) all.push_back(i);
+        values = polished(model, values, all, progress);
     }
     progress();
     return fitOf(model, values);

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <set>
 
 #include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"
@@ -50,12 +49,6 @@ double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
         refuse(file,
                "lies in degrees; project it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
     return map->GetLinearUnits();
-}
-
-void checkUnit(GDALRasterBand& band, const std::filesystem::path& file) {
-    const std::string unit = band.GetUnitType();
-    if (!unit.empty() && !std::set<std::string>{"m", "metre", "metres", "meter", "meters"}.contains(unit))
-        refuse(file, "has elevations in " + unit + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
 /** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
@@ -111,7 +104,7 @@ GdalSurvey::GdalSurvey(const std::filesystem::path& file, int band) : file_(file
                "does not say where it lies on the map; give it a place: gdal_translate -a_ullr WEST NORTH EAST SOUTH "
                "IN OUT");
     if (map[2] != 0 || map[4] != 0) refuse(file, "is turned against north; turn it: gdalwarp IN OUT");
-    checkUnit(*dataset_->GetRasterBand(band), file);
+    unit_ = dataset_->GetRasterBand(band)->GetUnitType();
     const double metres = metresOf(*dataset_, file);
     spacing_ = metres * glm::dvec2(map[1], map[5]);
     first_ = metres * glm::dvec2(map[0], map[3]) + 0.5 * spacing_;

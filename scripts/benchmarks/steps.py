@@ -4,9 +4,11 @@ import statistics
 import subprocess
 
 from benchmarks.common import ROOT, deployment_file, fail, run_pings
-from benchmarks.fans import SCENES, SONARS, deployment, scene, seen
+from benchmarks.fans import FAN, SCENES, SONARS, deployment, scene, seen
 
 ROUNDS = 5
+SMALL = ("{type: sonar::SonarTask, properties: {quality: {rows: 64, columns_per_beam: 1}, beam_count: 96, bin_count: 128, "
+         + FAN + "}}")
 
 # Milliseconds a ping, without the first ten.
 STEPS = """
@@ -18,13 +20,14 @@ for _ in range(pings): simulation.step(pose).bins
 print(1e3 * (time.perf_counter() - start) / pings)
 """
 
-# Steps a second of so many environments of gymnasium, each in a process of its own.
+# Steps a second of so many environments of gymnasium: each in a process of its own, or all in one.
 AGENTS = """
 import sys, time, gymnasium, insonify, insonify.gym
-file, count, steps = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-def make(): return insonify.gym.SonarEnv(file, insonify.Pose([0, 0, 0]), max_steps=10**9, collision_range=0)
+file, count, steps, together = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4] == "together"
+start, options = insonify.Pose([0, 0, 0]), dict(max_steps=10**9, collision_range=0)
+def make(): return insonify.gym.SonarEnv(file, start, **options)
 if __name__ == "__main__":
-    agents = gymnasium.vector.AsyncVectorEnv([make] * count)
+    agents = insonify.gym.SonarVectorEnv(file, start, count, **options) if together else gymnasium.vector.AsyncVectorEnv([make] * count)
     agents.reset(seed=1)
     for _ in range(10): agents.step(0 * agents.action_space.sample())
     start = time.perf_counter()
@@ -69,17 +72,23 @@ def show_steps(found):
 def measure_agents(options):
     python = ROOT / "build/venv/bin/python"
     environment = os.environ | {"PYTHONPATH": str(ROOT / "build/python")}
+
+    def rate(file, count, how):
+        steps = max(10, options.pings // count)
+        done = subprocess.run([python, "-c", AGENTS, file, str(count), str(steps), how], stdout=subprocess.PIPE, env=environment)
+        if done.returncode != 0:
+            fail("environments of gymnasium", done.returncode)
+        return float(done.stdout)
+
     found = {}
-    with deployment_file(deployment(seen(SONARS["FLS 256 x 500"], "cpu"), scene(SCENES["80 k"]))) as file:
-        for count in (1, 2, 4):
-            done = subprocess.run([python, "-c", AGENTS, file, str(count), str(options.pings)], stdout=subprocess.PIPE,
-                                  env=environment)
-            if done.returncode != 0:
-                fail("environments of gymnasium", done.returncode)
-            found[count] = float(done.stdout)
+    for name, sonar in (("FLS 256 x 500", SONARS["FLS 256 x 500"]), ("FLS 96 x 128", SMALL)):
+        with deployment_file(deployment(seen(sonar, "cpu"), scene(SCENES["80 k"]))) as file:
+            found[name] = [[count, how, statistics.median(rate(file, count, how) for _ in range(3))]
+                           for count, how in ((1, "apart"), (4, "apart"), (4, "together"), (32, "together"))]
     return found
 
 
 def show_agents(found):
-    for count, rate in found.items():
-        print(f"FLS 256 x 500, 80 k, {count} environments of gymnasium: {rate:.1f} steps a second in all")
+    for name, rates in found.items():
+        for count, how, rate in rates:
+            print(f"{name}, 80 k, {count} environments of gymnasium, {how}: {rate:.1f} steps a second in all")

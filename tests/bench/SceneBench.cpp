@@ -87,7 +87,7 @@ void mission(const std::string& folder) {
     scene::Bathymetry floor(config, survey(folder));
     scene::Scene scene;
     scene.geometry = std::make_shared<types::Geometry>();
-    scene::Bathymetry::addMaterial(scene);
+    scene::Bathymetry::addMaterials(scene, {});
     std::unique_ptr<sonar::SonarRenderer> renderer;
     types::GeometryPtr before;
     types::Sonar ping;

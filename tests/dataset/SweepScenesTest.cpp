@@ -68,15 +68,34 @@ TEST(SweepScenesTest, AnObjectHasItsNodesNamesUpToTheRoot) {
     EXPECT_EQ(lineagesOf(scene), (std::vector<Lineage>{{"floor_low", "frame", "sea"}, {"floor_high"}}));
 }
 
+using Changes = std::vector<std::function<void(types::Geometry&)>>;
+
+/** Floors with a normal map and a surface map. */
+types::Geometry mappedFloors() {
+    const types::SurfaceMap map{
+        .width = 2, .height = 1, .strengths = {1, 0.5f}, .classes = {0, types::SurfaceMap::no_class}, .materials = {1}};
+    types::Geometry geometry = *floors().geometry;
+    geometry.meshes[0].normals.assign(3, {0, 0, 1});
+    geometry.meshes[0].tangents.assign(3, {1, 0, 0, 1});
+    geometry.meshes[0].map_uvs.assign(3, {0, 1});
+    geometry.meshes[0].maps.push_back({0, std::make_shared<const types::SurfaceMap>(map)});
+    geometry.normal_maps.push_back({.width = 2, .height = 1, .rgb = {0, 0, 255, 0, 0, 255}});
+    return geometry;
+}
+
+/** Each change gives a digest of its own. */
+void expectOthers(const types::Geometry& plain, const Changes& changes) {
+    std::set<std::string> digests = {digestOf(plain)};
+    for (size_t i = 0; i < changes.size(); ++i) {
+        types::Geometry changed = plain;
+        changes[i](changed);
+        EXPECT_TRUE(digests.insert(digestOf(changed)).second) << i;
+    }
+}
+
 TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
-    const types::Geometry plain = [] {
-        types::Geometry geometry = *floors().geometry;
-        geometry.meshes[0].normals.assign(3, {0, 0, 1});
-        geometry.meshes[0].tangents.assign(3, {1, 0, 0, 1});
-        geometry.normal_maps.push_back({.width = 2, .height = 1, .rgb = {0, 0, 255, 0, 0, 255}});
-        return geometry;
-    }();
-    const std::vector<std::function<void(types::Geometry&)>> changes = {
+    const types::Geometry plain = mappedFloors();
+    const Changes changes = {
         [](auto& changed) { changed.meshes[0].positions[1].x = 5; },
         [](auto& changed) { changed.meshes[0].tangents[0].w = -1; },
         [](auto& changed) { changed.meshes[0].clusters[0].material = 1; },
@@ -104,13 +123,29 @@ TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
         [](auto& changed) { changed.normal_maps[0].repeat_v = false; },
         [](auto& changed) { changed.normal_maps[0].rgb[0] = 9; },
     };
-    std::set<std::string> digests = {digestOf(plain)};
-    for (size_t i = 0; i < changes.size(); ++i) {
-        types::Geometry changed = plain;
-        changes[i](changed);
-        EXPECT_TRUE(digests.insert(digestOf(changed)).second) << i;
-    }
+    expectOthers(plain, changes);
     EXPECT_EQ(digestOf(plain), digestOf(types::Geometry(plain)));
+}
+
+TEST(SweepScenesTest, WhateverIsHeardOfASurfaceMapChangesTheDigest) {
+    const auto remapped = [](const auto& change) {
+        return [change](types::Geometry& changed) {
+            types::SurfaceMap other = *changed.meshes[0].maps[0].map;
+            change(other);
+            changed.meshes[0].maps[0].map = std::make_shared<const types::SurfaceMap>(other);
+        };
+    };
+    expectOthers(mappedFloors(), {
+                                     [](auto& changed) { changed.meshes[0].map_uvs[0].x = 0.5f; },
+                                     [](auto& changed) { changed.meshes[0].maps[0].material = 1; },
+                                     [](auto& changed) { changed.meshes[0].maps.clear(); },
+                                     remapped([](auto& other) { std::swap(other.width, other.height); }),
+                                     remapped([](auto& other) { other.strengths[1] = 0.25f; }),
+                                     remapped([](auto& other) { other.classes[1] = 0; }),
+                                     remapped([](auto& other) { other.materials[0] = 0; }),
+                                     remapped([](auto& other) { other.repeat_u = false; }),
+                                     remapped([](auto& other) { other.repeat_v = false; }),
+                                 });
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(DidYouMeanTest, AMissingSceneIsToldWhereItWasLookedForAndWhatCanBeRead) {
     EXPECT_THAT(diagnostics, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));
     EXPECT_THAT(diagnostics, HasSubstr("did you mean wall.gltf?"));
     EXPECT_THAT(diagnostics, HasSubstr("looked for at " + (folder / "wal.gltf").string()));
-    EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world or .sdf"));
+    EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world, .sdf or .urdf"));
 }
 
 TEST(DidYouMeanTest, CommandsOptionsAndTypesOnTheCommandLine) {

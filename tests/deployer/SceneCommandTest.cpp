@@ -109,6 +109,6 @@ TEST(SceneCommandTest, WhatIsNoSceneIsAnErrorThatNamesTheFormats) {
     writeFile(folder / "wall.blend", "BLENDER");
     const Outcome wrong = callInsonify(folder, {"scene", "wall.blend"});
     EXPECT_EQ(wrong.code, 2);
-    EXPECT_THAT(wrong.err, HasSubstr("may be .gltf, .glb, .world or .sdf"));
+    EXPECT_THAT(wrong.err, HasSubstr("may be .gltf, .glb, .world, .sdf or .urdf"));
     EXPECT_EQ(callInsonify(folder, {"scene", "nowhere.glb"}).code, 2);
 }

@@ -20,7 +20,7 @@ def folder(tmp_path):
 
 
 def test_every_block_runs(folder):
-    assert len(BLOCKS) == 3
+    assert len(BLOCKS) == 4
     for block in BLOCKS:
         if "gym" in block:
             pytest.importorskip("gymnasium")

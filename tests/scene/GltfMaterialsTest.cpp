@@ -111,6 +111,101 @@ TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
             << json << ": " << diagnosticOfAcoustics(json);
 }
 
+/** A triangle whose uvs are those of `mapped`, with a surface map. */
+class SurfaceMapsTest : public SceneFiles {
+protected:
+    /** `map`: the block in extras.acoustics; `more`: inside the material; `uvs`: whether the mesh has coordinates. */
+    static std::string painted(const std::string& map, const std::string& more = "", bool uvs = true) {
+        return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0)" +
+               std::string(uvs ? R"(,"TEXCOORD_0":1)" : "") +
+               R"(}}]}],"materials":[{"name":"floor","extras":{"acoustics":{"lambert_db":-15,"map":)" + map + "}}" +
+               more +
+               R"(},{"name":"weed","extras":{"acoustics":{"lambert_db":-22}}}],
+            "textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],"images":[{"uri":")" +
+               png + R"("}],
+            "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3},
+                         {"bufferView":1,"componentType":5126,"type":"VEC2","count":3}],
+            "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],)" +
+               buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<float>({0, 1, 1, 1, 0, 0}));
+    }
+    static constexpr const char* coloured = R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})";
+};
+
+TEST_F(SurfaceMapsTest, TheTextureOfTheBaseColourIsTakenInGrey) {
+    const auto geometry = load(painted(R"({"decibels":[-30,0]})", coloured));
+    const types::Mesh& mesh = geometry->meshes[0];
+    ASSERT_EQ(mesh.maps.size(), 1u);
+    const types::SurfaceMap& map = *mesh.maps[0].map;
+    EXPECT_EQ(mesh.maps[0].material, 0);
+    EXPECT_EQ(std::pair(map.width, map.height), std::pair(2, 1));
+    EXPECT_EQ(std::pair(map.repeat_u, map.repeat_v), std::pair(false, true));
+    // Greys of (255, 128, 128) and (10, 20, 30).
+    for (const auto& [i, grey] : {std::pair(size_t{0}, 166.0), {1, 18.0}})
+        EXPECT_NEAR(10 * std::log10(map.strengths.at(i)), -30 + 30 * grey / 255, 0.15);
+    ASSERT_EQ(mesh.map_uvs.size(), mesh.positions.size());
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(mesh.map_uvs[i], glm::vec2(mesh.positions[i].x, 1 - mesh.positions[i].y)) << i;
+    EXPECT_EQ(geometry->materials[0].max_map_strength, 1);
+    EXPECT_TRUE(geometry->notices.empty()) << geometry->notices[0];
+}
+
+TEST_F(SurfaceMapsTest, ClassesAreSedimentsMatterOrMaterialsOfTheFile) {
+    const auto geometry = load(painted(R"({"classes":{"18":"weed","166":"clay","7":"steel"}})", coloured));
+    const types::SurfaceMap& map = *geometry->meshes[0].maps.at(0).map;
+    ASSERT_EQ(map.materials.size(), 3u);
+    const auto nameAt = [&](size_t texel) {
+        return geometry->materials.at(static_cast<size_t>(map.materials.at(map.classes.at(texel)))).name;
+    };
+    EXPECT_EQ(nameAt(0), "clay");
+    EXPECT_EQ(nameAt(1), "weed");
+    ASSERT_EQ(geometry->materials.size(), 4u) << "clay and steel are added";
+    EXPECT_TRUE(std::ranges::all_of(geometry->materials, &types::Material::has_acoustics));
+}
+
+TEST_F(SurfaceMapsTest, AnImageOfItsOwnLiesBesideTheScene) {
+    write("paint.png", std::string("\x89PNG\r\n\x1a\n", 8));
+    EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"paint.png","decibels":[-30,0]})"))
+                  .find("its image is neither PNG nor JPEG"),
+              std::string::npos);
+    EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"../paint.png","decibels":[-30,0]})")).find("there is no such file"),
+              std::string::npos);
+    EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"/dev/zero","decibels":[-30,0]})")).find("there is no such file"),
+              std::string::npos);
+}
+
+TEST_F(SurfaceMapsTest, ValuesWithoutAClassAndMeshesWithoutCoordinatesAreReported) {
+    const auto half = load(painted(R"({"classes":{"18":"rock"}})", coloured));
+    EXPECT_EQ(half->meshes[0].maps.at(0).map->classes.at(0), types::SurfaceMap::no_class);
+    ASSERT_EQ(half->notices.size(), 1u);
+    EXPECT_NE(half->notices[0].find("\"floor\": 50 % of its map has values without a class"), std::string::npos);
+    const auto bare = load(painted(R"({"decibels":[-30,0]})", coloured, false));
+    EXPECT_TRUE(bare->meshes[0].maps.empty());
+    ASSERT_EQ(bare->notices.size(), 1u);
+    EXPECT_NE(bare->notices[0].find("without their map for want of texture coordinates: 1"), std::string::npos);
+}
+
+TEST_F(SurfaceMapsTest, AWrongMapIsReportedAtItsPlace) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"2", "materials[0].extras.acoustics.map: must be an object such as"},
+        {R"({"texcoord":0})", "acoustics.map: must have one of decibels and classes"},
+        {R"({"decibels":[-30,0],"classes":{"1":"rock"}})", "acoustics.map: must have one of decibels and classes"},
+        {R"({"decibels":[-30]})", "map.decibels: must be two numbers, as in [-30, 0]"},
+        {R"({"decibels":[-30,"0"]})", "map.decibels: must be two numbers"},
+        {R"({"decibels":[-30,60]})", "map.decibels: has 60; may be -200 to 40 dB"},
+        {R"({"decibels":[-30,0],"values":[5,5]})", "map.values: must be two numbers that differ"},
+        {R"({"classes":{"1.5":"rock"}})", "map.classes: has 1.5; a class is a whole number from 0 to 254"},
+        {R"({"classes":{"255":"rock"}})", "map.classes: has 255; a class is a whole number from 0 to 254"},
+        {R"({"classes":{"1":"rok"}})", "map.classes.1: is rok; did you mean rock?"},
+        {R"({"classes":{"1":3}})", "map.classes.1: must be the name of a sediment"},
+        {R"({"classes":[1,2]})", "map.classes: must be an object such as"},
+        {R"({"decibls":[-30,0]})", "map.decibls: is not known; did you mean decibels?"},
+        {R"({"decibels":[-30,0],"image":7})", "map: has an image that is no path"},
+        {R"({"decibels":[-30,0]})", "map: has no image, and the material no texture of its base colour"}};
+    for (const auto& [map, part] : cases)
+        EXPECT_NE(diagnosticOfGltf(painted(map)).find(part), std::string::npos)
+            << map << ": " << diagnosticOfGltf(painted(map));
+}
+
 TEST_F(GltfMaterialsTest, NamesOfTheTablesAreTakenAndNumbersRefineThem) {
     EXPECT_FLOAT_EQ(acoustics(R"({"sediment":"cobble"})").lambert_db, -8.1f);
     const types::Material steel = acoustics(R"({"material":"steel","reflectivity":0.5})");

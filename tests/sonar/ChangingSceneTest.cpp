@@ -60,7 +60,7 @@ std::string survey(const Folder& folder, int columns, int rows) {
 types::GeometryPtr withFloor(const types::GeometryPtr& geometry) {
     scene::Scene scene;
     scene.geometry = geometry;
-    scene::Bathymetry::addMaterial(scene);
+    scene::Bathymetry::addMaterials(scene, {});
     return scene.geometry;
 }
 

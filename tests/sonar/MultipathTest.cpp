@@ -12,6 +12,7 @@
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
+#include "types/SonarReturns.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -456,8 +457,8 @@ TEST(MultipathTest, ATrihedralHasItsTargetStrengthOverFortyDegrees) {
         for (const auto& [yaw, pitch] :
              {std::pair{0.0, 0.0}, {20.0, 0.0}, {-20.0, 0.0}, {0.0, 20.0}, {0.0, -20.0}, {10.0, 5.0}}) {
             const double aperture = side * side * trihedralAperture(square, yaw, pitch);
-            EXPECT_NEAR(strengthOf(config, trihedral(side, square, yaw, pitch)), 20 * std::log10(aperture / corner_wavelength),
-                        2)
+            EXPECT_NEAR(strengthOf(config, trihedral(side, square, yaw, pitch)),
+                        20 * std::log10(aperture / corner_wavelength), 2)
                 << (square ? "square " : "triangular ") << yaw << ' ' << pitch;
         }
 }
@@ -527,7 +528,17 @@ TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
     EXPECT_EQ(path(r1), 0);
     EXPECT_EQ(path((r1 + r2) / 2), 1);
     EXPECT_EQ(path(r2), 2);
+    for (const auto& [range, heard_from] : {std::pair((r1 + r2) / 2, 0.0), {r2, std::asin(6 / r2)}}) {
+        const size_t at = 300 + static_cast<size_t>(range / 0.1);
+        EXPECT_EQ(truth.object[at], 0) << "a ghost is of what is seen in it";
+        EXPECT_FLOAT_EQ(truth.share[at], 1);
+        EXPECT_NEAR(truth.elevation[at], heard_from > 0 ? heard_from : truth.elevation[at], 0.1);
+    }
+    types::SonarReturns returns;
+    returns.take(ping, truth);
+    EXPECT_NEAR(returns.first_range[1], r1, 0.5) << "ghosts are no first returns";
     for (size_t k = 0; k < ping.bins.size(); ++k) {
+        EXPECT_EQ(ping.bins[k] > 0, truth.object[k] >= 0) << k;
         EXPECT_EQ(ping.bins[k] > 0, truth.path[k] > 0 || truth.hits[k] > 0) << k;
         EXPECT_FALSE(ping.bins[k] > 0 && truth.shadow[k]) << k;
     }
@@ -537,6 +548,7 @@ TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
     bounced.setTruth(ping, &truth);
     bounced.render(wall, ping);
     EXPECT_EQ(static_cast<int>(truth.path[static_cast<size_t>(std::hypot(12, 8) / 0.1)]), 3);
+    EXPECT_EQ(truth.object[static_cast<size_t>(std::hypot(12, 8) / 0.1)], 1) << "the plate, not the wall";
 }
 
 TEST(MultipathTest, ThreadsMakeNoDifference) {

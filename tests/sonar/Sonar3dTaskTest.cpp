@@ -184,12 +184,123 @@ TEST_F(Sonar3dTaskTest, WhatIsWeakBesideThePingIsNoReturn) {
     EXPECT_EQ(starboard, 0u);
 }
 
-TEST_F(Sonar3dTaskTest, ItRefusesToTellTheTruthOfItsManyRenderings) {
-    test::Reader<types::SonarReturnsPtr> returns{"returns"};
-    task_.returns.connectTo(returns.port, framework::ConnPolicy::data());
-    task_.config.set(grid());
-    EXPECT_FALSE(task_.configure());
-    EXPECT_THAT(task_.lastError(), testing::HasSubstr("tells no truth"));
+/** A ball before a wall. */
+types::Snapshot ballBeforeWall() {
+    return test::snapshotOf(sceneOf({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}}));
+}
+
+TEST_F(Sonar3dTaskTest, EachCellOfTheMapTellsWhichObjectItShows) {
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
+    startWith(grid());
+    const auto map = mapOf(ballBeforeWall());
+    ASSERT_TRUE(map) << task_.lastError();
+    types::SonarTruthPtr truth;
+    ASSERT_TRUE(truths.port.readNew(truth));
+    ASSERT_EQ(truth->diagnostic(), nullptr);
+    ASSERT_EQ(truth->beam_count, 1200u);
+    ASSERT_EQ(truth->bin_count, 1u);
+    ASSERT_EQ(truth->objects.size(), 2u);
+    const glm::dvec3 centre(6, 1, 0.5);
+    int balls = 0, walls = 0;
+    for (size_t cell = 0; cell < 1200; ++cell) {
+        EXPECT_EQ(std::isfinite(map->distances[cell]), truth->object[cell] >= 0) << cell;
+        const glm::dvec3 direction = map->direction(cell / 60, cell % 60);
+        EXPECT_NEAR(truth->bearings[cell].rad, map->horizontal_interval[cell % 60], 1e-9);
+        if (truth->object[cell] < 0) continue;
+        EXPECT_NEAR(truth->elevation[cell], -map->vertical_interval[cell / 60], 1e-6);
+        const double along = glm::dot(centre, direction), off = glm::length(centre - along * direction);
+        if (std::abs(off - 1.5) < 0.25) continue;  // beams that see both
+        EXPECT_EQ(truth->object[cell], off < 1.5 ? 0 : 1) << cell;
+        EXPECT_FLOAT_EQ(truth->share[cell], 1) << cell;
+        EXPECT_GT(truth->hits[cell], 0u);
+        ++(off < 1.5 ? balls : walls);
+        if (off < 1.4)
+            EXPECT_NEAR(std::sin(truth->grazing[cell]), std::sqrt(1 - off * off / 2.25), 0.15) << cell;
+        else
+            EXPECT_NEAR(std::sin(truth->grazing[cell]), direction.x, 0.03) << cell;
+    }
+    EXPECT_GT(balls, 100);
+    EXPECT_GT(walls, 300);
+}
+
+/** The truth of a fan of the whole height, which sums all elevations of an azimuth in one rendering. */
+TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    task_.truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
+    Sonar3dConfig config = grid();
+    config.horizontal = {40, 40};
+    config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 16;
+    startWith(config);
+    auto geometry = sceneOf({test::sphere(1.5f), test::wall(12), test::ground(-2.5f)}, 0, {{6, 1, 0.5}, {}, {}});
+    const types::Snapshot scene = test::snapshotOf(geometry);
+    ASSERT_TRUE(mapOf(scene)) << task_.lastError();
+    types::SonarTruthPtr truth;
+    ASSERT_TRUE(truths.port.readNew(truth));
+    ASSERT_EQ(truth->diagnostic(), nullptr);
+    SonarConfig whole = config.sonar;
+    whole.beam_count = 40;
+    whole.field_of_view_deg = 40;
+    whole.beam_height_deg = 40;
+    whole.quality.rows = 640;
+    SonarRenderer renderer(whole, scene.geometry);
+    types::Sonar fan;
+    types::SonarTruth expected;
+    renderer.setTruth(fan, &expected);
+    renderer.render(scene, fan);
+    ASSERT_EQ(truth->object.size(), expected.object.size());
+    size_t heard = 0, same = 0, near = 0, shadows = 0, same_shadows = 0;
+    for (size_t at = 0; at < expected.object.size(); ++at) {
+        shadows += expected.shadow[at];
+        same_shadows += expected.shadow[at] & truth->shadow[at];
+        if (expected.object[at] < 0 || expected.share[at] < 0.8f) continue;
+        ++heard;
+        if (truth->object[at] != expected.object[at]) continue;
+        ++same;
+        // The nearest bins of wall and ball are met above and below the axis: a mean of two directions.
+        near += std::abs(truth->elevation[at] - expected.elevation[at]) < types::radians(2.1);
+        EXPECT_NEAR(truth->share[at], expected.share[at], 0.2) << at;
+    }
+    std::cout << same << " of " << heard << " labels and " << same_shadows << " of " << shadows
+              << " shadows the same\n";
+    EXPECT_GT(heard, 5000u);
+    EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(heard));
+    EXPECT_GT(static_cast<double>(near), 0.99 * static_cast<double>(same));
+    EXPECT_GT(shadows, 1000u);
+    EXPECT_GT(static_cast<double>(same_shadows), 0.97 * static_cast<double>(shadows));
+}
+
+TEST_F(Sonar3dTaskTest, WhoTakesTheTruthChangesNoBin) {
+    startWith(grid());
+    const auto before = mapOf(ballBeforeWall());
+    ASSERT_TRUE(before) << task_.lastError();
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
+    types::Snapshot later = ballBeforeWall();
+    later.time = types::Time::fromSeconds(5);
+    const auto after = mapOf(later);
+    ASSERT_TRUE(after) << task_.lastError();
+    EXPECT_EQ(before->distances, after->distances);
+    EXPECT_EQ(before->remissions, after->remissions);
+}
+
+TEST_F(Sonar3dTaskTest, WhatIsTooWeakForAReturnShowsNoObject) {
+    test::Reader<types::SonarTruthPtr> truths{"truths"};
+    task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
+    Sonar3dConfig config = grid();
+    config.detection.threshold_db = -5;
+    startWith(config);
+    const auto map = mapOf(ballBeforeWall());
+    ASSERT_TRUE(map) << task_.lastError();
+    types::SonarTruthPtr truth;
+    ASSERT_TRUE(truths.port.readNew(truth));
+    size_t none = 0;
+    for (size_t cell = 0; cell < 1200; ++cell) {
+        EXPECT_EQ(std::isfinite(map->distances[cell]), truth->object[cell] >= 0) << cell;
+        none += truth->object[cell] < 0;
+    }
+    EXPECT_GT(none, 100u);
+    EXPECT_LT(none, 1200u);
 }
 
 TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {

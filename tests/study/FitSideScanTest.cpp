@@ -73,7 +73,7 @@ struct TrueSideScan {
         sonar::SonarConfig& sonar = chain.sonar;
         sonar.absorption->db_per_m = between(0.09, 0.13);
         sonar.bearings_deg = {depression_deg - 90, 90 - depression_deg};
-        sonar.beam_width_deg = 100;
+        sonar.beam_width_deg = 110;  // so that a beam fades down to the nadir, as real ones do, and is not cut off before
         auto& across = sonar.beam_pattern.emplace().receive.azimuth.emplace();
         across.weighting = acoustics::Weighting::Gaussian;
         across.width_deg = width_deg;
@@ -108,12 +108,12 @@ TEST_P(FitSideScanTest, FindsThePropertiesOfASimulatedSideScan) {
     const auto near = [&](const char* name, double expected, double tolerance) {
         expectFound(fit, name, expected, tolerance);
     };
-    near("full scale", truth.chain.receiver.code->full_scale_db, 2);  // 1 dB is wanted, see SIDE_SCANS.md
+    near("full scale", truth.chain.receiver.code->full_scale_db, 1);
     near("noise", truth.noise_db, 1);
     const double span = tvgSpanDb(truth.log_coefficient, truth.db_per_m, line_range);
     near("TVG span", span, 0.05 * span);
     near("depression", truth.depression_deg, 1);
-    near("elevation width", truth.width_deg, 0.12 * truth.width_deg);  // 5 % is wanted, see SIDE_SCANS.md
+    near("elevation width", truth.width_deg, 0.05 * truth.width_deg);
     near("pulse length", truth.pulse_m, 0.05 * truth.pulse_m);
     const Finding* shape = fit.finding("scatterers per cell");
     ASSERT_NE(shape, nullptr);
@@ -198,7 +198,7 @@ TEST(LinePlaceTest, LinesBeyondTheFloorAreRefusedWithTheReason) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(fitSeeds({2, 5})));
+INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(fitSeeds({2, 4})));
 
 }  // namespace
 }  // namespace insonify::study

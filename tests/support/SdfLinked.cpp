@@ -4,7 +4,7 @@
 namespace {
 
 [[maybe_unused]] const bool linked = [] {
-    for (const char* extension : {".sdf", ".world"}) insonify::scene::addFormat(extension, insonify::sdf::readSdf);
+    for (const char* extension : {".sdf", ".world", ".urdf"}) insonify::scene::addFormat(extension, insonify::sdf::readSdf);
     return true;
 }();
 

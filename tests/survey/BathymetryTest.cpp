@@ -63,6 +63,36 @@ protected:
         return shortened(file);
     }
     types::GeometryPtr about(Bathymetry& floor, glm::dvec3 place) { return floor.about(place, rest_); }
+    /** A mosaic of values `spacing` apart whose south-west one is at an easting and northing; NaN: none. */
+    template <class Value>
+    std::string mosaic(const std::string& name, int columns, int rows, double east, double north, double spacing,
+                       Value&& value) {
+        std::vector<float> values;
+        for (int row = rows - 1; row >= 0; --row)
+            for (int column = 0; column < columns; ++column) {
+                const auto at = static_cast<float>(value(east + spacing * column, north + spacing * row));
+                values.push_back(std::isnan(at) ? -9999 : at);
+            }
+        write(name + ".hdr", fmt::format("ncols {}\nnrows {}\nxllcenter {}\nyllcenter {}\ncellsize {}\nNODATA_value "
+                                         "-9999\nbyteorder LSBFIRST\n",
+                                         columns, rows, east, north, spacing));
+        return write(name + ".flt", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+    }
+    /** Value of a tile's map at a vertex, bilinear: by `valueOf(texel)`. */
+    template <class Value>
+    static double mapAt(const types::Mesh& mesh, size_t vertex, Value&& valueOf) {
+        const types::SurfaceMap& map = *mesh.maps.at(0).map;
+        const glm::vec2 at = mesh.map_uvs[vertex] * glm::vec2(map.width, map.height) - 0.5f, low = glm::floor(at),
+                        share = at - low;
+        double sum = 0;
+        for (int corner = 0; corner < 4; ++corner) {
+            const int x = std::clamp(static_cast<int>(low.x) + (corner & 1), 0, map.width - 1),
+                      y = std::clamp(static_cast<int>(low.y) + (corner >> 1), 0, map.height - 1);
+            const double weight = (corner & 1 ? share.x : 1 - share.x) * (corner & 2 ? share.y : 1 - share.y);
+            if (weight > 1e-4) sum += weight * valueOf(map, static_cast<size_t>(y * map.width + x));
+        }
+        return sum;
+    }
 
     Folder folder_;
     glm::ivec2 hole_{-1};
@@ -75,10 +105,10 @@ protected:
         config.reach = 20;
         return config;
     }();
-    types::GeometryPtr rest_ = [] {
+    types::GeometryPtr rest_ = [this] {
         Scene scene;
         scene.geometry = std::make_shared<const types::Geometry>();
-        Bathymetry::addMaterial(scene);
+        Bathymetry::addMaterials(scene, config_);
         return scene.geometry;
     }();
 };
@@ -240,6 +270,95 @@ TEST_F(BathymetryTest, TheFilesOfAMosaicAreOneFloor) {
                   sources + "</VRTRasterBand></VRTDataset>");
     Bathymetry floor(config_, grid("whole", 60, 40)), tiled(config_, mosaic);
     EXPECT_EQ(positionsOf(*about(tiled, {40, -60, 0})), positionsOf(*about(floor, {40, -60, 0})));
+}
+
+TEST_F(BathymetryTest, AMosaicLiesWhereTheMapSaysWhateverItsGrid) {
+    config_.map.emplace();
+    config_.map->file = "given apart";
+    config_.map->meaning.decibels = {-60, 0};
+    config_.map->meaning.values = {-60, 0};
+    const auto levelAt = [](double east, double north) { return -40 + 0.05 * (east - 1000) + 0.1 * (north - 5000); };
+    struct Grid {
+        double east, north, spacing;
+    };
+    for (const Grid& g : {Grid{995, 4990, 0.5}, {1000, 5000, 2}, {990.3, 4993.7, 0.7}, {980, 4980, 5}}) {
+        const std::string file = mosaic("levels", static_cast<int>(150 / g.spacing), static_cast<int>(120 / g.spacing),
+                                        g.east, g.north, g.spacing, levelAt);
+        Bathymetry floor(config_, grid("floor", 60, 40), file);
+        const types::GeometryPtr geometry = about(floor, {30, -50, -40});
+        ASSERT_GT(geometry->meshes.size(), 1u);
+        double worst = 0;
+        for (const types::Mesh& mesh : geometry->meshes) {
+            ASSERT_EQ(mesh.maps.size(), 1u);
+            ASSERT_EQ(mesh.map_uvs.size(), mesh.positions.size());
+            for (size_t i = 0; i < mesh.positions.size(); ++i) {
+                const glm::vec3& p = mesh.positions[i];
+                const double decibels = mapAt(mesh, i, [](const auto& map, size_t texel) {
+                    return 10 * std::log10(static_cast<double>(map.strengths.at(texel)));
+                });
+                worst = std::max(worst, std::abs(decibels - levelAt(1000 - p.y, 5000 + p.x)));
+            }
+        }
+        EXPECT_LT(worst, 0.01) << g.spacing;
+    }
+}
+
+TEST_F(BathymetryTest, AMosaicOfClassesHasTheirMaterialsAndNoneWhereItHasNone) {
+    config_.map.emplace();
+    config_.map->file = "given apart";
+    config_.map->meaning.classes = {{"3", "rock"}, {"7", "clay"}};
+    rest_ = [&] {
+        Scene scene;
+        scene.geometry = std::make_shared<const types::Geometry>();
+        Bathymetry::addMaterials(scene, config_);
+        return scene.geometry;
+    }();
+    EXPECT_EQ(rest_->materials.at(0).max_map_strength, 1);
+    const std::string file = mosaic("classes", 60, 80, 1000, 5000, 1, [](double east, double) {
+        return east < 1020 ? 3 : east < 1040 ? 7 : NAN;  // and it ends at 1059
+    });
+    Bathymetry floor(config_, grid("floor", 60, 40), file);
+    std::map<std::string, int> seen;
+    for (const types::Mesh& mesh : about(floor, {30, -50, -40})->meshes)
+        for (size_t i = 0; i < mesh.positions.size(); ++i) {
+            const double east = 1000 - mesh.positions[i].y, north = 5000 + mesh.positions[i].x;
+            if (std::abs(east - 1020) < 2 || std::abs(east - 1040) < 2 || north > 5078) continue;
+            if (mesh.maps.empty()) {
+                EXPECT_GT(east, 1058);
+                continue;
+            }
+            const double number = mapAt(
+                mesh, i, [](const auto& map, size_t texel) { return static_cast<double>(map.classes.at(texel)); });
+            const int material =
+                number == types::SurfaceMap::no_class ? 0 : mesh.maps[0].map->materials.at(static_cast<size_t>(number));
+            const std::string& name = rest_->materials.at(static_cast<size_t>(material)).name;
+            EXPECT_EQ(name, east < 1020 ? "rock" : east < 1040 ? "clay" : "bathymetry") << east;
+            ++seen[name];
+        }
+    EXPECT_EQ(seen.size(), 3u);
+}
+
+TEST_F(BathymetryTest, AWrongMosaicIsReportedAtItsKey) {
+    SceneConfig config;
+    config.bathymetry = config_;
+    config.bathymetry->file = grid("floor", 30, 30);
+    MosaicConfig& map = config.bathymetry->map.emplace();
+    map.file = "none.tif";
+    map.meaning.classes = {{"1", "rock"}};
+    const auto diagnosticOf = [&] {
+        SceneTask task("scene");
+        task.config.set(config);
+        types::Diagnostics diagnostics;
+        task.check(diagnostics);
+        return diagnostics.empty() ? std::string() : diagnostics.front().text();
+    };
+    EXPECT_THAT(diagnosticOf(), testing::AllOf(HasSubstr("bathymetry.map.file"), HasSubstr("is not there")));
+    map.file = mosaic("fine", 2000, 20, 1000, 5000, 0.001, [](double, double) { return 1; });
+    EXPECT_THAT(diagnosticOf(), HasSubstr("values on a tile of the survey; at most 4096 a side"));
+    map.file = mosaic("classes", 30, 30, 1000, 5000, 2, [](double, double) { return 1; });
+    EXPECT_EQ(diagnosticOf(), "");
+    map.meaning.classes = {{"1", "rok"}};
+    EXPECT_THAT(diagnosticOf(), HasSubstr("bathymetry.map.classes.1: is rok; did you mean rock?"));
 }
 
 TEST_F(BathymetryTest, OutsideOfTheSurveyThereIsTheSceneAlone) {

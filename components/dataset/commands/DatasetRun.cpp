@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "components/command/Json.hpp"
 #include "components/command/Sha256.hpp"
@@ -293,14 +294,14 @@ std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) c
     return scales.dump();
 }
 
-/** Keeps the simulation before until there is the next one, so that a scene that both have stays loaded. */
+/** Keeps the simulation before, so that what both have of a scene is not made again: it, trees, facts of its meshes. */
 void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
     options.overrides = overridesOf(sample);
     options.truth = true;
     options.objects = samples_->objectsOf(sample.scene);
     if (simulation_ && options.overrides == overrides_ && sample.scene == scene_) return;
-    simulation_ = std::make_unique<deployer::Simulation>(deployment_, options);
+    before_ = std::exchange(simulation_, std::make_unique<deployer::Simulation>(deployment_, options));
     overrides_ = options.overrides, scene_ = sample.scene;
 }
 
@@ -315,14 +316,20 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     }
     const std::string vehicle = onlyOf(vehicles, deployment_, "vehicles");
     onlyOf(simulation_->pings(), deployment_, "pings");
+    const bool is_3d = simulation_->hasRangeImages(0);
+    if (sweep_.picture.shape == output::PlainShape::Range && !is_3d)
+        throw types::ConfigError(
+            {{"picture.shape", "is range, a picture of 3-D sonars; the sonar of " + deployment_ + " is none",
+              sweep_.file, sweep_.picture_line, sweep_.picture_column}});
     simulation_->reset(sample.seed);
     const double start = simulation_->time();
     Run run;
-    double bin_width = 0;
+    deployer::SteppedPing made;
     for (const auto& [time, pose] : sample.run) {
         at[vehicle] = pose;
-        const deployer::SteppedPing made = simulation_->step(at, start + time).front();
-        if (!made.ping || !made.truth) throw std::runtime_error(fmt::format("sample {} made no ping", index));
+        made = simulation_->step(at, start + time).front();
+        if (!made.ping || !made.truth || (is_3d && (!made.range_image || !made.range_truth)))
+            throw std::runtime_error(fmt::format("sample {} made no ping", index));
         if (sweep_.lines && made.ping->beam_count > max_beams_per_line)
             throw types::ConfigError({{"lines",
                                        fmt::format("are of side-scans, whose pings have one or two beams; those of {} "
@@ -330,12 +337,13 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
                                                    deployment_, made.ping->beam_count),
                                        sweep_.file, sweep_.lines->line, sweep_.lines->column}});
         run.add(made.ping, made.truth);
-        bin_width = made.bin_width;
+        before_.reset();
     }
     std::vector<std::pair<std::string, Json>> settings;
     for (const auto& [property, yaml] : sample.settings)
         settings.emplace_back(property, deployer::toJson(framework::parseValue(yaml)));
-    files.write({sample, run, instances_[sample.scene], bin_width, scenes_[sample.scene].name, std::move(settings)});
+    files.write({sample, run, instances_[sample.scene], made.bin_width, scenes_[sample.scene].name, std::move(settings),
+                 made.range_image, made.range_truth});
 }
 
 }  // namespace insonify::dataset

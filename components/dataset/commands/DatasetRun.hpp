@@ -72,6 +72,7 @@ private:
     std::optional<Classes> classes_;
     std::string digest_;
     std::unique_ptr<deployer::Simulation> simulation_;  ///< One scene with its settings.
+    std::unique_ptr<deployer::Simulation> before_;      ///< The one before, until the first sample of the next.
     std::vector<std::string> overrides_;                ///< Overrides of the simulation.
     size_t scene_ = 0;                                  ///< Scene of the simulation.
 };

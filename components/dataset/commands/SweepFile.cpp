@@ -119,6 +119,7 @@ public:
         readScenes(keys.scenes);
         readPoses(keys.poses);
         readLines(keys.lines);
+        checkRangePicture();
         readSettings(keys.settings);
         readObjects(keys.objects);
         readClasses(keys.classes);
@@ -192,6 +193,17 @@ private:
                                              : "is missing: how fast the vehicle goes straight ahead [m/s]");
         if (lines.motion && sweep_.trajectory)
             reader_.report(node, "lines.motion", "is given beside a trajectory; give it as poses.trajectory.motion");
+    }
+
+    void checkRangePicture() {
+        if (sweep_.picture.shape != output::PlainShape::Range) return;
+        const YAML::Node shape = child(child(document_, "picture"), "shape"), asked = child(document_, "annotations");
+        sweep_.picture_line = shape.Mark().line + 1, sweep_.picture_column = shape.Mark().column + 1;
+        for (const auto& [key, is_asked] :
+             {std::pair("shadows", sweep_.annotations.shadows), std::pair("ghosts", sweep_.annotations.ghosts)})
+            if (is_asked)
+                reader_.report(child(asked, key), std::string("annotations.") + key,
+                               "is true; a range image shows the strongest return of each beam, no shadows and ghosts");
     }
 
     void readRandom(const YAML::Node& node) {

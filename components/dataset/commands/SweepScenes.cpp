@@ -98,6 +98,14 @@ void addMaterial(command::Sha256& hash, const types::Material& material) {
     addBytes(hash, material.measured);
 }
 
+void addMap(command::Sha256& hash, const types::MappedMaterial& mapped) {
+    const types::SurfaceMap& map = *mapped.map;
+    hash.add(fmt::format("map {} {} {} {} {}\n", mapped.material, map.width, map.height, map.repeat_u, map.repeat_v));
+    addBytes(hash, map.strengths);
+    addBytes(hash, map.classes);
+    addBytes(hash, map.materials);
+}
+
 }  // namespace
 
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene) {
@@ -140,6 +148,8 @@ std::string digestOf(const types::Geometry& geometry) {
         addBytes(hash, mesh.tangents);
         addBytes(hash, mesh.uvs);
         addBytes(hash, mesh.indices);
+        for (const types::MappedMaterial& mapped : mesh.maps) addMap(hash, mapped);
+        addBytes(hash, mesh.map_uvs);
         for (const types::Cluster& cluster : mesh.clusters)
             hash.add(fmt::format("{} {} {}\n", cluster.first_index, cluster.index_count, cluster.material));
     }

@@ -13,7 +13,7 @@ radians, times seconds; bearings are positive to port.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from . import native
 from .native import ConfigError
 
-__all__ = ["ConfigError", "Log", "Ping", "Pose", "Simulation", "Truth", "read_log"]
+__all__ = ["ConfigError", "Log", "Ping", "Pings", "Pose", "Simulation", "SimulationBatch", "Truth", "read_log"]
 
 
 @dataclass(eq=False)
@@ -208,7 +208,8 @@ class Ping:
 
 
 def _truth(facts: dict, arrays: dict) -> Truth:
-    return Truth({**{name: array for name, array in arrays.items() if name not in ("bins", "bearings", "ranges")}, "objects": facts["objects"]})
+    others = ("bins", "bearings", "ranges", "times")
+    return Truth({**{name: array for name, array in arrays.items() if name not in others}, "objects": facts["objects"]})
 
 
 class Simulation:
@@ -236,8 +237,7 @@ class Simulation:
         truth: bool = False,
         period: float | None = None,
     ) -> None:
-        assignments = [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
-        self._simulation = native.simulation(str(deployment), seed, assignments, truth, period)
+        self._simulation = native.simulation(str(deployment), seed, _assignments(overrides), truth, period)
         facts = self._simulation.facts()
         self._poses, self._pings, self._period = facts["poses"], facts["pings"], facts["period"]
 
@@ -281,6 +281,100 @@ class Simulation:
         if len(ports) != 1:
             raise ValueError(f"this deployment has several {what}: give a dictionary of {', '.join(ports)}")
         return ports[0]
+
+
+class Pings:
+    """The pings of one step of a batch, in arrays that belong to the step and are not to be written to."""
+
+    def __init__(self, handle: native.Handle) -> None:
+        self._facts, self._arrays = handle.facts(), dict(handle.arrays())
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    @property
+    def bins(self) -> NDArray[np.float32]:
+        """[simulations, beams, bins]."""
+        return self._arrays["bins"]
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """[simulations], when each ping was [s]."""
+        return self._arrays["times"]
+
+    @property
+    def bearings(self) -> NDArray[np.float64]:
+        """[beams], of the first simulation, positive to port [rad]."""
+        return self._arrays["bearings"]
+
+    @property
+    def ranges(self) -> NDArray[np.float64]:
+        """[bins], slant range at the middle of each [m]."""
+        return self._arrays["ranges"]
+
+    @property
+    def truth(self) -> Truth | None:
+        """What the bins show, arrays of the shape of `bins`; None unless the batch was made with truth=True."""
+        return _truth(self._facts, self._arrays) if "objects" in self._facts else None
+
+
+class SimulationBatch:
+    """Several simulations of one deployment on one scene, stepped side by side: each on one core, as many at a time as
+    there are cores. Simulation `i` pings as a Simulation with seed `batch.seeds[i]`, bit for bit.
+
+        batch = insonify.SimulationBatch("deploy/harbour_fls.yml", 32, seed=1)
+        bins = batch.step(poses).bins                # [32, beams, bins], of poses [32, 7] or [32, 4, 4]
+
+    :param count: how many, 1 to 65535; each takes the memory of its own sonar, and none of the scene.
+    Others as of Simulation; the deployment has one vehicle and one sonar.
+    """
+
+    def __init__(
+        self,
+        deployment: str,
+        count: int,
+        seed: int = 0,
+        overrides: Mapping[str, object] | None = None,
+        *,
+        truth: bool = False,
+        period: float | None = None,
+    ) -> None:
+        self._batch = native.batch(str(deployment), count, seed, _assignments(overrides), truth, period)
+        self._count, self._period = count, self._batch.facts()["period"]
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def period(self) -> float:
+        """Between two steps [s]."""
+        return self._period
+
+    @property
+    def seeds(self) -> list[int]:
+        """Of each simulation; 0: the deployment's own."""
+        return self._batch.facts()["seeds"]
+
+    def step(self, poses) -> Pings:
+        """The ping of each simulation at its pose: an array [simulations, 7] of x, y, z [m] and a quaternion w, x, y, z,
+        one [simulations, 4, 4] of transforms from the body to the world, or a list of Pose. RuntimeError names the first
+        simulation that failed."""
+        return Pings(native.batch_step(self._batch, self._numbers(poses)))
+
+    def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
+        """Begins simulations anew, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
+        native.batch_reset(self._batch, range(len(self)) if which is None else which, seeds)
+
+    def _numbers(self, poses) -> NDArray[np.float64]:
+        if isinstance(poses, np.ndarray) and poses.shape == (len(self), 7):
+            return np.ascontiguousarray(poses, float)
+        if len(poses) != len(self):
+            raise ValueError(f"poses: are {len(poses)}; the batch has {len(self)} simulations")
+        return np.stack([_numbers(each) for each in poses])
+
+
+def _assignments(overrides: Mapping[str, object] | None) -> list[str]:
+    return [f"{name}={json.dumps(value, default=_plain)}" for name, value in (overrides or {}).items()]
 
 
 def _plain(value: object) -> object:

@@ -50,6 +50,9 @@ for _name, _result, *_arguments in (
     ("simulation", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double)),
     ("step", ctypes.c_int, _handle, ctypes.POINTER(_text), _handle, _size, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(_handle)),
     ("reset", ctypes.c_int, _handle, ctypes.POINTER(ctypes.c_uint64)),
+    ("batch", _handle, _text, ctypes.c_uint64, ctypes.POINTER(_text), _size, ctypes.c_int, ctypes.POINTER(ctypes.c_double), _size),
+    ("batch_step", _handle, _handle, _handle),
+    ("batch_reset", ctypes.c_int, _handle, _handle, _handle, _size),
     ("fan", _handle, _handle, ctypes.c_uint32, ctypes.c_double, ctypes.POINTER(ctypes.c_double), _text, _text, ctypes.c_int),
     ("log", _handle, _text),
     ("sample", _handle, _handle, _size, _size),
@@ -139,6 +142,30 @@ def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, coun
 def reset(simulation: Handle, seed: int | None) -> None:
     given = None if seed is None else ctypes.byref(ctypes.c_uint64(_whole("seed", seed, 2**64)))
     if _library.insonify_reset(simulation.pointer, given):
+        _raise()
+
+
+def batch(
+    deployment: str, count: int, seed: int, overrides: Sequence[str], truth: bool, period: float | None
+) -> Handle:
+    count, seed, period = _whole("count", count, 2**16), _whole("seed", seed, 2**64), _optional("period", period)
+    texts = (_text * len(overrides))(*(each.encode() for each in overrides))
+    return Handle(_library.insonify_batch(os.fsencode(deployment), seed, texts, len(texts), truth, period, count))
+
+
+def batch_step(batch: Handle, poses: NDArray[np.float64]) -> Handle:
+    """All pings as one sample, of poses [simulations, 7]: x, y, z [m] and a quaternion w, x, y, z."""
+    return Handle(_library.insonify_batch_step(batch.pointer, poses.ctypes.data))
+
+
+def batch_reset(batch: Handle, which: Sequence[int], seeds: Sequence[int] | None) -> None:
+    numbers = np.array([_whole("which", each, 2**16) for each in which], np.uintp)
+    given = None if seeds is None else np.array([_whole("seeds", each, 2**64) for each in seeds], np.uint64)
+    if given is not None and given.shape != numbers.shape:
+        raise ValueError(f"seeds: are {len(given)}; there are {len(numbers)} simulations to reset")
+    if _library.insonify_batch_reset(
+        batch.pointer, numbers.ctypes.data, None if given is None else given.ctypes.data, len(numbers)
+    ):
         _raise()
 
 

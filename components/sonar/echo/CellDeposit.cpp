@@ -84,6 +84,8 @@ void CellDeposit::cover() {
     coverAll(cells, near_edge, far_edge, covered);
     bendCells(near_edge, far_edge);
     if (rules_.features.has(Feature::BackscatterLaws)) applyLaws();
+    if (rules_.has_maps)
+        for (int i = 0; i < cells.count; ++i) covered.strength_range[i] *= cells.gain[i];
     if (bent_ && rules_.features.has(Feature::Physical))
         for (int i = 0; i < cells.count; ++i) covered.strength_range[i] *= cells.focus[i];
 }

@@ -47,6 +47,7 @@ struct Cells {
     const PlacedRun* run[capacity];      ///< Which turns the facet.
     uint32_t material[capacity];
     double mapped[capacity];  ///< Cosine of a bent normal, or of a bent ray; 0: it is the plane's [1].
+    double gain[capacity];    ///< Factor of its echo by surface maps, where EchoRules::has_maps [1].
     double focus[capacity];   ///< Intensity by bent rays over that by straight ones [1].
     double near_limit[capacity], far_limit[capacity];  ///< Inverse ranges of the object [1/m].
     int beam[capacity];

@@ -44,14 +44,15 @@ std::optional<Detection> Detector::strongest(uint32_t beam) const {
         sum += weight;
         moment += weight * at;
     }
-    return Detection{moment / sum * bin_width_, *peak};
+    return Detection{moment / sum * bin_width_, *peak, static_cast<size_t>(peak - bins.begin())};
 }
 
 std::optional<Detection> Detector::first(uint32_t beam) const {
     const std::span<const float> bins = binsOf(ping_, beam);
     const auto found = std::find_if(bins.begin(), bins.end(), [this](float bin) { return bin > 0 && bin >= least_; });
     if (found == bins.end()) return std::nullopt;
-    return Detection{(static_cast<double>(found - bins.begin()) + 0.5) * bin_width_, *found};
+    return Detection{(static_cast<double>(found - bins.begin()) + 0.5) * bin_width_, *found,
+                     static_cast<size_t>(found - bins.begin())};
 }
 
 }  // namespace insonify::sonar

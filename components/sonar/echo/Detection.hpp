@@ -37,6 +37,7 @@ struct DetectionConfig {
 struct Detection {
     double range;     ///< Slant range [m].
     float intensity;  ///< Of its strongest bin [1].
+    size_t bin;       ///< Number of that bin [1].
 };
 
 /** Finds the returns in the beams of one ping (ACOUSTICS.md 5.16). */

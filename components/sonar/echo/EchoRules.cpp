@@ -56,6 +56,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     rules.laws = plan.laws;
     rules.looks_down = plan.config.across_track;
     rules.hears_misses = plan.hears_misses;
+    rules.has_maps = plan.has(Pass::SurfaceMaps);
     rules.lattice = scattererLattice(plan);
     if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;
     const double nearest = bins.range_min > 0 ? 1 / bins.range_min : std::numeric_limits<double>::max();
@@ -85,7 +86,7 @@ double strengthScale(const RenderPlan& plan) {
         static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
     const double lobe = plan.laws.loudestLobe(smallestSample(plan)), surface = plan.laws.loudest();
     const double strongest = std::max(surface, lobe), sum = surface * pixels + lobe * samplesOfLobe(plan, pixels);
-    const double scale = ratio * ratio * widestCell(plan);
+    const double scale = ratio * ratio * widestCell(plan) * std::max(plan.max_map_strength, 1.0);
     return std::exp2(-std::ceil(std::max(0.0, std::log2(scale * std::max(strongest / most, sum / max_sum)))));
 }
 

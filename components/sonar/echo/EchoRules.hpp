@@ -31,6 +31,7 @@ struct EchoRules {
     std::vector<LatticeLevel> lattice;  ///< Of the scatterers; empty where energies are summed.
     double turns_per_metre = 0;         ///< Phase of an echo for each metre of its slant range, two way [1/m].
     std::vector<double> layers;  ///< Three each: low and high above the water surface [m], share of the strongest [1].
+    bool has_maps = false;       ///< Cells have factors by surface maps.
     bool looks_down = false;     ///< The sonar's x axis points down, so that elevations are above its y-z plane.
     bool hears_misses = false;   ///< Whether effects hear cells that meet nothing.
     std::vector<const PingEffect*> own;  ///< Effects with sums of their own, which come after the channels.

@@ -316,9 +316,11 @@ std::vector<FacetRecord> facetLobes(const types::Mesh& mesh, const glm::dmat3& w
 }
 
 bool hasLobes(const types::Mesh& mesh, const MaterialLaws& laws) {
-    return std::ranges::any_of(mesh.clusters, [&](const types::Cluster& cluster) {
-        return laws.hasLobe(static_cast<size_t>(cluster.material));
-    });
+    const auto hasLobe = [&](int material) { return laws.hasLobe(static_cast<size_t>(material)); };
+    return std::ranges::any_of(mesh.clusters, hasLobe, &types::Cluster::material) ||
+           std::ranges::any_of(mesh.maps, [&](const types::MappedMaterial& mapped) {
+               return std::ranges::any_of(mapped.map->materials, hasLobe);
+           });
 }
 
 glm::dmat3 worldFromMesh(const types::Geometry& geometry, size_t mesh) {

@@ -57,7 +57,11 @@ void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
 }
 
 PathTruth::PathTruth(const RenderPlan& plan, size_t bin_count)
-    : beams_of_cells_(beamsOfCells(plan)), sum_count_(bin_count), bin_count_(static_cast<size_t>(plan.grid.bin_count)) {
+    : beams_of_cells_(beamsOfCells(plan)),
+      sum_count_(bin_count),
+      bin_count_(static_cast<size_t>(plan.grid.bin_count)),
+      shown_(plan.beams.size(), bin_count_),
+      alone_(plan.beams.size()) {
     for (std::vector<uint64_t>& sums : sums_) sums.resize(plan.cells.size() * sum_count_);
     for (std::vector<double>& energies : energies_) energies.resize(plan.beams.size() * bin_count_);
 }
@@ -65,6 +69,14 @@ PathTruth::PathTruth(const RenderPlan& plan, size_t bin_count)
 void PathTruth::begin() {
     for (std::vector<uint64_t>& sums : sums_) std::ranges::fill(sums, 0);
     for (std::vector<double>& energies : energies_) std::ranges::fill(energies, 0.0);
+    shown_.clear();
+}
+
+void PathTruth::show(size_t cell, size_t bin, const ObjectEcho& echo) {
+    const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
+    if (beam < 0 || echo.energy == 0) return;
+    const std::lock_guard one_at_a_time(alone_[static_cast<size_t>(beam)]);
+    shown_.add(static_cast<size_t>(beam), bin / (sum_count_ / bin_count_), echo);
 }
 
 void PathTruth::take(size_t cell, std::span<const float> direct, const BinLevels& levels, double quantum) {
@@ -82,8 +94,11 @@ void PathTruth::take(size_t cell, std::span<const float> direct, const BinLevels
         }
 }
 
-void PathTruth::report(types::SonarTruth& truth) const {
+void PathTruth::report(types::SonarTruth& truth) {
+    types::SonarTruth::forEachArray(shown_truth_,
+                                    [&](const char*, auto& numbers, auto) { numbers.resize(truth.object.size()); });
     for (size_t beam = 0; beam < truth.beam_count; ++beam) {
+        shown_.report(beam, beam, shown_truth_);
         size_t last = 0;
         for (size_t j = 0; j < bin_count_; ++j) {
             const size_t at = beam * bin_count_ + j;
@@ -97,6 +112,14 @@ void PathTruth::report(types::SonarTruth& truth) const {
         for (size_t j = 0; j < bin_count_; ++j) {
             const size_t at = beam * bin_count_ + j;
             truth.shadow[at] = j < last && truth.path[at] == 0 && truth.hits[at] == 0;
+            if (truth.path[at] == 0 || truth.path[at] > Bounced || shown_truth_.object[at] < 0) continue;
+            const double ways = energies_[1][at] + energies_[2][at] + energies_[3][at];
+            truth.object[at] = shown_truth_.object[at];
+            truth.share[at] =
+                static_cast<float>(static_cast<double>(shown_truth_.share[at]) * ways / (ways + energies_[0][at]));
+            truth.elevation[at] = shown_truth_.elevation[at];
+            truth.grazing[at] = shown_truth_.grazing[at];
+            truth.hits[at] += shown_truth_.hits[at];
         }
     }
 }

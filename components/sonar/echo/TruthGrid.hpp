@@ -37,8 +37,8 @@ private:
     std::deque<std::mutex> alone_;        ///< Of each beam that does.
 };
 
-/** By which way most of what a bin holds has come: energies of the cells by each, added up for the beams that show
- *  them. */
+/** By which way most of what a bin holds has come, and of which object that is: energies of the cells by each, added up
+ *  for the beams that show them. */
 class PathTruth {
 public:
     /** As types::SonarTruth::path tells them, from 1. */
@@ -50,11 +50,14 @@ public:
     void begin();
     /** Where the energies by a way are summed: [cell][bin], in quanta. */
     uint64_t* sums(Path path) { return sums_[path - 1].data(); }
+    /** Adds an echo by any of the ways, which is in bin `bin` of the sums of a cell. Several threads may do so at once.
+     */
+    void show(size_t cell, size_t bin, const ObjectEcho& echo);
     /** Once all are summed, and before they are added to the cells: what a cell has heard directly, none where its
      *  energies are not known. `quantum`: of the sums [sr]. */
     void take(size_t cell, std::span<const float> direct, const BinLevels& levels, double quantum);
-    /** Once all cells are taken, and the rest of the truth is told. */
-    void report(types::SonarTruth& truth) const;
+    /** Once all cells are taken, and the rest of the truth is told. What a bin shows is that of the loudest way. */
+    void report(types::SonarTruth& truth);
 
 private:
     std::vector<int32_t> beams_of_cells_;  ///< Empty: they are the beams.
@@ -62,6 +65,9 @@ private:
     bool knows_direct_ = false;
     std::array<std::vector<uint64_t>, 3> sums_;
     std::array<std::vector<double>, 4> energies_;  ///< Direct, and by each way: [beam][bin].
+    TruthTable shown_;                             ///< By all ways but the direct one.
+    std::deque<std::mutex> alone_;                 ///< Of each beam.
+    types::SonarTruth shown_truth_;
 };
 
 }  // namespace insonify::sonar

@@ -25,6 +25,7 @@ const Effect& slabs();
 const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
+const Effect& surfaceMaps();
 const Effect& pointTargets();
 const Effect& edgeDiffraction();
 const Effect& imperfections();
@@ -35,11 +36,11 @@ namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),
-                                   &pulse(),         &ringDown(),    &volume(),         &speckle(),
-                                   &multipath(),     &thinWalls(),   &slabs(),          &refraction(),
-                                   &motionInPing(),  &normalMaps(),  &pointTargets(),   &edgeDiffraction(),
-                                   &imperfections(), &crosstalk(),   &truth()};
+    std::vector<const Effect*> all{&absorption(),      &backscatter(),   &publishedMeans(), &beamPatterns(),
+                                   &pulse(),           &ringDown(),      &volume(),         &speckle(),
+                                   &multipath(),       &thinWalls(),     &slabs(),          &refraction(),
+                                   &motionInPing(),    &normalMaps(),    &surfaceMaps(),    &pointTargets(),
+                                   &edgeDiffraction(), &imperfections(), &crosstalk(),      &truth()};
 };
 
 List& list() {

@@ -60,7 +60,7 @@ private:
 };
 
 /** Work for each ping, in this order. */
-enum class Pass { Cull, Surface, Rays, Deposit, Walls, Paths, Beams, Beamform, Pulse, RingDown };
+enum class Pass { Cull, Surface, Rays, SurfaceMaps, Deposit, Walls, Paths, Beams, Beamform, Pulse, RingDown };
 
 /** Why something is left out; LeftOut::words have the rest. */
 enum class Reason {
@@ -105,6 +105,7 @@ struct RenderPlan {
     SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
     Fan cells;                               ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
     std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
+    double max_map_strength = 1;             ///< Largest factor by surface maps, at least 1 [1].
     bool fills_water = false;                ///< Whether there are echoes where no surface is.
     bool hears_misses = false;               ///< Whether effects hear samples that meet nothing.
     std::vector<LeftOut> left_out;
@@ -139,6 +140,6 @@ struct insonify::types::EnumNames<insonify::sonar::Feature> {
 };
 template <>
 struct insonify::types::EnumNames<insonify::sonar::Pass> {
-    static constexpr std::string_view names[] = {"cull",  "surface", "rays",     "deposit", "walls",
-                                                 "paths", "beams",   "beamform", "pulse",   "ring_down"};
+    static constexpr std::string_view names[] = {"cull",  "surface", "rays",     "surface_maps", "deposit",  "walls",
+                                                 "paths", "beams",   "beamform", "pulse",        "ring_down"};
 };

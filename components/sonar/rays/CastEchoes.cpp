@@ -20,6 +20,7 @@
 #include "components/sonar/places/ObjectPlaces.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
+#include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileDirections.hpp"
 #include "components/sonar/rays/TilePatches.hpp"
 #include "components/sonar/rays/WallRays.hpp"
@@ -56,6 +57,7 @@ public:
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
+    bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
     const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
@@ -68,6 +70,7 @@ private:
         std::vector<CastTile> tiles;
         std::vector<TileHits> hits;                           ///< Hits of each tile.
         std::vector<std::array<float, tile_samples>> passed;  ///< Shares of its samples, where there are walls.
+        MappedTiles mapped;
         std::vector<uint64_t> sums;
         std::optional<TruthTable> shown;  ///< What they are of, where it is told.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
@@ -92,12 +95,21 @@ private:
     void placeRuns();
     void makeTruth();
     PlacedScene scene() const {
-        return {visibility_.commands(), runs_, places_->records(), *normal_maps_, water_, bent()};
+        return {surface_maps_ ? surface_maps_->commands() : visibility_.commands(),
+                runs_,
+                places_->records(),
+                *normal_maps_,
+                water_,
+                bent(),
+                surface_maps_ ? &*surface_maps_ : nullptr};
     }
     CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
     void addEnergies(types::Sonar& ping);
     void depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker);
+    /** `behind_walls`: without the water before what the tiles have met. */
     void deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
+    /** The same, but for surface maps, which have been looked up. */
+    void depositAsMet(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
     /** Follows rays on through the walls that they have met; whether there are any. */
     bool castThrough(std::span<CastTile> tiles, Worker& worker) const;
     bool castThrough(CastTile& tile) const;
@@ -130,6 +142,7 @@ private:
     std::vector<MeshFacts::Facets> facets_;  ///< One for each mesh.
     std::vector<MeshFacts::Curves> curves_;  ///< One for each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
+    std::optional<SurfaceMapping> surface_maps_;  ///< Where the plan has them.
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
     ThreadPool threads_;
@@ -175,9 +188,19 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     planes_ = std::move(planes);
     facets_ = std::move(facets);
     curves_ = std::move(curves);
-    runs_.reserve(visibility_.commands().size());
+    surface_maps_.reset();
+    if (plan_.has(Pass::SurfaceMaps)) surface_maps_.emplace(*geometry_, visibility_.commands());
+    runs_.reserve(scene().commands.size());
     if (ray_paths_) ray_paths_->takeScene(*geometry_);
     if (!same_plan) takePlan();
+    return true;
+}
+
+bool CastEchoes::forget() {
+    if (ray_paths_) return false;
+    visibility_.forget();
+    rules_ = makeEchoRules(plan_, effects_);
+    if (truth_rules_) truth_rules_ = makeEnergyRules(plan_, effects_);
     return true;
 }
 
@@ -252,7 +275,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
 
 void CastEchoes::placeRuns() {
     runs_.clear();
-    for (const CommandRecord& command : visibility_.commands()) {
+    for (const CommandRecord& command : scene().commands) {
         const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
         const FacetRecord* facets = facets_[mesh] ? facets_[mesh]->data() : nullptr;
         const CurveRecord* curves = curves_[mesh]->empty() ? nullptr : curves_[mesh]->data();
@@ -343,6 +366,14 @@ void CastEchoes::followWalls(std::span<const CastTile> tiles, int first_beam, Wo
 }
 
 void CastEchoes::deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
+    if (!surface_maps_) return depositAsMet(tiles, behind_walls, first_beam, worker);
+    worker.mapped.take(view_, scene(), tiles, field_.has_value());
+    depositAsMet(worker.mapped.whole(), behind_walls, first_beam, worker);
+    depositAsMet(worker.mapped.rest(), true, first_beam, worker);
+}
+
+void CastEchoes::depositAsMet(std::span<const CastTile> tiles, bool behind_walls, int first_beam,
+                              Worker& worker) const {
     const EchoSums sums{first_beam, worker.sums.data(), nullptr, behind_walls};
     if (field_)
         depositPatches(rules_, view_, scene(), tiles, sums);

@@ -289,6 +289,11 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
     placeMovers(snapshot);
 }
 
+void RayVisibility::forget() {
+    moves_.assign(moves_.size(), false);
+    here_->is_built = before_->is_built = false;
+}
+
 void RayVisibility::forgetTrees(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) moves_[moved.object] = true;
     here_->is_built = before_->is_built = false;

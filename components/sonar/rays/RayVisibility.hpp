@@ -54,6 +54,9 @@ public:
     /** Another geometry from the next ping on, which must outlive it. Trees of what has not changed are kept. */
     void takeScene(const types::Geometry& geometry);
 
+    /** Forgets which objects have moved. Trees stay until the next ping has taken those that it needs. */
+    void forget();
+
     /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
      *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
      * the snapshot alone, whatever came before. */

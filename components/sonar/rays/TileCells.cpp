@@ -17,6 +17,7 @@ public:
     TileCells(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
+          has_maps_(rules.has_maps),
           hears_misses_(rules.hears_misses && !to.behind_walls),
           curves_(!rules.features.has(Feature::Speckle) && !scene.paths),
           view_(view.cells),
@@ -71,6 +72,7 @@ private:
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
         aim(tile, sample, merged);
         if (tile.passed) cells_.size[i] *= tile.meanPassed(sample, merged);
+        if (has_maps_) cells_.gain[i] = tile.meanGain(sample, merged);
         if (tile.isApparent(sample)) putApparent(cells_, i, tile.apparent[sample]);
         if (tile.late) moveAway(cells_, i, tile.meanLate(sample, merged));
         if (!tile.isApparent(sample) && run.curves && curves_)
@@ -90,6 +92,7 @@ private:
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         if (column >= tile.end_column || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
         cells_.setMiss(i);
+        cells_.gain[i] = 1;
         in_map_.placeMiss(i);
         aim(tile, sample, 1);
         if (++cells_.count == Cells::capacity) finish();
@@ -128,7 +131,9 @@ private:
                          cells_.count, cells_);
     }
 
-    bool conical_, mapped_, hears_misses_;
+    bool conical_, mapped_;
+    bool has_maps_;  ///< Surface maps, beside normal maps.
+    bool hears_misses_;
     bool curves_;  ///< Whether a smooth body bends within a cell: not where fields are summed, nor where rays are bent.
     const AngularView& view_;
     const TileShape& shape_;

@@ -11,6 +11,7 @@
 namespace insonify::sonar {
 
 class BinLevels;
+class SurfaceMapping;
 
 /** What the numbers of hits mean in this ping: commands, each with its triangles turned into sonar axes. */
 struct PlacedScene {
@@ -19,7 +20,8 @@ struct PlacedScene {
     std::span<const ObjectRecord> objects;
     const NormalMapping& normal_maps;
     WaterView water;
-    const RayPaths* paths = nullptr;  ///< Null where rays are straight.
+    const RayPaths* paths = nullptr;       ///< Null where rays are straight.
+    const SurfaceMapping* maps = nullptr;  ///< Null where surfaces have none.
 };
 
 /** How samples lie. */
@@ -33,8 +35,9 @@ struct CastTile {
     int first_column, first_row;
     int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
     TileHits* hits;
-    float* passed = nullptr;      ///< Share of each sample's energy that walls let through both ways; null: all [1].
-    const float* late = nullptr;  ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
+    float* passed = nullptr;       ///< Share of each sample's energy that walls let through both ways; null: all [1].
+    const float* gains = nullptr;  ///< Factor of each sample's echo by surface maps; null: 1 [1].
+    const float* late = nullptr;   ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
     const ApparentPlane* apparent = nullptr;  ///< Where refraction in fills makes a surface seem to be; of samples
                                               ///< without, and null: where it is.
     uint32_t path = 0;                        ///< behind_walls, rung_in_wall (TruthTable.hpp), or 0.
@@ -43,6 +46,13 @@ struct CastTile {
     double meanPassed(int first, int count) const {
         double sum = 0;
         for (int i = first; i < first + count; ++i) sum += static_cast<double>(passed[i]);
+        return sum / count;
+    }
+    /** Mean factor of `count` samples by surface maps [1]. */
+    double meanGain(int first, int count) const {
+        if (!gains) return 1;
+        double sum = 0;
+        for (int i = first; i < first + count; ++i) sum += static_cast<double>(gains[i]);
         return sum / count;
     }
     /** The same of what is late [m]. */

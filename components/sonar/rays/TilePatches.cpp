@@ -18,6 +18,7 @@ public:
     TilePatches(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
+          has_maps_(rules.has_maps),
           has_own_(!rules.own.empty()),
           hears_misses_(rules.hears_misses && !to.behind_walls),
           view_(view.cells),
@@ -120,6 +121,7 @@ private:
         const int column = tile.first_column + columnOf(place), row = tile.first_row + rowOf(place);
         if (column >= tile.end_column || row >= view_.rows) return;
         cells_.setMiss(cells_.count);
+        cells_.gain[cells_.count] = 1;
         in_map_.placeMiss(cells_.count);
         setLookDirection(view_, conical_, {view_, column, 1, row, 1}, cells_.count, cells_);
         count();
@@ -132,6 +134,7 @@ private:
         cells_.setPlane(i, scene_.ranges[command_[first]], triangle_[first]);
         setLookDirection(view_, conical_, all, i, cells_);
         if (tile.passed) cells_.size[i] *= meanPassed(tile, samples);
+        if (has_maps_) cells_.gain[i] = meanGain(tile, samples);
         if (tile.isApparent(sample_[first])) putApparent(cells_, i, tile.apparent[sample_[first]]);
         if (tile.late) moveAway(cells_, i, meanLate(tile, samples));
         sources_[i] = {all, samplesIn(all, samples, tile), command.object, command.lattice};
@@ -144,6 +147,14 @@ private:
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
             sum += tile.meanPassed(sample_[std::countr_zero(left)], 1);
+        return sum / std::popcount(samples);
+    }
+
+    /** Mean factor of some samples by surface maps [1]. */
+    double meanGain(const CastTile& tile, uint32_t samples) const {
+        double sum = 0;
+        for (uint32_t left = samples; left != 0; left &= left - 1)
+            sum += tile.meanGain(sample_[std::countr_zero(left)], 1);
         return sum / std::popcount(samples);
     }
 
@@ -246,7 +257,7 @@ private:
         uint32_t object, lattice;
     };
 
-    bool conical_, mapped_, has_own_, hears_misses_;
+    bool conical_, mapped_, has_maps_, has_own_, hears_misses_;
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;

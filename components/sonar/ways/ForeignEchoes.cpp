@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/sonar/echo/BinLevels.hpp"
+#include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/ways/PathCells.hpp"
 #include "components/sonar/ways/SharedBins.hpp"
 #include "components/sonar/ways/Waveform.hpp"
@@ -85,6 +86,11 @@ void EchoesOfOthers::begin(const types::Snapshot& snapshot) {
 }
 
 void EchoesOfOthers::follow(const CastPing& ping, std::span<const CastTile> tiles) {
+    thread_local MappedTiles mapped;
+    if (ping.scene.maps) {
+        mapped.take(ping.view, ping.scene, tiles, true);
+        tiles = mapped.whole();
+    }
     for (const PlacedSender& sender : senders_)
         for (const CastTile& tile : tiles) {
             const uint32_t open = openTo(sender, ping, tile);
@@ -160,7 +166,7 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, c
         std::abs(way.per_elevation + way.per_azimuth * at.lean) * stretch * at.height,
         nearest > nearest_bin ? 1 / nearest : 1 / nearest_bin, 1 / nearest_bin, 0, ping.rules.edges.front(),
         ping.rules.edges[static_cast<size_t>(ping.rules.bins.bin_count)], at.size);
-    const double absorbed = std::exp(2 * sender.received.loss * (range - half));
+    const double absorbed = std::exp(2 * sender.received.loss * (range - half)) * tile.meanGain(sample, 1);
     SharedBins(ping.rules, sums_[sender.sums].data())
         .depositCell(cell, static_cast<uint>(at.cell),
                      ping.rules.strength_scale * power * (given.diffuse + given.lobe) * absorbed * range * range *

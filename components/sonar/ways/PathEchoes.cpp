@@ -11,6 +11,7 @@
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/field/ScattererLattice.hpp"
+#include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 #include "components/sonar/ways/PathCells.hpp"
@@ -148,19 +149,25 @@ private:
     Shares through(PathRays& back) const;
     void hear(const CastTile& tile);
     int sameFrom(int i) const;
-    void deposit(const CellAngles& at, int i, double open);
+    /** `gain`: factor by surface maps [1]. */
+    void deposit(const CellAngles& at, int i, double open, double gain);
     LobeSlopes lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
                           double range) const;
     MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
-    void recordWay(int i, bool twice) {
+    /** Prepares the sums for echoes of what ray i has met: heard in a direction, seen at a cosine. */
+    void recordWay(int i, bool twice, const glm::dvec3& heard, double cosine) {
         if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
         bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
+        bins_.truth = &*paths_.truth_;
+        bins_.object = scene_.commands[hits_.command[i]].object;
+        bins_.sine_elevation = heard.z;
+        bins_.sine_grazing = cosine;
     }
 
     PathEchoes& paths_;
@@ -330,6 +337,15 @@ int PathEchoes::Tracer::sameFrom(int i) const {
 
 void PathEchoes::Tracer::hear(const CastTile& tile) {
     const Shares open = openBack();
+    const TileHits as_met = hits_;
+    CastTile seen = tile;
+    seen.hits = &hits_;
+    if (scene_.maps) {
+        thread_local MappedTiles mapped;
+        mapped.take(view_, scene_, {&seen, 1}, true);
+        seen = mapped.whole().front();
+        hits_ = *seen.hits;
+    }
     for (int i = 0; i < tile_samples;) {
         if (!isActive(i) || hits_.command[i] == TileHits::nothing || chains_[static_cast<size_t>(i)].count == 0) {
             ++i;
@@ -338,9 +354,10 @@ void PathEchoes::Tracer::hear(const CastTile& tile) {
         const int merged = sameFrom(i);
         double of_these = 0;
         for (int k = i; k < i + merged; ++k) of_these += open[static_cast<size_t>(k)];
-        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged);
+        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged, seen.meanGain(i, merged));
         i += merged;
     }
+    hits_ = as_met;
 }
 
 Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {
@@ -352,7 +369,7 @@ Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfW
                               run.near_limit, 1 / (1 / run.far_limit + image), near_edge_, far_edge_, size);
 }
 
-void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open) {
+void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open, double gain) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
     const MirrorPlane seen = planeMet(scene_, hits_, i);
     const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(seen.normal);
@@ -360,13 +377,13 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open) {
     const double facing = glm::dot(plane.normal, at.middle);
     if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    recordWay(i, true);
+    recordWay(i, true, at.middle, std::abs(facing));
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
     const double strength =
-        rules_.strength_scale * chain.power * chain.power *
+        gain * rules_.strength_scale * chain.power * chain.power *
         rules_.laws.overCosine(run.material, std::abs(facing), lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
     bins_.depositCell(footprint(at, i, twice, at.weighted), static_cast<uint>(at.cell), strength / twice.inverse);
-    if (open > 0) depositOnce(at, i, plane, open);
+    if (open > 0) depositOnce(at, i, plane, gain * open);
 }
 
 /** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
@@ -409,7 +426,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     const MaterialLaws::Bistatic given = section(at, i, plane, way);
     const double scale =
         rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
-    recordWay(i, false);
+    recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
     const WayPatterns& patterns = *paths_.patterns_;
     const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
     const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
@@ -418,6 +435,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
         bins_.depositCell(footprint(at, i, way, at.size * back), static_cast<uint>(at.cell),
                           scale * (given.diffuse + given.lobe));
     if (!(there > 0)) return;
+    bins_.sine_elevation = chain.turnedBack(way.from_focus).z;
     // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
     const bool comes_itself =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);

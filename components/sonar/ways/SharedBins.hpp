@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include "components/sonar/echo/Estimators.hpp"
+#include "components/sonar/echo/TruthGrid.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -14,7 +15,12 @@ struct SharedBins : Bins {
         if (!(amount > 0)) return;
         std::atomic_ref(sums[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
         if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
+        if (truth) truth->show(cell, bin, ObjectEcho::of(quanta(amount), sine_elevation, sine_grazing, object, 1));
     }
+    PathTruth* truth = nullptr;  ///< Where such an echo is shown, with the next three; null where no truth is recorded.
+    uint32_t object = 0;
+    double sine_elevation = 0,
+           sine_grazing = 0;     ///< Of where it is heard, and at which angle it leaves the object [1].
     uint64_t* by_way = nullptr;  ///< Further sums, of echoes by the way at hand; null where no truth is recorded.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"

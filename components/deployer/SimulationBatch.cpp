@@ -1,0 +1,64 @@
+#include "components/deployer/SimulationBatch.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "components/framework/Wiring.hpp"
+
+namespace insonify::deployer {
+
+SimulationBatch::SimulationBatch(const std::string& deployment, const SimulationOptions& options, size_t count) {
+    if (count == 0) throw std::invalid_argument("a batch has at least one simulation");
+    for (size_t i = 0; i < count; ++i) {
+        SimulationOptions own = options;
+        own.threads = 1;
+        own.seed = seedOf(options.seed, i);
+        simulations_.push_back(std::make_unique<Simulation>(deployment, std::move(own)));
+    }
+}
+
+uint64_t SimulationBatch::seedOf(uint64_t seed, size_t number) {
+    return number == 0 ? seed : framework::seedOf(seed == 0 ? 1 : seed, fmt::format("simulation {}", number));
+}
+
+template <class Work>
+void SimulationBatch::forEach(size_t count, const Work& work) {
+    std::atomic<size_t> next = 0;
+    std::mutex alone;
+    std::string failure;
+    threads_.share([&](int, int) {
+        for (size_t i = next++; i < count; i = next++) try {
+                work(i);
+            } catch (const std::exception& error) {
+                const std::lock_guard lock(alone);
+                if (failure.empty()) failure = error.what();
+            }
+    });
+    if (!failure.empty()) throw std::runtime_error(failure);
+}
+
+std::vector<std::vector<SteppedPing>> SimulationBatch::step(std::vector<std::map<std::string, types::Pose>> at) {
+    if (at.size() != size())
+        throw std::invalid_argument(fmt::format("there are poses for {} simulations of {}", at.size(), size()));
+    std::vector<std::vector<SteppedPing>> made(size());
+    forEach(size(), [&](size_t i) {
+        try {
+            made[i] = simulations_[i]->step(std::move(at[i]), {});
+        } catch (const std::exception& error) {
+            throw std::runtime_error(fmt::format("simulation {}: {}", i, error.what()));
+        }
+    });
+    return made;
+}
+
+void SimulationBatch::reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds) {
+    for (const size_t number : which)
+        if (number >= size()) throw std::out_of_range(fmt::format("there is no simulation {} of {}", number, size()));
+    forEach(which.size(), [&](size_t i) { simulations_[which[i]]->reset(seeds[i]); });
+}
+
+}  // namespace insonify::deployer

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "components/deployer/Simulation.hpp"
+#include "components/sonar/ThreadPool.hpp"
+
+namespace insonify::deployer {
+
+/** Several simulations of one deployment, which share its scene and step side by side, each on one thread of those that
+ *  the machine has. Their pings are those of single simulations, bit for bit. Used by one thread at a time. */
+class SimulationBatch {
+public:
+    /** Simulation i has the seed seedOf(options.seed, i). Throws as Simulation does, and std::invalid_argument for a
+     * count of 0. */
+    SimulationBatch(const std::string& deployment, const SimulationOptions& options, size_t count);
+
+    size_t size() const { return simulations_.size(); }
+    const Simulation& front() const { return *simulations_.front(); }
+    /** The seed of the simulation of that number: the first has the batch's own, each other one another. */
+    static uint64_t seedOf(uint64_t seed, size_t number);
+
+    /** Steps each simulation to its own next time, with its own poses. Throws std::runtime_error with the number of one
+     *  that fails, when all others have stepped. */
+    std::vector<std::vector<SteppedPing>> step(std::vector<std::map<std::string, types::Pose>> at);
+    /** Begins these simulations anew, each with a seed, not 0; none: the same. */
+    void reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds);
+
+private:
+    /** Calls `work(i)` for numbers below `count`, on all threads. */
+    template <class Work>
+    void forEach(size_t count, const Work& work);
+
+    std::vector<std::unique_ptr<Simulation>> simulations_;
+    sonar::ThreadPool threads_{0};
+};
+
+}  // namespace insonify::deployer

@@ -1,0 +1,40 @@
+#include "components/sonar/effects/Effect.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+std::string withoutMaps(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string byReflectivity(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "cerqueira2017 takes the reflectivity of the material alone";
+}
+std::string mapsNeedRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+    return "the scene is drawn; surface maps are heard with `visibility: cpu`";
+}
+
+/** Strengths and materials by maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
+class SurfaceMaps final : public Effect {
+public:
+    bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
+        double largest = 0;
+        for (const types::Material& material : geometry.materials)
+            largest = std::max(largest, static_cast<double>(material.max_map_strength));
+        const auto omit = [&](Reason reason, LeftOut::Words words) {
+            return leaveOut(plan, {.effect = "surface maps", .reason = reason, .words = words});
+        };
+        if (!(largest > 0)) return omit(Reason::NoneInScene, withoutMaps);
+        if (plan.config.model != Model::Physical) return omit(Reason::Other, byReflectivity);
+        if (!plan.casts_rays) return omit(Reason::Lacking, mapsNeedRays);
+        plan.add(Pass::SurfaceMaps);
+        plan.max_map_strength = std::max(largest, 1.0);
+        return true;
+    }
+};
+
+}  // namespace
+
+const Effect& surfaceMaps() {
+    static const SurfaceMaps effect;
+    return effect;
+}
+
+}  // namespace insonify::sonar

@@ -1,0 +1,105 @@
+// Robots in URDF: links at their places whatever they lack, meshes, names, and what is no robot.
+#include <gmock/gmock.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "tests/sdf/SdfFiles.hpp"
+
+namespace insonify::sdf {
+namespace {
+
+using testing::HasSubstr;
+
+class UrdfTest : public SdfFiles {
+protected:
+    std::filesystem::path robot(const std::string& body) const {
+        return write("arm.urdf", "<?xml version='1.0'?>\n<robot name='rov'>\n" + body + "</robot>");
+    }
+    static std::string link(const std::string& name, const std::string& geometry, const std::string& origin = "",
+                            const std::string& more = "") {
+        return "<link name='" + name + "'><visual>" + (origin.empty() ? "" : "<origin " + origin + "/>") +
+               "<geometry>" + geometry + "</geometry>" + more + "</visual></link>\n";
+    }
+    static std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                             const std::string& child, const std::string& origin) {
+        return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child +
+               "'/><origin " + origin + "/>" +
+               (type == "fixed" ? "" : "<axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/>") +
+               "</joint>\n";
+    }
+    static const types::Object& objectOf(const Scene& scene, const std::string& node) {
+        const int index = findNode(scene, node);
+        for (size_t i = 0; i < scene.object_nodes.size(); ++i)
+            if (scene.object_nodes[i] == index) return scene.geometry->objects[i];
+        throw std::runtime_error("there is no object of " + node);
+    }
+
+    const std::string small_ = "<box size='0.2 0.4 0.6'/>";
+};
+
+TEST_F(UrdfTest, LinksWithoutInertiaAreThereWithTheirNamesAtTheirPlaces) {
+    const Scene scene =
+        readScene(robot(link("base", small_) + link("upper", "<cylinder radius='0.1' length='1'/>", "xyz='0 0 0.5'") +
+                        link("camera", "<sphere radius='0.05'/>") +
+                        joint("elbow", "revolute", "base", "upper", "xyz='1 0 0' rpy='0 1.5707963268 0'") +
+                        joint("bolt", "fixed", "upper", "camera", "xyz='0 0 1'")));
+    ASSERT_EQ(scene.geometry->objects.size(), 3u);
+    for (const char* const name : {"rov", "rov::base", "rov::upper", "rov::camera"})
+        EXPECT_GE(findNode(scene, name), 0) << name;
+    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::base")), {-0.1, -0.2, -0.3}, {0.1, 0.2, 0.3});
+    // Turned by 90 degrees about y, its length along x; at its end, which is fixed, the camera.
+    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::upper")), {1, -0.1, -0.1}, {2, 0.1, 0.1}, 2e-3);
+    expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::camera")), {1.95, -0.05, -0.05}, {2.05, 0.05, 0.05},
+                 2e-3);
+    EXPECT_EQ(scene.nodes[static_cast<size_t>(findNode(scene, "rov::camera"))].parent, findNode(scene, "rov::upper"))
+        << "what moves the upper arm moves the camera";
+}
+
+TEST_F(UrdfTest, SeveralVisualsHaveTheMaterialsThatTheyName) {
+    const Scene scene = readScene(robot("<link name='base'><visual><geometry>" + small_ +
+                                        "</geometry><material name='steel'><color rgba='1 1 1 1'/></material></visual>"
+                                        "<visual><origin xyz='0 0 2'/><geometry>" +
+                                        small_ +
+                                        "</geometry><material name='rubber'/></visual></link>"
+                                        "<material name='rubber'><color rgba='0 0 0 1'/></material>"));
+    ASSERT_EQ(scene.geometry->objects.size(), 2u);
+    for (const types::Object& object : scene.geometry->objects) {
+        const bool is_upper = boundsOf(*scene.geometry, object).low.z > 1;
+        const types::Mesh& mesh = scene.geometry->meshes[static_cast<size_t>(object.mesh)];
+        EXPECT_EQ(scene.geometry->materials[static_cast<size_t>(mesh.clusters[0].material)].name,
+                  is_upper ? "rubber" : "steel");
+    }
+}
+
+TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
+    std::filesystem::create_directories(folder_ / "rov_description/meshes");
+    const std::string facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 2 0\nendloop\nendfacet\n";
+    write("rov_description/meshes/fin.stl", "solid fin\n" + facet + "endsolid fin\n");
+    write("fin.stl", "solid fin\n" + facet + "endsolid fin\n");
+    for (const char* const name : {"package://rov_description/meshes/fin.stl", "fin.stl"}) {
+        const Scene scene =
+            readScene(robot(link("base", "<mesh filename='" + std::string(name) + "' scale='0.5 0.5 0.5'/>")));
+        ASSERT_EQ(scene.geometry->objects.size(), 1u)
+            << name << ": " << testing::PrintToString(scene.geometry->notices);
+        expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
+    }
+    const Scene without = readScene(robot(link("base", "<mesh filename='package://absent/fin.stl'/>")));
+    EXPECT_TRUE(without.geometry->objects.empty());
+    EXPECT_THAT(testing::PrintToString(without.geometry->notices), HasSubstr("absent/fin.stl"));
+}
+
+TEST_F(UrdfTest, WhatIsNoRobotIsRefusedAtItsLine) {
+    EXPECT_THAT(diagnosticOf(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
+                testing::AllOf(HasSubstr("cut.urdf:2"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
+    EXPECT_THAT(diagnosticOf(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));
+    EXPECT_THAT(diagnosticOf(write("world.urdf", "<sdf version='1.9'/>")), HasSubstr("holds no <robot>"));
+    EXPECT_THAT(diagnosticOf(robot("")), HasSubstr("is a robot without links"));
+    EXPECT_THAT(diagnosticOf(robot("<xacro:macro name='leg'/>")), HasSubstr("expand it: xacro IN > OUT.urdf"));
+    EXPECT_THAT(diagnosticOf(robot(link("a", small_) + joint("j", "fixed", "a", "b", "xyz='0 0 0'"))),
+                HasSubstr("arm.urdf"));
+    EXPECT_THAT(diagnosticOf(folder_ / "none.urdf"), HasSubstr("does not exist"));
+}
+
+}  // namespace
+}  // namespace insonify::sdf
