@@ -51,7 +51,7 @@ def small_propeller(rng):
 def cylinder(rng):
     radius, half = rng.uniform(0.08, 0.25), rng.uniform(0.12, 0.35)
     rings = [np.c_[circle(48, radius), np.full(48, z)] for z in np.linspace(-half, half, 9)]
-    wall = {"thickness_mm": round(rng.uniform(1.5, 8), 2), "material": str(rng.choice(["steel", "aluminium", "pvc"]))}
+    wall = {"thickness_mm": round(rng.uniform(1.5, 12), 2), "material": str(rng.choice(["steel", "aluminium", "pvc"]))}
     if rng.random() < 0.3:
         wall["fill"] = "air"
     return loft(rings).moved(turn=any_turn(rng)), rough(rng) | {"shell": wall}
@@ -71,7 +71,8 @@ def fishing_net(rng):
     floats = [icosphere(1) for _ in range(rng.integers(4, 14))]
     for each in floats:
         each.positions = each.positions * rng.uniform(0.012, 0.045) + points[line, rng.integers(rows)]
-    return merged(twine + floats).moved(turn=rotation(yaw=rng.uniform(-180, 180))), {"material": "hdpe", "roughness_slope": 0.3}
+    turn = rotation(yaw=rng.uniform(-180, 180))
+    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-30, -5), 2)}, merged(floats).moved(turn=turn)
 
 
 def soft_pipeline(rng):
@@ -86,13 +87,13 @@ def soft_pipeline(rng):
 
 def mooring(rng):
     """A rope or a chain, which holds an object from above and moors it below."""
-    above, below = rng.uniform(0, 0.8), rng.uniform(0.2, 1.2)
+    above, below = rng.uniform(0, 0.6), rng.uniform(0.2, 1.2)
     z = np.linspace(-below, above, 24)
     sway = np.cumsum(rng.normal(0, 0.006, (24, 2)), 0)
     path = np.c_[sway - sway[np.abs(z).argmin()], z]
-    parts = [tube(path, rng.uniform(0.004, 0.012), 6)]
+    parts = [tube(path, rng.uniform(0.006, 0.02), 6)]
     if rng.random() < 0.6:  # links, knots or weights
-        size = rng.uniform(0.01, 0.03)
+        size = rng.uniform(0.012, 0.035)
         for height in np.arange(-below, above, rng.uniform(0.05, 0.25)):
             bead = icosphere(1)
             bead.positions = bead.positions * size * rng.uniform(0.6, 1.4) + [np.interp(height, z, path[:, 0]), np.interp(height, z, path[:, 1]), height]
@@ -101,7 +102,8 @@ def mooring(rng):
 
 
 def rough(rng):
-    return {"roughness_slope": round(rng.uniform(0.05, 0.4), 3)}
+    """From clean and smooth to fouled: a lobe about the normal, and what is scattered in all directions."""
+    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2), 2)}
 
 
 def metal(rng):
@@ -133,8 +135,7 @@ tasks:
       quality: {rows: 96, columns_per_beam: 2}
       max_walls: 4
       pulse: {bandwidth_khz: 150, window: hann}
-      beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}  # 1.0 degrees at 750 kHz, 0.6 at 1200
-      imperfections: {gain_error_db: 1, phase_error_deg: 10, focus_m: 7}
+      beam_pattern: {receive: {azimuth: {weighting: taylor, sidelobe_db: -25, aperture_m: 0.12}}}  # 1.0 degrees at 750 kHz, 0.6 at 1200
       speckle: {coherent: true}
       water: {temperature_celsius: 12}
       absorption: {law: francois_garrison}
@@ -178,7 +179,8 @@ ablated: ["near_[0-4].yml"] # of these, to compare with and without an effect; a
 decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
 margin: [0.0, 0.25]         # of a box, drawn, on each side
-turn_deg: [-50, 50]         # pictures are turned about the object, which is then as far off the sonar's axis
+turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
+white_db: [13, 24]          # displays are set so that noise shows: white is this much above a window's ground, drawn
 visible_db: 8               # a window is the box of those pixels of an object that exceed the median level by this
 effects:
   speckle: {sonar.speckle.coherent: false}
@@ -194,24 +196,27 @@ FREQUENCIES = {750: 20, 1200: 12}  # [kHz], with the vertical opening [deg]
 
 def scene(rng, file, count):
     glb = Glb()
-    line = glb.material("mooring", {"lambert_db": -12}, (0.5, 0.5, 0.4))
+    line = glb.material("mooring", {"lambert_db": round(rng.uniform(-10, 3), 2)}, (0.5, 0.5, 0.4))
+    buoyant = glb.material("float", {"lambert_db": round(rng.uniform(-6, 3), 2)}, (0.9, 0.5, 0.2))
     for i, (name, make) in enumerate(CLASSES.items()):
         for j in range(count):
-            body, acoustics = make(rng)
+            body, acoustics, *floats = make(rng)
             material = glb.material(f"{name}_{j}", acoustics, (0.6, 0.7, 0.8))
             mesh = glb.mesh(f"{name}_{j}", [body], material)
             if rng.random() < MOORED.get(name, 0):
                 glb.gltf["meshes"][mesh]["primitives"].append(glb.primitive(mooring(rng), line))
+            for each in floats:
+                glb.gltf["meshes"][mesh]["primitives"].append(glb.primitive(each, buoyant))
             glb.node(f"{name}_{j}", mesh, (6.0 * j, 6.0 * i, -50))
     glb.write(file)
 
 
 def sweep(rng, options, i, band):
     farthest, frequency = rng.uniform(*RANGES[band]), int(rng.choice(list(FREQUENCIES)))
-    quiet = {"near": -115, "far": -125}[band]
+    quiet = {"near": -92, "far": -104}[band]
     return SWEEP % {"nearest": max(1.5, 0.35 * farthest), "farthest": 0.9 * farthest, "side": 0.02 * farthest, "range": farthest,
-                    "frequency": frequency, "opening": FREQUENCIES[frequency], "quiet": quiet, "loud": quiet + 35,
-                    "height": int(rng.integers(400, 900)), "seed": int(rng.integers(1 << 30)), "count": options.samples,
+                    "frequency": frequency, "opening": FREQUENCIES[frequency], "quiet": quiet, "loud": quiet + 26,
+                    "height": int(rng.integers(600, 1000)), "seed": int(rng.integers(1 << 30)), "count": options.samples,
                     "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
                     "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 

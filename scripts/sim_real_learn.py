@@ -84,7 +84,7 @@ def varied(x, rng):
 class Cnn:
     name = "CNN of three layers"
 
-    def __init__(self, count, steps=700, batch=64):
+    def __init__(self, count, steps=600, batch=64):
         self.count, self.steps, self.batch = count, steps, batch
 
     def learn(self, parts, seed):
@@ -92,12 +92,12 @@ class Cnn:
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
         layers, before = [], 2
-        for channels in (24, 48, 96):
+        for channels in (16, 32, 64):
             layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
                        torch.nn.MaxPool2d(2)]
             before = channels
         self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
-                                       torch.nn.Linear(4 * before, self.count))
+                                       torch.nn.Linear(4 * before, self.count)).to(memory_format=torch.channels_last)
         x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
         share = weights([y for _, y in parts], self.count)
         optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
@@ -140,7 +140,7 @@ def augmented(x):
     x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
     x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
-    return torch.cat([x, proportion.expand_as(x)], 1)
+    return torch.cat([x, proportion.expand_as(x)], 1).contiguous(memory_format=torch.channels_last)
 
 
 def classifier(wanted):
@@ -148,7 +148,7 @@ def classifier(wanted):
     if wanted == "cnn":
         try:
             import torch
-            torch.set_num_threads(2)
+            torch.set_num_threads(1)  # the network is too small to share
             return Cnn, Cnn.name
         except ImportError:
             return Hog, f"{Hog.name} (torch is not installed)"

@@ -2,9 +2,11 @@
 import hashlib
 import io
 import json
+import os
 import re
 import subprocess
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +15,7 @@ import yaml
 from PIL import Image, UnidentifiedImageError
 
 PICTURES = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff"}
-KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "effects"}
+KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "white_db", "effects"}
 FEWEST = 8  # visible pixels of a window
 
 
@@ -167,30 +169,33 @@ def inputs_hash(files, values):
     return total.hexdigest()[:12]
 
 
-def generate(insonify, plan, effect, cache):
-    """Folders of the sets, one for each sweep, without the effect if one is named. What is there is taken."""
+def made(insonify, plan, sweep, effect, cache):
+    """Returns the folder of a sweep's set, without the effect if one is named. What is there is taken."""
     values = plan["effects"][effect] if effect else {}
-    folders = []
-    for sweep in plan["ablated" if effect else "sweeps"]:
-        scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
-                  for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
-        missing = [file for file in [plan["deployment"], *scenes] if not file.exists()]
-        if missing:
-            raise Wrong(f"{missing[0]}: there is no such file, which {sweep} needs")
-        folder = cache / f"{effect or 'whole'}_{sweep.stem}_{inputs_hash([plan['deployment'], sweep, *scenes], values)}"
-        folders.append(folder)
-        if (folder / "manifest.json").exists():
-            continue
-        command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
-        for name, value in values.items():
-            command += ["--set", f"{name}={json.dumps(value)}"]
-        try:
-            done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
-        except OSError as error:
-            raise Wrong(f"{insonify}: cannot be run ({error.strerror})") from None
-        if done.returncode != 0:
-            raise Wrong(f"{sweep}: insonify dataset failed: {done.stderr.strip() or done.stdout.strip()}")
-    return folders
+    scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
+              for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
+    missing = [file for file in [plan["deployment"], *scenes] if not file.exists()]
+    if missing:
+        raise Wrong(f"{missing[0]}: there is no such file, which {sweep} needs")
+    folder = cache / f"{effect or 'whole'}_{sweep.stem}_{inputs_hash([plan['deployment'], sweep, *scenes], values)}"
+    if (folder / "manifest.json").exists():
+        return folder
+    command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
+    for name, value in values.items():
+        command += ["--set", f"{name}={json.dumps(value)}"]
+    try:
+        done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
+    except OSError as error:
+        raise Wrong(f"{insonify}: cannot be run ({error.strerror})") from None
+    if done.returncode != 0:
+        raise Wrong(f"{sweep}: insonify dataset failed: {done.stderr.strip() or done.stdout.strip()}")
+    return folder
+
+
+def generate(insonify, plan, effect, cache):
+    """Folders of the sets, one for each sweep, as many at a time as there are processors."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(lambda sweep: made(insonify, plan, sweep, effect, cache), plan["ablated" if effect else "sweeps"]))
 
 
 def amplitudes(pixels, decibels):
@@ -274,6 +279,13 @@ def windows(folders, sweeps, plan):
     return {key: each for key, each in found.items() if each}
 
 
+def displayed(pixels, decibels):
+    """Amplitudes as 8 bits of a display show them, whose white is so much above the ground, the darkest quarter. What is louder is white."""
+    there = pixels[pixels > 0]
+    white = np.percentile(there, 25) * 10 ** (decibels / 20) if there.size else 1
+    return np.round(255 * np.minimum(pixels / white, 1)) / 255
+
+
 def simulated(folders, sweeps, plan, shown):
     """Crops of a set at `shown` windows, which may be those of another set: so that two are compared in pairs."""
     crops = {}
@@ -286,6 +298,8 @@ def simulated(folders, sweeps, plan, shown):
         file = names[sweep][index]
         margin = low + (high - low) * np.random.default_rng(index).random()
         pixels = amplitudes(cut_turned(grey(file, file), where, margin), plan.get("decibels"))
+        if plan.get("white_db"):
+            pixels = displayed(pixels, np.random.default_rng([index, 2]).uniform(*plan["white_db"]))
         if plan.get("range_down"):
             pixels = pixels[::-1]
         if min(pixels.shape) >= 4:
