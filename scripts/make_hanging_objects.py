@@ -59,7 +59,7 @@ def cylinder(rng):
 
 def fishing_net(rng):
     """A sheet of twine with knots and floats, which hangs, more or less gathered."""
-    height, width = rng.uniform(1.2, 4), rng.uniform(0.6, 1.2)
+    height, width = rng.uniform(1.5, 4.5), rng.uniform(0.6, 1.2)
     columns, rows = rng.integers(5, 9), int(height / rng.uniform(0.1, 0.16))
     u, v = np.meshgrid(np.linspace(-0.5, 0.5, columns), np.linspace(-0.5, 0.5, rows), indexing="ij")
     phase, waves = rng.uniform(0, 6, 2), rng.uniform(3, 9, 2)
@@ -68,26 +68,26 @@ def fishing_net(rng):
     points = np.stack([depth, u * gathered, v * height], -1) + rng.normal(0, 0.015, (columns, rows, 3))
     twine = [tube(points[i], 0.003, 3) for i in range(columns)] + [tube(points[:, j], 0.003, 3) for j in range(rows)]
     line = rng.integers(columns)  # the line with floats
-    floats = [icosphere(1) for _ in range(rng.integers(4, 14))]
+    floats = [icosphere(1) for _ in range(rng.integers(8, 24))]
     for each in floats:
         each.positions = each.positions * rng.uniform(0.012, 0.045) + points[line, rng.integers(rows)]
     turn = rotation(yaw=rng.uniform(-180, 180))
-    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-30, -5), 2)}, merged(floats).moved(turn=turn)
+    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-22, 0), 2)}, merged(floats).moved(turn=turn)
 
 
 def soft_pipeline(rng):
     """A hose, bent at random."""
-    steps, length = 48, rng.uniform(1, 2.6)
+    steps, length = 64, rng.uniform(1.2, 3.2)
     bend = np.cumsum(rng.normal(0, 0.05, steps)) + np.linspace(0, rng.uniform(-4.5, 4.5), steps)
     path = np.cumsum(np.c_[np.cos(bend), np.sin(bend), rng.normal(0, 0.1, steps)], 0) * length / steps
     wall = {"thickness_mm": round(rng.uniform(2, 6), 2), "material": str(rng.choice(["neoprene", "pvc", "natural_rubber"]))}
     hose = tube(path - path.mean(0), rng.uniform(0.015, 0.05), 12)
-    return hose.moved(turn=any_turn(rng)), rough(rng) | {"shell": wall}
+    return hose.moved(turn=any_turn(rng)), rough(rng, softer=6) | {"shell": wall}
 
 
 def mooring(rng):
     """A rope or a chain, which holds an object from above and moors it below."""
-    above, below = rng.uniform(0, 0.6), rng.uniform(0.2, 1.2)
+    above, below = rng.uniform(0, 0.4), rng.uniform(0.1, 0.8)
     z = np.linspace(-below, above, 24)
     sway = np.cumsum(rng.normal(0, 0.006, (24, 2)), 0)
     path = np.c_[sway - sway[np.abs(z).argmin()], z]
@@ -101,9 +101,9 @@ def mooring(rng):
     return merged(parts)
 
 
-def rough(rng):
+def rough(rng, softer=0):
     """From clean and smooth to fouled: a lobe about the normal, and what is scattered in all directions."""
-    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2), 2)}
+    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2) - softer, 2)}
 
 
 def metal(rng):
@@ -175,22 +175,24 @@ SET = """\
 # What scripts/sim_to_real makes, and what --ablate leaves out: by name, values of the deployment in place of its own.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
-ablated: ["near_[0-4].yml"] # of these, to compare with and without an effect; absent: all
+ablated: ["near_[0-3].yml", "far_[0-3].yml"] # of these, to compare with and without an effect; absent: all
 decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
 margin: [0.0, 0.25]         # of a box, drawn, on each side
 turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
-white_db: [13, 24]          # displays are set so that noise shows: white is this much above a window's ground, drawn
+white_share: [0, 4]         # displays are set so that this share of a window is white, drawn [%]
 visible_db: 8               # a window is the box of those pixels of an object that exceed the median level by this
 effects:
   speckle: {sonar.speckle.coherent: false}
   beams_and_pulse: {sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle.coherent: false}
   thin_walls: {sonar.max_walls: 0}
+  receiver_filter: {noise.filter: null}
+  moorings: {scene.materials: {mooring: {lambert_db: -100}}}
   physics: {sonar.model: cerqueira2017, sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle: null}
 """
 
 
-RANGES = {"near": (3, 6), "far": (7, 14)}  # of a sweep, drawn [m]
+RANGES = {"near": (3, 6), "far": (6, 12)}  # of a sweep, drawn [m]
 FREQUENCIES = {750: 20, 1200: 12}  # [kHz], with the vertical opening [deg]
 
 
@@ -216,7 +218,7 @@ def sweep(rng, options, i, band):
     quiet = {"near": -92, "far": -104}[band]
     return SWEEP % {"nearest": max(1.5, 0.35 * farthest), "farthest": 0.9 * farthest, "side": 0.02 * farthest, "range": farthest,
                     "frequency": frequency, "opening": FREQUENCIES[frequency], "quiet": quiet, "loud": quiet + 26,
-                    "height": int(rng.integers(600, 1000)), "seed": int(rng.integers(1 << 30)), "count": options.samples,
+                    "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)), "count": options.samples,
                     "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
                     "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 
@@ -226,7 +228,7 @@ def main():
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     parser.add_argument("--scenes", type=int, default=16, help="each with some objects of each class (16)")
     parser.add_argument("--objects", type=int, default=5, help="of each class in a scene (5)")
-    parser.add_argument("--samples", type=int, default=50, help="of each sweep, of which there are two for each scene (50)")
+    parser.add_argument("--samples", type=int, default=40, help="of each sweep, of which there are two for each scene (40)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     if min(options.scenes, options.objects, options.samples) < 1:

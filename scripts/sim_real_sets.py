@@ -15,8 +15,8 @@ import yaml
 from PIL import Image, UnidentifiedImageError
 
 PICTURES = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff"}
-KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "white_db", "effects"}
-FEWEST = 8  # visible pixels of a window
+KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "white_share", "effects"}
+FEWEST = 30  # visible pixels of a window
 
 
 class Wrong(Exception):
@@ -279,10 +279,9 @@ def windows(folders, sweeps, plan):
     return {key: each for key, each in found.items() if each}
 
 
-def displayed(pixels, decibels):
-    """Amplitudes as 8 bits of a display show them, whose white is so much above the ground, the darkest quarter. What is louder is white."""
-    there = pixels[pixels > 0]
-    white = np.percentile(there, 25) * 10 ** (decibels / 20) if there.size else 1
+def displayed(pixels, share):
+    """Amplitudes as 8 bits of a display show them whose gain makes a share of the pixels white [%]."""
+    white = max(np.percentile(pixels, 100 - share), 1e-12)
     return np.round(255 * np.minimum(pixels / white, 1)) / 255
 
 
@@ -298,8 +297,8 @@ def simulated(folders, sweeps, plan, shown):
         file = names[sweep][index]
         margin = low + (high - low) * np.random.default_rng(index).random()
         pixels = amplitudes(cut_turned(grey(file, file), where, margin), plan.get("decibels"))
-        if plan.get("white_db"):
-            pixels = displayed(pixels, np.random.default_rng([index, 2]).uniform(*plan["white_db"]))
+        if plan.get("white_share"):
+            pixels = displayed(pixels, np.random.default_rng([index, 2]).uniform(*plan["white_share"]))
         if plan.get("range_down"):
             pixels = pixels[::-1]
         if min(pixels.shape) >= 4:
