@@ -22,6 +22,13 @@ def arrays(crops, labels):
     return x, np.array([labels.index(crop.label) for crop in crops])
 
 
+def answers(kind, count, parts, x, seed):
+    """What a classifier that learns from parts finds in x."""
+    model = kind(count)
+    model.learn(parts, seed)
+    return model.find(x)
+
+
 def weights(parts, count):
     """Returns probabilities that give each part equal weight, and each class within a part."""
     total = []
@@ -84,11 +91,12 @@ def varied(x, rng):
 class Cnn:
     name = "CNN of three layers"
 
-    def __init__(self, count, steps=600, batch=64):
+    def __init__(self, count, steps=450, batch=64):
         self.count, self.steps, self.batch = count, steps, batch
 
     def learn(self, parts, seed):
         import torch
+        torch.set_num_threads(1)  # the network is too small to share; several are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
         layers, before = [], 2
@@ -147,8 +155,7 @@ def classifier(wanted):
     """Returns the class and name of the wanted classifier, or HOG where torch is missing."""
     if wanted == "cnn":
         try:
-            import torch
-            torch.set_num_threads(1)  # the network is too small to share
+            import torch  # noqa: F401
             return Cnn, Cnn.name
         except ImportError:
             return Hog, f"{Hog.name} (torch is not installed)"
