@@ -45,11 +45,11 @@ def big_propeller(rng):
 
 
 def small_propeller(rng):
-    return propeller(rng, rng.uniform(0.08, 0.18)), metal(rng)
+    return propeller(rng, rng.uniform(0.07, 0.16)), metal(rng)
 
 
 def cylinder(rng):
-    radius, half = rng.uniform(0.08, 0.25), rng.uniform(0.12, 0.35)
+    radius, half = rng.uniform(0.05, 0.22), rng.uniform(0.08, 0.32)
     rings = [np.c_[circle(48, radius), np.full(48, z)] for z in np.linspace(-half, half, 9)]
     wall = {"thickness_mm": round(rng.uniform(1.5, 12), 2), "material": str(rng.choice(["steel", "aluminium", "pvc"]))}
     if rng.random() < 0.3:
@@ -64,7 +64,7 @@ def fishing_net(rng):
     u, v = np.meshgrid(np.linspace(-0.5, 0.5, columns), np.linspace(-0.5, 0.5, rows), indexing="ij")
     phase, waves = rng.uniform(0, 6, 2), rng.uniform(3, 9, 2)
     depth = rng.uniform(0.05, 0.25) * (np.sin(u * waves[0] + phase[0]) + np.sin(v * waves[1] + phase[1]))
-    gathered = width * rng.uniform(0.1, 1) * (1 + 0.4 * np.sin(v * 5 + phase[1]))
+    gathered = width * rng.uniform(0.05, 0.5) * (1 + 0.4 * np.sin(v * 5 + phase[1]))
     points = np.stack([depth, u * gathered, v * height], -1) + rng.normal(0, 0.015, (columns, rows, 3))
     twine = [tube(points[i], 0.003, 3) for i in range(columns)] + [tube(points[:, j], 0.003, 3) for j in range(rows)]
     line = rng.integers(columns)  # the line with floats
@@ -72,13 +72,13 @@ def fishing_net(rng):
     for each in floats:
         each.positions = each.positions * rng.uniform(0.012, 0.045) + points[line, rng.integers(rows)]
     turn = rotation(yaw=rng.uniform(-180, 180))
-    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-22, 0), 2)}, merged(floats).moved(turn=turn)
+    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-28, -4), 2)}, merged(floats).moved(turn=turn)
 
 
 def soft_pipeline(rng):
     """A hose, bent at random."""
     steps, length = 64, rng.uniform(1.2, 3.2)
-    bend = np.cumsum(rng.normal(0, 0.05, steps)) + np.linspace(0, rng.uniform(-4.5, 4.5), steps)
+    bend = np.cumsum(rng.normal(0, 0.05, steps)) + np.linspace(0, rng.uniform(-8, 8), steps)
     path = np.cumsum(np.c_[np.cos(bend), np.sin(bend), rng.normal(0, 0.1, steps)], 0) * length / steps
     wall = {"thickness_mm": round(rng.uniform(2, 6), 2), "material": str(rng.choice(["neoprene", "pvc", "natural_rubber"]))}
     hose = tube(path - path.mean(0), rng.uniform(0.015, 0.05), 12)
@@ -175,7 +175,7 @@ SET = """\
 # What scripts/sim_to_real makes, and what --ablate leaves out: by name, values of the deployment in place of its own.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
-ablated: ["near_[0-3].yml", "far_[0-3].yml"] # of these, to compare with and without an effect; absent: all
+ablated: ["near_[0-2].yml", "far_[0-2].yml"] # of these, to compare with and without an effect; absent: all
 decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
 margin: [0.0, 0.25]         # of a box, drawn, on each side

@@ -145,6 +145,8 @@ def augmented(x):
     x = torch.nn.functional.grid_sample(x, grid, padding_mode="reflection", align_corners=False)
     blurred = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (1, 1, 1, 1), mode="reflect"), 3, 1)
     x = torch.lerp(x, blurred, torch.rand(n, 1, 1, 1))
+    streaked = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (4, 4, 0, 0), mode="reflect"), (1, 9), 1)  # wide beams, near field
+    x = torch.lerp(x, streaked, torch.rand(n, 1, 1, 1) * torch.randint(0, 2, (n, 1, 1, 1)))
     x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
     x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
