@@ -96,7 +96,8 @@ def mooring(rng):
         size = rng.uniform(0.012, 0.035)
         for height in np.arange(-below, above, rng.uniform(0.05, 0.25)):
             bead = icosphere(1)
-            bead.positions = bead.positions * size * rng.uniform(0.6, 1.4) + [np.interp(height, z, path[:, 0]), np.interp(height, z, path[:, 1]), height]
+            at = [np.interp(height, z, path[:, 0]), np.interp(height, z, path[:, 1]), height]
+            bead.positions = bead.positions * size * rng.uniform(0.6, 1.4) + at
             parts.append(bead)
     return merged(parts)
 

@@ -1,4 +1,4 @@
-"""Holds scripts/sim_to_real to what it says: halves never share a film, windows show what stands out, and each wrong input is one error and exit 2.
+"""Holds scripts/sim_to_real to what it says: halves never share a film, windows show what stands out, wrong input is one error and exit 2.
 Sets are made by a command in the place of insonify, which writes what a data set has."""
 import random
 import subprocess
