@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes scenes of objects that hang in open water, and sweeps to learn them from: scripts/make_hanging_objects.py FOLDER
-Five classes of drawn shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. FOLDER gets
-scenes of one object of each class, deployment.yml, two sweeps of each scene and set.yml, which scripts/sim_to_real reads.
-Needs numpy."""
+Five classes of random shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. Each hangs on a line.
+FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/sim_to_real
+reads. Needs numpy."""
 import argparse
 from pathlib import Path
 
@@ -13,8 +13,12 @@ from glb import Glb, circle, icosphere, loft, merged, rotation, tube
 SIDES = 24
 
 
+def any_turn(rng):
+    return rotation(rng.uniform(-180, 180), np.degrees(np.arcsin(rng.uniform(-1, 1))), rng.uniform(-180, 180))
+
+
 def blade(rng, radius):
-    """Of a propeller: thin, twisted, widest at two thirds of its length; along x, its axis is z."""
+    """Blade of a propeller: thin, twisted, widest at two thirds of its length; along x, its axis is z."""
     width, skew, twist = rng.uniform(0.35, 0.7) * radius, rng.uniform(-0.3, 0.3), rng.uniform(15, 40)
     rings = []
     for part in np.linspace(0.1, 1, 12):
@@ -33,7 +37,7 @@ def propeller(rng, radius):
     blades = [one.moved(turn=rotation(yaw=360 * i / count)) for i in range(count)]
     hub = [np.c_[circle(SIDES, r * radius), np.full(SIDES, z * radius)]
            for r, z in [(0.14, -0.25), (0.2, -0.2), (0.2, 0.2), (0.08, 0.4)]]
-    return merged(blades + [loft(hub)])
+    return merged(blades + [loft(hub)]).moved(turn=any_turn(rng))
 
 
 def big_propeller(rng):
@@ -41,44 +45,66 @@ def big_propeller(rng):
 
 
 def small_propeller(rng):
-    return propeller(rng, rng.uniform(0.08, 0.18)), metal(rng)
+    return propeller(rng, rng.uniform(0.07, 0.16)), metal(rng)
 
 
 def cylinder(rng):
-    radius, half = rng.uniform(0.08, 0.2), rng.uniform(0.15, 0.45)
+    radius, half = rng.uniform(0.05, 0.22), rng.uniform(0.08, 0.32)
     rings = [np.c_[circle(48, radius), np.full(48, z)] for z in np.linspace(-half, half, 9)]
-    wall = {"thickness_mm": round(rng.uniform(1.5, 6), 2), "material": str(rng.choice(["steel", "aluminium", "pvc"]))}
-    if rng.random() < 0.5:
+    wall = {"thickness_mm": round(rng.uniform(1.5, 12), 2), "material": str(rng.choice(["steel", "aluminium", "pvc"]))}
+    if rng.random() < 0.3:
         wall["fill"] = "air"
-    return loft(rings), rough(rng) | {"shell": wall}
+    return loft(rings).moved(turn=any_turn(rng)), rough(rng) | {"shell": wall}
 
 
 def fishing_net(rng):
-    """A sheet of twine with knots and floats, loosely folded."""
-    columns, rows, step = rng.integers(6, 11), rng.integers(10, 17), rng.uniform(0.09, 0.13)
-    u, v = np.meshgrid(np.arange(columns) - columns / 2, np.arange(rows) - rows / 2, indexing="ij")
-    phase, waves = rng.uniform(0, 6, 2), rng.uniform(0.4, 1.2, 2)
+    """A sheet of twine with knots and floats, which hangs, more or less gathered."""
+    height, width = rng.uniform(1.5, 4.5), rng.uniform(0.6, 1.2)
+    columns, rows = rng.integers(5, 9), int(height / rng.uniform(0.1, 0.16))
+    u, v = np.meshgrid(np.linspace(-0.5, 0.5, columns), np.linspace(-0.5, 0.5, rows), indexing="ij")
+    phase, waves = rng.uniform(0, 6, 2), rng.uniform(3, 9, 2)
     depth = rng.uniform(0.05, 0.25) * (np.sin(u * waves[0] + phase[0]) + np.sin(v * waves[1] + phase[1]))
-    squeeze = rng.uniform(0.4, 1)
-    points = np.stack([depth, u * step * squeeze, v * step], -1) + rng.normal(0, 0.012, (columns, rows, 3))
+    gathered = width * rng.uniform(0.05, 0.5) * (1 + 0.4 * np.sin(v * 5 + phase[1]))
+    points = np.stack([depth, u * gathered, v * height], -1) + rng.normal(0, 0.015, (columns, rows, 3))
     twine = [tube(points[i], 0.003, 3) for i in range(columns)] + [tube(points[:, j], 0.003, 3) for j in range(rows)]
-    floats = [icosphere(1) for _ in range(rng.integers(3, 8))]
+    line = rng.integers(columns)  # the line with floats
+    floats = [icosphere(1) for _ in range(rng.integers(8, 24))]
     for each in floats:
-        each.positions = each.positions * rng.uniform(0.012, 0.035) + points[rng.integers(columns), rng.integers(rows)]
-    return merged(twine + floats), {"material": "hdpe", "roughness_slope": 0.3}
+        each.positions = each.positions * rng.uniform(0.012, 0.045) + points[line, rng.integers(rows)]
+    turn = rotation(yaw=rng.uniform(-180, 180))
+    return merged(twine).moved(turn=turn), {"lambert_db": round(rng.uniform(-28, -4), 2)}, merged(floats).moved(turn=turn)
 
 
 def soft_pipeline(rng):
     """A hose, bent at random."""
-    steps, length = 40, rng.uniform(1.2, 2.4)
-    bend = np.cumsum(rng.normal(0, 0.05, steps)) + np.linspace(0, rng.uniform(-1.8, 1.8), steps)
+    steps, length = 64, rng.uniform(1.2, 3.2)
+    bend = np.cumsum(rng.normal(0, 0.05, steps)) + np.linspace(0, rng.uniform(-8, 8), steps)
     path = np.cumsum(np.c_[np.cos(bend), np.sin(bend), rng.normal(0, 0.1, steps)], 0) * length / steps
     wall = {"thickness_mm": round(rng.uniform(2, 6), 2), "material": str(rng.choice(["neoprene", "pvc", "natural_rubber"]))}
-    return tube(path - path.mean(0), rng.uniform(0.02, 0.06), 12), rough(rng) | {"shell": wall}
+    hose = tube(path - path.mean(0), rng.uniform(0.015, 0.05), 12)
+    return hose.moved(turn=any_turn(rng)), rough(rng, softer=6) | {"shell": wall}
 
 
-def rough(rng):
-    return {"roughness_slope": round(rng.uniform(0.05, 0.3), 3)}
+def mooring(rng):
+    """A rope or a chain, which holds an object from above and moors it below."""
+    above, below = rng.uniform(0, 0.4), rng.uniform(0.1, 0.8)
+    z = np.linspace(-below, above, 24)
+    sway = np.cumsum(rng.normal(0, 0.006, (24, 2)), 0)
+    path = np.c_[sway - sway[np.abs(z).argmin()], z]
+    parts = [tube(path, rng.uniform(0.006, 0.02), 6)]
+    if rng.random() < 0.6:  # links, knots or weights
+        size = rng.uniform(0.012, 0.035)
+        for height in np.arange(-below, above, rng.uniform(0.05, 0.25)):
+            bead = icosphere(1)
+            at = [np.interp(height, z, path[:, 0]), np.interp(height, z, path[:, 1]), height]
+            bead.positions = bead.positions * size * rng.uniform(0.6, 1.4) + at
+            parts.append(bead)
+    return merged(parts)
+
+
+def rough(rng, softer=0):
+    """From clean and smooth to fouled: a lobe about the normal, and what is scattered in all directions."""
+    return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2) - softer, 2)}
 
 
 def metal(rng):
@@ -86,6 +112,7 @@ def metal(rng):
 
 
 CLASSES = {each.__name__: each for each in (big_propeller, small_propeller, cylinder, fishing_net, soft_pipeline)}
+MOORED = {"big_propeller": 0.9, "small_propeller": 0.9, "cylinder": 0.9, "soft_pipeline": 0.3}  # probability
 
 DEPLOYMENT = """\
 # A part of the fan of an Oculus M750d, at either of its frequencies: scripts/sim_to_real draws range, noise and what hangs there.
@@ -101,21 +128,21 @@ tasks:
     properties:
       range: 5                                 # [m]
       range_rounding: exact
-      bin_count: 500
-      beam_count: %(beams)d
-      field_of_view_deg: %(view)g
+      bin_count: 700
+      beam_count: 144
+      field_of_view_deg: 40
       beam_height_deg: 20
       frequency_khz: 750
       quality: {rows: 96, columns_per_beam: 2}
       max_walls: 4
-      pulse: {bandwidth_khz: 60, window: hann}
-      beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}  # 1.0 degrees at 750 kHz, 0.6 at 1200
+      pulse: {bandwidth_khz: 150, window: hann}
+      beam_pattern: {receive: {azimuth: {weighting: taylor, sidelobe_db: -25, aperture_m: 0.12}}}  # 1.0 degrees at 750 kHz, 0.6 at 1200
       speckle: {coherent: true}
       water: {temperature_celsius: 12}
       absorption: {law: francois_garrison}
   noise:
     type: noise::NoiseTask
-    properties: {ambient: {level_db: -90}}
+    properties: {ambient: {level_db: -90}, filter: {looks: 2, correlation_beams: 2}}
   receiver:
     type: receiver::ReceiverTask
     properties: {tvg: {log_coefficient: 30, max_db: 200}}
@@ -127,73 +154,93 @@ connections:
 """
 
 SWEEP = """\
-# Objects at %(nearest)g to %(farthest)g m, turned in any way. The noise is drawn from a wide range: gains and seas differ.
+# Objects at %(nearest)g to %(farthest)g m. The sonar is level, and the line on which they hang is tilted, as a sonar that looks up or down
+# sees it. The noise is drawn from a wide range: gains and seas differ.
 seed: %(seed)d
 scenes: [%(scene)s]
 poses: {random: {count: %(count)d, z: 0}}
 settings:
-  sonar.frequency_khz: {choice: [750, 1200]}
+  sonar.frequency_khz: [%(frequency)g]
+  sonar.beam_height_deg: [%(opening)g]
+  sonar.range: [%(range)g]
   noise.ambient.level_db: {uniform: [%(quiet)g, %(loud)g]}
 objects:
-  - {names: ["*"], count: [1, 1], x: [%(nearest)g, %(farthest)g], y: [-%(side)g, %(side)g], z: [-0.2, 0.2], frame: vehicle, gap: 0,
-     roll_deg: [-180, 180], pitch_deg: [-90, 90], yaw_deg: [-180, 180]}
+  - {names: [%(names)s], count: [1, 1], x: [%(nearest)g, %(farthest)g], y: [-%(side)g, %(side)g], z: [-0.1, 0.1], frame: vehicle, gap: 0,
+     roll_deg: [-15, 15], pitch_deg: [-50, 50]}
 classes: {%(classes)s}
 picture: {shape: fan, height: %(height)d, dynamic_range_db: 100, reference_db: -10}
-annotations: {min_level: 100, min_pixels: 15}
+annotations: {min_level: 70, min_pixels: 15}
 """
 
 SET = """\
 # What scripts/sim_to_real makes, and what --ablate leaves out: by name, values of the deployment in place of its own.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
-ablated: ["near_[0-4].yml"] # of these, to compare with and without an effect; absent: all
+ablated: ["near_[0-2].yml", "far_[0-2].yml"] # of these, to compare with and without an effect; absent: all
 decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
-margin: [0.05, 0.3]         # of a box, drawn, on each side
+margin: [0.0, 0.25]         # of a box, drawn, on each side
+turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
+white_share: [0, 4]         # displays are set so that this share of a window is white, drawn [%]
+visible_db: 8               # a window is the box of those pixels of an object that exceed the median level by this
 effects:
   speckle: {sonar.speckle.coherent: false}
   beams_and_pulse: {sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle.coherent: false}
   thin_walls: {sonar.max_walls: 0}
+  receiver_filter: {noise.filter: null}
+  moorings: {scene.materials: {mooring: {lambert_db: -100}}}
   physics: {sonar.model: cerqueira2017, sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle: null}
 """
 
 
-BANDS = {  # name of the sweep, nearest and farthest [m], to either side [m], quietest and loudest noise [dB], height [px], settings
-    "near": (2.2, 4.5, 0.2, -112, -80, 500, ""),
-    "far": (4.5, 13, 0.5, -122, -95, 1000, "  sonar.range: [14]\n  sonar.bin_count: [1000]\n"
-                                           "  sonar.beam_count: [96]\n  sonar.field_of_view_deg: [24]\n"),
-}
+RANGES = {"near": (3, 6), "far": (6, 12)}  # of a sweep, drawn [m]
+FREQUENCIES = {750: 20, 1200: 12}  # [kHz], with the vertical opening [deg]
 
 
-def scene(rng, file):
+def scene(rng, file, count):
     glb = Glb()
+    line = glb.material("mooring", {"lambert_db": round(rng.uniform(-10, 3), 2)}, (0.5, 0.5, 0.4))
+    buoyant = glb.material("float", {"lambert_db": round(rng.uniform(-6, 3), 2)}, (0.9, 0.5, 0.2))
     for i, (name, make) in enumerate(CLASSES.items()):
-        body, acoustics = make(rng)
-        material = glb.material(name, acoustics, (0.6, 0.7, 0.8))
-        glb.node(name, glb.mesh(name, [body], material), (0, 3.0 * i, -50))
+        for j in range(count):
+            body, acoustics, *floats = make(rng)
+            material = glb.material(f"{name}_{j}", acoustics, (0.6, 0.7, 0.8))
+            mesh = glb.mesh(f"{name}_{j}", [body], material)
+            if rng.random() < MOORED.get(name, 0):
+                glb.gltf["meshes"][mesh]["primitives"].append(glb.primitive(mooring(rng), line))
+            for each in floats:
+                glb.gltf["meshes"][mesh]["primitives"].append(glb.primitive(each, buoyant))
+            glb.node(f"{name}_{j}", mesh, (6.0 * j, 6.0 * i, -50))
     glb.write(file)
+
+
+def sweep(rng, options, i, band):
+    farthest, frequency = rng.uniform(*RANGES[band]), int(rng.choice(list(FREQUENCIES)))
+    quiet = {"near": -92, "far": -104}[band]
+    return SWEEP % {"nearest": max(1.5, 0.35 * farthest), "farthest": 0.9 * farthest, "side": 0.02 * farthest, "range": farthest,
+                    "frequency": frequency, "opening": FREQUENCIES[frequency], "quiet": quiet, "loud": quiet + 26,
+                    "height": int(rng.integers(700, 1200)), "seed": int(rng.integers(1 << 30)), "count": options.samples,
+                    "scene": f"objects_{i}.glb", "names": ", ".join(f"{name}_*" for name in CLASSES),
+                    "classes": ", ".join(f"{name}: {name}_*" for name in CLASSES)}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("--scenes", type=int, default=8, help="each with one object of each class (8)")
-    parser.add_argument("--samples", type=int, default=100, help="of each sweep, of which there are two for each scene (100)")
+    parser.add_argument("--scenes", type=int, default=10, help="each with some objects of each class (10)")
+    parser.add_argument("--objects", type=int, default=5, help="of each class in a scene (5)")
+    parser.add_argument("--samples", type=int, default=40, help="of each sweep, of which there are two for each scene (40)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    if options.scenes < 1 or options.samples < 1:
-        parser.error("--scenes and --samples are at least 1")
+    if min(options.scenes, options.objects, options.samples) < 1:
+        parser.error("--scenes, --objects and --samples are at least 1")
     options.folder.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(options.seed)
     for i in range(options.scenes):
-        scene(rng, options.folder / f"objects_{i}.glb")
-        for j, (band, (nearest, farthest, side, quiet, loud, height, settings)) in enumerate(BANDS.items()):
-            values = {"nearest": nearest, "farthest": farthest, "side": side, "quiet": quiet, "loud": loud, "height": height,
-                      "seed": 1000 * options.seed + 2 * i + j, "count": options.samples, "scene": f"objects_{i}.glb",
-                      "classes": ", ".join(f"{name}: {name}" for name in CLASSES)}
-            text = (SWEEP % values).replace("settings:\n", "settings:\n" + settings)
-            (options.folder / f"{band}_{i}.yml").write_text(text)
-    (options.folder / "deployment.yml").write_text(DEPLOYMENT % {"beams": 128, "view": 32})
+        scene(rng, options.folder / f"objects_{i}.glb", options.objects)
+        for band in RANGES:
+            (options.folder / f"{band}_{i}.yml").write_text(sweep(rng, options, i, band))
+    (options.folder / "deployment.yml").write_text(DEPLOYMENT)
     (options.folder / "set.yml").write_text(SET)
 
 

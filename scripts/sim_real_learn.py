@@ -2,7 +2,7 @@
 import numpy as np
 from PIL import Image
 
-SIDE = 32  # of what a classifier sees [px]
+SIDE = 40  # of what a classifier sees [px]
 
 
 def normalised(pixels, side=SIDE):
@@ -14,8 +14,19 @@ def normalised(pixels, side=SIDE):
 
 
 def arrays(crops, labels):
-    return (np.stack([normalised(crop.pixels) for crop in crops]),
-            np.array([labels.index(crop.label) for crop in crops]))
+    """(x, y): x is [n, 2, SIDE, SIDE], the crop and, everywhere the same, the logarithm of its height over its width."""
+    x = np.empty((len(crops), 2, SIDE, SIDE), np.float32)
+    for each, crop in zip(x, crops):
+        each[0] = normalised(crop.pixels)
+        each[1] = np.log2(crop.pixels.shape[0] / crop.pixels.shape[1]).clip(-3, 3)
+    return x, np.array([labels.index(crop.label) for crop in crops])
+
+
+def answers(kind, count, parts, x, seed):
+    """What a classifier that learns from parts finds in x."""
+    model = kind(count)
+    model.learn(parts, seed)
+    return model.find(x)
 
 
 def weights(parts, count):
@@ -44,8 +55,9 @@ class Hog:
     @staticmethod
     def features(x):
         from skimage.feature import hog
-        small = x.reshape(len(x), 8, SIDE // 8, 8, SIDE // 8).mean((2, 4)).reshape(len(x), -1)
-        return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x]), 0.3 * small])
+        small = x[:, 0].reshape(len(x), 8, SIDE // 8, 8, SIDE // 8).mean((2, 4)).reshape(len(x), -1)
+        return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x[:, 0]]), 0.3 * small,
+                          0.3 * x[:, 1, 0, :1]])
 
     def learn(self, parts, seed):
         """Trains on parts (x, y), which have equal weight."""
@@ -65,33 +77,35 @@ def varied(x, rng):
     """Crops mirrored, rotated and scaled at random, with another contrast, blur and noise. For HOG; `augmented` is for the CNN."""
     from scipy import ndimage
     result = np.empty_like(x)
-    for i, each in enumerate(x):
+    for i, each in enumerate(x[:, 0]):
         angle, scale = rng.uniform(-0.35, 0.35), rng.uniform(0.8, 1.25, 2) * (1, rng.choice([-1, 1]))
         matrix = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) * scale
         centre = (np.array(each.shape) - 1) / 2
         moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
         moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
-        result[i] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
+        result[i, 1] = x[i, 1] + np.log2(scale[0] / abs(scale[1])) + rng.normal(0, 0.3)
+        result[i, 0] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
     return result
 
 
 class Cnn:
     name = "CNN of three layers"
 
-    def __init__(self, count, steps=500, batch=64):
+    def __init__(self, count, steps=450, batch=64):
         self.count, self.steps, self.batch = count, steps, batch
 
     def learn(self, parts, seed):
         import torch
+        torch.set_num_threads(1)  # the network is too small to share; several are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
-        layers, before = [], 1
+        layers, before = [], 2
         for channels in (16, 32, 64):
             layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
                        torch.nn.MaxPool2d(2)]
             before = channels
         self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
-                                       torch.nn.Linear(256, self.count))
+                                       torch.nn.Linear(4 * before, self.count)).to(memory_format=torch.channels_last)
         x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
         share = weights([y for _, y in parts], self.count)
         optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
@@ -99,7 +113,7 @@ class Cnn:
         self.net.train()
         for _ in range(self.steps):
             chosen = rng.choice(len(x), self.batch, p=share)
-            loss = torch.nn.functional.cross_entropy(self.net(augmented(torch.from_numpy(x[chosen, None]))), torch.from_numpy(y[chosen]),
+            loss = torch.nn.functional.cross_entropy(self.net(augmented(torch.from_numpy(x[chosen]))), torch.from_numpy(y[chosen]),
                                                      label_smoothing=0.1)
             optimiser.zero_grad()
             loss.backward()
@@ -108,17 +122,22 @@ class Cnn:
         self.net.eval()
 
     def find(self, x):
+        """Mean of the answers for a crop and its mirror image."""
         import torch
         with torch.no_grad():
-            return self.net(torch.from_numpy(x[:, None])).argmax(1).numpy()
+            x = torch.from_numpy(x)
+            return (self.net(x).softmax(1) + self.net(x.flip(3)).softmax(1)).argmax(1).numpy()
 
 
 def augmented(x):
-    """Mirrored, turned, sheared and scaled at random; of other contrast, with more noise or less sharp."""
+    """Mirrored, turned, sheared and scaled at random; of other contrast, with more noise or less sharp; at times without proportions."""
     import torch
+    x, proportion = x[:, :1], x[:, 1:]
     n = len(x)
     turn, tilt = (torch.rand(n) - 0.5) * 0.7, (torch.rand(n) - 0.5) * 0.4
     width, height = 0.8 + 0.45 * torch.rand(2, n)
+    proportion = proportion + (torch.log2(width / height) + 0.4 * torch.randn(n))[:, None, None, None]
+    proportion = proportion * (torch.rand(n, 1, 1, 1) < 0.8)
     width = width * (torch.randint(0, 2, (n,)) * 2 - 1)
     matrix = torch.stack([torch.stack([turn.cos() * width, tilt - turn.sin() * height, (torch.rand(n) - 0.5) * 0.3], 1),
                           torch.stack([turn.sin() * width, turn.cos() * height, (torch.rand(n) - 0.5) * 0.3], 1)], 1)
@@ -126,17 +145,19 @@ def augmented(x):
     x = torch.nn.functional.grid_sample(x, grid, padding_mode="reflection", align_corners=False)
     blurred = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (1, 1, 1, 1), mode="reflect"), 3, 1)
     x = torch.lerp(x, blurred, torch.rand(n, 1, 1, 1))
+    streaked = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (4, 4, 0, 0), mode="reflect"), (1, 9), 1)  # wide beams, near field
+    x = torch.lerp(x, streaked, torch.rand(n, 1, 1, 1) * torch.randint(0, 2, (n, 1, 1, 1)))
     x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
-    return (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
+    x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
+    return torch.cat([x, proportion.expand_as(x)], 1).contiguous(memory_format=torch.channels_last)
 
 
 def classifier(wanted):
     """Returns the class and name of the wanted classifier, or HOG where torch is missing."""
     if wanted == "cnn":
         try:
-            import torch
-            torch.set_num_threads(2)
+            import torch  # noqa: F401
             return Cnn, Cnn.name
         except ImportError:
             return Hog, f"{Hog.name} (torch is not installed)"

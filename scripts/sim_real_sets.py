@@ -2,9 +2,11 @@
 import hashlib
 import io
 import json
+import os
 import re
 import subprocess
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +15,8 @@ import yaml
 from PIL import Image, UnidentifiedImageError
 
 PICTURES = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff"}
-KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "effects"}
+KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "white_share", "effects"}
+FEWEST = 30  # visible pixels of a window
 
 
 class Wrong(Exception):
@@ -166,40 +169,120 @@ def inputs_hash(files, values):
     return total.hexdigest()[:12]
 
 
-def generate(insonify, plan, effect, cache):
-    """Folders of the sets, one for each sweep, without the effect if one is named. What is there is taken."""
+def made(insonify, plan, sweep, effect, cache):
+    """Returns the folder of a sweep's set, without the effect if one is named. What is there is taken."""
     values = plan["effects"][effect] if effect else {}
-    folders = []
-    for sweep in plan["ablated" if effect else "sweeps"]:
-        scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
-                  for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
-        missing = [file for file in [plan["deployment"], *scenes] if not file.exists()]
-        if missing:
-            raise Wrong(f"{missing[0]}: there is no such file, which {sweep} needs")
-        folder = cache / f"{effect or 'whole'}_{sweep.stem}_{inputs_hash([plan['deployment'], sweep, *scenes], values)}"
-        folders.append(folder)
-        if (folder / "manifest.json").exists():
-            continue
-        command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
-        for name, value in values.items():
-            command += ["--set", f"{name}={json.dumps(value)}"]
-        try:
-            done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
-        except OSError as error:
-            raise Wrong(f"{insonify}: cannot be run ({error.strerror})") from None
-        if done.returncode != 0:
-            raise Wrong(f"{sweep}: insonify dataset failed: {done.stderr.strip() or done.stdout.strip()}")
-    return folders
+    scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
+              for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
+    missing = [file for file in [plan["deployment"], *scenes] if not file.exists()]
+    if missing:
+        raise Wrong(f"{missing[0]}: there is no such file, which {sweep} needs")
+    folder = cache / f"{effect or 'whole'}_{sweep.stem}_{inputs_hash([plan['deployment'], sweep, *scenes], values)}"
+    if (folder / "manifest.json").exists():
+        return folder
+    command = [insonify, "dataset", plan["deployment"], "--sweep", sweep, "--out", folder, "--format", "coco"]
+    for name, value in values.items():
+        command += ["--set", f"{name}={json.dumps(value)}"]
+    try:
+        done = subprocess.run([str(each) for each in command], capture_output=True, text=True)
+    except OSError as error:
+        raise Wrong(f"{insonify}: cannot be run ({error.strerror})") from None
+    if done.returncode != 0:
+        raise Wrong(f"{sweep}: insonify dataset failed: {done.stderr.strip() or done.stdout.strip()}")
+    return folder
+
+
+def generate(insonify, plan, effect, cache):
+    """Folders of the sets, one for each sweep, as many at a time as there are processors."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(lambda sweep: made(insonify, plan, sweep, effect, cache), plan["ablated" if effect else "sweeps"]))
 
 
 def amplitudes(pixels, decibels):
     return 10 ** ((pixels - 1) * decibels / 20) * (pixels > 0) if decibels else pixels
 
 
-def windows(folders, sweeps):
-    """Boxes of a set by (sweep, sample, class)."""
-    return {(sweep.stem, int(name.split("_")[0]), label): box for folder, sweep in zip(folders, sweeps)
-            for file in sorted(folder.glob("instances_*.json")) for name, label, box in boxes(file)}
+def instances(file):
+    """(picture, class, box, mask) of each annotation of a simulated set; a mask is rows and columns of its pixels, or None."""
+    content = json.loads(file.read_text())
+    for (picture, label, box), each in zip(boxes(file), content["annotations"]):
+        runs = each.get("segmentation")
+        if not runs:
+            yield picture, label, box, None
+            continue
+        inside = np.repeat(np.arange(len(runs["counts"])) % 2 == 1, runs["counts"])
+        columns, rows = np.divmod(np.flatnonzero(inside), runs["size"][0])
+        yield picture, label, box, (rows, columns)
+
+
+def turned(rows, columns, centre, degrees):
+    """Points after a turn about a centre. A fan looks the same in each direction, so a turned object is off the sonar's axis."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    y, x = rows - centre[0], columns - centre[1]
+    return centre[0] + c * y - s * x, centre[1] + s * y + c * x
+
+
+def cut_turned(pixels, window, margin):
+    """A window and a margin of its sides out of a picture that is turned about the window's centre of turn; black outside."""
+    left, top, width, height = window.box
+    rows, columns = np.mgrid[round(top - margin * height):round(top + (1 + margin) * height) + 1,
+                             round(left - margin * width):round(left + (1 + margin) * width) + 1]
+    y, x = (np.rint(each).astype(int) for each in turned(rows, columns, window.centre, -window.turn))
+    known = (y >= 0) & (y < pixels.shape[0]) & (x >= 0) & (x < pixels.shape[1])
+    return np.where(known, pixels[y.clip(0, pixels.shape[0] - 1), x.clip(0, pixels.shape[1] - 1)], 0)
+
+
+def visible(levels, mask, decibels):
+    """Of a mask, the pixels that exceed the median of their surroundings, mean of 3 x 3 pixels, as people see an object in noise."""
+    rows, columns = mask
+    margin = 6
+    part = levels[max(0, rows.min() - margin):rows.max() + margin, max(0, columns.min() - margin):columns.max() + margin]
+    ground = np.median(part[part > 0]) if (part > 0).any() else 0
+    padded = np.pad(levels, 1, mode="edge")
+    mean = sum(padded[rows + i, columns + j] for i in range(3) for j in range(3)) / 9
+    seen = mean > ground * 10 ** (decibels / 20)
+    return rows[seen], columns[seen]
+
+
+@dataclass
+class Window:
+    box: list  # left, top, width, height in the turned picture [px]
+    turn: float = 0.0  # of the picture [deg]
+    centre: tuple = (0, 0)  # of the turn: row, column
+
+
+def window(levels, box, mask, turn, decibels):
+    """Returns the window of an annotation, or None where too little of it is visible."""
+    if mask is None:
+        return Window(box)
+    if decibels is not None:
+        mask = visible(levels, mask, decibels)
+    if len(mask[0]) < FEWEST:
+        return None
+    left, top, width, height = box
+    centre = (top + height / 2, left + width / 2)
+    rows, columns = turned(*mask, centre, turn)
+    (top, bottom), (left, right) = np.percentile(rows, [1, 99]), np.percentile(columns, [1, 99])
+    return Window([left - 1, top - 1, right - left + 2, bottom - top + 2], turn, centre)
+
+
+def windows(folders, sweeps, plan):
+    """Windows of a set by (sweep, sample, class)."""
+    found, (low, high) = {}, plan.get("turn_deg", [0, 0])
+    for folder, sweep in zip(folders, sweeps):
+        for file in sorted(folder.glob("instances_*.json")):
+            for name, label, box, mask in instances(file):
+                index = int(name.split("_")[0])
+                turn = low + (high - low) * np.random.default_rng([index, 1]).random()
+                levels = amplitudes(grey(folder / name, folder / name), plan.get("decibels"))
+                found[(sweep.stem, index, label)] = window(levels, box, mask, turn, plan.get("visible_db"))
+    return {key: each for key, each in found.items() if each}
+
+
+def displayed(pixels, share):
+    """Amplitudes as 8 bits of a display show them whose gain makes a share of the pixels white [%]."""
+    white = max(np.percentile(pixels, 100 - share), 1e-12)
+    return np.round(255 * np.minimum(pixels / white, 1)) / 255
 
 
 def simulated(folders, sweeps, plan, shown):
@@ -208,12 +291,14 @@ def simulated(folders, sweeps, plan, shown):
     low, high = plan.get("margin", [0.1, 0.1])
     names = {sweep.stem: {int(file.name.split("_")[0]): file for file in folder.glob("[0-9]*_*.png")}
              for folder, sweep in zip(folders, sweeps)}
-    for (sweep, index, label), box in shown.items():
+    for (sweep, index, label), where in shown.items():
         if sweep not in names:
             continue
         file = names[sweep][index]
         margin = low + (high - low) * np.random.default_rng(index).random()
-        pixels = amplitudes(cut(grey(file, file), box, margin), plan.get("decibels"))
+        pixels = amplitudes(cut_turned(grey(file, file), where, margin), plan.get("decibels"))
+        if plan.get("white_share"):
+            pixels = displayed(pixels, np.random.default_rng([index, 2]).uniform(*plan["white_share"]))
         if plan.get("range_down"):
             pixels = pixels[::-1]
         if min(pixels.shape) >= 4:

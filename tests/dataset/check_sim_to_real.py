@@ -1,4 +1,4 @@
-"""Holds scripts/sim_to_real to what it says: halves never share a film, and each wrong input is one error and exit 2.
+"""Holds scripts/sim_to_real to what it says: halves never share a film, windows show what stands out, wrong input is one error and exit 2.
 Sets are made by a command in the place of insonify, which writes what a data set has."""
 import random
 import subprocess
@@ -12,6 +12,7 @@ from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
+import sim_real_learn as learn  # noqa: E402
 import sim_real_sets as sets  # noqa: E402
 
 # Draws a bright square for each class that its first argument names, as `insonify dataset ... --out FOLDER` would.
@@ -64,6 +65,43 @@ class Halves(unittest.TestCase):
             for label in "ab":
                 numbers = [[int(each.name.split("_")[1][:-4]) for each in part if each.label == label] for part in (train, test)]
                 self.assertEqual(numbers, [list(range(1, 7)), list(range(7, 13))])
+
+
+class Windows(unittest.TestCase):
+    def setUp(self):
+        self.levels = np.random.default_rng(0).rayleigh(0.02, (120, 120)).astype(np.float32)
+        self.rows, self.columns = (each.ravel() for each in np.mgrid[40:44, 30:80])  # a bar across
+        self.levels[40:44, 30:80] = 0.9
+        self.box = [30, 40, 50, 4]
+
+    def test_a_turned_window_holds_its_object_and_the_object_is_turned(self):
+        for turn in (-40, 0, 25):
+            window = sets.window(self.levels, self.box, (self.rows, self.columns), turn, 8)
+            crop = sets.cut_turned(self.levels, window, 0.1)
+            self.assertAlmostEqual(int((crop > 0.5).sum()), 200, delta=24)
+            y, x = np.nonzero(crop > 0.5)
+            self.assertAlmostEqual(np.degrees(np.arctan(np.polyfit(x, y, 1)[0])), -turn, delta=5)  # rows count downward
+
+    def test_what_is_lost_in_noise_has_no_window(self):
+        faint = self.levels.copy()
+        faint[40:44, 30:80] = 0.03
+        self.assertIsNone(sets.window(faint, self.box, (self.rows, self.columns), 0, 8))
+        self.assertIsNotNone(sets.window(faint, self.box, (self.rows, self.columns), 0, None))
+
+    def test_the_window_is_that_of_what_stands_out(self):
+        self.levels[40:44, 55:80] = 0.02  # half of the bar
+        left, _, width, _ = sets.window(self.levels, self.box, (self.rows, self.columns), 0, 8).box
+        self.assertAlmostEqual(left, 29, delta=2)
+        self.assertAlmostEqual(left + width, 56, delta=3)
+
+    def test_a_display_turns_its_share_white(self):
+        pixels = np.random.default_rng(1).rayleigh(1, (100, 100))
+        self.assertAlmostEqual((sets.displayed(pixels, 3) == 1).mean(), 0.03, delta=0.005)
+
+    def test_classifiers_get_proportions(self):
+        crops = [sets.Crop(np.random.default_rng(2).random(size), "a", "", "") for size in [(40, 10), (20, 20), (10, 40)]]
+        x, _ = learn.arrays(crops, ["a"])
+        np.testing.assert_allclose(x[:, 1, 0, 0], [2, 0, -2])
 
 
 class Wrong(unittest.TestCase):
