@@ -168,7 +168,7 @@ TEST(PageTest, EveryComponentHasAPage) {
 
 TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
     const Page readme = readPage("README.md");
-    EXPECT_LE(readme.lines().size(), 250u);
+    EXPECT_LE(readme.lines().size(), 200u);
     const Texts links = readme.links();
     for (const std::string& heading : readme.headings(2))
         EXPECT_THAT(links, Contains("#" + *Page("", "## " + heading).anchors().begin())) << heading;

@@ -192,7 +192,10 @@ TEST_F(MeshProcessTest, AMeshThatCannotBeReadIsTriedOnceInAWorld) {
 TEST_F(MeshProcessTest, WhatTravelsIsCheckedLikeAnyFile) {
     MeshReply reply;
     reply.meshes.materials = {"steel"};
-    reply.meshes.parts = {{"plate", 0, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {}, {0, 1, 2}}}};
+    scene::Surface triangle;
+    triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.indices = {0, 1, 2};
+    reply.meshes.parts = {{"plate", 0, triangle}};
     reply.meshes.placings = {{"node", 0, glm::dmat4(2)}};
     const auto bytesOfReply = [](const MeshReply& written) {
         char* data = nullptr;

@@ -1,4 +1,4 @@
-"""What the page of the module shows, and its example, run as they stand."""
+"""The Python code of the README and of the module's page runs as it is, and so does the example."""
 
 import re
 import subprocess
@@ -7,8 +7,10 @@ import sys
 import pytest
 from conftest import INSONIFY, ROOT
 
-PAGE = ROOT / "components/python/README.md"
-BLOCKS = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+BLOCKS = {
+    page: re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
+    for page in ("README.md", "components/python/README.md")
+}
 
 
 @pytest.fixture
@@ -20,8 +22,8 @@ def folder(tmp_path):
 
 
 def test_every_block_runs(folder):
-    assert len(BLOCKS) == 4
-    for block in BLOCKS:
+    assert [len(blocks) for blocks in BLOCKS.values()] == [1, 4]
+    for block in sum(BLOCKS.values(), []):
         if "gym" in block:
             pytest.importorskip("gymnasium")
         done = subprocess.run([sys.executable, "-c", block], cwd=folder, capture_output=True, text=True, timeout=600)
