@@ -178,8 +178,10 @@ TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");
     log.write(log.addStream<types::SonarTruth>("sonar.truth"), {1}, truth(1'500'000));
+    types::SonarTruth direct = truth(1'500'000);
+    direct.path[0] = 0;
     types::SonarReturns returns;
-    returns.take(ping(1'500'000, 1, 2), truth(1'500'000));
+    returns.take(ping(1'500'000, 1, 2), direct);
     log.write(log.addStream<types::SonarReturns>("sonar.returns"), {1}, returns);
     log.close();
     pocolog::Reader reader(folder / "x.0.log");
