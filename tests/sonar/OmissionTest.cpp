@@ -106,7 +106,9 @@ TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
                                                // in EdgeDiffractionTest.cpp:
                                                "edge diffraction",
                                                // in CrosstalkTest.cpp and CrosstalkRunTest.cpp:
-                                               "crosstalk"};
+                                               "crosstalk",
+                                               // in SurfaceMapTest.cpp:
+                                               "surface maps"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;
