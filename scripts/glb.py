@@ -6,6 +6,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "components" / "worlds"))
 from insonify_worlds.glb import Glb, png, quaternion, rotation, unit, y_up  # noqa: E402, F401: for the scripts
+from insonify_worlds.rings import circle, skin  # noqa: E402
 
 
 class Mesh:
@@ -59,26 +60,8 @@ def merged(meshes):
 
 
 def loft(rings, endless=False):
-    """A skin over rings [m, n, 3], each counter-clockwise seen from the last; flat ends unless it is endless."""
-    rings = np.asarray(rings, float)
-    m, n = rings.shape[:2]
-    i, j = np.mgrid[: m if endless else m - 1, :n]
-    here, right = i * n + j, i * n + (j + 1) % n
-    above, diagonal = (i + 1) % m * n + j, (i + 1) % m * n + (j + 1) % n
-    faces = [np.stack([here, right, diagonal], -1).reshape(-1, 3), np.stack([here, diagonal, above], -1).reshape(-1, 3)]
-    positions = rings.reshape(-1, 3)
-    if not endless:
-        positions = np.vstack([positions, rings[0].mean(0), rings[-1].mean(0)])
-        k, following = np.arange(n), (np.arange(n) + 1) % n
-        last = (m - 1) * n
-        faces.append(np.stack([following, k, np.full(n, m * n)], -1))
-        faces.append(np.stack([last + k, last + following, np.full(n, m * n + 1)], -1))
-    return Mesh(positions, np.vstack(faces))
-
-
-def circle(sides, radius):
-    angle = np.arange(sides) * 2 * np.pi / sides
-    return radius * np.stack([np.cos(angle), np.sin(angle)], 1)
+    """A skin over rings (insonify_worlds.rings.skin)."""
+    return Mesh(*skin(rings, endless))
 
 
 def tube(path, radius, sides=12, endless=False):

@@ -249,7 +249,7 @@ private:
     const AnnotationConfig& config_;
     const bool decibel_;
     const double bin_width_;               ///< [m]
-    const std::span<const float> ranges_;  ///< Of each beam, in place of its bin's [m].
+    const std::span<const float> ranges_;  ///< Range of each beam of a range image [m].
     /** What each cell shows: an instance; from first_shadow_ on the shadow of one; from 2 * first_shadow_ on a ghost.
      */
     std::vector<int32_t> object_of_;

@@ -302,7 +302,7 @@ void addSceneCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("scene", "Tells what is in a scene: its box, axes, materials, objects; or makes one");
+        app.add_subcommand("scene", "Prints what a scene contains: its box, axes, materials, objects; or makes one");
     command->add_option("FILE", options->file, "a .gltf, .glb, .world, .sdf or .urdf file");
     command->add_flag("--json", options->json, "for machines");
     addMakeCommand(*command, action);

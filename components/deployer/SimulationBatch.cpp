@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <stdexcept>
@@ -29,16 +30,18 @@ template <class Work>
 void SimulationBatch::forEach(size_t count, const Work& work) {
     std::atomic<size_t> next = 0;
     std::mutex alone;
+    size_t first_failed = count;
     std::string failure;
     threads_.share([&](int, int) {
         for (size_t i = next++; i < count; i = next++) try {
                 work(i);
             } catch (const std::exception& error) {
                 const std::lock_guard lock(alone);
-                if (failure.empty()) failure = error.what();
+                if (i < first_failed) failure = error.what();
+                first_failed = std::min(i, first_failed);
             }
     });
-    if (!failure.empty()) throw std::runtime_error(failure);
+    if (first_failed < count) throw std::runtime_error(failure);
 }
 
 std::vector<std::vector<SteppedPing>> SimulationBatch::step(std::vector<std::map<std::string, types::Pose>> at) {

@@ -25,8 +25,8 @@ public:
     /** The seed of the simulation of that number: the first has the batch's own, each other one another. */
     static uint64_t seedOf(uint64_t seed, size_t number);
 
-    /** Steps each simulation to its own next time, with its own poses. Throws std::runtime_error with the number of one
-     *  that fails, when all others have stepped. */
+    /** Steps each simulation to its own next time, with its own poses. Throws std::runtime_error with the number of the
+     *  first that fails, when all others have stepped. */
     std::vector<std::vector<SteppedPing>> step(std::vector<std::map<std::string, types::Pose>> at);
     /** Begins these simulations anew, each with a seed, not 0; none: the same. */
     void reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds);

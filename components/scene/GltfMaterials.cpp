@@ -232,6 +232,8 @@ private:
         for (const double each : meaning.decibels)
             if (!(each >= -200 && each <= MapValues::max_db))
                 refuse("decibels", fmt::format("has {:g}; may be -200 to {:g} dB", each, MapValues::max_db));
+        if (map.Has("texcoord") && !(map.Get("texcoord").IsInt() && map.Get("texcoord").GetNumberAsInt() >= 0))
+            refuse("texcoord", "must be a whole number from 0 on: the set of texture coordinates");
         if (map.Has("classes") && !map.Get("classes").IsObject())
             refuse("classes", "must be an object such as {\"0\": \"medium_sand\", \"255\": \"rock\"}");
         else if (map.Has("classes"))
@@ -264,8 +266,7 @@ private:
             pixels = readTexture(gltf_, accessors_, texture.index, 1, true, repeat_u, repeat_v);
             on_surface = mapping(texture);
         }
-        if (map.Has("texcoord") && map.Get("texcoord").IsInt())
-            on_surface.uv_set = map.Get("texcoord").GetNumberAsInt();
+        if (map.Has("texcoord")) on_surface.uv_set = map.Get("texcoord").GetNumberAsInt();
         std::vector<float> values(pixels.bytes.begin(), pixels.bytes.end());
         for (const uint16_t word : pixels.words) values.push_back(static_cast<float>(word) * (255.0f / 65535));
         types::SurfaceMap result = surfaceMapOf(values, pixels.width, pixels.height, meaning, std::move(classes));

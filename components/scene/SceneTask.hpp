@@ -99,10 +99,10 @@ private:
         gazebo_failure_;  ///< Why scene_gazebo_ is not there; kept, for it has cost a wait.
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
-    std::string lay_;                        ///< How the scene lies; empty: as everywhere.
-    mutable bool scene_has_survey_ = false;  ///< Whether the floor's material is in it.
-    mutable std::optional<MosaicConfig> scene_map_;
-    types::GeometryPtr geometry_;  ///< From file or gazebo, with all materials.
+    std::string lay_;                                ///< How the scene lies; empty: as everywhere.
+    mutable bool scene_has_survey_ = false;          ///< Whether the floor's material is in it.
+    mutable std::optional<MosaicConfig> scene_map_;  ///< The classes of its mosaic are among the materials.
+    types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.

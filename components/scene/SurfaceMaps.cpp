@@ -17,7 +17,9 @@ namespace {
 std::optional<uint8_t> valueOf(const std::string& text) {
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 254) return {};
+    if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 254 ||
+        text != std::to_string(value))  // 1 and 01 would be one class
+        return {};
     return static_cast<uint8_t>(value);
 }
 

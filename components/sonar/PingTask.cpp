@@ -223,8 +223,8 @@ void PingTask::followQuality(types::Sonar& sample, double ms) {
 }
 
 bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
-                          types::SonarTruth* told) {
-    renderer.setTruth(sample, told);
+                          types::SonarTruth* truth_of_ping) {
+    renderer.setTruth(sample, truth_of_ping);
     renderer.render(scene, sample);
     return renderer.hasEchoes() || renderer.othersHeard() > 0;
 }
@@ -266,9 +266,10 @@ void PingTask::render() {
 
 std::shared_ptr<types::SonarTruth> PingTask::takeTruth() { return wantsTruth() ? truths_.take() : nullptr; }
 
-void PingTask::nameObjects(types::SonarTruth& told) const {
-    told.objects.resize(geometry_->objects.size());
-    for (size_t i = 0; i < told.objects.size(); ++i) told.objects[i] = geometry_->objects[i].name;
+void PingTask::nameObjects(types::SonarTruth& truth_of_ping) const {
+    std::vector<std::string>& names = truth_of_ping.objects;
+    names.resize(geometry_->objects.size());
+    for (size_t i = 0; i < names.size(); ++i) names[i] = geometry_->objects[i].name;
 }
 
 void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {

@@ -69,10 +69,10 @@ public:
     std::vector<std::string> notices() const override;
     std::string indivisible() const override;
 
-    /** Renders on so many threads from the next renderer on; 0: as many as the machine has cores. */
+    /** Sets the number of threads of the next renderer; 0: the number of cores. */
     void useThreads(int threads) { threads_ = threads; }
-    /** Of a task that is stopped, `cleanup` and `configure`: as if nothing had been before. What a renderer has made of
-     *  the scene is kept where its pings do not depend on the pings before. */
+    /** Cleans up and configures a stopped task, which then pings as if it had just been made. Keeps the renderer's
+     *  data of the scene if no ping depends on the pings before. */
     framework::Outcome restart();
 
     /** The sonar as configured, its files found from where the deployment is. */
@@ -83,13 +83,13 @@ protected:
     virtual bool rendersOnce() const { return true; }
     /** Where the time of the last ping went. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
-    /** Makes the ping of `scene`, and its truth unless `told` is null; returns whether it has any echo. */
+    /** Makes the ping of `scene`, and its truth unless `truth_of_ping` is null; returns whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
-                            types::SonarTruth* told);
+                            types::SonarTruth* truth_of_ping);
     /** Whether somebody is connected who takes truth. */
     virtual bool wantsTruth() const { return truth.connected() || returns.connected(); }
     /** Gives a truth the names of all objects. */
-    void nameObjects(types::SonarTruth& told) const;
+    void nameObjects(types::SonarTruth& truth_of_ping) const;
     /** Last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
     /** A ping has been rendered or rehearsed: a head that turns goes on. */

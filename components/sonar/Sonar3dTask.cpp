@@ -81,11 +81,11 @@ RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
 }
 
 bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
-                             types::SonarTruth* told) {
+                             types::SonarTruth* truth_of_ping) {
     const glm::dquat ahead = scene.sonar.orientation;
     const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
     bool heard = false;
-    renderer.setTruth(fan_, told ? &fan_truth_ : nullptr);
+    renderer.setTruth(fan_, truth_of_ping ? &fan_truth_ : nullptr);
     for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
     for (int column = 0; column < config->horizontal.beam_count; ++column) {
         const double azimuth = types::radians(config->horizontal.centreDeg(column));
@@ -94,10 +94,10 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
         for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
         heard = renderer.hasEchoes() || renderer.othersHeard() > 0 || heard;
         if (column == 0) shape(sample);
-        if (column == 0 && told) GridTruth::shape(sample, map_.vertical_size, *told, return_truth_);
+        if (column == 0 && truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
         addTo(sample, column);
-        if (told) grid_truth_.addTo(fan_, fan_truth_, static_cast<size_t>(column), *told);
-        if (wantsReturns()) detect(column, told);
+        if (truth_of_ping) grid_truth_.addTo(fan_, fan_truth_, static_cast<size_t>(column), *truth_of_ping);
+        if (wantsReturns()) detect(column, truth_of_ping != nullptr);
     }
     scene.sonar.orientation = ahead;
     return heard;
@@ -136,7 +136,7 @@ void Sonar3dTask::addTo(types::Sonar& sample, int column) const {
     for (size_t i = 0; i < fan_.bins.size(); ++i) sum[i % fan_.bin_count] += fan_.bins[i];
 }
 
-void Sonar3dTask::detect(int column, bool tells) {
+void Sonar3dTask::detect(int column, bool with_truth) {
     const Detector detector(config->detection, fan_, binWidth());
     const size_t from_left = map_.horizontal_size - 1 - static_cast<size_t>(column);
     for (uint32_t beam = 0; beam < fan_.beam_count; ++beam)
@@ -144,7 +144,7 @@ void Sonar3dTask::detect(int column, bool tells) {
             const size_t cell = size_t{map_.vertical_size - 1 - beam} * map_.horizontal_size + from_left;
             map_.distances[cell] = static_cast<float>(found->range);
             map_.remissions[cell] = found->intensity;
-            if (tells) GridTruth::tellReturn(fan_truth_, beam, found->bin, cell, return_truth_);
+            if (with_truth) GridTruth::copyReturn(fan_truth_, beam, found->bin, cell, return_truth_);
         }
 }
 
@@ -168,11 +168,11 @@ void Sonar3dTask::tellMore(const types::Sonar& sample, const types::Pose& sonar)
 }
 
 void Sonar3dTask::writeReturnTruth() {
-    const auto told = return_truths_.take();
+    const auto written = return_truths_.take();
     nameObjects(return_truth_);
-    *told = return_truth_;
-    return_truths_.stock(*told);
-    range_truth.write(told);
+    *written = return_truth_;
+    return_truths_.stock(*written);
+    range_truth.write(written);
 }
 
 void Sonar3dTask::writePoints(const types::Sonar& sample, const types::Pose& sonar) {

@@ -76,7 +76,7 @@ protected:
     bool rendersOnce() const override { return false; }
     std::span<const Stage> renderStages(const SonarRenderer&) const override { return fan_stages_; }
     bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
-                    types::SonarTruth* told) override;
+                    types::SonarTruth* truth_of_ping) override;
     bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
@@ -85,7 +85,7 @@ protected:
 
 private:
     /** Takes the returns of one upright fan into a column of the map, and their truth if there is one. */
-    void detect(int column, bool tells);
+    void detect(int column, bool with_truth);
     /** Adds one upright fan to its beam of the ping. */
     void addTo(types::Sonar& sample, int column) const;
     void shape(types::Sonar& sample);

@@ -1,4 +1,5 @@
 """A mission of hours in lockstep: a side-scan's lines over a survey of a hundred files, by time and memory."""
+import sys
 import tempfile
 from pathlib import Path
 
@@ -18,8 +19,11 @@ SOURCE = """    <SimpleSource>
 
 
 def elevations(file):
-    """Of the posts of a survey, rows from north to south [m], and from one to the next [m]."""
-    import numpy as np
+    """The elevations of a survey's posts, rows from north to south [m], and their spacing [m]."""
+    try:
+        import numpy as np
+    except ImportError:
+        sys.exit("bench: mission needs numpy; PATH=$PWD/build/venv/bin:$PATH scripts/bench has it after scripts/setup")
     if file.suffix == ".npz":
         held = np.load(file)
         return held[held.files[0]].astype("<f4"), 2.0

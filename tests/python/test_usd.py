@@ -23,8 +23,8 @@ def run(folder, name):
     done = subprocess.run([sys.executable, ROOT / "scripts/usd_to_glb", name, "out.glb"], cwd=folder, capture_output=True, text=True)
     if done.returncode:
         return done, None
-    told = subprocess.run([INSONIFY, "scene", folder / "out.glb", "--json"], capture_output=True, text=True, check=True)
-    return done, json.loads(told.stdout)
+    done_scene = subprocess.run([INSONIFY, "scene", folder / "out.glb", "--json"], capture_output=True, text=True, check=True)
+    return done, json.loads(done_scene.stdout)
 
 
 def objects(scene):

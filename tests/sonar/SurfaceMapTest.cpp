@@ -82,7 +82,7 @@ TEST(SurfaceMapTest, AMapThatChangesNothingLeavesEveryBin) {
 }
 
 TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
-    // Of a map of 64 x 64, eight stripes along y, at x from -40 to 40 m.
+    // A map of 64 x 64 with eight stripes along y, at x from -40 to 40 m.
     const double decibels[8] = {0, 0, 0, 0, -3, -20, 6, -40};
     SurfaceMap map = mapOf(64, 64, {}, false);
     for (int y = 0; y < 64; ++y)
@@ -90,7 +90,7 @@ TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
     SonarConfig config = fanOver(1);
     config.field_of_view_deg = 2;
     const std::vector<float> painted = binsOf(groundWith(map), config), plain = binsOf(plainGround(), config);
-    int told = 0;
+    int compared = 0;
     double worst = 0;
     for (size_t k = 0; k < plain.size(); ++k) {
         const double range = (static_cast<double>(k) + 0.5) * 0.1, along = std::sqrt(std::max(range * range - 25, 0.0));
@@ -98,10 +98,10 @@ TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
         if (plain[k] == 0 || along < 4 || in_stripe < 2 || in_stripe > 8) continue;  // two texels from a border
         const double expected = std::pow(10, decibels[4 + static_cast<size_t>(along / 10)] / 10);
         worst = std::max(worst, std::abs(painted[k] / plain[k] / expected - 1));
-        ++told;
+        ++compared;
     }
-    std::cout << told << " bins of painted stripes at most " << worst << " off\n";
-    EXPECT_GT(told, 100);
+    std::cout << compared << " bins of painted stripes at most " << worst << " off\n";
+    EXPECT_GT(compared, 100);
     EXPECT_LT(worst, 0.01);
 }
 

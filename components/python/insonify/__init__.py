@@ -215,8 +215,8 @@ def _truth(facts: dict, arrays: dict) -> Truth:
 class Simulation:
     """A deployment that goes on by one pose at a time.
 
-    Of the deployment there are the tasks that lead to pings, in lockstep; what tells a scene where the vehicle is, is
-    replaced by the caller, and what talks to others is left out. The same seed and the same poses give the same pings,
+    It runs the tasks of the deployment that lead to pings, in lockstep. The caller replaces the task that gives the
+    vehicle's poses; loggers, pictures and tasks that talk to others are omitted. The same seed and the same poses give the same pings,
     as `insonify run` does with the same poses. Several simulations may live in one process, each used by one thread at
     a time: other threads run while one renders.
 

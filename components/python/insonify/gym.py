@@ -189,7 +189,7 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         self._pings = self._batch.step(self._poses)
         return self._pings, _distances_ahead(self._pings.bins, self._pings.bearings, self._pings.ranges)
 
-    def _told(self, distances: np.ndarray) -> tuple[np.ndarray, dict]:
+    def _observation(self, distances: np.ndarray) -> tuple[np.ndarray, dict]:
         info = {"position": self._poses[:, :3].copy(), "distance_ahead": distances, "time": self._pings.times}
         return _levels(self._pings.bins, self._reference, self._floor_db), info
 
@@ -197,7 +197,7 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         super().reset(seed=seed)
         self._begin(np.ones(self.num_envs, bool))
         self._ended[:] = False
-        return self._told(self._observe()[1])
+        return self._observation(self._observe()[1])
 
     def step(self, actions):
         velocities = np.clip(np.asarray(actions, float), -1, 1) * self._speeds
@@ -212,5 +212,5 @@ class SonarVectorEnv(gymnasium.vector.VectorEnv):
         terminated = (distances < self._collision_range) & ~begins
         truncated = (self._steps >= self._max_steps) & ~begins
         self._ended = terminated | truncated
-        observations, info = self._told(distances)
+        observations, info = self._observation(distances)
         return observations, rewards, terminated, truncated, info

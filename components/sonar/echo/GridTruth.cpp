@@ -65,12 +65,12 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
             echo.elevation += share * fan.bearings[beam].rad;
             echo.grazing += share * static_cast<double>(truth.grazing[at]);
         }
-        tellBin(column * bins + bin, energy, hits, azimuths);
+        fillBin(column * bins + bin, energy, hits, azimuths);
     }
     markShadows(column * bins, bins, azimuths);
 }
 
-void GridTruth::tellBin(size_t at, double energy, uint32_t hits, types::SonarTruth& azimuths) const {
+void GridTruth::fillBin(size_t at, double energy, uint32_t hits, types::SonarTruth& azimuths) const {
     if (echoes_.empty()) return forget(at, azimuths);
     const Echo& strongest = *std::ranges::max_element(
         echoes_, {}, [](const Echo& echo) { return std::tuple(echo.energy, -echo.object, -echo.path); });
@@ -82,7 +82,7 @@ void GridTruth::tellBin(size_t at, double energy, uint32_t hits, types::SonarTru
     azimuths.grazing[at] = static_cast<float>(strongest.grazing / strongest.energy);
 }
 
-void GridTruth::tellReturn(const types::SonarTruth& truth, size_t beam, size_t bin, size_t cell,
+void GridTruth::copyReturn(const types::SonarTruth& truth, size_t beam, size_t bin, size_t cell,
                            types::SonarTruth& returns) {
     const size_t at = beam * truth.bin_count + bin;
     returns.object[cell] = truth.object[at];

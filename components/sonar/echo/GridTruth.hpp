@@ -12,8 +12,8 @@ namespace insonify::sonar {
 /** The truth of a grid of beams, column by column: of each azimuth the sum over its elevations, and of each beam of the
  *  grid what its return shows.
  *
- *  A beam tells its strongest object and path in a bin, so that of what several beams hear together the shares are
- * those of each beam's strongest object. Elevations are those of the beams, within half their spacing. */
+ *  The truth of a beam has one object and path in a bin, the strongest. So the shares of an azimuth count only the
+ *  strongest object of each beam. Elevations are those of the beams, within half their spacing. */
 class GridTruth {
 public:
     /** Gives the azimuths room in `ping`, whose grid is taken, and the beams of the grid in `returns`, a bin for each:
@@ -22,10 +22,10 @@ public:
     /** Takes the truth of one azimuth, whose beams are its elevations from the lowest to the highest [rad], into beam
      *  `column` of the azimuths. */
     void addTo(const types::Sonar& fan, const types::SonarTruth& truth, size_t column, types::SonarTruth& azimuths);
-    /** Tells in place `cell` of `returns` what bin `bin` of beam `beam` of an azimuth shows. */
-    static void tellReturn(const types::SonarTruth& truth, size_t beam, size_t bin, size_t cell,
+    /** Copies bin `bin` of beam `beam` of an azimuth's truth to place `cell` of `returns`. */
+    static void copyReturn(const types::SonarTruth& truth, size_t beam, size_t bin, size_t cell,
                            types::SonarTruth& returns);
-    /** Makes a bin one that has heard nothing. */
+    /** Clears a bin: it has no echo. */
     static void forget(size_t at, types::SonarTruth& truth);
 
 private:
@@ -35,7 +35,7 @@ private:
         uint8_t path;
         double energy, elevation, grazing;  ///< Angles weighted by energy [rad].
     };
-    void tellBin(size_t at, double energy, uint32_t hits, types::SonarTruth& azimuths) const;
+    void fillBin(size_t at, double energy, uint32_t hits, types::SonarTruth& azimuths) const;
 
     std::vector<Echo> echoes_;  ///< In one bin.
 };

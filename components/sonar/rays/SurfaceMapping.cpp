@@ -42,7 +42,6 @@ MapLevels::MapLevels(const types::SurfaceMap& map)
     for (size_t i = 0; i < texels; ++i) {
         float* const texel = &finest.channels[i * channels_];
         texel[0] = map.strengths.empty() ? 1 : map.strengths[i];
-        largest_strength_ = std::max(largest_strength_, static_cast<double>(texel[0]));
         if (!map.classes.empty() && map.classes[i] < map.materials.size()) texel[1 + map.classes[i]] = 1;
     }
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));

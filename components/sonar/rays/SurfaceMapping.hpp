@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-/** A surface map with coarser levels, each half as large, whose texels are means over areas. */
+/** A surface map with coarser levels. Each level is half as large; a texel is the mean over its area. */
 class MapLevels {
 public:
     static constexpr size_t max_classes = 16;  ///< Of one map [1].
@@ -32,7 +32,6 @@ public:
     /** The mean over a footprint. */
     Look look(const Footprint& footprint) const;
     const std::vector<int>& materials() const { return materials_; }
-    double largestStrength() const { return largest_strength_; }  ///< [1]
 
 private:
     /** Channels: the strength, then the shares of the classes. */
@@ -48,7 +47,6 @@ private:
     bool repeat_u_, repeat_v_;
     std::vector<int> materials_;
     std::vector<Level> levels_;
-    double largest_strength_ = 0;
 };
 
 /** Maps of a scene's surfaces where rays meet them. */
@@ -80,8 +78,8 @@ private:
     std::vector<uint32_t> first_class_;
 };
 
-/** Tiles as they are met by surface maps: a sample that sees several materials is in a tile for each. Keeps its memory
- *  from ping to ping. */
+/** Tiles with the materials and factors of surface maps. A sample that covers several materials is in one tile for
+ *  each. Keeps its memory from ping to ping. */
 class MappedTiles {
 public:
     /** Takes some tiles of a scene with maps, which must outlive their use here. `apart`: each sample is of one of its

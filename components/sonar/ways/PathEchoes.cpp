@@ -337,10 +337,11 @@ int PathEchoes::Tracer::sameFrom(int i) const {
 
 void PathEchoes::Tracer::hear(const CastTile& tile) {
     const Shares open = openBack();
-    const TileHits as_met = hits_;
+    TileHits as_met;
     CastTile seen = tile;
     seen.hits = &hits_;
     if (scene_.maps) {
+        as_met = hits_;
         thread_local MappedTiles mapped;
         mapped.take(view_, scene_, {&seen, 1}, true);
         seen = mapped.whole().front();
@@ -357,7 +358,7 @@ void PathEchoes::Tracer::hear(const CastTile& tile) {
         deposit(CellAngles(view_, tile, i, merged), i, of_these / merged, seen.meanGain(i, merged));
         i += merged;
     }
-    hits_ = as_met;
+    if (scene_.maps) hits_ = as_met;
 }
 
 Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {

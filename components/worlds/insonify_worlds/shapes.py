@@ -6,6 +6,7 @@ import numpy as np
 from manifold3d import CrossSection, Manifold, Mesh, OpType
 
 from .glb import rotation, unit  # noqa: F401: for the things
+from .rings import circle, skin
 
 TURN = 2 * math.pi
 
@@ -48,32 +49,13 @@ def extruded(outline, height):
     return CrossSection([outline]).extrude(height)
 
 
-def circle(sides, radius=1.0):
-    angle = np.arange(sides) * TURN / sides
-    return radius * np.stack([np.cos(angle), np.sin(angle)], 1)
-
-
 def from_mesh(positions, faces):
     return Manifold(Mesh(np.asarray(positions, np.float32), np.asarray(faces, np.uint32)))
 
 
 def loft(rings, closed=False):
-    """A skin over rings [m, n, 3], each counter-clockwise seen from the last; flat ends unless it is closed."""
-    rings = np.asarray(rings, float)
-    m, n = rings.shape[:2]
-    i, j = np.mgrid[: m if closed else m - 1, :n]
-    here, right = i * n + j, i * n + (j + 1) % n
-    above, diagonal = (i + 1) % m * n + j, (i + 1) % m * n + (j + 1) % n
-    faces = [np.stack([here, right, diagonal], -1).reshape(-1, 3), np.stack([here, diagonal, above], -1).reshape(-1, 3)]
-    positions = rings.reshape(-1, 3)
-    if not closed:
-        positions = np.vstack([positions, rings[0].mean(0), rings[-1].mean(0)])
-        k, following, last = np.arange(n), (np.arange(n) + 1) % n, (m - 1) * n
-        faces += [
-            np.stack([following, k, np.full(n, m * n)], -1),
-            np.stack([last + k, last + following, np.full(n, m * n + 1)], -1),
-        ]
-    return from_mesh(positions, np.vstack(faces))
+    """The solid under a skin over rings (rings.skin)."""
+    return from_mesh(*skin(rings, closed))
 
 
 def tube(path, radius, sides=12, closed=False):
