@@ -178,7 +178,7 @@ TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
                 HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
     EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
     EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("does not include 0"));
     EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
     BeamLaw nowhere;
     nowhere.file = folder / "nowhere.csv";
