@@ -137,7 +137,7 @@ TEST(EglContextTest, ThatItDrawsInSoftwareIsToldWhereNobodyAskedForIt) {
     EXPECT_EQ(EglContext("software").fallback(), "");
     const DeviceVariable variable("auto");
     const EglContext context;
-    const std::string expected = context.isSoftware() ? "drawn in software by " + context.renderer() : "";
+    const std::string expected = context.isSoftware() ? "rasterised in software by " + context.renderer() : "";
     EXPECT_THAT(context.fallback(), HasSubstr(expected));
     EXPECT_EQ(context.fallback().empty(), expected.empty());
 }

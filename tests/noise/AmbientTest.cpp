@@ -43,7 +43,7 @@ TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
     EXPECT_EQ(diagnosticsOf(both).size(), 3u);
     half.bandwidth_khz.reset();
     ASSERT_EQ(diagnosticsOf(half).size(), 1u);
-    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz; without level_db it must");
+    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz, which is needed without level_db");
 }
 
 }  // namespace

@@ -188,11 +188,11 @@ TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
     config.brightness.emplace();
     config.tvg.emplace();
     EXPECT_THAT(diagnosticsOf(config),
-                testing::ElementsAre("brightness: is given with tvg; it makes up for spreading itself",
+                testing::ElementsAre("brightness: is given with tvg; it compensates for spreading itself",
                                      "brightness: is given with another output; it scales output: intensity"));
     config = {};
     config.code.emplace();
-    EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, and used by output: code alone"));
+    EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, but only output: code uses it"));
 }
 
 TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {
