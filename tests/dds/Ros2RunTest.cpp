@@ -160,7 +160,7 @@ TEST_F(Ros2RunTest, LockstepDoesNotReadPoses) {
     const Outcome outcome =
         check(replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", test::sourceFile("deploy/scenes/")));
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages come on the wall clock's time"));
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages arrive by the wall clock"));
 }
 
 TEST_F(Ros2RunTest, ADomainThatCannotBeJoinedIsOneError) {

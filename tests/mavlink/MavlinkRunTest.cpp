@@ -116,5 +116,5 @@ TEST_F(MavlinkRunTest, LockstepDoesNotReadPoses) {
     writeFile(folder / "x.yml", text);
     const Outcome outcome = callInsonify(folder, {"check", "x.yml"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.vehicles.properties: messages come on the wall clock's time"));
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.vehicles.properties: messages arrive by the wall clock"));
 }

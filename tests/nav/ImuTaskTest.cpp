@@ -47,7 +47,7 @@ TEST_F(ImuTaskTest, SaysThatPosesAreTooFarApart) {
     task_.setEnvironment(environment);
     startWith({});
     for (const double time : {1, 3, 5, 7}) EXPECT_TRUE(answerTo(poseAt(time, {})).time.isNull());
-    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart tell no motion")));
+    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart give no motion")));
 }
 
 TEST_F(ImuTaskTest, RocksSamplesSayTheSame) {

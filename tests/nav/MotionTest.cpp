@@ -37,7 +37,7 @@ TEST(MotionTest, AnEvenTurnAboutAnyAxisIsExact) {
     EXPECT_LT(glm::distance(motionAt(path, 3, 0.1).angular_rate, rate), 1e-12);
 }
 
-TEST(MotionTest, ErrorsAreOfTheSecondOrderOfTheTimeBetweenPoses) {
+TEST(MotionTest, ErrorsAreOfSecondOrderInTheTimeBetweenPoses) {
     const double radius = 4, rate = 0.7, speed = radius * rate;
     const Path path = circle(radius, rate);
     for (const double step : {0.2, 0.1, 0.05, 0.01}) {
@@ -52,7 +52,7 @@ TEST(MotionTest, ErrorsAreOfTheSecondOrderOfTheTimeBetweenPoses) {
     }
 }
 
-TEST(MotionTest, ALeverArmFeelsTheTurnOfTheBody) {
+TEST(MotionTest, ALeverArmMovesWithTheRotationOfTheBody) {
     // The body turns ever faster about a slanted axis: alpha x r + omega x (omega x r), in the world.
     const glm::dvec3 axis = glm::normalize(glm::dvec3(1, 2, 3));
     const types::Mount mount{.position = {0.5, -0.25, 0.75}, .yaw_deg = 40};
@@ -98,7 +98,7 @@ TEST(MotionTest, PosesTooFarApartAreToldOnceAndAgainAfterTenInTime) {
         return tracker.takeWarning();
     };
     EXPECT_EQ(warningAfter(0), "") << "nothing lies before the first";
-    EXPECT_THAT(warningAfter(2), testing::StartsWith("poses 2 s apart tell no motion"));
+    EXPECT_THAT(warningAfter(2), testing::StartsWith("poses 2 s apart give no motion"));
     EXPECT_EQ(warningAfter(2), "");
     for (int i = 0; i < 10; ++i) EXPECT_EQ(warningAfter(1), "");
     EXPECT_THAT(warningAfter(-100), testing::StartsWith("poses 100 s apart"));
