@@ -109,7 +109,7 @@ TEST_F(FortressTest, AServiceThatFailsSaysSo) {
     ASSERT_TRUE(world.serve("/world/sea/scene/info", [](ignition::msgs::Scene&) { return false; }));
     const Reply reply = request(TransportOptions::fromEnvironment(""), {"/world/sea/scene/info", "Empty", "Scene"}, "",
                                 std::chrono::seconds(30));
-    EXPECT_EQ(reply.failure, "answers that it has failed");
+    EXPECT_EQ(reply.failure, "reports a failure");
 }
 
 TEST_F(FortressTest, TheDefaultPartitionIsThatOfTheLibrary) {

@@ -107,11 +107,11 @@ TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
         return callInsonify(folder, {"run", deployment, "--out", "out", "--set", set}).err;
     };
     EXPECT_THAT(diagnosed("world.bodies=[{port: red}, {port: blue, entity: blue}]"),
-                HasSubstr("bodies[0]: must have an entity or an odometry, one of both"));
+                HasSubstr("bodies[0]: must have either an entity or an odometry"));
     EXPECT_THAT(diagnosed("world.bodies=[{port: red, entity: red}, {port: red, entity: blue}]"),
                 HasSubstr("bodies[1].port: is red a second time"));
     EXPECT_THAT(diagnosed("world.pose_topic=/poses"),
-                HasSubstr("world: must be given for the poses of entities, or pose_topic, one of both"));
+                HasSubstr("world: must be given for the poses of entities, or pose_topic, but not both"));
     EXPECT_THAT(diagnosed("world.world_frame=ecef"), HasSubstr("world_frame: is ecef"));
     EXPECT_THAT(diagnosed("scene.file=a.glb"), HasSubstr("gazebo: is given, and file as well"));
 }

@@ -124,7 +124,7 @@ TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
     follow("rov");
     EXPECT_TRUE(comesTrue([&] {
         task.update();
-        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; heard are ") &&
+        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; available are ") &&
                isWarned("/world/harbour/pose/info in partition " + partition);
     })) << warnings;
 }
@@ -148,9 +148,8 @@ TEST_F(HarmonicTest, ModelsThatComeAndGoAreReported) {
         });
     };
     EXPECT_TRUE(isSaid({"rov", "link", "crate", "barrel"},
-                       "world sea has more by now than the scene, which does not show it: barrel; start again"));
-    EXPECT_TRUE(isSaid({"rov", "link"}, "world sea has less by now than the scene, which still shows it: crate"))
-        << warnings;
+                       "world sea has entities that the scene does not have: barrel; restart"));
+    EXPECT_TRUE(isSaid({"rov", "link"}, "world sea has lost entities that the scene still has: crate")) << warnings;
 }
 
 TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
@@ -189,7 +188,7 @@ TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
 TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
     {
         HarmonicWorld gazebo({.succeeds = false});
-        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info answers that it has failed"));
+        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info reports a failure"));
     }
     {
         HarmonicWorld gazebo({.answers = false});
@@ -198,7 +197,7 @@ TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
     {
         HarmonicWorld gazebo({.reply_type = "gz.msgs.StringMsg"});
         EXPECT_THAT(diagnosticOf(world("sea", 2)),
-                    HasSubstr("takes gz.msgs.Empty and answers gz.msgs.StringMsg; Empty is asked for, and Scene"));
+                    HasSubstr("takes gz.msgs.Empty and returns gz.msgs.StringMsg, not Empty and Scene"));
     }
     HarmonicWorld gazebo({.scene = "no message"});
     EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));

@@ -143,7 +143,7 @@ TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
         task.update();
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const auto& line) {
-            return line.find("dropped: /world/sea/pose/info: the stamp lies before") != std::string::npos;
+            return line.find("dropped: /world/sea/pose/info: the stamp is before") != std::string::npos;
         });
     };
     EXPECT_TRUE(comesTrue(is_told));

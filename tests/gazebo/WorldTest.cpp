@@ -149,12 +149,12 @@ TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
     addBox(bad, "empty").mutable_geometry()->set_type(wire::Geometry::EMPTY);
     EXPECT_THAT(
         noticesOf(message),
-        ElementsAre("model lost is left out: its pose is not finite, or its orientation has no length",
-                    "model unturned is left out: its pose is not finite, or its orientation has no length",
+        ElementsAre("model lost is omitted: its pose is not finite, or its orientation has no length",
+                    "model unturned is omitted: its pose is not finite, or its orientation has no length",
                     "visual bad::negative::visual is left out: its size is -1; must not be negative",
                     "visual bad::nan::visual is left out: its size is nan; must not be negative",
                     "visual bad::moved::visual is left out: its pose is not finite, or its orientation has no length",
-                    "link bad::capsule is there twice; the second is bad::capsule_2 here",
+                    "link bad::capsule exists twice; the second is named bad::capsule_2 here",
                     "visual bad::none::visual is left out: it has no geometry",
                     "visual bad::text::visual is left out: its geometry is not one of those that are drawn",
                     "visual bad::mesh::visual is left out: its scale is not finite",
@@ -172,8 +172,8 @@ TEST_F(WorldTest, NamesThatAreThereTwiceAreReported) {
     for (int i = 0; i < 2; ++i) addBox(addModel(message, "buoy"), "link");
     const World world = worldOf(message);
     EXPECT_THAT(world.scene.geometry->notices,
-                ElementsAre("model buoy is there twice; the second is buoy_2 here",
-                            "link buoy::link is there twice; the second is buoy::link_2 here"));
+                ElementsAre("model buoy exists twice; the second is named buoy_2 here",
+                            "link buoy::link exists twice; the second is named buoy::link_2 here"));
     EXPECT_GE(scene::findNode(world.scene, "buoy_2"), 0);
 }
 

@@ -108,7 +108,7 @@ TEST_F(BodyTest, AHalfThatStaysAwayIsToldOnceThatHasGoneOnForAWhile) {
         EXPECT_EQ(taken.diagnostic.empty(), i < 20) << i;
         told = taken.diagnostic;
     }
-    EXPECT_EQ(told, "ATTITUDE_QUATERNION comes without LOCAL_POSITION_NED: the vehicle is to stream both");
+    EXPECT_EQ(told, "ATTITUDE_QUATERNION arrives without LOCAL_POSITION_NED: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(53)), testing::ElementsAre(LocalPositionNed::kind.message));
 }
 
@@ -116,7 +116,7 @@ TEST_F(BodyTest, PositionsWithoutAnAttitudeAreToldTheSame) {
     std::string told;
     for (int i = 0; i < 50; ++i)
         told = take(LocalPositionNed{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i).diagnostic;
-    EXPECT_EQ(told, "LOCAL_POSITION_NED comes without ATTITUDE_QUATERNION: the vehicle is to stream both");
+    EXPECT_EQ(told, "LOCAL_POSITION_NED arrives without ATTITUDE_QUATERNION: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(55)), testing::ElementsAre(AttitudeQuaternion::kind.message));
 }
 
@@ -182,7 +182,7 @@ TEST_F(BodyTest, OfTwoSendersOneCountsUntilItIsSilent) {
         const auto other =
             take(AttitudeQuaternion{.time_boot_ms = 1010}, 50.5, static_cast<uint8_t>(component), uint64_t(way));
         EXPECT_FALSE(other.pose);
-        EXPECT_EQ(other.diagnostic, "of another sender while the first goes on");
+        EXPECT_EQ(other.diagnostic, "from another sender while the first is still sending");
     }
     take(LocalPositionNed{.time_boot_ms = 77, .x = 2}, 51.5, 2);
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 77}, 51.5, 2).pose.value().position, {2, 0, 0});

@@ -104,7 +104,7 @@ TEST(FrameTest, NoByteOfAFrameCanBeWrong) {
         }
     Bytes wrong = attitude_2;
     wrong.back() ^= 1;
-    EXPECT_EQ(read(wrong).diagnostic, "a frame whose sum is wrong");
+    EXPECT_EQ(read(wrong).diagnostic, "a frame with a wrong checksum");
 }
 
 TEST(FrameTest, AFrameBehindDamageAndNoiseIsFound) {
@@ -122,7 +122,7 @@ TEST(FrameTest, AFrameOfVersionOneHasTheLengthOfItsMessage) {
         frame.payload.resize(static_cast<size_t>(static_cast<int>(frame.payload.size()) + change));
         const Datagram datagram = read(frame.bytes(AttitudeQuaternion::kind.crc_extra));
         EXPECT_THAT(datagram.frames, IsEmpty());
-        EXPECT_EQ(datagram.diagnostic, "a frame of another length than its message has");
+        EXPECT_EQ(datagram.diagnostic, "a frame with a wrong length for its message");
     }
 }
 
@@ -137,7 +137,7 @@ TEST(FrameTest, FlagsThatMustBeUnderstoodAndAreNotMakeAFrameUnreadable) {
     strange[2] = 2;
     const Datagram datagram = read(joined({strange, position_2}));
     EXPECT_THAT(datagram.frames, SizeIs(1));
-    EXPECT_EQ(datagram.diagnostic, "a frame with flags that are not known");
+    EXPECT_EQ(datagram.diagnostic, "a frame with unknown flags");
 }
 
 }  // namespace

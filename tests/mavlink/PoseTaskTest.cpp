@@ -82,7 +82,7 @@ TEST_F(PoseTaskTest, DamageIsToldAndWhatLiesBetweenIsRead) {
     startWith();
     const Vehicle vehicle(task.port(), "damaged");
     expectPoses(25);
-    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame whose sum is wrong")));
+    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame with a wrong checksum")));
     EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame that is cut off")));
 }
 
@@ -92,8 +92,7 @@ TEST_F(PoseTaskTest, MessagesOfAnotherSystemAreToldWithItsNumber) {
     EXPECT_TRUE(comesTrue([&] {
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const std::string& line) {
-            return line.find("of others passed over: ATTITUDE_QUATERNION of system 9, component 1") !=
-                   std::string::npos;
+            return line.find("of others ignored: ATTITUDE_QUATERNION of system 9, component 1") != std::string::npos;
         });
     }));
     types::Pose pose;
