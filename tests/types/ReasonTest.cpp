@@ -23,8 +23,8 @@ std::string reasonFor(Act act) {
 }
 
 TEST(ReasonTest, WhatTheStandardLibraryThrowsIsToldInOurWords) {
-    const std::string bounds = "a number, a count or an index in it is out of its bounds";
-    const std::string memory = "there is not memory enough for it";
+    const std::string bounds = "a number, a count or an index in it is out of bounds";
+    const std::string memory = "out of memory";
     EXPECT_EQ(reasonFor([] { return std::stoi("x"); }), bounds);
     EXPECT_EQ(reasonFor([] { return std::stoull("99999999999999999999999"); }), bounds);
     EXPECT_EQ(reasonFor([] { return std::stod("1e999"); }), bounds);
