@@ -14,7 +14,7 @@ constexpr double rounding = 1e-9;  ///< [rad]
 double normalised(Angle bearing) { return std::abs(bearing.rad) <= pi ? bearing.rad : Angle::fromRad(bearing.rad).rad; }
 
 /** Returns the place behind the widest gap of ascending bearings; 0, behind the gap astern, unless another gap is
- * clearly wider. */
+ *  clearly wider. */
 size_t beginOf(const std::vector<double>& ascending) {
     size_t begin = 0;
     double widest = ascending.front() + 2 * pi - ascending.back() + 1e-6;

@@ -33,7 +33,7 @@ struct BeamArc {
     /** Returns whether the beam at a place in `beams` joins the next beam to port. */
     bool joins(size_t place) const;
     /** Returns the place in `beams` at a bearing; none when there is no beam. Between the centres of two joined beams
-     * it is a fraction, which rounds to the nearest beam. */
+     *  it is a fraction, which rounds to the nearest beam. */
     std::optional<double> placeAt(double bearing) const;
     /** Returns the index into the ping's beams of the beam whose centre is nearest to a bearing; none when there is no
      *  beam. */

@@ -24,7 +24,7 @@ using CsvJudge =
     std::function<std::vector<CsvDiagnostic>(const std::vector<double>& row, const std::vector<double>* before)>;
 
 /** Returns the rows of a CSV file of numbers, in order. The first line that is not blank has the names of all columns.
- * A byte order mark, carriage returns, spaces around numbers and blank lines are ignored.
+ *  A byte order mark, carriage returns, spaces around numbers and blank lines are ignored.
  *  @throws ConfigError with file, line and column of up to a hundred errors: a wrong header, missing or superfluous
  *  fields, fields that are no numbers from min to max, errors from `judge`, fewer than `least` rows */
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,

@@ -54,7 +54,7 @@ struct TaskInterface {
 };
 
 /** A task's access to its deployment, through Environment::deployment. May be used on any thread, but not in the cycle
- * of a task, because a call waits for the called task. Valid from configure to cleanup. */
+ *  of a task, because a call waits for the called task. Valid from configure to cleanup. */
 class DeploymentControl {
 public:
     virtual ~DeploymentControl() = default;

@@ -34,7 +34,7 @@ struct DepthMap {
     std::vector<float> remissions;
 
     /** Returns the unit vector of a cell of a polar map with one angle for each row and column, x ahead, y to port, z
-     * up. */
+     *  up. */
     glm::dvec3 direction(size_t row, size_t column) const {
         const double v = vertical_interval[row], h = horizontal_interval[column];
         return {std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), -std::sin(v)};

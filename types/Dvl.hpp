@@ -10,10 +10,10 @@
 namespace insonify::types {
 
 /** The measurement of one ping of a Doppler velocity log over the bottom. Rock has no type for it, only the velocity as
- * a RigidBodyState; the fields are those of marine_acoustic_msgs/Dvl.
+ *  a RigidBodyState; the fields are those of marine_acoustic_msgs/Dvl.
  *
  *  The axes are those of the instrument: x forward, y left, z up; its beams look down. NaN means unknown, for lost
- * beams and without bottom lock. Lists are empty or have an element for each beam, at most four. */
+ *  beams and without bottom lock. Lists are empty or have an element for each beam, at most four. */
 struct Dvl {
     static constexpr const char* type_name = "/insonify/Dvl";
     static constexpr bool shared = true;

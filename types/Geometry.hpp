@@ -59,8 +59,8 @@ struct NormalMap {
     bool repeat_u = true, repeat_v = true;  ///< Else clamped to the edge.
 };
 
-/** A picture on a surface with a factor of the echo, a material, or both for each texel. Rows are from top to bottom.
- */
+/** A picture on a surface with a factor of the echo, a material, or both for each texel. Rows are from top to
+ *  bottom. */
 struct SurfaceMap {
     static constexpr uint8_t no_class = 255;  ///< The texel has the surface's own material.
 
@@ -122,7 +122,7 @@ struct Object {
     int mesh = 0;                     ///< Index into Geometry::meshes.
     glm::dmat4 world_from_object{1};  ///< May scale and mirror [m].
     /** Whether the object may appear or disappear between geometries. A renderer keeps the data of its mesh separate,
-     * so that the data of other objects need not be made again. */
+     *  so that the data of other objects need not be made again. */
     bool transient = false;
 };
 

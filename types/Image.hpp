@@ -50,8 +50,8 @@ struct Image {
     ImageMode frame_mode = ImageMode::Undefined;
     ImageStatus frame_status = ImageStatus::Empty;
 
-    /** Returns whether `image` contains `size` pixels of pixel_size bytes, in rows of row_size; false for JPEG and PNG.
-     */
+    /** Returns whether `image` contains `size` pixels of pixel_size bytes, in rows of row_size; false for JPEG and
+     *  PNG. */
     bool holdsPixels() const {
         return row_size >= uint64_t{size.width} * pixel_size && image.size() >= uint64_t{size.height} * row_size;
     }

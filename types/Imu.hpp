@@ -8,7 +8,7 @@
 namespace insonify::types {
 
 /** The measurement of an inertial unit, field for field Rock's base::samples::IMUSensors. The axes are those of the
- * unit: x forward, y left, z up. NaN means unknown. */
+ *  unit: x forward, y left, z up. NaN means unknown. */
 struct ImuSensors {
     static constexpr const char* type_name = "/base/samples/IMUSensors";
 
@@ -27,7 +27,7 @@ struct ImuSensors {
 };
 
 /** Attitude and measurement of an inertial unit in one sample. Rock has two types for it (IMUSensors and
- * RigidBodyState); the fields are those of ROS's sensor_msgs/Imu.
+ *  RigidBodyState); the fields are those of ROS's sensor_msgs/Imu.
  *
  *  Axes as in types::Pose: unit x forward, y left, z up; world x north, y west, z up. NaN means unknown. */
 struct Imu {

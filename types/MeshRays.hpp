@@ -13,8 +13,8 @@
 
 namespace insonify::types {
 
-/** The box along the world's axes that contains a box along an object's axes, enlarged by the rounding of floats [m].
- */
+/** The box along the world's axes that contains a box along an object's axes, enlarged by the rounding of floats
+ *  [m]. */
 struct WorldBox {
     glm::dvec3 centre, half;
 
@@ -63,7 +63,7 @@ inline std::optional<TriangleMet> meetTriangle(const glm::dvec3& way, const glm:
 }
 
 /** Calls `use` for the clusters of a mesh for which `mayMeet` accepts the box and the boxes of all nodes above. Ends
- * when `use` returns true, and returns that. */
+ *  when `use` returns true, and returns that. */
 template <class MayMeet, class Use>
 bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
     const auto among = [&](std::span<const Cluster> clusters) {

@@ -34,7 +34,7 @@ struct Plan {
     static void describe(Self& self, V& visit) {
         visit(Field{"features", "", "compiled into what renders"}, self.features);
         visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
-        visit(Field{"omitted", "", "what is left out, and why"}, self.omitted);
+        visit(Field{"omitted", "", "what is omitted, and why"}, self.omitted);
         visit(Field{"notices", "", "warnings and choices"}, self.notices);
         visit(Field{"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
         visit(Field{"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);

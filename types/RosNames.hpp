@@ -31,7 +31,7 @@ struct RosNames {
     bool setFramePrefix(std::string text);
 
     /** Returns the name of a topic for the node of that name. A name without a leading slash gets the namespace; then
-     * the first matching entry of `remaps` applies. */
+     *  the first matching entry of `remaps` applies. */
     std::string topic(const std::string& name, const std::string& node = "") const;
     /** Returns the name of a node, in the namespace unless it has a leading slash. */
     std::string node(const std::string& name) const;

@@ -207,8 +207,8 @@ concept Tabular = requires(const T& sample) {
     Columns<T>::forEach(sample, AnyColumns{});
 };
 
-/** A sample of arrays of one shape. It has `shape()`, and `forEachArray`, which calls
- *  `visit(name, numbers, std::type_identity<Number>{})` for each array; Number is the type of its numbers in files. */
+/** A sample of arrays of one shape. It has `shape()`, and `forEachArray`, which calls `visit(name, numbers,
+ *  std::type_identity<Number>{})` for each array; Number is the type of its numbers in files. */
 struct AnyArray {
     void operator()(const char*, const auto&, auto) const {}
 };

@@ -16,8 +16,8 @@ constexpr Time elapsed(Time since, Time now) {
  *
  *  Our time of a stamp is the stamp plus the minimum of the recent delays from stamp to arrival. It therefore excludes
  *  extra delays of single messages, and is never after the arrival. When the sender's clock is slower than ours, as
- * that of a simulation may be, our time lags by more than `max_lag` for at most `max_doubt`. Our times decrease only
- * when our clock does. */
+ *  that of a simulation may be, our time lags by more than `max_lag` for at most `max_doubt`. Our times decrease only
+ *  when our clock does. */
 class SenderClock {
 public:
     static constexpr Time max_lag{100'000};

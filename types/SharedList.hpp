@@ -10,7 +10,7 @@
 namespace insonify::types {
 
 /** A list whose copies share their items. Before an item is changed through one list, it is copied if another owner has
- * it as well. Two lists with the same pointer at an index therefore have the same item. */
+ *  it as well. Two lists with the same pointer at an index therefore have the same item. */
 template <class T>
 class SharedList {
     template <class List, class Item>

@@ -10,8 +10,8 @@ namespace insonify::types {
 
 /** One ping, field for field Rock's base::samples::Sonar.
  *
- *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges
- *  [k, k + 1) * bin_duration * speed_of_sound: bin_duration is one-way time.
+ *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges [k, k + 1) *
+ *  bin_duration * speed_of_sound: bin_duration is one-way time.
  *
  *  The functions are those of Rock's type, with the corrections that are noted at each function. */
 struct Sonar {
@@ -30,8 +30,8 @@ struct Sonar {
     uint32_t beam_count = 0;
     std::vector<float> bins;
 
-    /** Returns whether the lists match the counts: beams * bins bins, a bearing per beam, a timestamp per beam or none.
-     */
+    /** Returns whether the lists match the counts: beams * bins bins, a bearing per beam, a timestamp per beam or
+     *  none. */
     bool wellShaped() const;
     /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const {
@@ -39,10 +39,10 @@ struct Sonar {
     }
     /** Throws std::logic_error with every diagnostic: lists that do not match the counts; bins without a duration or a
      *  speed of sound above 0; bearings outside (-pi, pi], except NaN, which means unknown. Rock's validate reports
-     * only the first length, multiplies the counts in 32 bits, and checks no values. */
+     *  only the first length, multiplies the counts in 32 bits, and checks no values. */
     void validate() const;
     /** Returns why the bins cannot be linear intensities; null when they can. They do not match the counts, or are
-     * below 0, as decibels are. */
+     *  below 0, as decibels are. */
     const char* notIntensities() const;
     /** Copies everything of `other` except the values of bins, and resizes `bins`. Allocates nothing when this ping had
      *  the same shape before. */
@@ -50,11 +50,11 @@ struct Sonar {
     /** Resizes; bins are the first argument, as in Rock. New values are NaN (time stamps: null); old values stay with
      *  their beam and bin. Rock's resize leaves values at their place in memory, which is in other beams. */
     void resize(uint32_t bins_per_beam, uint32_t beams, bool per_beam_timestamps = false);
-    /** Sets the bearing of beam k to start + k * interval, normalised. Rock accumulates the interval and its rounding.
-     */
+    /** Sets the bearing of beam k to start + k * interval, normalised. Rock accumulates the interval and its
+     *  rounding. */
     void setRegularBearings(Angle start, Angle interval);
     /** Returns the begin of a beam's acquisition: its own stamp, or `time`. Throws std::out_of_range where Rock reads
-     * out of bounds. */
+     *  out of bounds. */
     Time beamStart(size_t beam) const;
     /** Returns the slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }

@@ -11,8 +11,8 @@ namespace insonify::types {
 
 /** The signals of the elements of a straight array for one ping, as complex baseband after the pulse's matched filter.
  *  They do not contain point targets, mirrors and ring-down. The squared magnitude is the intensity relative to the
- *  source; the phase rotates by exp(i 4 pi r / wavelength) along the range. Sample i of element m is at index
- *  [m * sample_count + i] of `in_phase` and `quadrature`. */
+ *  source; the phase rotates by exp(i 4 pi r / wavelength) along the range. Sample i of element m is at index [m *
+ *  sample_count + i] of `in_phase` and `quadrature`. */
 struct SonarElements {
     static constexpr const char* type_name = "/insonify/SonarElements";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.

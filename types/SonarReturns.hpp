@@ -27,7 +27,7 @@ struct SonarReturns {
     /** Fills the returns from a ping and its truth, which have the same shape. The first return is the nearest bin that
      *  shows an object. The strongest return is the bin with the max echo; if that is from a sidelobe or the water, its
      *  elevation is NaN. Ranges are those of the bin's middle; levels are 10 log10 of the bin. Allocates nothing when
-     * the number of beams has not changed. */
+     *  the number of beams has not changed. */
     void take(const Sonar& ping, const SonarTruth& truth);
 
     std::vector<size_t> shape() const { return {bearings.size()}; }

@@ -12,8 +12,8 @@
 namespace insonify::types {
 
 /** The truth of the bins of a ping: the object that returned the echo of each bin, its elevation, and the grazing
- * angle. If most of a bin's energy arrived by a mirror, these are the object seen in the mirror, and the direction of
- * arrival.
+ *  angle. If most of a bin's energy arrived by a mirror, these are the object seen in the mirror, and the direction of
+ *  arrival.
  *
  *  Beam-first as the ping's bins: the values of bin k of beam b are at [b * bin_count + k]. A bin without an echo has
  *  object -1, share 0, no hits, and NaN for its angles. */
@@ -44,8 +44,8 @@ struct SonarTruth {
     std::vector<size_t> shape() const { return {beam_count, bin_count}; }
     /** Returns whether most of a bin's energy arrived by the water surface or another mirror. */
     bool isByMirror(size_t bin) const { return path[bin] != 0 && path[bin] < through_wall; }
-    /** Copies the grid of a ping, and resizes the lists to its bins. Allocates nothing when the shape has not changed.
-     */
+    /** Copies the grid of a ping, and resizes the lists to its bins. Allocates nothing when the shape has not
+     *  changed. */
     void takeGrid(const Sonar& ping);
     /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const;

@@ -18,8 +18,8 @@ public:
     ThrottledWarning(std::string noun, std::string participle)
         : noun_(std::move(noun)), participle_(std::move(participle)) {}
 
-    /** `detail` is printed with the last event. It does not count as a separate reason, because a sender may choose it.
-     */
+    /** `detail` is printed with the last event. It does not count as a separate reason, because a sender may choose
+     *  it. */
     void add(const std::string& reason, const std::string& detail = "", uint64_t count = 1);
     void reset();
 

@@ -3,9 +3,9 @@
 
 namespace insonify::acoustics {
 
-/** Returns the spectrum level of the noise of the sea [dB re 1 uPa^2/Hz] for a wind speed [m/s] and shipping [0..1].
- *  It sums turbulence, ships, wind on the surface, and the thermal noise of Mellen, which dominates above about
- *  150 kHz. R. Coates, Underwater acoustic systems, 1990, after Wenz 1962. */
+/** Returns the spectrum level of the noise of the sea [dB re 1 uPa^2/Hz] for a wind speed [m/s] and shipping [0..1]. It
+ *  sums turbulence, ships, wind on the surface, and the thermal noise of Mellen, which dominates above about 150 kHz.
+ *  R. Coates, Underwater acoustic systems, 1990, after Wenz 1962. */
 inline double coatesSpectrumDb(double frequency_khz, double wind_m_s, double shipping) {
     const double f = std::log10(frequency_khz);
     const double turbulence = 17 - 30 * f;

@@ -25,8 +25,8 @@ struct Slopes {
  *  m^2], mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
 double objectSection(double lambert_db, double reflection, double mean_square_slope, double cos_incidence);
 
-/** Returns the backscatter of a flat rough solid at a grazing angle [rad]: its lobe plus its diffuse scattering
- *  [m^2 at 1 m per m^2]. ACOUSTICS.md 3.11. */
+/** Returns the backscatter of a flat rough solid at a grazing angle [rad]: its lobe plus its diffuse scattering [m^2 at
+ *  1 m per m^2]. ACOUSTICS.md 3.11. */
 double solidSection(const RoughSurface& surface, double grazing);
 
 /** A table of a backscatter law in the form that an echo needs: sigma_b / cos(theta) over cos(theta), 256 entries with

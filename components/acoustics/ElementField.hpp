@@ -9,8 +9,8 @@
 namespace insonify::acoustics {
 
 /** Returns the weights of adjacent equal elements whose far field is `taper`. They are its Fourier series with the far
- *  field at whole u as coefficients (Woodward 1946), up to what the elements resolve and to directions that exist.
- *  They sum up to 1. `aperture`: length of the array [wavelengths]. */
+ *  field at whole u as coefficients (Woodward 1946), up to what the elements resolve and to directions that exist. They
+ *  sum up to 1. `aperture`: length of the array [wavelengths]. */
 std::vector<double> elementWeights(size_t count, double aperture, const Taper& taper);
 
 /** Returns the place of an element's middle, from -1/2 to 1/2 of the array's length [1]. */

@@ -22,8 +22,8 @@ const double strand_rms = std::sqrt(2.0 / 3 - std::pow(std::numbers::pi / 4, 2))
 constexpr double strand_length = 0.25;                    ///< Correlation length over diameter [1].
 constexpr double rope_strand = 0.010, net_twine = 0.002;  ///< Diameters [m].
 
-/** Returns the rms height of rock for wavelengths up to `longest` [m], by the spectrum w_2 K^-gamma of APL-UW TR 9407.
- */
+/** Returns the rms height of rock for wavelengths up to `longest` [m], by the spectrum w_2 K^-gamma of APL-UW TR
+ *  9407. */
 double rockRms(double longest) {
     const Seabed rock = seabedNamed("rock").value();
     const double lowest = 2 * std::numbers::pi / (100 * longest), over = rock.roughness_slope - 2;  // [rad/cm], [1]
@@ -32,8 +32,8 @@ double rockRms(double longest) {
 constexpr double lengthOf(double longest) { return longest / (2 * std::numbers::pi); }
 constexpr double longest_of_bed = 1, longest_of_block = 0.1;  ///< [m]
 
-/** Returns the speed of sound [m/s] of a mixture of water and calcite of a density [kg/m^3], by Wood's equation (1955).
- */
+/** Returns the speed of sound [m/s] of a mixture of water and calcite of a density [kg/m^3], by Wood's equation
+ *  (1955). */
 double mixtureSpeed(double density) {
     constexpr double water = 1025, water_speed = 1500, calcite = 2710, calcite_modulus = 70e9;
     const double solid = (density - water) / (calcite - water);

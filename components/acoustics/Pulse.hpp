@@ -22,8 +22,8 @@ struct RingDownConfig {
     }
     void check(types::Diagnostics& diagnostics) const;
 
-    /** Returns the mean intensity between two slant ranges [m], relative to the source at 1 m [1]. ACOUSTICS.md 5.15.
-     */
+    /** Returns the mean intensity between two slant ranges [m], relative to the source at 1 m [1]. ACOUSTICS.md
+     *  5.15. */
     double mean(double low, double high) const;
 };
 
@@ -69,8 +69,8 @@ public:
     double cellLength() const;
     /** Returns the highest sidelobe of the matched filter [dB]; a tone has none. */
     std::optional<double> peakSidelobeDb() const;
-    /** Returns the distance [m] beyond which h stays below `floor_db` relative to its peak; the sign is ignored [dB].
-     */
+    /** Returns the distance [m] beyond which h stays below `floor_db` relative to its peak; the sign is ignored
+     *  [dB]. */
     double extent(double floor_db) const;
 
 private:

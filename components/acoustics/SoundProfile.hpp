@@ -8,7 +8,7 @@
 namespace insonify::acoustics {
 
 /** A profile of the speed of sound over depth, linear between the measured depths and constant beyond them. Rays are
- * arcs of circles in each layer of constant gradient. ACOUSTICS.md 2.6. */
+ *  arcs of circles in each layer of constant gradient. ACOUSTICS.md 2.6. */
 class SoundProfile {
 public:
     /** @param speeds speed of sound [m/s] over at least two ascending depths [m] */

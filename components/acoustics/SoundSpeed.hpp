@@ -6,12 +6,12 @@
 namespace insonify::acoustics {
 
 /** Returns the speed of sound in water [m/s] after Leroy, Robinson and Goldsmith (2008), accurate to 0.2 m/s: all
- * oceans, -1..30 degC, fresh water to 42 psu, down to 12,000 m. */
+ *  oceans, -1..30 degC, fresh water to 42 psu, down to 12,000 m. */
 double leroySpeed(const Water& water);
 /** Returns the speed [m/s] after Mackenzie (1981), accurate to 0.07 m/s: -2..30 degC, 25..40 psu, down to 8000 m. */
 double mackenzieSpeed(const Water& water);
-/** Returns the speed [m/s] after Medwin (1975): 0..35 degC, up to 45 psu, down to 1000 m. Accurate to 0.2 m/s near
- *  35 psu. */
+/** Returns the speed [m/s] after Medwin (1975): 0..35 degC, up to 45 psu, down to 1000 m. Accurate to 0.2 m/s near 35
+ *  psu. */
 double medwinSpeed(const Water& water);
 /** Returns the speed [m/s] after Coppens (1981), accurate to 0.1 m/s: 0..35 degC, up to 45 psu, down to 4000 m. */
 double coppensSpeed(const Water& water);

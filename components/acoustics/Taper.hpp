@@ -8,7 +8,7 @@ enum class Weighting { Uniform, Cosine, Hann, Hamming, Taylor, Dolph, Gaussian, 
 
 /** The far field of a weighted aperture, or the response of the matched filter of a weighted band. It is the Fourier
  *  transform of the weighting over u, 1 at 0. For a line of length L, u = L / wavelength sin(angle); for a disc L is
- * its diameter; for a band B, u is B times the delay. ACOUSTICS.md 5.8. */
+ *  its diameter; for a band B, u is B times the delay. ACOUSTICS.md 5.8. */
 class Taper {
 public:
     /** @param sidelobe_db depth of the sidelobes of Taylor and Dolph, either sign [dB]

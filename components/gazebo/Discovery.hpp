@@ -43,8 +43,8 @@ public:
     explicit Heard(std::string ending) : ending_(std::move(ending)) {}
     void add(const Publication& publication);
     void addVersion(uint32_t version);
-    /** Returns a text such as "available are /world/sea/pose/info in partition auv:me", or that nothing is available.
-     */
+    /** Returns a text such as "available are /world/sea/pose/info in partition auv:me", or that nothing is
+     *  available. */
     std::string text() const;
 
 private:
@@ -55,7 +55,7 @@ private:
 };
 
 /** Reads a datagram. Returns none if the datagram is damaged, of `own_process`, without use for a receiver, or of
- * another version. `heard` keeps other versions. */
+ *  another version. `heard` keeps other versions. */
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard);
 
 /** Returns a datagram that asks for publishers of a topic or a service. */

@@ -16,9 +16,9 @@ namespace insonify::gazebo {
  *
  *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every message that is
  *  newer than the previous message gives a pose, stamped by the time of the simulation converted to our clock. A
- * message wakes the task; with a period the task takes the messages that have arrived. A paused simulation gives no
- * poses; after a reset, poses begin anew. Entities that appear in the world later, or disappear, are a warning: the
- * scene remains as it was.
+ *  message wakes the task; with a period the task takes the messages that have arrived. A paused simulation gives no
+ *  poses; after a reset, poses begin anew. Entities that appear in the world later, or disappear, are a warning: the
+ *  scene remains as it was.
  *
  *  Dropped messages are counted. A warning reports the first, then at most one warning every ten seconds; a notice at
  *  the end reports the sum. Lockstep, whose time does not wait for messages, is an error. */

@@ -23,7 +23,7 @@ struct Topic {
 class Subscriber {
 public:
     /** Throws types::ConfigError when no network supports multicast, or when a topic is invalid for the transport;
-     * `path` is then the index of the topic, such as "1". */
+     *  `path` is then the index of the topic, such as "1". */
     Subscriber(const TransportOptions& options, std::vector<Topic> topics);
     ~Subscriber();
     Subscriber(const Subscriber&) = delete;

@@ -52,7 +52,7 @@ private:
 class Subscriptions {
 public:
     /** Throws types::ConfigError when a topic or the partition is invalid for the transport, or when no network
-     * supports multicast. */
+     *  supports multicast. */
     Subscriptions(const PoseConfig& config, Inbox& inbox);
 
     /** Returns the topics by the index Arrived::topic. */

@@ -19,7 +19,7 @@ struct TransportOptions {
 };
 
 /** Returns a topic or a service with its partition, as programs name it to each other: "@/partition@/topic". Returns
- * none when either is invalid for the transport: the topic is empty, or a name contains a blank, '@', '~' or "//". */
+ *  none when either is invalid for the transport: the topic is empty, or a name contains a blank, '@', '~' or "//". */
 std::optional<std::string> qualifiedName(const std::string& partition, const std::string& topic);
 
 /** The parts of a qualified name. The partition has no leading '/'. of() returns none for other texts. */

@@ -25,7 +25,7 @@ constexpr size_t max_parts = 100'000;  ///< Max number of models, links and visu
 glm::dvec3 pointOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /** Returns the matrix of a pose. A message omits the identity orientation. Not finite for an orientation without
- * length. */
+ *  length. */
 glm::dmat4 matrixOf(const wire::Pose& pose) {
     const wire::Quaternion& q = pose.orientation();
     const glm::dquat turn =

@@ -8,12 +8,12 @@
 
 namespace insonify::gazebo {
 
-/** Finds entities that have appeared in a world, or disappeared, since its scene was read, by the names in its poses.
- */
+/** Finds entities that have appeared in a world, or disappeared, since its scene was read, by the names in its
+ *  poses. */
 class WorldWatch {
 public:
     /** `taken` are the names in the scene; none: the scene is not from Gazebo, and the names of the first message
-     * count. */
+     *  count. */
     explicit WorldWatch(std::optional<std::set<std::string>> taken)
         : known_(taken.value_or(std::set<std::string>())), is_taken_(taken.has_value()) {}
 

@@ -29,7 +29,7 @@ bool hasEgl() {
 }
 
 /** Returns whether the kernel has a node of a graphics card, by the names of drivers for Linux. Without a node EGL,
- * which loads about twenty libraries, is not needed. */
+ *  which loads about twenty libraries, is not needed. */
 bool hasNode() {
     constexpr std::string_view drivers[] = {"dri", "nvidia", "nvhost", "nvmap", "dxg", "mali", "kgsl", "pvr"};
     std::error_code none;

@@ -104,7 +104,7 @@ private:
 
 /** A list in memory that the processor writes and the device reads, without a call in between. A command sees the items
  *  that were written before it was issued. Before overwriting items, wait for a fence behind the last command that
- * reads them. Write only: reading this memory may be slow for the processor. */
+ *  reads them. Write only: reading this memory may be slow for the processor. */
 template <class T>
 class UploadList {
     static_assert(std::is_trivially_copyable_v<T>);

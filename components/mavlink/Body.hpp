@@ -11,7 +11,7 @@
 namespace insonify::mavlink {
 
 /** Return poses in our axes (world x north, y west, z up; body x forward, y left, z up) from messages in MAVLink's
- * axes. Values that the message does not have are unknown; the time is 0. */
+ *  axes. Values that the message does not have are unknown; the time is 0. */
 types::Pose poseOf(const AttitudeQuaternion& attitude, const LocalPositionNed& position);
 types::Pose poseOf(const VisionPositionEstimate& estimate);
 
@@ -25,9 +25,9 @@ struct Sender {
 /** Makes poses from the messages of one body.
  *
  *  Every attitude gives a pose: with the newest position, extrapolated by its velocity to the time of the attitude,
- * which is at most `max_gap` away. Both times count from the same boot, by 32 bits of milliseconds that wrap around
- * after 49.7 days. Every vision estimate is a pose. SenderClock converts stamps to our clock. Only one sender counts at
- * a time, until it has been silent for `max_silence`. */
+ *  which is at most `max_gap` away. Both times count from the same boot, by 32 bits of milliseconds that wrap around
+ *  after 49.7 days. Every vision estimate is a pose. SenderClock converts stamps to our clock. Only one sender counts
+ *  at a time, until it has been silent for `max_silence`. */
 class Body {
 public:
     static constexpr types::Time max_gap{500'000};

@@ -48,8 +48,8 @@ struct Datagram {
  *  their length.
  *
  *  A frame with a wrong checksum is skipped by a byte, so that a frame within it is found. Signatures are ignored:
- * their key is a secret of the sender and its ground station. Unknown incompatibility flags make a frame unreadable, as
- *  MAVLink defines them. */
+ *  their key is a secret of the sender and its ground station. Unknown incompatibility flags make a frame unreadable,
+ *  as MAVLink defines them. */
 Datagram readDatagram(std::span<const uint8_t> bytes, std::span<const Kind> kinds);
 
 }  // namespace insonify::mavlink

@@ -22,12 +22,12 @@ struct Follows {
 /** Reads the poses of vehicles from MAVLink over UDP; for `schedule: realtime`.
  *
  *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every pose is
- * written, in order. A datagram wakes the task; with a period the task takes the datagrams that have arrived.
+ *  written, in order. A datagram wakes the task; with a period the task takes the datagrams that have arrived.
  *
  *  Dropped messages are counted. A warning reports the first, then at most one warning every ten seconds; a notice at
- * the end reports the sum. Messages of other systems are counted likewise, with warnings only until the first pose.
- * With `request` each sender of a frame gets a heartbeat, and a command for each missing message, once a second.
- * Lockstep, whose time does not wait for messages, is an error. */
+ *  the end reports the sum. Messages of other systems are counted likewise, with warnings only until the first pose.
+ *  With `request` each sender of a frame gets a heartbeat, and a command for each missing message, once a second.
+ *  Lockstep, whose time does not wait for messages, is an error. */
 class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies, Follows> {
 public:
     using ListenerTask::ListenerTask;

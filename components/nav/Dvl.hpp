@@ -20,8 +20,8 @@ struct VelocitySolution {
     glm::dmat3 covariance;  ///< [m^2/s^2]
 };
 /** Returns the least-squares fit of a velocity to the velocities along the beams; none with fewer than three good
- * beams. For four beams of equal deviation s, the variances are s^2 / (2 sin^2 slant) across the axis and s^2 / (4
- * cos^2 slant) along it. Source: Brokloff, "Matrix algorithm for Doppler sonar navigation", OCEANS 1994.
+ *  beams. For four beams of equal deviation s, the variances are s^2 / (2 sin^2 slant) across the axis and s^2 / (4
+ *  cos^2 slant) along it. Source: Brokloff, "Matrix algorithm for Doppler sonar navigation", OCEANS 1994.
  *  @param velocities along the beams, NaN for a lost beam [m/s]
  *  @param variances of the velocities [m^2/s^2] */
 std::optional<VelocitySolution> solveVelocity(const BeamDirections& beams,

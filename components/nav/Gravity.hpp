@@ -7,8 +7,8 @@
 namespace insonify::nav {
 
 /** Returns the normal gravity on the ellipsoid of WGS 84 at a latitude [deg], positive down [m/s^2]: Somigliana's
- * closed formula, NIMA TR 8350.2, 3rd edition, equation 4-1. Its growth with depth, about 2.2e-6 m/s^2 per metre, is
- * omitted. */
+ *  closed formula, NIMA TR 8350.2, 3rd edition, equation 4-1. Its growth with depth, about 2.2e-6 m/s^2 per metre, is
+ *  omitted. */
 inline double normalGravity(double latitude_deg) {
     constexpr double at_equator = 9.7803253359, k = 0.00193185265241, eccentricity_squared = 0.00669437999013;
     const double sine = std::sin(types::radians(latitude_deg));

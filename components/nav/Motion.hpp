@@ -27,8 +27,8 @@ struct Motion {
  *
  *  Position, and rotation as a rotation vector from the middle pose, are parabolas through the three poses. With poses
  *  `h` seconds apart this omits h^2/6 of the third derivative in velocity, h^2/6 of the second derivative of the rate
- * in the angular rate, and h^2/12 of the fourth derivative in acceleration: at 100 Hz, on a swell of 1 m and 6 s, 2e-5
- * m/s and 1e-5 m/s^2. The sensor's positions contain the effect of a lever arm. */
+ *  in the angular rate, and h^2/12 of the fourth derivative in acceleration: at 100 Hz, on a swell of 1 m and 6 s, 2e-5
+ *  m/s and 1e-5 m/s^2. The sensor's positions contain the effect of a lever arm. */
 class MotionTracker {
 public:
     static constexpr double longest_gap = 1;  ///< Max time between two poses of a motion [s].
@@ -37,12 +37,12 @@ public:
 
     /** Takes the next pose of the body, which must be usable (types::isUsable). Returns the motion at the pose before,
      *  once there are three poses and if it is finite. Ignores a stamp that is not after the last, unless it is more
-     * than `longest_gap` earlier. Such a stamp, and one more than `longest_gap` later, starts anew. A jump counts as
-     * motion, at any speed. */
+     *  than `longest_gap` earlier. Such a stamp, and one more than `longest_gap` later, starts anew. A jump counts as
+     *  motion, at any speed. */
     std::optional<Motion> take(const types::Pose& body);
 
     /** Returns the warning about a pause before the last pose; empty without one. It is repeated only after ten poses
-     * in time (types::RecurringDiagnostic). */
+     *  in time (types::RecurringDiagnostic). */
     std::string takeWarning();
 
 private:

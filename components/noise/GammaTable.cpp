@@ -19,8 +19,8 @@ struct Shares {
     double y(size_t i) const { return low + step * static_cast<double>(i); }
 };
 
-/** Returns y where shape (1 + y - exp(y)) = -tail. By Chernoff's bound less than exp(-tail) of the law is farther out.
- */
+/** Returns y where shape (1 + y - exp(y)) = -tail. By Chernoff's bound less than exp(-tail) of the law is farther
+ *  out. */
 double endOf(double shape, double inside, double outside) {
     for (int i = 0; i < 200; ++i) {
         const double y = (inside + outside) / 2;

@@ -127,8 +127,8 @@ struct NoiseConfig {
     }
 };
 
-/** Returns the mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10) [1].
- */
+/** Returns the mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10)
+ *  [1]. */
 double ambientIntensity(const AmbientConfig& ambient);
 
 }  // namespace insonify::noise

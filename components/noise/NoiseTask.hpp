@@ -19,8 +19,8 @@ namespace insonify::noise {
  *  The task belongs before the receiver, whose gain amplifies noise and echoes alike. The bins must be linear
  *  intensities. A ping with bins below 0 leads to RunTimeError; the next valid ping recovers from it. The same seed and
  *  the same ping times give the same noise, in a replay too. Each task of a deployment has its own seed, unless a seed
- *  is given. Without any noise the ping itself is passed on, not a copy. Changed properties apply from the next ping.
- *  A warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after pings
+ *  is given. Without any noise the ping itself is passed on, not a copy. Changed properties apply from the next ping. A
+ *  warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after pings
  *  with louder echoes. */
 class NoiseTask final : public framework::TaskContext, public framework::Divisible {
 public:

@@ -20,8 +20,8 @@ struct BeamKey {
     uint32_t ping_low, ping_high;
 };
 
-/** Returns four words of 32 random bits for a counter and a key, by Philox4x32-10.
- *  J. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011. */
+/** Returns four words of 32 random bits for a counter and a key, by Philox4x32-10. J. Salmon et al., "Parallel random
+ *  numbers: as easy as 1, 2, 3", SC 2011. */
 inline Counter philox(Counter counter, Key key) {
     for (int round = 0; round < 10; ++round) {
         const uint64_t first = uint64_t{0xD2511F53} * counter[0];

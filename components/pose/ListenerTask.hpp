@@ -16,7 +16,7 @@ namespace insonify::pose {
  *  `list` is the member of the configuration with an entry for each body, which names the `port` of its poses. Each
  *  entry has an output: body in the world, Rock's axes (x north, y west, z up). check() reports lockstep, whose time
  *  does not wait for messages, and entries whose port has no connection. `Kept` is data that the task keeps with a
- * port, see DynamicPorts.hpp. */
+ *  port, see DynamicPorts.hpp. */
 template <class Config, auto list, template <class> class Kept = framework::KeepsNothing>
 class ListenerTask : public framework::TaskContext {
 public:

@@ -90,7 +90,7 @@ private:
 
 /** A path through the world. Between stamps the position is linear and the orientation a slerp along the shorter way;
  *  outside the stamps both stay constant. A smooth trajectory is a natural cubic spline through the stamps, of
- * positions and of the components of quaternions, which are normalised. Immutable. */
+ *  positions and of the components of quaternions, which are normalised. Immutable. */
 class Trajectory {
 public:
     struct Stamp {
@@ -106,14 +106,14 @@ public:
 
     /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`. Normalises quaternions and skips blank lines.
      *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, superfluous or not
-     * a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
+     *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
     static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false);
 
     /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the
      *  world and angular velocity [rad/s] in the body, both zero outside the stamps. Does not set Pose::time. */
     types::Pose at(double time) const;
     /** Returns the time of a looped trajectory for a time of the run [s]: unchanged before the first stamp, else from
-     * the first stamp up to the last. */
+     *  the first stamp up to the last. */
     double inLoop(double time) const;
 
     const std::vector<Stamp>& stamps() const { return stamps_; }

@@ -27,8 +27,8 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
-    /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as Trajectory::fromCsv.
-     */
+    /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
+     *  Trajectory::fromCsv. */
     Trajectory trajectory() const;
     /** Returns the time of the last stamp [s]; 0 before the task is configured. */
     double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
