@@ -18,7 +18,7 @@ Water waterOf(double celsius, double psu, double depth, double ph = 8) {
     return water;
 }
 
-TEST(AbsorptionTest, FrancoisGarrisonMeetsPublishedValues) {
+TEST(AbsorptionTest, FrancoisGarrisonMatchesPublishedValues) {
     struct Case {
         double celsius, khz, db_per_km;
     };
@@ -33,7 +33,8 @@ TEST(AbsorptionTest, FrancoisGarrisonAtImagingFrequencies) {
     };
     for (const Case& c : {Case{100, 0.034, 0.003}, Case{300, 0.073, 0.028}, Case{700, 0.200, 0.152},
                           Case{1200, 0.495, 0.447}, Case{2250, 1.62, 1.57}}) {
-        EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 35, 10, 8.1)), c.sea, 0.0006 + 0.003 * c.sea) << c.khz << " kHz";
+        EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 35, 10, 8.1)), c.sea, 0.0006 + 0.003 * c.sea)
+            << c.khz << " kHz";
         EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 0, 10, 8.1)), c.fresh, 0.0006 + 0.003 * c.fresh)
             << c.khz << " kHz";
     }
@@ -61,7 +62,7 @@ TEST(AbsorptionTest, AinslieMccolmTakesDepthInKilometres) {
     EXPECT_NEAR(deep / shallow, std::exp(-1.0 / 6), 0.03);
 }
 
-TEST(AbsorptionTest, FisherAndSimmonsMeetTheirPublishedTable) {
+TEST(AbsorptionTest, FisherAndSimmonsMatchTheirPublishedTable) {
     // Their table IV: 10 kHz at 4 degC and 1 atm, and 100 kHz at 500 atm, which is 4970 m down.
     EXPECT_NEAR(fisherSimmons(10, waterOf(4, 35, 0)), 0.00083, 0.01 * 0.00083);
     EXPECT_NEAR(gaugePressureBar(4970, 45), 500 * 1.01325, 1);
@@ -99,7 +100,7 @@ TEST(AbsorptionTest, EveryLawIsFiniteAtEveryEdgeOfItsBounds) {
                     }
 }
 
-TEST(AbsorptionTest, ValidityNamesWhatLiesOutside) {
+TEST(AbsorptionTest, ValidityNamesTheInputsOutside) {
     EXPECT_EQ(outsideValidity(AbsorptionLaw::FrancoisGarrison, 750, waterOf(12, 35, 8, 8.1)), "");
     EXPECT_EQ(outsideValidity(AbsorptionLaw::FrancoisGarrison, 10000, waterOf(12, 35, 8)), "10000 kHz (0.2 to 1000)");
     EXPECT_EQ(outsideValidity(AbsorptionLaw::AinslieMccolm, 500, waterOf(12, 0, 8)), "0 psu (5 to 50)");

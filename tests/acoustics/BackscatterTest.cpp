@@ -37,7 +37,7 @@ TEST(BackscatterTest, ALambertSphereEchoesAsTwoThirdsOfPiOfItsParameter) {
     EXPECT_NEAR(10 * std::log10(lambertSection(-27, std::sin(30 * degree))), -27 - 6.0206, 1e-4);
 }
 
-TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWhateverItsSlope) {
+TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWithAnySlope) {
     for (const double slope : {0.02, 0.1, 0.3}) {
         const double heard = sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c); });
         EXPECT_NEAR(heard, 0.81 * 4.0 / 4 * (1 + slope * slope / 2), 2e-3) << slope;
@@ -104,7 +104,7 @@ TEST(BackscatterTest, AFluidHalfSpaceReflectsByItsImpedanceAtTheNormal) {
     EXPECT_LT(std::abs(halfSpaceReflection(sand, 1.05 * critical)), 0.9);
 }
 
-TEST(BackscatterTest, TheLossOfSeabedsIsThatOfTheReportsFigure1) {
+TEST(BackscatterTest, TheLossOfSeabedsMatchesFigure1OfTheReport) {
     // APL-UW TR 9407, figure 1: silt of 6 phi peaks at some 35 dB near 16 deg and loses 24 dB at the vertical; rock
     // less than 0.1 dB below its critical angle of 66 deg, and 2.8 dB at the vertical.
     const auto lossDb = [](const char* name, double grazing_deg) {
@@ -140,7 +140,7 @@ TEST(BackscatterTest, ATableIsClampedNearGrazing) {
     EXPECT_NEAR(table.values()[255], pi / 2, 1e-9);
 }
 
-TEST(BackscatterTest, AMeasuredTableIsReadWithItsDiagnosticsInPlace) {
+TEST(BackscatterTest, ReadsAMeasuredTableAndReportsErrorsWithTheirPlace) {
     const Folder folder;
     std::ofstream(folder / "sand.csv") << "grazing_deg,strength_db\n10,-30\n30,-20\n\n90,-10\n";
     const Curve measured = readBackscatter(folder / "sand.csv");

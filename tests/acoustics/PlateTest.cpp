@@ -34,7 +34,7 @@ private:
     std::mt19937 random_{3};
 };
 
-TEST(PlateTest, WhatIsNotReflectedIsTransmittedWithoutLossInAnyFluids) {
+TEST(PlateTest, ReflectionAndTransmissionSumToOneWithoutLoss) {
     Draw draw;
     for (int i = 0; i < 2000; ++i) {
         Plate plate{draw.between(1e-4, 0.1), draw.between(500, 9000), draw.between(1000, 7000), 0, 0};
@@ -52,7 +52,7 @@ TEST(PlateTest, WhatIsNotReflectedIsTransmittedWithoutLossInAnyFluids) {
     }
 }
 
-TEST(PlateTest, BothWaysThroughAreTheSame) {
+TEST(PlateTest, TransmissionIsTheSameInBothDirections) {
     Draw draw;
     for (int i = 0; i < 500; ++i) {
         const Plate plate{draw.between(1e-3, 0.05), 1200, 2700, 1340, 0.01};
@@ -81,7 +81,7 @@ TEST(PlateTest, AFluidLayerAtTheNormalIsThatOfTextbooks) {
     }
 }
 
-TEST(PlateTest, APlateOfHalfAWavelengthIsNotThereAndOneOfAQuarterReflectsMost) {
+TEST(PlateTest, AHalfWavePlateIsTransparentAndAQuarterWavePlateReflectsMost) {
     const double frequency = 500e3, wave = 5900 / frequency;
     EXPECT_NEAR(transmittedPower(steel(wave / 2), water, frequency, 1), 1, 1e-5);
     const double quarter = transmittedPower(steel(wave / 4), water, frequency, 1), ratio = 7850. * 5900 / (1025 * 1500);
@@ -114,7 +114,7 @@ TEST(PlateTest, SteelInAirIsClearAtTheAngleOfCoincidence) {
     }
 }
 
-TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
+TEST(PlateTest, AirBehindReflectsAllAndAnAbsorberTransmitsNothing) {
     const PlateResponse backed = plateResponse(steel(0.003), water, air, 200e3, 0.9);
     EXPECT_NEAR(std::abs(backed.reflected), 1, 1e-2);
     const Plate rubber{0.1, 1100, 1550, 0, 0.2};
@@ -153,7 +153,7 @@ TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
 }
 
 /** A train of pulses by the faces' own coefficients: at its delays it makes up the response at every frequency. */
-TEST(PlateTest, EachReturnIsThatOfItsPath) {
+TEST(PlateTest, EachReturnMatchesItsPath) {
     const Plate plate{0.01, 1190, 2700, 0, 0};
     const Fluid oil{870, 1440};
     const double own = 1190. * 2700, one = water.density * water.sound_speed, other = oil.density * oil.sound_speed;
@@ -188,7 +188,7 @@ TEST(PlateTest, ReturnsOfExtremePlatesAreFiniteAndBounded) {
     }
 }
 
-TEST(PlateTest, ExtremeOnesAreFinite) {
+TEST(PlateTest, ExtremePlatesAreFinite) {
     for (const double thickness : {1e-9, 1e-3, 10.})
         for (const double frequency : {1., 1e5, 1e8})
             for (const double cosine : {0., 1e-12, 0.5, 1.})

@@ -31,7 +31,7 @@ double integral(const F& f, double from, double to) {
     return sum * (to - from) / cells;
 }
 
-TEST(PulseTest, MeansAreThoseOfTheResponse) {
+TEST(PulseTest, MeansMatchTheResponse) {
     EXPECT_DOUBLE_EQ(tone(100).mean(-0.0625, 0.0625), 0.6) << "0.075 m of 0.125 m";
     EXPECT_EQ(tone(100).mean(0.04, 0.05), 0);
     const Pulse pulse = chirp(10);  // a unit of 0.075 m
@@ -79,7 +79,7 @@ TEST(PulseTest, AChirpOfHalfTheBandIsTwiceAsLong) {
     EXPECT_GT(std::abs(chirp(50).resolution() - 0.886 * speed_of_sound / 50e3), 0.01);
 }
 
-TEST(PulseTest, ReverberationOfARangeDensityIsItTimesTheCell) {
+TEST(PulseTest, ReverberationOfARangeDensityIsTheDensityTimesTheCellLength) {
     // A density that hardly changes over a cell: the intensity of a bin is the density times the integral of h.
     for (const Pulse& pulse : {tone(200), chirp(30, PulseWindow::Hann)}) {
         const auto density = [](double r) { return std::pow(r, -3); };
@@ -88,7 +88,7 @@ TEST(PulseTest, ReverberationOfARangeDensityIsItTimesTheCell) {
     }
 }
 
-TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
+TEST(PulseTest, ExtentReachesToTheFloor) {
     for (const auto window : {PulseWindow::None, PulseWindow::Hann, PulseWindow::Taylor}) {
         const Pulse pulse = chirp(50, window);
         const double reach = pulse.extent(-50);
@@ -98,7 +98,7 @@ TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
     }
 }
 
-TEST(PulseTest, IsGivenByABandOrADuration) {
+TEST(PulseTest, NeedsEitherABandwidthOrADuration) {
     const auto diagnosticsOf = [](const PulseConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);

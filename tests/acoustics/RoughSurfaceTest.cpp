@@ -64,7 +64,7 @@ TEST(RoughSurfaceTest, TheReflectionIsThatOfTheImpedanceInTheWater) {
     EXPECT_NEAR(RoughSurface({1, 1, 0}, {1e-5, 1e-4}, 3770).reflection(), 0, 1e-15) << "water in water";
 }
 
-TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
+TEST(RoughSurfaceTest, ASurfaceWithoutHeightIsAMirror) {
     double last_share = 0, last_slope = 1, last_diffuse = 1;
     for (const double height : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
         const RoughSurface surface(steel_space, {height, 1e-3}, 3770);

@@ -31,12 +31,12 @@ double wongZhuSpeed(double t, double s, double p, double c_s2 = 1.288598e-4) {
            4.857614e-6 * s * s * t * p - 3.406824e-4 * s * t * p;
 }
 
-TEST(SoundSpeedTest, MackenzieMeetsItsPublishedCheckValues) {
+TEST(SoundSpeedTest, MackenzieMatchesItsPublishedCheckValues) {
     EXPECT_NEAR(mackenzieSpeed(waterAt(25, 35, 1000)), 1550.744, 1e-3);
     EXPECT_NEAR(mackenzieSpeed(waterAt(40, 40, 10000)), 1718.774, 1e-3);
 }
 
-TEST(SoundSpeedTest, ChenAndMilleroMeetUnescosCheckValue) {
+TEST(SoundSpeedTest, ChenAndMilleroMatchUnescosCheckValue) {
     EXPECT_NEAR(chenMilleroSpeed(40, 40, 1000), 1731.995, 1e-3);  // Fofonoff and Millard 1983, page 48
     // In decibars, as many programs take the pressure, it is another number.
     EXPECT_GT(std::abs(chenMilleroSpeed(40, 40, 10000) - 1731.995), 100);
@@ -45,7 +45,7 @@ TEST(SoundSpeedTest, ChenAndMilleroMeetUnescosCheckValue) {
     EXPECT_GT(std::abs(mixed - 1731.995), 1e-3);
 }
 
-TEST(SoundSpeedTest, DelGrossoIsWhatWongAndZhuFittedAgain) {
+TEST(SoundSpeedTest, DelGrossoMatchesTheFitOfWongAndZhu) {
     for (double t : {0.0, 5.0, 15.0, 30.0})
         for (double s : {30.0, 35.0, 40.0})
             for (double p : {0.0, 10.0, 100.0, 1000.0}) {
@@ -64,14 +64,14 @@ TEST(SoundSpeedTest, DelGrossoWithTheMisprintedTermIsAnotherEquation) {
     EXPECT_LT(std::abs(wongZhuSpeed(5, 35, 0) - delGrossoSpeed(celsius68(5), 35, 0)), 0.01);
 }
 
-TEST(SoundSpeedTest, PressureIsThatOfLeroyAndParthiot) {
+TEST(SoundSpeedTest, PressureMatchesLeroyAndParthiot) {
     EXPECT_NEAR(gaugePressureBar(1000, 27), 100.75, 0.02);  // for the common oceans
     EXPECT_EQ(gaugePressureBar(0, 45), 0);
     EXPECT_GT(gaugePressureBar(1000, 90), gaugePressureBar(1000, 0) + 0.4);
     EXPECT_EQ(gaugePressureBar(1000, -60), gaugePressureBar(1000, 60));
 }
 
-TEST(SoundSpeedTest, LeroyHasTheTableOfItsPublishedProgram) {
+TEST(SoundSpeedTest, LeroyMatchesTheTableOfItsPublishedProgram) {
     // At 30 psu and the equator, as the open documentation of sonar formulas SonarDocs tabulates it.
     struct Case {
         double celsius, depth, speed;

@@ -59,7 +59,7 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
 }
 
-TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
+TEST_F(GazeboRunTest, PingsStopAndResumeWithTheWorld) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
     int sent = 0;
@@ -82,7 +82,7 @@ TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
+TEST_F(GazeboRunTest, ReportsAMissingWorldAndEnds) {
     const Outcome outcome =
         callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"});
     EXPECT_EQ(outcome.code, 2);
@@ -92,7 +92,7 @@ TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
     EXPECT_THAT(outcome.err, HasSubstr("deploy/gazebo_world.yml:16:"));
 }
 
-TEST_F(GazeboRunTest, WithoutPosesItWaitsAndSaysSo) {
+TEST_F(GazeboRunTest, WaitsWithoutPosesAndReportsIt) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=0.2"});
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
@@ -100,7 +100,7 @@ TEST_F(GazeboRunTest, WithoutPosesItWaitsAndSaysSo) {
     EXPECT_EQ(sonar.wait().code, 0);
 }
 
-TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+TEST_F(GazeboRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
     const auto world = makeWorld();
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {

@@ -78,7 +78,7 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     EXPECT_NEAR(2 * std::atan2(pose->orientation.z, pose->orientation.w), 1.5707963, 1e-6);
 }
 
-TEST_F(HarmonicTest, AWorldThatStartsAgainIsFoundAnew) {
+TEST_F(HarmonicTest, FindsARestartedWorld) {
     follow("rov");
     for (const double x : {1.0, 2.0}) {
         HarmonicWorld world({});
@@ -92,7 +92,7 @@ TEST_F(HarmonicTest, AWorldThatStartsAgainIsFoundAnew) {
     }
 }
 
-TEST_F(HarmonicTest, APublisherIsToldWhenItsMessagesAreNoLongerTaken) {
+TEST_F(HarmonicTest, InformsAPublisherWhenItsMessagesAreNoLongerReceived) {
     HarmonicWorld world({});
     {
         const Subscriber subscriber(TransportOptions::fromEnvironment(""),
@@ -103,7 +103,7 @@ TEST_F(HarmonicTest, APublisherIsToldWhenItsMessagesAreNoLongerTaken) {
     EXPECT_TRUE(comesTrue([&] { return world.takers() == 0; }));
 }
 
-TEST_F(HarmonicTest, MessagesOfAnotherTypeAndDamagedOnesAreDroppedAndReported) {
+TEST_F(HarmonicTest, DropsAndReportsDamagedMessagesAndWrongTypes) {
     follow("rov");
     {
         HarmonicWorld world({.type = "gz.msgs.Image"});
@@ -119,7 +119,7 @@ TEST_F(HarmonicTest, MessagesOfAnotherTypeAndDamagedOnesAreDroppedAndReported) {
     }));
 }
 
-TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
+TEST_F(HarmonicTest, ListsAvailableTopicsWhenATopicIsMissing) {
     HarmonicWorld other({.world = "harbour"});
     follow("rov");
     EXPECT_TRUE(comesTrue([&] {
@@ -129,7 +129,7 @@ TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
     })) << warnings;
 }
 
-TEST_F(HarmonicTest, ModelsThatComeAndGoAreReported) {
+TEST_F(HarmonicTest, ReportsModelsThatAppearOrDisappear) {
     HarmonicWorld gazebo({.scene = recording("scene")});
     scene::SceneTask scene("scene");
     scene::SceneConfig config;
@@ -167,14 +167,14 @@ TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
     EXPECT_THAT(task.indivisible(), HasSubstr("gazebo: is the world as it is when it is asked for"));
 }
 
-TEST_F(HarmonicTest, TasksThatHoldAWorldAtOnceShareIt) {
+TEST_F(HarmonicTest, TasksShareAWorld) {
     HarmonicWorld gazebo({.scene = recording("scene")});
     const auto first = scene::sharedWorld(world("sea"), "/"), second = scene::sharedWorld(world("sea"), "/");
     EXPECT_EQ(first, second);
     EXPECT_FALSE(first->nodes.empty());
 }
 
-TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
+TEST_F(HarmonicTest, TheErrorForAMissingWorldListsTheAvailableWorlds) {
     EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
                 testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
                                     "partition " +
@@ -185,7 +185,7 @@ TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
 }
 
-TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
+TEST_F(HarmonicTest, FailingSilentAndWrongServicesHaveTheirOwnErrors) {
     {
         HarmonicWorld gazebo({.succeeds = false});
         EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info reports a failure"));
@@ -203,7 +203,7 @@ TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
     EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));
 }
 
-TEST_F(HarmonicTest, AFailureIsNotWaitedForAgainUntilTheTaskIsConfigured) {
+TEST_F(HarmonicTest, AFailureIsCachedUntilTheTaskIsConfigured) {
     scene::SceneTask task("scene");
     scene::SceneConfig config;
     config.gazebo = world("sea", 0.5);
@@ -220,7 +220,7 @@ TEST_F(HarmonicTest, AFailureIsNotWaitedForAgainUntilTheTaskIsConfigured) {
     EXPECT_TRUE(task.configure()) << task.lastError();
 }
 
-TEST_F(HarmonicTest, AWorldWithoutANameAndOneNextToAFileAreErrors) {
+TEST_F(HarmonicTest, AWorldWithoutANameOrTogetherWithAFileIsAnError) {
     types::Diagnostics diagnostics;
     scene::GazeboConfig{}.check(diagnostics);
     scene::SceneConfig both;

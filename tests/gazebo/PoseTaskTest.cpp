@@ -130,7 +130,7 @@ TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
     EXPECT_EQ(pose->velocity, glm::dvec3(0.5, 0, 0));
 }
 
-TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
+TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     startWith({entity("rov", "red")});
     meet(100);
     for (int i = 0; i < 5; ++i) world.publish(100, 1);  // stands still
@@ -154,7 +154,7 @@ TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
     EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "of our clock";
 }
 
-TEST_F(PoseTaskTest, PosesThatAreNotFiniteAndEntitiesThatAreNotThereAreDroppedAndTold) {
+TEST_F(PoseTaskTest, DropsAndReportsPosesThatAreNotFiniteAndMissingEntities) {
     startWith({entity("rov", "red"), entity("other", "auv")});
     meet();
     ignition::msgs::Pose_V message;
@@ -176,7 +176,7 @@ TEST_F(PoseTaskTest, PosesThatAreNotFiniteAndEntitiesThatAreNotThereAreDroppedAn
     EXPECT_EQ(pose->orientation, glm::dquat(1, 0, 0, 0));
 }
 
-TEST_F(PoseTaskTest, AMessageWithoutAStampBearsItsArrival) {
+TEST_F(PoseTaskTest, AMessageWithoutAStampGetsItsTimeOfArrival) {
     startWith({entity("rov", "red")});
     meet();
     ignition::msgs::Pose_V message;
@@ -186,7 +186,7 @@ TEST_F(PoseTaskTest, AMessageWithoutAStampBearsItsArrival) {
     EXPECT_GE(next().value_or(types::Pose{}).time, before);
 }
 
-TEST_F(PoseTaskTest, MessagesThatNobodyTakesDoNotFillTheMemory) {
+TEST_F(PoseTaskTest, UnreadMessagesDoNotFillTheMemory) {
     int woken = 0;
     Inbox inbox([&] { ++woken; });
     for (size_t i = 0; i < Inbox::capacity + 5; ++i) inbox.put({i, {}, {}, {}, ""});
@@ -197,7 +197,7 @@ TEST_F(PoseTaskTest, MessagesThatNobodyTakesDoNotFillTheMemory) {
     EXPECT_EQ(woken, int(Inbox::capacity) + 5);
 }
 
-TEST_F(PoseTaskTest, WhatTheTransportDoesNotTakeIsAnErrorOfItsProperty) {
+TEST_F(PoseTaskTest, AnInvalidNameForTheTransportIsAnErrorOfItsProperty) {
     PoseConfig config;
     config.pose_topic = "/with a space";
     config.bodies = {entity("rov", "red")};

@@ -31,7 +31,7 @@ protected:
                              "GZ_DISCOVERY_MULTICAST_IP"};
 };
 
-TEST_F(TransportTest, VariablesOfHarmonicComeBeforeThoseOfFortressAndThePropertyBeforeBoth) {
+TEST_F(TransportTest, ThePropertyHasPrecedenceOverHarmonicsVariablesAndTheseOverFortresss) {
     EXPECT_THAT(TransportOptions::fromEnvironment("").partition, testing::ContainsRegex("^.+:.+$")) << "host:user";
     setenv("IGN_PARTITION", "fortress", 1);
     EXPECT_EQ(TransportOptions::fromEnvironment("").partition, "fortress");
@@ -49,7 +49,7 @@ TEST_F(TransportTest, VariablesOfHarmonicComeBeforeThoseOfFortressAndTheProperty
     EXPECT_EQ(options.group, "239.255.0.8");
 }
 
-TEST_F(TransportTest, VariablesThatAreWrongAreAnError) {
+TEST_F(TransportTest, InvalidVariablesAreAnError) {
     const auto diagnosticOf = [](const std::string& partition) -> std::string {
         try {
             TransportOptions::fromEnvironment(partition);

@@ -84,7 +84,7 @@ TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
     EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
 }
 
-TEST_F(WorldTest, WithoutScriptsTheNamesOfVisualsLinksAndModelsSayWhatMatterItIs) {
+TEST_F(WorldTest, WithoutScriptsTheMatterIsInTheNamesOfVisualsLinksAndModels) {
     wire::Scene message;
     wire::Model& model = addModel(message, "concrete_pier");
     addBox(model, "pile");
@@ -98,7 +98,7 @@ TEST_F(WorldTest, WithoutScriptsTheNamesOfVisualsLinksAndModelsSayWhatMatterItIs
     EXPECT_EQ(world.scene.geometry->meshes.size(), 4u);
 }
 
-TEST_F(WorldTest, AMeshOfAnotherMachineIsFoundByTheEndOfItsPath) {
+TEST_F(WorldTest, FindsAMeshOfAnotherMachineByTheEndOfItsPath) {
     std::filesystem::create_directories(folder_ / "rov/meshes");
     write("rov/meshes/hull.gltf",
           gltf(scene::triangle() + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -121,7 +121,7 @@ TEST_F(WorldTest, AMeshOfAnotherMachineIsFoundByTheEndOfItsPath) {
     EXPECT_THAT(noticesOf(message), Contains(HasSubstr("https://fuel.gazebosim.org/hull.gltf is not found")));
 }
 
-TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
+TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
     wire::Scene message;
     wire::Model& lost = addModel(message, "lost");
     setVector(*lost.mutable_pose()->mutable_position(), nan, 0, 0);
@@ -167,7 +167,7 @@ TEST_F(WorldTest, AWorldWithoutVisualsIsAnEmptySea) {
     EXPECT_THAT(noticesOf({}), ElementsAre("the scene has no triangles: an empty sea"));
 }
 
-TEST_F(WorldTest, NamesThatAreThereTwiceAreReported) {
+TEST_F(WorldTest, ReportsDuplicateNames) {
     wire::Scene message;
     for (int i = 0; i < 2; ++i) addBox(addModel(message, "buoy"), "link");
     const World world = worldOf(message);
@@ -177,7 +177,7 @@ TEST_F(WorldTest, NamesThatAreThereTwiceAreReported) {
     EXPECT_GE(scene::findNode(world.scene, "buoy_2"), 0);
 }
 
-TEST_F(WorldTest, BytesThatAreNoSceneAndWorldsThatAreTooLargeAreErrors) {
+TEST_F(WorldTest, InvalidBytesAndTooLargeWorldsAreErrors) {
     const auto diagnosticOf = [&](const std::string& bytes) -> std::string {
         try {
             gazebo::worldOf(bytes, folder_);
@@ -200,7 +200,7 @@ PoseMessage posesOf(const std::vector<std::string>& names) {
     return message;
 }
 
-TEST(WorldWatchTest, WhatComesAndGoesAfterTheSceneWasTakenIsReportedOnce) {
+TEST(WorldWatchTest, ReportsEntitiesThatAppearOrDisappearOnce) {
     WorldWatch watch(std::set<std::string>{"rov", "link", "buoy"});
     WorldWatch::Change change = watch.take(posesOf({"rov", "link", "buoy", "crate"}));
     EXPECT_THAT(change.came, ElementsAre("crate")) << "it came before the first message";
@@ -212,7 +212,7 @@ TEST(WorldWatchTest, WhatComesAndGoesAfterTheSceneWasTakenIsReportedOnce) {
     EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
 }
 
-TEST(WorldWatchTest, WithoutASceneOfGazeboTheFirstMessageCounts) {
+TEST(WorldWatchTest, ComparesWithTheFirstMessageWithoutASceneOfGazebo) {
     WorldWatch watch({});
     EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty());
     EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));

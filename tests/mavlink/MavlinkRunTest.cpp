@@ -44,7 +44,7 @@ protected:
 
 }  // namespace
 
-TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
+TEST_F(MavlinkRunTest, RequestsPosesOfTwoVehiclesForPings) {
     INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--pings", "20", "--summary", "summary.json"}), folder.path());
@@ -61,7 +61,7 @@ TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
     EXPECT_FALSE(fs::is_empty(folder / "out"));
 }
 
-TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
+TEST_F(MavlinkRunTest, WaitsWithoutAVehicleAndReportsIt) {
     INSONIFY_NEEDS("sdf");
     const Process run(words({"--set", "scene.pose_timeout=0.2"}), folder.path());
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
@@ -69,7 +69,7 @@ TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
     EXPECT_EQ(run.wait().code, 0);
 }
 
-TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollowed) {
+TEST_F(MavlinkRunTest, PingsStopAndResumeWithAVehicle) {
     INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--set", "scene.pose_timeout=2"}), folder.path());
@@ -92,7 +92,7 @@ TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollow
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(MavlinkRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+TEST_F(MavlinkRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
     INSONIFY_NEEDS("sdf");
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {

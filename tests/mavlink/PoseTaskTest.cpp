@@ -63,7 +63,7 @@ TEST_F(PoseTaskTest, PosesOfEveryVersionOfMavlinkAreRead) {
     EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("listens on UDP 127.0.0.1:")));
 }
 
-TEST_F(PoseTaskTest, AVehicleAndAnObjectBesideItComeOverOnePort) {
+TEST_F(PoseTaskTest, ReceivesAVehicleAndAnObjectOnOnePort) {
     startWith([](PoseConfig& config) {
         config.bodies = {{.port = "rov"}, {.port = "diver", .source = Source::Vision, .system_id = 2}};
     });
@@ -72,13 +72,13 @@ TEST_F(PoseTaskTest, AVehicleAndAnObjectBesideItComeOverOnePort) {
     expectPoses(25, 1);
 }
 
-TEST_F(PoseTaskTest, AVehicleThatSendsHeartbeatsAloneIsAskedForItsPoses) {
+TEST_F(PoseTaskTest, RequestsPosesFromAVehicleThatOnlySendsHeartbeats) {
     startWith([](PoseConfig& config) { config.request = {.rate = 50}; });
     const Vehicle vehicle(task.port(), "heartbeat");
     expectPoses(25);
 }
 
-TEST_F(PoseTaskTest, DamageIsToldAndWhatLiesBetweenIsRead) {
+TEST_F(PoseTaskTest, ReportsDamageAndReadsTheFramesBetween) {
     startWith();
     const Vehicle vehicle(task.port(), "damaged");
     expectPoses(25);
@@ -86,7 +86,7 @@ TEST_F(PoseTaskTest, DamageIsToldAndWhatLiesBetweenIsRead) {
     EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame that is cut off")));
 }
 
-TEST_F(PoseTaskTest, MessagesOfAnotherSystemAreToldWithItsNumber) {
+TEST_F(PoseTaskTest, ReportsMessagesOfAnotherSystemWithItsNumber) {
     startWith();
     const Vehicle vehicle(task.port(), "poses2 9");
     EXPECT_TRUE(comesTrue([&] {
@@ -99,7 +99,7 @@ TEST_F(PoseTaskTest, MessagesOfAnotherSystemAreToldWithItsNumber) {
     EXPECT_FALSE(readers[0].port.readNew(pose));
 }
 
-TEST_F(PoseTaskTest, AnAddressThatIsNoneAndAPortThatIsTakenAreErrors) {
+TEST_F(PoseTaskTest, AnInvalidAddressAndAUsedPortAreErrors) {
     startWith();
     PoseTask other("other");
     PoseConfig config;

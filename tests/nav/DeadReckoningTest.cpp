@@ -88,7 +88,7 @@ TEST(DeadReckoningTest, AccelerationsAndRatesLeadBackToTheStart) {
     EXPECT_LT(most, 1) << "two minutes without any aid";
 }
 
-TEST(DeadReckoningTest, PressuresAreTheDepthOfTheWay) {
+TEST(DeadReckoningTest, PressuresMatchTheDepthOfThePath) {
     const PressureConfig config;
     PressureGauge gauge(config);
     const pose::Trajectory path = survey();

@@ -33,7 +33,7 @@ TEST(DvlTest, BeamsLookDownAndOutAtFourSides) {
     EXPECT_LT(glm::length(glm::dvec2(beams[0]) + glm::dvec2(beams[2])), 1e-15) << "opposite";
 }
 
-TEST(DvlTest, WithoutErrorsItIsExactOverALevelBottomHoweverItLies) {
+TEST(DvlTest, IsExactWithoutErrorsOverALevelBottomInAnyAttitude) {
     const Bottom bottom(-12.0);
     for (const glm::dquat& orientation : {turned(0), turned(40, 10, -15), turned(-160, -20, 5)})
         for (const DvlConfig& config : {DvlConfig{}, DvlConfig{.slant_deg = 22.5, .beam_azimuth_deg = 0}}) {
@@ -104,7 +104,7 @@ TEST(DvlTest, ThreeBeamsAreEnoughAndTwoAreNot) {
     EXPECT_FALSE(solveVelocity(beams, along, variances));
 }
 
-TEST(DvlTest, ThreeBeamsOverALevelBottomHaveNoLossOfTruth) {
+TEST(DvlTest, ThreeBeamsOverALevelBottomAreExact) {
     // Rolled so far that one beam leaves the water's bottom out of reach.
     const DvlConfig config{.beam_azimuth_deg = 0, .max_altitude = 14};
     const glm::dquat orientation = turned(0, 0, 25);
@@ -113,7 +113,7 @@ TEST(DvlTest, ThreeBeamsOverALevelBottomHaveNoLossOfTruth) {
     EXPECT_LT(glm::distance(orientation * told.velocity, {1, 0.5, 0}), 1e-9);
 }
 
-TEST(DvlTest, OutOfItsReachThereIsNoBottomLock) {
+TEST(DvlTest, HasNoBottomLockOutOfReach) {
     const Dvl log({.min_altitude = 0.5, .max_altitude = 50});
     const auto at = [&](double height, glm::dquat orientation = {1, 0, 0, 0}) {
         return ping(log, moving({1, 0, 0}, orientation, height), Bottom(-10.0));
@@ -158,7 +158,7 @@ TEST(DvlTest, AShareOfBeamsIsLost) {
     EXPECT_NEAR(locked / double{count}, std::pow(0.8, 4) + 4 * 0.2 * std::pow(0.8, 3), 5 * std::sqrt(0.15 / count));
 }
 
-TEST(DvlTest, WhatIsWrongForLongStaysAndIsOfItsDeviation) {
+TEST(DvlTest, ConstantErrorsStayAndHaveTheirDeviation) {
     constexpr int logs = 4000;
     double scale = 0, bias = 0;
     for (uint64_t seed = 0; seed < logs; ++seed) {

@@ -5,7 +5,7 @@
 namespace insonify::nav {
 namespace {
 
-TEST(MotionTest, IsThatOfTheMiddleOfThreePoses) {
+TEST(MotionTest, IsTheMotionAtTheMiddleOfThreePoses) {
     MotionTracker tracker;
     EXPECT_FALSE(tracker.take(poseAt(1, {0, 0, 0})));
     EXPECT_FALSE(tracker.take(poseAt(1.1, {1, 0, 0})));
@@ -18,7 +18,7 @@ TEST(MotionTest, IsThatOfTheMiddleOfThreePoses) {
     EXPECT_DOUBLE_EQ(motion->interval, 0.1);
 }
 
-TEST(MotionTest, AParabolaIsExactHoweverFarItsPosesAreApart) {
+TEST(MotionTest, AParabolaIsExactAtAnySpacingOfPoses) {
     const glm::dvec3 start(1, 2, -3), velocity(0.5, -1, 0.25), acceleration(-0.2, 0.4, 0.1);
     MotionTracker tracker;
     std::optional<Motion> motion;
@@ -29,7 +29,7 @@ TEST(MotionTest, AParabolaIsExactHoweverFarItsPosesAreApart) {
     EXPECT_LT(glm::distance(motion->acceleration, acceleration), 1e-12);
 }
 
-TEST(MotionTest, AnEvenTurnAboutAnyAxisIsExact) {
+TEST(MotionTest, AConstantRotationAboutAnyAxisIsExact) {
     const glm::dvec3 rate(0.3, -0.8, 0.5);
     const Path path = [&](double time) {
         return poseAt(time, {}, turned(30, 20, 10) * glm::angleAxis(glm::length(rate) * time, glm::normalize(rate)));
@@ -67,7 +67,7 @@ TEST(MotionTest, ALeverArmMovesWithTheRotationOfTheBody) {
     EXPECT_LT(glm::distance(motion.orientation * motion.angular_rate, rate), 1e-9) << "in the axes of the sensor";
 }
 
-TEST(MotionTest, AStampThatIsNotLaterIsPassedOver) {
+TEST(MotionTest, IgnoresAStampThatIsNotLater) {
     MotionTracker tracker;
     tracker.take(poseAt(1, {0, 0, 0}));
     tracker.take(poseAt(1.1, {1, 0, 0}));
@@ -78,7 +78,7 @@ TEST(MotionTest, AStampThatIsNotLaterIsPassedOver) {
     EXPECT_LT(glm::distance(motion->velocity, {10, 0, 0}), 1e-12);
 }
 
-TEST(MotionTest, AfterAPauseOrAStartOverItBeginsAnew) {
+TEST(MotionTest, StartsAnewAfterAPauseOrARestart) {
     for (const double next : {3.0, -100.0}) {
         MotionTracker tracker;
         for (const double t : {0.0, 0.1, 0.2}) tracker.take(poseAt(t, {t, 0, 0}));
@@ -90,7 +90,7 @@ TEST(MotionTest, AfterAPauseOrAStartOverItBeginsAnew) {
     }
 }
 
-TEST(MotionTest, PosesTooFarApartAreToldOnceAndAgainAfterTenInTime) {
+TEST(MotionTest, WarnsOnceAboutPosesTooFarApartAndAgainAfterTenInTime) {
     MotionTracker tracker;
     double time = 0;
     const auto warningAfter = [&](double seconds) {
@@ -104,7 +104,7 @@ TEST(MotionTest, PosesTooFarApartAreToldOnceAndAgainAfterTenInTime) {
     EXPECT_THAT(warningAfter(-100), testing::StartsWith("poses 100 s apart"));
 }
 
-TEST(MotionTest, AJumpIsMotionAndWhatNoNumberHoldsIsNone) {
+TEST(MotionTest, AJumpIsMotionAndAnOverflowIsNone) {
     MotionTracker tracker;
     for (const double t : {0.0, 0.1}) tracker.take(poseAt(t, {}));
     const auto jump = tracker.take(poseAt(0.2, {1000, 0, 0}));
@@ -121,7 +121,7 @@ TEST(MotionTest, HalfATurnFromPoseToPoseIsFinite) {
     EXPECT_LE(glm::length(motion.angular_rate), std::numbers::pi / 0.1 * 1.000001);
 }
 
-TEST(MotionTest, ACadenceKeepsToThePeriodsMultiples) {
+TEST(MotionTest, ACadenceFollowsTheMultiplesOfThePeriod) {
     Cadence cadence(0.125);
     std::vector<int64_t> due;
     for (int64_t us = 10'000; us <= 1'000'000; us += 10'000)

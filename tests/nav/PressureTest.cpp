@@ -10,7 +10,7 @@ namespace {
 
 constexpr double decibar = 1e4;
 
-TEST(PressureTest, DepthsAreThoseOfTheTableOfUnesco) {
+TEST(PressureTest, DepthsMatchUnescosTable) {
     // Fofonoff and Millard 1983, table of depth by pressure [dbar] and latitude [deg], and their check value.
     const struct {
         double pressure, latitude, depth;
@@ -38,14 +38,14 @@ TEST(PressureTest, PressureAndDepthAreEachOthersInverse) {
             EXPECT_NEAR(depthAt(pressureAt(depth, config), config), depth, 1e-9 * (1 + depth));
 }
 
-TEST(PressureTest, WaterOfOneDensityWeighsWhatItDoes) {
+TEST(PressureTest, PressureInWaterOfConstantDensityIsItsWeight) {
     const PressureConfig lake{.latitude_deg = 47, .density = 999.7, .atmosphere = 96000};
     EXPECT_NEAR(pressureAt(30, lake), 96000 + 999.7 * normalGravity(47) * 30, 1e-6);
 }
 
 TEST(PressureTest, TenMetresOfSeaAreAboutABar) { EXPECT_NEAR(pressureAt(10, {}), 101325 + 100800, 200); }
 
-TEST(PressureTest, AboveTheSurfaceThereIsAirAndBelowTheDeepestPlaceNothingMore) {
+TEST(PressureTest, PressureIsThatOfAirAboveTheSurfaceAndClampedAtMaxDepth) {
     EXPECT_EQ(pressureAt(0, {}), 101325);
     EXPECT_NEAR(pressureAt(-100, {}), 101325 * std::exp(-100 / 8434.0), 1e-6);
     EXPECT_EQ(pressureAt(-1e300, {}), 0);
@@ -75,7 +75,7 @@ TEST(PressureTest, ErrorsHaveTheirDeviations) {
     EXPECT_NEAR(drift / 200, 1, 5 / std::sqrt(2.0 * count));
 }
 
-TEST(PressureTest, AGaugeTellsWholeStepsWithinItsRange) {
+TEST(PressureTest, ReadingsAreWholeStepsWithinTheRange) {
     const auto reading = [](PressureConfig config, double height) {
         return PressureGauge(config).measure(poseAt(1, {0, 0, height})).pascal;
     };

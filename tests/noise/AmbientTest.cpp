@@ -20,7 +20,7 @@ AmbientConfig windy(double wind_m_s) {
 
 double levelDb(const AmbientConfig& config) { return 10 * std::log10(ambientIntensity(config)); }
 
-TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
+TEST(AmbientTest, NoiseInABinIsThatOfTheBandMinusTheDirectivityRelativeToTheSource) {
     const double spectrum = acoustics::coatesSpectrumDb(700, 5, 0.5);
     EXPECT_NEAR(levelDb(windy(5)), spectrum + 10 * std::log10(30e3) - 25 - 210, 1e-9);
     AmbientConfig given;
@@ -28,7 +28,7 @@ TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
     EXPECT_NEAR(levelDb(given), -112.5, 1e-9);
 }
 
-TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
+TEST(AmbientTest, NeedsEitherALevelOrAllInputsOfTheFormula) {
     const auto diagnosticsOf = [](const AmbientConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);

@@ -66,7 +66,7 @@ std::vector<Law> laws() {
 
 std::vector<float> drawn(const NoiseConfig& config) { return noisyOf(config, pingOf(256, 500)).bins; }
 
-TEST(LawsTest, EachLawFollowsItsOwnDistributionAndNoneOfTheOthers) {
+TEST(LawsTest, EachLawFollowsOnlyItsOwnDistribution) {
     for (const Law& law : laws()) {
         const std::vector<float> values = drawn(law.config);
         for (const Law& other : laws()) {
@@ -83,7 +83,7 @@ TEST(LawsTest, EachLawFollowsItsOwnDistributionAndNoneOfTheOthers) {
     }
 }
 
-TEST(LawsTest, TheGaussianFactorIsTheNormalLawClampedAtNothing) {
+TEST(LawsTest, TheGaussianFactorIsTheNormalLawClampedAtZero) {
     const auto all = [](double mean, double deviation) {
         return shares(drawn(gaussian(10, 1)), [=](double x) { return normalCdf((x - mean) / deviation); });
     };
@@ -114,7 +114,7 @@ Moments momentsOf(const std::vector<double>& values) {
     return moments;
 }
 
-TEST(LawsTest, ScintillationAndDecibelsAreThoseOfTheory) {
+TEST(LawsTest, ScintillationAndDecibelsMatchTheory) {
     for (const Law& law : laws()) {
         std::vector<double> factors, levels;
         for (const float value : drawn(law.config)) {
@@ -129,7 +129,7 @@ TEST(LawsTest, ScintillationAndDecibelsAreThoseOfTheory) {
     }
 }
 
-TEST(LawsTest, TheFiguresThatAreQuotedOfThemAreRight) {
+TEST(LawsTest, QuotedFiguresAreCorrect) {
     EXPECT_NEAR(rayleighLaw().decibel_mean, -2.507, 5e-4);
     EXPECT_NEAR(rayleighLaw().decibel_spread, 5.570, 5e-4);
     for (const auto& [looks, spread] : {std::pair(2, 3.49), {4, 2.31}, {8, 1.58}, {16, 1.10}})
@@ -145,7 +145,7 @@ double tailOf(const std::vector<float>& values, double x) {
     return static_cast<double>(std::ranges::count_if(values, [&](float value) { return value > x; })) / count;
 }
 
-TEST(LawsTest, TheTailOfKIsThatOfItsFormulaAndFarAboveTheExponential) {
+TEST(LawsTest, TheTailOfKMatchesItsFormulaAndIsFarAboveTheExponential) {
     for (const double shape : {1.0, 2.5, 8.0}) {
         const std::vector<float> values = drawn(kOf(shape));
         for (const double x : {3.0, 6.0, 10.0}) {

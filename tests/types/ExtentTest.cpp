@@ -24,7 +24,7 @@ Snapshot twoSquares() {
     return snapshot;
 }
 
-TEST(ExtentTest, ABoxHoldsWhatTrianglesUseWhereItIs) {
+TEST(ExtentTest, ABoxContainsThePlacedVerticesOfTheTriangles) {
     Snapshot snapshot = twoSquares();
     EXPECT_EQ(extentOf(*snapshot.geometry).low, glm::dvec3(0));
     EXPECT_EQ(extentOf(*snapshot.geometry).high, glm::dvec3(11, 1, 0));

@@ -22,7 +22,7 @@ std::string reasonFor(Act act) {
     return "nothing was thrown";
 }
 
-TEST(ReasonTest, WhatTheStandardLibraryThrowsIsToldInOurWords) {
+TEST(ReasonTest, ReplacesTextsOfTheStandardLibrary) {
     const std::string bounds = "a number, a count or an index in it is out of bounds";
     const std::string memory = "out of memory";
     EXPECT_EQ(reasonFor([] { return std::stoi("x"); }), bounds);
@@ -39,7 +39,7 @@ TEST(ReasonTest, WhatTheStandardLibraryThrowsIsToldInOurWords) {
     EXPECT_EQ(reasonFor([] { throw std::bad_alloc(); }), memory);
 }
 
-TEST(ReasonTest, ASentenceIsPassedOn) {
+TEST(ReasonTest, KeepsASentence) {
     for (const char* text : {"range: is -3; must be positive", "stop: sonar::SonarTask has no such port", "",
                              "store.log: No space left on device", "out of paper"})
         EXPECT_EQ(reasonOf(std::runtime_error(text)), text);

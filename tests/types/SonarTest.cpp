@@ -65,7 +65,7 @@ TEST(SonarTest, ABeamStartsAtItsOwnTimeOrAtThatOfThePing) {
     EXPECT_THROW(sample.beamStart(2), std::out_of_range);
 }
 
-TEST(SonarTest, ValidationTellsEveryDiagnostic) {
+TEST(SonarTest, ValidationReportsEveryError) {
     EXPECT_EQ(complaintOf(Sonar{}), "") << "empty, as Rock has it";
     EXPECT_EQ(complaintOf(ping(4, 3)), "") << "unknown bearings";
     Sonar sample = ping(4, 3);
@@ -81,7 +81,7 @@ TEST(SonarTest, ValidationTellsEveryDiagnostic) {
         "has bins without a duration; has bins without a speed of sound");
 }
 
-TEST(SonarTest, CountsWhoseProductTurnsOverAreNoShape) {
+TEST(SonarTest, RejectsCountsWhoseProductOverflows) {
     Sonar sample;
     sample.bin_count = 1u << 16;
     sample.beam_count = 1u << 16;  // 2^32 bins: 0 in 32 bits
