@@ -121,14 +121,14 @@ SonarConfig fan() {
 
 TEST(AllocationTest, AForwardLookingSonarAllocatesNothingAfterItsFirstPings) { expectNoAllocation<SonarTask>(fan()); }
 
-TEST(AllocationTest, NorByRays) {
+TEST(AllocationTest, ARayTracedSonarAllocatesNothingAfterItsFirstPings) {
     SonarConfig config = fan();
     config.device.clear();
     config.visibility = Visibility::Cpu;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorWithPatternsAndAPulse) {
+TEST(AllocationTest, PatternsAndAPulseAllocateNothing) {
     SonarConfig config = fan();
     acoustics::BeamLaw law;
     law.width_deg = 3;
@@ -143,7 +143,7 @@ TEST(AllocationTest, NorWithPatternsAndAPulse) {
     }
 }
 
-TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
+TEST(AllocationTest, TruthAllocatesNothing) {
     SonarConfig config = fan();
     expectNoAllocation<SonarTask>(config, Truth::Heard);
     config.deposit = Deposit::Gpu;
@@ -157,13 +157,13 @@ TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
     expectNoAllocation<SonarTask>(config, Truth::Heard);
 }
 
-TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
+TEST(AllocationTest, TheDepositOnTheDeviceAllocatesNothing) {
     SonarConfig config = fan();
     config.deposit = Deposit::Gpu;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorWithEveryEffectThereIs) {
+TEST(AllocationTest, AllEffectsTogetherAllocateNothing) {
     SonarConfig config = fan();
     config.water.emplace();
     config.absorption.emplace().frequency_khz = 700;
@@ -171,7 +171,7 @@ TEST(AllocationTest, NorWithEveryEffectThereIs) {
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, AQualityThatIsLookedAfterAllocatesOnlyInThePingsThatAreWatched) {
+TEST(AllocationTest, AQualityControllerAllocatesOnlyInMeasuredPings) {
     SonarConfig config = fan();
     config.quality = {};
     const int allocating = pingsThatAllocate(config, 40);
@@ -179,13 +179,13 @@ TEST(AllocationTest, AQualityThatIsLookedAfterAllocatesOnlyInThePingsThatAreWatc
     EXPECT_LE(allocating, 12);
 }
 
-TEST(AllocationTest, NorInThePublishedModel) {
+TEST(AllocationTest, ThePublishedModelAllocatesNothing) {
     SonarConfig config = fan();
     config.model = Model::Cerqueira2017;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorDoTheOtherKindsOfSonarThatTellMore) {
+TEST(AllocationTest, OtherKindsOfSonarAllocateNothing) {
     ProfilerConfig profiler;
     profiler.sonar = fan();
     expectNoAllocation<ProfilerTask>(profiler);

@@ -37,7 +37,7 @@ protected:
     }
 };
 
-TEST_F(AltimeterTaskTest, OverAFlatBottomItTellsTheHeight) {
+TEST_F(AltimeterTaskTest, MeasuresTheHeightOverAFlatBottom) {
     for (const double opening : {2.0, 25.0, 120.0}) {
         startWide(opening);
         for (const double height : {1.0, 7.777, 12.34, 28.0})
@@ -45,7 +45,7 @@ TEST_F(AltimeterTaskTest, OverAFlatBottomItTellsTheHeight) {
     }
 }
 
-TEST_F(AltimeterTaskTest, OnATiltedVehicleItTellsTheNearestPointThatTheBeamSees) {
+TEST_F(AltimeterTaskTest, MeasuresTheNearestPointInTheBeamOnATiltedVehicle) {
     const auto nearest = [](double height, double tilt, double half) {
         return tilt <= half ? height : height / std::cos(types::radians(tilt - half));
     };
@@ -62,7 +62,7 @@ TEST_F(AltimeterTaskTest, OnATiltedVehicleItTellsTheNearestPointThatTheBeamSees)
 }
 
 /** Of a plane through the foot of the axis, tilted by t: D cos(t), as far as the beam sees that point. */
-TEST_F(AltimeterTaskTest, OverASlopeItTellsTheFootOfThePerpendicular) {
+TEST_F(AltimeterTaskTest, MeasuresTheFootOfThePerpendicularOverASlope) {
     constexpr double height = 10;
     startWide(60);
     for (const double tilt : {5.0, 15.0, 25.0}) {
@@ -76,7 +76,7 @@ TEST_F(AltimeterTaskTest, OverASlopeItTellsTheFootOfThePerpendicular) {
     }
 }
 
-TEST_F(AltimeterTaskTest, ItTellsWhatItCouldHaveHeardAndWhen) {
+TEST_F(AltimeterTaskTest, ReportsItsMinAndMaxRangeAndTime) {
     startWide(25);
     const types::Range told = rangeAt(10);
     EXPECT_EQ(told.time, types::Time{1'000'000});
@@ -85,7 +85,7 @@ TEST_F(AltimeterTaskTest, ItTellsWhatItCouldHaveHeardAndWhen) {
     EXPECT_NEAR(told.field_of_view.deg(), 25, 1e-6);
 }
 
-TEST_F(AltimeterTaskTest, WithoutAReturnTheRangeIsNotKnown) {
+TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
     startWide(25);
     EXPECT_FALSE(rangeAt(40).isKnown());
     EXPECT_TRUE(rangeAt(20).isKnown());

@@ -43,7 +43,7 @@ double median(std::vector<double> times) {
     return times[times.size() / 2];
 }
 
-TEST(BudgetKeeperTest, ItUsesAtLeastFourFifthsOfWhatItIsGivenAndKeepsToIt) {
+TEST(BudgetKeeperTest, UsesAtLeastFourFifthsOfTheBudgetAndDoesNotExceedIt) {
     for (const double fixed_ms : {0.1, 1.0, 5.0})
         for (const double budget : {10.0, 33.0, 80.0}) {
             Machine machine{fixed_ms, 4e-5, 0.03};
@@ -55,7 +55,7 @@ TEST(BudgetKeeperTest, ItUsesAtLeastFourFifthsOfWhatItIsGivenAndKeepsToIt) {
         }
 }
 
-TEST(BudgetKeeperTest, TwoOfTwentyLatePingsLowerItOneDoesNot) {
+TEST(BudgetKeeperTest, TwoLatePingsInTwentyLowerTheQualityAndOneDoesNot) {
     BudgetKeeper keeper(10, 1e5);
     EXPECT_FALSE(keeper.note(11, 1e5));
     for (int i = 0; i < 25; ++i) EXPECT_FALSE(keeper.note(9.5, 1e5)) << "one late ping is forgotten";
@@ -64,7 +64,7 @@ TEST(BudgetKeeperTest, TwoOfTwentyLatePingsLowerItOneDoesNot) {
     EXPECT_NEAR(keeper.limit(), 0.9 * 10 / 12 * 1e5, 1);
 }
 
-TEST(BudgetKeeperTest, ItFallsWhenTheMachineIsBusyAndClimbsBackInSomeTensOfPings) {
+TEST(BudgetKeeperTest, TheQualityFallsOnABusyMachineAndRecoversInSomeTensOfPings) {
     Machine machine;
     BudgetKeeper keeper(33, least);
     machine.run(keeper, 100);
@@ -78,7 +78,7 @@ TEST(BudgetKeeperTest, ItFallsWhenTheMachineIsBusyAndClimbsBackInSomeTensOfPings
     EXPECT_GE(median(machine.run(keeper, 20)), 0.8 * 33);
 }
 
-TEST(BudgetKeeperTest, ItDoesNotSwingBetweenTwoQualities) {
+TEST(BudgetKeeperTest, DoesNotOscillateBetweenTwoQualities) {
     Machine machine;
     machine.jitter = 0.12;
     BudgetKeeper keeper(33, least);
@@ -90,14 +90,14 @@ TEST(BudgetKeeperTest, ItDoesNotSwingBetweenTwoQualities) {
     EXPECT_LE(moves, 40);
 }
 
-TEST(BudgetKeeperTest, WhatAPingDoesNotNeedIsNotRaised) {
+TEST(BudgetKeeperTest, DoesNotExceedTheQualityThatAPingNeeds) {
     BudgetKeeper keeper(33);
     for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, least));
     BudgetKeeper limited(33, 1e6);
     for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "there is room already";
 }
 
-TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
+TEST(BudgetKeeperTest, AChangedBudgetAppliesAtOnce) {
     Machine machine;
     BudgetKeeper keeper(33, least);
     machine.run(keeper, 100);
@@ -106,7 +106,7 @@ TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
     EXPECT_LE(median(machine.run(keeper, 20)), 10);
 }
 
-TEST(PeriodMeterTest, NeitherAPingThatWasLeftOutNorTwoAtOnceChangeIt) {
+TEST(PeriodMeterTest, IgnoresAMissingPingAndTwoAtOnce) {
     PeriodMeter meter;
     EXPECT_EQ(meter.period(), 0);
     for (int i = 0; i < 40; ++i) meter.note(i % 4 == 0 ? 0.2 : i % 16 == 1 ? 0.001 : 0.1);

@@ -94,7 +94,7 @@ std::vector<std::pair<std::string, SonarConfig>> sonars() {
     return {{"plain", plain}, {"coherent", coherent}, {"mirrors", mirrors}, {"pattern", pattern}, {"means", means}};
 }
 
-TEST(ChangingSceneTest, AMissionOverTilesPingsAsRenderersMadeAnewForEachTile) {
+TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
     const Folder folder;
     const std::string file = survey(folder, 120, 700);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
@@ -126,7 +126,7 @@ TEST(ChangingSceneTest, AMissionOverTilesPingsAsRenderersMadeAnewForEachTile) {
     }
 }
 
-TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) {
+TEST(ChangingSceneTest, ObjectsThatAppearDisappearAndMoveMatchNewRenderers) {
     Random random(8);
     for (const auto& [name, config] : sonars())
         for (int trial = 0; trial < 4; ++trial) {
@@ -150,7 +150,7 @@ TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) 
         }
 }
 
-TEST(ChangingSceneTest, AMaterialThatComesWithAnObjectChangesThePlanAndThePings) {
+TEST(ChangingSceneTest, AMaterialOfANewObjectChangesThePlanAndThePings) {
     const auto bare = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-4), test::sphere(1, 30)}, -20));
     bare->objects[1].world_from_object = glm::translate(glm::dmat4(1), {8, 0, -1});
     auto shiny = std::make_shared<types::Geometry>(*bare);
@@ -175,7 +175,7 @@ TEST(ChangingSceneTest, AMaterialThatComesWithAnObjectChangesThePlanAndThePings)
     EXPECT_NE(binsWith(of_bare, test::snapshotOf(bare)), binsWith(of_shiny, test::snapshotOf(shiny)));
 }
 
-TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
+TEST(ChangingSceneTest, KeepsMeshesTreesAndThreads) {
     const Folder folder;
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
@@ -218,7 +218,7 @@ protected:
     ChosenQualityTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
 };
 
-TEST_F(ChosenQualityTest, IsKeptAndIsNotChosenAgainForTheNextTile) {
+TEST_F(ChosenQualityTest, IsKeptForTheNextTile) {
     const Folder folder;
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));

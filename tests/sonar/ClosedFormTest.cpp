@@ -79,7 +79,7 @@ TEST(ClosedFormTest, SphereFollowsItsRangeDensity) {
                test::times(1.03, test::sphereEcho(1, 10)));
 }
 
-TEST(ClosedFormTest, AtTheLimbOfASphereBinsAreRightToTheirPixels) {
+TEST(ClosedFormTest, BinsAtTheLimbOfASphereAreRightToTheirPixels) {
     // The last pixel before the limb is 4 mm wide and spans sqrt(2 * 1 m * 4 mm), 0.09 m of range, on a sphere of 1 m:
     // there a bin of 0.025 m is a matter of single pixels, each drawn as the plane of its triangle.
     const double limb = std::sqrt(99.0), pixel = 0.09;
@@ -156,7 +156,7 @@ struct RandomSphere {
     SonarConfig config;
 };
 
-TEST(ClosedFormTest, NothingIsBeforeASphereOrBehindItsLimb) {
+TEST(ClosedFormTest, NoEchoIsBeforeASphereOrBehindItsLimb) {
     std::mt19937 random(11);
     double behind_planes = 0;
     for (const int rings : {64, 256, 512})
@@ -248,7 +248,7 @@ TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
     EXPECT_GT(std::abs(end * 0.1 - ground_range * height / (height - screen)), 0.1) << "ground range is wrong";
 }
 
-TEST(ClosedFormTest, AMeshSoundsAsItsTilesDo) {
+TEST(ClosedFormTest, AMeshEchoesAsItsTilesDo) {
     study::StudyScene scene = study::roughFloor();
     scene.config.visibility = Visibility::Cpu;
     std::vector<types::Mesh> tiles = study::tilesOf(study::FractalFloor{}, 8);  // of 64 x 64 squares

@@ -88,7 +88,7 @@ SonarConfig randomFan(std::mt19937& random) {
 
 /** Random fans, places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at
  * the level of the one-way sonar equation. */
-TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
+TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     int heard = 0;
@@ -138,7 +138,7 @@ TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
     }
 }
 
-TEST(CrosstalkTest, APulseIsNotHeardBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
+TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
     const SonarConfig config = hearing(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
     const auto heardFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
         types::Snapshot snapshot = test::snapshotOf(scene);
@@ -158,7 +158,7 @@ TEST(CrosstalkTest, APulseIsNotHeardBehindAWallTooEarlyTooLateOrOutsideOfFanAndA
 }
 
 /** The surface's image of the sender, 6 m above it. */
-TEST(CrosstalkTest, ThePulseComesByWayOfTheSurfaceAsWell) {
+TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
     SonarConfig config = test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
     config = hearing(config);
     config.multipath.emplace().surface.emplace();
@@ -197,7 +197,7 @@ double filteredEnergy(const Waveform& own, const Waveform& sent) {
     return energy / rate;  // [s], of a peak of 1
 }
 
-TEST(CrosstalkTest, AMatchedFilterPassesAsMuchOfAnotherChirpAsMismatchOfSays) {
+TEST(CrosstalkTest, AMatchedFilterPassesTheShareOfAnotherChirpByMismatchOf) {
     const Waveform own{700, 40, 1.5e-3};
     for (const Waveform& sent : {Waveform{700, 40, 2.5e-3}, Waveform{720, 40, 1.5e-3}, Waveform{715, 60, 1e-3},
                                  Waveform{700, 30, 3e-3}, Waveform{690, 25, 2e-3}}) {
@@ -212,7 +212,7 @@ TEST(CrosstalkTest, AMatchedFilterPassesAsMuchOfAnotherChirpAsMismatchOfSays) {
     EXPECT_NEAR(decibelsOf(far.intensity), -40 + decibelsOf(0.02 / far.length), 1e-9);
 }
 
-TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsThatItLasts) {
+TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
     SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 50;  // without chirp_us it lasts 1 ms
@@ -305,7 +305,7 @@ TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGroun
     }
 }
 
-TEST(CrosstalkTest, ASenderBehindASurfaceOrOnItsFarSideLightsNothing) {
+TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
     const SonarConfig config =
         hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));

@@ -131,7 +131,7 @@ types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
 
 }  // namespace
 
-TEST(CullerTest, NothingThatASlabSeesIsCulled) {
+TEST(CullerTest, CullsNothingInViewOfAFrustum) {
     Random random(1);
     Count total;
     for (int round = 0; round < 200; ++round) {
@@ -155,7 +155,7 @@ TEST(CullerTest, NothingThatASlabSeesIsCulled) {
     EXPECT_LT(total.drawn, total.all / 2) << "most of the scene is out of view";
 }
 
-TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
+TEST(CullerTest, CullsNoTriangleOfAClusterInView) {
     Random random(2);
     const auto geometry = clusteredHarbour();
     geometry->materials[0].double_sided = true;  // backs are another test's
@@ -172,7 +172,7 @@ TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
     }
 }
 
-TEST(CullerTest, ObjectsBehindAsideAboveOrBeyondTheRangeAreNotDrawn) {
+TEST(CullerTest, CullsObjectsBehindAsideAboveOrBeyondTheRange) {
     EXPECT_EQ(runsOfBall({10, 0, 0}), 1u);
     EXPECT_EQ(runsOfBall({-10, 0, 0}), 0u) << "behind";
     EXPECT_EQ(runsOfBall({10, 9, 0}), 0u) << "to port";
@@ -183,12 +183,12 @@ TEST(CullerTest, ObjectsBehindAsideAboveOrBeyondTheRangeAreNotDrawn) {
     EXPECT_EQ(runsOfBall({30.5, 0, 0}), 1u) << "its near side is in range";
 }
 
-TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
+TEST(CullerTest, AnObjectAroundTheSonarIsInEveryFrustum) {
     EXPECT_EQ(runsOfBall({0, 0, 0}, 360), 6u);
     EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the slabs of a full turn meet ahead";
 }
 
-TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
+TEST(CullerTest, AMovedObjectIsCulledByItsNewPlace) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
     Culler culler(*snapshot.geometry, {0, {30}});
     std::vector<Culler::DrawRange> runs;
@@ -206,7 +206,7 @@ TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
     EXPECT_TRUE(runs.empty()) << "back at its place";
 }
 
-TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
+TEST(CullerTest, ThePingOfClustersCulledByViewMatchesTheWholeScene) {
     const auto clustered = clusteredHarbour();
     for (double degrees : {50.0, 100.0, 360.0}) {
         SonarConfig config = fan(degrees);
@@ -217,7 +217,7 @@ TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
     }
 }
 
-TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) {
+TEST(CullerTest, CullingByRangeRemovesOnlyEchoesThatPixelsBeyondItSmearBack) {
     const auto clustered = clusteredHarbour();
     const auto culled = pings(fan(100), clustered), all = pings(fan(100), withoutCulling(*clustered));
     const float most = *std::ranges::max_element(all);

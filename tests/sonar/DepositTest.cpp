@@ -108,7 +108,7 @@ TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
     expectAgreement(pingOf(with(Deposit::Cpu), hardScene()), pingOf(with(Deposit::Gpu), hardScene()));
 }
 
-TEST_P(DepositTest, TheyAgreeFarFromTheOriginOfTheWorld) {
+TEST_P(DepositTest, BothAgreeFarFromTheOriginOfTheWorld) {
     const types::Snapshot far = asInUtm(hardScene());
     const auto gpu = pingOf(with(Deposit::Gpu), far);
     expectAgreement(pingOf(with(Deposit::Cpu), far), gpu);
@@ -117,7 +117,7 @@ TEST_P(DepositTest, TheyAgreeFarFromTheOriginOfTheWorld) {
     EXPECT_GT(sum(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * sum(gpu)) << "a centimetre is seen";
 }
 
-TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
+TEST_P(DepositTest, EachIsRepeatableBitForBitInANewRenderer) {
     for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
         const types::Snapshot snapshot = hardScene();
         SonarRenderer renderer(with(where), snapshot.geometry);
@@ -133,7 +133,7 @@ TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
     }
 }
 
-TEST_P(DepositTest, TheyAgreeInFewBinsAndInMoreThanAWorkGroupHolds) {
+TEST_P(DepositTest, BothAgreeInFewBinsAndInMoreThanAWorkGroupHas) {
     for (const int bins : {30, 6000}) {
         SonarConfig cpu = with(Deposit::Cpu), gpu = with(Deposit::Gpu);
         cpu.bin_count = gpu.bin_count = bins;
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
                                     std::to_string(static_cast<int>(kind.param.field_of_view_deg));
                          });
 
-TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
+TEST(DepositPublishedTest, BothAgreeInThePublishedModelWhereMissesCount) {
     SonarConfig cpu = depositFan(Model::Cerqueira2017, BeamGeometry::Planar, Deposit::Cpu, 60);
     cpu.published = true;
     SonarConfig gpu = cpu;
@@ -162,7 +162,7 @@ TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
     EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
 }
 
-TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFromSumming) {
+TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {
     addEffect(std::make_unique<OwnSumsEffect>());
     const types::Snapshot snapshot = hardScene();
     const std::string notice =
@@ -181,7 +181,7 @@ TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFro
     EXPECT_EQ(pingOf(gpu, snapshot).bins, pingOf(cpu, snapshot).bins);
 }
 
-TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {
+TEST(DepositEnergyTest, OneBinHasTheEnergyOfTheBinsThatItCovers) {
     // A pixel's energy is that of the middle of its part of each bin: exact to second order in the pixel's depth, so
     // that it depends on the bins only where a pixel is deep.
     const auto wall = test::snapshotOf(test::sceneOf({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));

@@ -81,7 +81,7 @@ types::Sonar heardOf(const types::GeometryPtr& geometry, const Look& look) {
 
 }  // namespace
 
-TEST(DetailCullTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
+TEST(DetailCullTest, TheBacksOfAClosedMeshAreCulledWithoutChangingABin) {
     const auto geometry = clusteredHarbour();
     types::Mesh& ball = geometry->meshes[1];
     const SonarConfig config = fan(360);
@@ -97,7 +97,7 @@ TEST(DetailCullTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
     EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
 }
 
-TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
+TEST(DetailCullTest, TheBackOfAClosedMeshEchoesFromWithin) {
     const auto geometry = test::sceneOf({test::sphere(5, 80)});
     const auto clustered = std::make_shared<types::Geometry>(*geometry);
     scene::buildClusters(clustered->meshes[0]);
@@ -107,7 +107,7 @@ TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
     EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
 }
 
-TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
+TEST(DetailCullTest, ARoughFloorEchoesTheSameInOneMeshAndInManySmallMeshes) {
     const Floors floors;
     ASSERT_FALSE(floors.one->meshes[0].cluster_nodes.empty());
     ASSERT_TRUE(floors.tiles->meshes[0].cluster_nodes.empty());
@@ -122,7 +122,7 @@ TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
     }
 }
 
-TEST(DetailCullTest, WithDrawAllTheWholeSceneIsDrawnAndHeardTheSame) {
+TEST(DetailCullTest, DrawAllRasterisesTheWholeSceneWithTheSameEchoes) {
     const auto geometry = clusteredHarbour();
     SonarConfig config = fan(100);
     config.range = 120;  // holds all of the scene

@@ -59,7 +59,7 @@ void expectSameCulling(SonarConfig config, const std::vector<types::Snapshot>& s
     EXPECT_FALSE(config.fieldOfViewDeg() < 100 && std::ranges::all_of(device, nothing));
 }
 
-TEST(DeviceCullTest, TheDeviceCullsWhatTheProcessorCulls) {
+TEST(DeviceCullTest, TheDeviceCullsTheSameAsTheProcessor) {
     const auto open = clusteredHarbour(), both_sides = clusteredHarbour();
     both_sides->materials[0].double_sided = true;
     for (const types::GeometryPtr& scene : {types::GeometryPtr(open), types::GeometryPtr(both_sides)})
@@ -67,12 +67,12 @@ TEST(DeviceCullTest, TheDeviceCullsWhatTheProcessorCulls) {
             expectSameCulling(fanWith(Deposit::Auto, degrees), passage(scene, 5));
 }
 
-TEST(DeviceCullTest, ItDoesSoWithNormalMapsAndSeveralMaterials) {
+TEST(DeviceCullTest, TheDeviceCullsTheSameWithNormalMapsAndSeveralMaterials) {
     for (const double degrees : {10.0, 60.0, 360.0})
         expectSameCulling(fanWith(Deposit::Auto, degrees), passage(test::surfaces(), 4));
 }
 
-TEST(DeviceCullTest, NoBinChangesWhereNothingIsCulled) {
+TEST(DeviceCullTest, NoBinChangesWithoutCulling) {
     SonarConfig config = fanWith(Deposit::Gpu, 100);
     config.range = 120;  // holds all of the scene
     const std::vector<types::Snapshot> snapshots = passage(clusteredHarbour(), 5);
@@ -95,7 +95,7 @@ TEST(DeviceCullTest, ClustersOfAnObjectInViewAreCulled) {
     EXPECT_GT(std::get<1>(*triangles), 0.5 * std::get<2>(*triangles)) << "most of the floor is not ahead";
 }
 
-TEST(DeviceCullTest, WhereNothingIsInViewThereIsNoEcho) {
+TEST(DeviceCullTest, NoEchoIsReceivedWithNothingInView) {
     const auto ball = test::sceneOf({test::sphere(1, 8)}, 0, {{10, 0, 0}});
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         const auto results = rendered(fanWith(deposit, 60), {test::snapshotOf(ball), test::snapshotOf(ball, {}, 2)});

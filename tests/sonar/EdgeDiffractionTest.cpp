@@ -141,7 +141,7 @@ std::optional<LeftOut> omitted(const SonarRenderer& renderer) {
     return {};
 }
 
-TEST(StraightEdgesTest, ABoxHasTwelveWhateverItsTriangles) {
+TEST(StraightEdgesTest, ABoxHasTwelveEdgesWithAnyTriangles) {
     const types::Mesh plain = box({1, 2, 3});
     const StraightEdges twelve = straightEdges(plain, glm::dmat3(1), sharp);
     ASSERT_EQ(twelve.edges.size(), 12u);
@@ -165,7 +165,7 @@ TEST(StraightEdgesTest, ABoxHasTwelveWhateverItsTriangles) {
     }
 }
 
-TEST(StraightEdgesTest, CurvesAndSmoothBodiesHaveNone) {
+TEST(StraightEdgesTest, CurvesAndSmoothBodiesHaveNoEdges) {
     EXPECT_TRUE(straightEdges(test::sphere(1, 16), glm::dmat3(1), sharp).edges.empty());
     EXPECT_TRUE(straightEdges(prism(32, 0.3f, 1), glm::dmat3(1), sharp).edges.empty()) << "rims";
     EXPECT_TRUE(straightEdges(test::disc(5, 1, 64), glm::dmat3(1), sharp).edges.empty());
@@ -227,7 +227,7 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
             }
 }
 
-TEST(EdgeDiffractionTest, ItIsHeardAsAPointTargetOfItsStrength) {
+TEST(EdgeDiffractionTest, AnEdgeEchoesAsAPointTargetOfItsStrength) {
     const double length = 0.1, range = 6.013;
     const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
     types::Snapshot target = test::snapshotOf(test::openWater(), {0, 0, 0}, 0.07, 0.05);
@@ -258,7 +258,7 @@ TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
     EXPECT_NEAR(decibels(with / plain), 0, 0.2);
 }
 
-TEST(EdgeDiffractionTest, TrianglesMakeNoDifference) {
+TEST(EdgeDiffractionTest, DoesNotDependOnTheTriangles) {
     std::mt19937 random(3);
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -278,7 +278,7 @@ TEST(EdgeDiffractionTest, TrianglesMakeNoDifference) {
     }
 }
 
-TEST(EdgeDiffractionTest, WhatIsHiddenIsSilent) {
+TEST(EdgeDiffractionTest, HiddenEdgesAreSilent) {
     const types::Mesh wall = test::quad({0, -2, -2}, {0, 4, 0}, {0, 0, 4}), block = box({0.5f, 0.5f, 0.5f});
     const glm::dmat4 far = placed({8, 0, 0}, 0.3, 0.4), before = placed({5, 0, 0});
     const types::Sonar alone = test::pingOf(edgeSonar(), test::snapshotOf(smooth({wall}, {before})));
@@ -306,7 +306,7 @@ TEST(EdgeDiffractionTest, AnObjectThatMovesTakesItsEdgesAlong) {
     for (size_t i = 0; i < still.bins.size(); ++i) ASSERT_NEAR(ping.bins[i], still.bins[i], 1e-4 * loudest) << i;
 }
 
-TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndSaysWhy) {
+TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
     const auto expectOmitted = [](const types::GeometryPtr& scene, const char* words) {
         SonarRenderer renderer(edgeSonar(), scene);
         types::Sonar ping;
@@ -324,7 +324,7 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndSaysWhy) {
     expectOmitted(smooth({test::sphere(0.5, 24)}, {placed({6, 0, 0})}), "no straight edge");
 }
 
-TEST(EdgeDiffractionTest, WhatIsWrongIsRefused) {
+TEST(EdgeDiffractionTest, RejectsInvalidConfigurations) {
     const auto diagnosticOf = [](const char* yaml) {
         framework::ConfigReader reader("sonar.yml");
         SonarConfig config;
@@ -395,7 +395,7 @@ double sectionOf(const PlacedEdge& edge, const glm::dvec3& sonar) {
     return sum;
 }
 
-TEST(EdgeEchoesTest, ALongEdgeEchoesAsItsFresnelZoneWhateverItsRelief) {
+TEST(EdgeEchoesTest, ALongEdgeEchoesAsItsFresnelZoneWithAnyRelief) {
     const glm::dvec3 sonar{6, 0, 8};
     const double expected = wavelength * 10 / 2 * std::pow(edgeOf(1, 0).coefficient(sonar) / (2 * pi), 2);
     for (const double slope : {0.0, 0.003, 0.03, 0.2})

@@ -101,7 +101,7 @@ Off off(const types::Sonar& ping, const std::vector<double>& bins, double least 
     return {wrong / count, 10 * std::log10(sum / own_sum)};
 }
 
-TEST(ElementSignalsTest, BeamsFormedOfThemAreThePingsBins) {
+TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
     struct Bound {
         Weighting weighting;
         double above_mean, all;  ///< Of the bins above the mean at their range, and of those to 20 dB below it.
@@ -121,7 +121,7 @@ TEST(ElementSignalsTest, BeamsFormedOfThemAreThePingsBins) {
     }
 }
 
-TEST(ElementSignalsTest, TheyTellWhereElementsAndSamplesAre) {
+TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
     const Heard both = heard(arrayOf(Weighting::Uniform));
     const types::SonarElements& signals = both.signals;
     EXPECT_EQ(signals.diagnostic(), nullptr);
@@ -136,7 +136,7 @@ TEST(ElementSignalsTest, TheyTellWhereElementsAndSamplesAre) {
     EXPECT_NEAR(signals.range(0), 0.5 * signals.sample_spacing, 1e-12);
 }
 
-TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
+TEST(ElementSignalsTest, FewerElementsAreFartherApartAndReceiveTheSamePlaces) {
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     const types::SonarElements sparse = heard(config).signals, dense = heard(arrayOf(Weighting::Uniform)).signals;
@@ -153,7 +153,7 @@ std::vector<std::string> refusalsOf(const SonarConfig& config) {
     return texts;
 }
 
-TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
+TEST(ElementSignalsTest, RejectsInvalidArraysWithTheReason) {
     EXPECT_THAT(refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.speckle.reset();
@@ -184,7 +184,7 @@ protected:
     test::Reader<types::SonarElementsPtr> signals_;
 };
 
-TEST_F(ElementPortTest, ThePortTellsThemOfEachPing) {
+TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     startWith(arrayOf(Weighting::Uniform));
     const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(twoTargets()));
@@ -196,7 +196,7 @@ TEST_F(ElementPortTest, ThePortTellsThemOfEachPing) {
     EXPECT_EQ(signals->time, ping->time);
 }
 
-TEST_F(ElementPortTest, AConnectedPortOfASonarWithoutElementsIsRefused) {
+TEST_F(ElementPortTest, RejectsAConnectedPortOfASonarWithoutElements) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.elements.reset();

@@ -209,7 +209,7 @@ TEST_P(FanPingTest, AnyOrderOfTheTableGivesTheSameRows) {
     });
 }
 
-TEST_P(FanPingTest, AFanIsTheSameWhereverItLiesAboutTheSeam) {
+TEST_P(FanPingTest, AFanIsTheSameAnywhereAboutTheSeam) {
     if (!GetParam().turns) return;
     if (sonar({"", {0}, 1}, GetParam()).beam_geometry == BeamGeometry::Conical) return;  // sees what is ahead alone
     forTables(1, [&](const test::Table& table, std::mt19937& random) {
@@ -226,7 +226,7 @@ TEST_P(FanPingTest, AFanIsTheSameWhereverItLiesAboutTheSeam) {
     });
 }
 
-TEST_P(FanPingTest, EachBeamIsWhatItIsAlone) {
+TEST_P(FanPingTest, EachBeamIsTheSameAlone) {
     if (!GetParam().stands_alone) return;
     forTables(1, [&](const test::Table& table, std::mt19937&) {
         const auto fine = [&](SonarConfig config) {

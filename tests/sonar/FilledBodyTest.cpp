@@ -221,13 +221,13 @@ void expectFarSide(const types::Mesh& mesh, bool is_cylinder, double distance, d
     }
 }
 
-TEST(FilledBodyTest, AFilledSphereShowsItsFarSideAsRaysDo) { expectFarSide(test::sphere(3, 256), false, 20, 3); }
+TEST(FilledBodyTest, TheFarSideOfAFilledSphereMatchesRays) { expectFarSide(test::sphere(3, 256), false, 20, 3); }
 
-TEST(FilledBodyTest, AFilledCylinderShowsItsFarSideAsRaysDo) { expectFarSide(closedCylinder(2, 1440, 3), true, 20, 2); }
+TEST(FilledBodyTest, TheFarSideOfAFilledCylinderMatchesRays) { expectFarSide(closedCylinder(2, 1440, 3), true, 20, 2); }
 
 /** A sphere of another fluid is a thick lens for what is behind it, and sound goes in and out through its wall twice:
  *  paraxial optics, Born and Wolf 1999, 4.4. */
-TEST(FilledBodyTest, AFilledSphereIsALensForWhatIsBehindIt) {
+TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
     constexpr double radius = 3, centre = 20, wall = 30;
     const SonarConfig config = wallSonar(0.2, 0.2, 1, 600);
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(wall)}, 0)));
@@ -251,7 +251,7 @@ TEST(FilledBodyTest, AFilledSphereIsALensForWhatIsBehindIt) {
     }
 }
 
-TEST(FilledBodyTest, LossIsThatOfTheWayInTheFill) {
+TEST(FilledBodyTest, LossIsThatOfThePathInTheFill) {
     const SonarConfig config = wallSonar(0.5, 0.5, 1);
     const types::Shell clear = filled(1200, 1250), lossy = filled(1200, 1250, 1e-4);
     const auto scene = [](const types::Shell& shell) { return shellsOf({test::wall(4), test::wall(9)}, 1, shell); };

@@ -104,7 +104,7 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
     EXPECT_NEAR(straight.azimuth(0.5, 0.3), std::pow(std::sin(pi * u) / (pi * u) - 1.0 / 25, 2), 1e-5);
 }
 
-TEST(ImperfectionsTest, NoErrorsAreTheSameBits) {
+TEST(ImperfectionsTest, WithoutErrorsBitsAreTheSame) {
     SonarConfig plain = imperfectFan(), coherent = imperfectFan(Weighting::Taylor), boxes = imperfectFan();
     coherent.speckle.emplace().coherent = true;
     boxes.beam_pattern.reset();
@@ -132,7 +132,7 @@ TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoh
     }
 }
 
-TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
+TEST(ImperfectionsTest, CoherentSurfacesHaveTheSidelobesOfEnergies) {
     const ImperfectionsConfig errors{.gain_error_db = 3, .phase_error_deg = 40, .dead_element_share = 0.1};
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
     const auto sidelobes = [&](bool is_coherent, const std::optional<ImperfectionsConfig>& own) {
@@ -181,7 +181,7 @@ double mainLobeWidth(const std::function<double(double)>& power) {
     return high - low;
 }
 
-TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
+TEST(ImperfectionsTest, ABeamOutOfFocusMatchesTheExactSumOverTheArray) {
     constexpr double length = 0.2;  // far field beyond 20 m
     for (const double focus : {1.5, 4.0, 1e5}) {
         SonarConfig config = imperfectFan();
@@ -207,7 +207,7 @@ TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
     }
 }
 
-TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
+TEST(ImperfectionsTest, ABeamInFocusOrInTheFarFieldMatchesTheLaw) {
     SonarConfig config = imperfectFan(Weighting::Hann);
     config.range = 200;
     const Directivity ideal(config);
@@ -320,7 +320,7 @@ std::vector<std::string> complaintsOf(const SonarConfig& config) {
     return texts;
 }
 
-TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
+TEST(ImperfectionsTest, RejectsImpossibleConfigurationsWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
     EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), gains)), IsEmpty());
     SonarConfig boxes = withErrors(imperfectFan(), gains);
@@ -361,7 +361,7 @@ TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
     EXPECT_THAT(complaintsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
-                                                     HasSubstr("their number is that of `elements`")));
+                                                    HasSubstr("their number is that of `elements`")));
 }
 
 }  // namespace

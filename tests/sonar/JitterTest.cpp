@@ -42,7 +42,7 @@ TEST(JitterTest, PointsAreUniformInTheirPixelsAndDoNotFollowOneAnother) {
     EXPECT_LT(std::abs(product(0, 1, 0, 0)), 4 * variance / std::sqrt(count)) << "column and row of one pixel";
 }
 
-TEST(JitterTest, TheHashIsThatOfItsAuthors) {
+TEST(JitterTest, TheHashMatchesItsPublication) {
     EXPECT_DOUBLE_EQ(jitter(0, 0, 0), 129708002 / 4294967296.0 - 0.5);
     EXPECT_DOUBLE_EQ(jitter(0, 0, 1), 2831084092 / 4294967296.0 - 0.5);
 }

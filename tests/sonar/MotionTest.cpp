@@ -102,7 +102,7 @@ HeardAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_ve
     return {c * back / 2, glm::normalize(met - sonar_velocity * back)};
 }
 
-TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
+TEST(MotionTest, APointEchoesAtTheRangeOfTheExactTwoWayPath) {
     struct Case {
         glm::dvec3 place, velocity, sonar;
     };
@@ -119,7 +119,7 @@ TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
     }
 }
 
-TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
+TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
     const auto geometry = test::sceneOf({test::wall(200)});
     const glm::dvec3 velocity{25, 8, 0};
     SonarRenderer renderer(movingFan(), geometry);
@@ -147,7 +147,7 @@ TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
     }
 }
 
-TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
+TEST(MotionTest, AFloorHasTheSameEnergyUnderAMovingSonarAndAtRest) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     SonarConfig config = movingFan();
     config.beam_height_deg = 40;
@@ -162,7 +162,7 @@ TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
     EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
 }
 
-TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
+TEST(MotionTest, APointTargetEchoesAtTheRangeOfTheExactPath) {
     const auto nothing = test::openWater();
     SonarRenderer renderer(movingFan(), nothing);
     types::Sonar ping;
@@ -179,7 +179,7 @@ TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
     EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
 }
 
-TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
+TEST(MotionTest, ARotatingReceiverGetsAnEchoAtItsBearingOnArrival) {
     const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
     const auto geometry = test::sceneOf({facingPlate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
     const Loudest loudest = loudestOf(pingOf(movingFan(), movingSonar(geometry, {}, {0, 0, turn})));
@@ -188,13 +188,14 @@ TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
     EXPECT_GT(turn * flight, radians(7)) << "where it was is seven beams off";
 }
 
-TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
+TEST(MotionTest, ASonarOfOneBeamShiftsByHalfBecauseItAlsoTransmitsWithTheBeam) {
     const double turn = radians(45), flight = 2 * 200 / c;
     SonarConfig one = movingFan();
     one.beam_count = 1;
     one.field_of_view_deg = 2;
     const auto heardAt = [&](double bearing) {
-        const auto geometry = test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        const auto geometry =
+            test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
     EXPECT_GT(heardAt(turn * flight / 2), 0);
@@ -202,7 +203,7 @@ TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
     EXPECT_EQ(heardAt(turn * flight), 0);
 }
 
-TEST(MotionTest, AChirpShiftsWhatMovesByItsRangeDopplerCoupling) {
+TEST(MotionTest, AChirpShiftsMovingTargetsByRangeDopplerCoupling) {
     SonarConfig config = movingFan();
     config.frequency_khz = 300;
     config.pulse.emplace().bandwidth_khz = 5;
@@ -233,7 +234,7 @@ TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
     EXPECT_NE(pingOf(movingFan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
 }
 
-TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
+TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
@@ -254,7 +255,7 @@ std::string complaintOf(const SonarConfig& config) {
     return all;
 }
 
-TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
+TEST(MotionTest, ReportsMissingRequirements) {
     EXPECT_EQ(complaintOf(movingFan()), "");
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
@@ -281,7 +282,7 @@ TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
     EXPECT_EQ(diagnostics[0].path, "head.sweeps");
 }
 
-TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
+TEST(MotionTest, AJumpIsAPlacementAndNotAMotion) {
     const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
@@ -303,7 +304,7 @@ TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
     EXPECT_EQ(motion.targetVelocity(0), glm::dvec3(0));
 }
 
-TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
+TEST(MotionTest, AJumpingSonarHasOnlyTheVelocityOfItsPose) {
     const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
@@ -332,7 +333,7 @@ TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
     EXPECT_NEAR(motion.velocity().x, 10, 1e-6) << "no vehicle is so fast: that of the two places";
 }
 
-TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
+TEST(MotionTest, VelocitiesAreFromThePoseOrElseFromTwoSnapshots) {
     const auto geometry = test::sceneOf({facingPlate(), facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
@@ -395,7 +396,7 @@ protected:
     }
 };
 
-TEST_F(SweepTest, AHeadThatSweepsHearsFromHalfWayToWhereItLooksByThen) {
+TEST_F(SweepTest, ASweepingHeadReceivesHalfWayToItsBearingOnArrival) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;  // of steps of 10 deg in 0.5 s
     EXPECT_GT(behind, 2.5) << "more than the beam of 2 deg";
     start(true);
@@ -407,7 +408,7 @@ TEST_F(SweepTest, AHeadThatSweepsHearsFromHalfWayToWhereItLooksByThen) {
     EXPECT_NEAR(last.range, 198.5, 0.5);
 }
 
-TEST_F(SweepTest, AHeadThatStandsAtEachStepHearsFromWhereItStands) {
+TEST_F(SweepTest, ASteppingHeadReceivesAtItsBearing) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;
     start(false);
     heardAt(1, 180);

@@ -80,7 +80,7 @@ TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
     EXPECT_GT(decibels(ping.bins[heard[1]] / (expected[1] / 2)), 2.9);
 }
 
-TEST(MultipathTest, TheFirstEchoOfATargetIsTheSameBitForBit) {
+TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(40, 4);
     const auto with = pingOf(mirrored(config), withTarget(3, {12, 2, -1}));
     const auto without = pingOf(config, withTarget(3, {12, 2, -1}));
@@ -99,7 +99,7 @@ size_t returnsWith(types::Mesh plate) {
     return heardBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
 }
 
-TEST(MultipathTest, EachLegOfATargetsWaysIsHiddenByItself) {
+TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
     const auto plateAt = [](glm::dvec3 at) {
         return test::quad(glm::vec3(at) - glm::vec3(0, 0.2f, 0.2f), {0, 0.4f, 0}, {0, 0, 0.4f});
     };
@@ -111,7 +111,7 @@ TEST(MultipathTest, EachLegOfATargetsWaysIsHiddenByItself) {
     EXPECT_EQ(returnsWith(plateAt({bounce, 0, 5})), 3u) << "above the surface nothing hides anything";
 }
 
-TEST(MultipathTest, WhatIsOutsideOfTheApertureIsNeitherSentNorHeard) {
+TEST(MultipathTest, DirectionsOutsideOfTheApertureAreNeitherSentNorReceived) {
     auto config = mirrored(surfaceSonar(40, 1));
     config.beam_height_deg = 50;  // the way by the surface goes up by 30.3 deg
     EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
@@ -119,13 +119,13 @@ TEST(MultipathTest, WhatIsOutsideOfTheApertureIsNeitherSentNorHeard) {
     EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 3u);
 }
 
-TEST(MultipathTest, ATargetAboveTheSurfaceIsNotHeard) {
+TEST(MultipathTest, ATargetAboveTheSurfaceHasNoEcho) {
     const auto snapshot = withTarget(3, {12, 0, 4});
     EXPECT_EQ(heardBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
     EXPECT_EQ(heardBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
 }
 
-TEST(MultipathTest, PatternsOfTheWayOutAndTheWayBackAreEachTheirOwn) {
+TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
     auto config = mirrored(surfaceSonar(40, 1));
     acoustics::BeamLaw narrow, wide;
     narrow.weighting = wide.weighting = acoustics::Weighting::Gaussian;
@@ -183,7 +183,7 @@ TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
     }
 }
 
-TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
+TEST(MultipathTest, DirectEchoesOfASceneAreTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(90, 16);
     const auto scene = test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}});
     const auto with = pingOf(mirrored(config), under(2, scene)), without = pingOf(config, under(2, scene));
@@ -199,7 +199,7 @@ TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
     EXPECT_GT(same, 500u);
 }
 
-TEST(MultipathTest, NothingAboveTheSurfaceIsHeard) {
+TEST(MultipathTest, ObjectsAboveTheSurfaceHaveNoEcho) {
     const auto wall = test::sceneOf({test::wall(10)});
     const auto ping = pingOf(mirrored(surfaceSonar(8, 1)), under(2, wall));
     // Straight at most to where the wall meets the surface; farther away there are ghosts of what is below it.
@@ -213,7 +213,7 @@ TEST(MultipathTest, NothingAboveTheSurfaceIsHeard) {
     EXPECT_FALSE(heardBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
 }
 
-TEST(MultipathTest, WithoutBouncesOrAnythingToReflectEveryBinIsAsItWas) {
+TEST(MultipathTest, NoBinChangesWithoutBouncesOrReflectors) {
     auto config = surfaceSonar(40, 8);
     const auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
     const auto without = pingOf(config, snapshot).bins;
@@ -317,7 +317,7 @@ SonarConfig lowFan(int beams) {
 }
 
 /** A plate of Lambert's law that faces the sonar and a mirror beside it, in beams to both. */
-TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
+TEST(MultipathTest, APlateByAMirrorEchoesAtEachBearingOfArrival) {
     const SonarConfig config = lowFan(14);
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
@@ -347,7 +347,7 @@ TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
     EXPECT_GT(std::abs(decibels(third / (twice * std::pow(r2 / 12, 4)))), 1) << "not as if it were no farther away";
 }
 
-TEST(MultipathTest, ASurfaceIsHeardByAMirrorOnItsOwnSideAlone) {
+TEST(MultipathTest, ASurfaceEchoesByAMirrorOnlyOnItsOwnSide) {
     const SonarConfig config = lowFan(1);
     // Edge-on to neither: the sonar sees one side of it, the mirror the other.
     const auto plate = test::quad({9.4f, 1.64f, -0.3f}, {0.2f, 0.02f, 0}, {0, 0, 0.6f});
@@ -513,7 +513,7 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     EXPECT_NEAR(decibels(rough_sum / flat_sum), 0, 1.5);
 }
 
-TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
+TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
     const SonarConfig config = surfaceSonar(8, 4);
     const auto snapshot = under(2, test::sceneOf({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
     SonarRenderer renderer(mirrored(config), snapshot.geometry);
@@ -551,7 +551,7 @@ TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
     EXPECT_EQ(truth.object[static_cast<size_t>(std::hypot(12, 8) / 0.1)], 1) << "the plate, not the wall";
 }
 
-TEST(MultipathTest, ThreadsMakeNoDifference) {
+TEST(MultipathTest, DoesNotDependOnTheNumberOfThreads) {
     const auto snapshot = under(2, test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}}));
     const auto bins = [&](int threads) {
         RenderOptions options;
@@ -565,7 +565,7 @@ TEST(MultipathTest, ThreadsMakeNoDifference) {
     EXPECT_EQ(bins(1), bins(5));
 }
 
-TEST(MultipathTest, WithAPatternAndConesAndAMovingObjectGhostsAreWhereTheyAre) {
+TEST(MultipathTest, GhostsAreAtTheirPlacesWithAPatternConesAndAMovingObject) {
     for (const BeamGeometry geometry : {BeamGeometry::Planar, BeamGeometry::Conical}) {
         SonarConfig config = mirrored(surfaceSonar(60, 30));
         config.beam_geometry = geometry;

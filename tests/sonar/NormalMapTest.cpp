@@ -44,7 +44,7 @@ types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
 
 }  // namespace
 
-TEST(NormalMapTest, RaysAverageAsMuchOfAMapWhicheverWayTheWallIsStretched) {
+TEST(NormalMapTest, RaysAverageTheSameAreaOfAMapOnAStretchedWall) {
     SonarConfig config = test::sonarOf({.beams = 24, .width_deg = 24, .bins = 300, .rows = 64, .columns = 2});
     config.visibility = Visibility::Cpu;
     const auto echo = [&](const glm::dvec3& size, bool by_object) {
@@ -61,7 +61,7 @@ TEST(NormalMapTest, RaysAverageAsMuchOfAMapWhicheverWayTheWallIsStretched) {
     EXPECT_NE(fine, coarse) << "another part of the map, which must show";
 }
 
-TEST(NormalMapTest, AnEchoGoesWithTheCosineOfTheBentNormal) {
+TEST(NormalMapTest, AnEchoIsProportionalToTheCosineOfTheMappedNormal) {
     const std::vector<float> plain = echoOf(wallWithNormalsAt(0));
     ASSERT_GT(plain[200], 0);
     for (const double degrees : {20.0, 45.0, 70.0, -45.0}) {

@@ -81,7 +81,7 @@ Bins times(Bins bins, float factor) {
 
 }  // namespace
 
-TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
+TEST(OmissionTest, EveryOmittedEffectIsTestedHere) {
     const std::set<std::string_view> tested = {"absorption", "absorption inside a bin", "specular lobe", "spreading",
                                                "backscatter by material", "further slabs", "refraction",
                                                "motion within a ping", "normal maps",
@@ -143,14 +143,14 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     }
 }
 
-TEST(OmissionTest, ASmoothMaterialHasNoLobeWhateverItReflects) {
+TEST(OmissionTest, ASmoothMaterialHasNoLobeWithAnyReflection) {
     const auto shiny = changed([](types::Geometry& g) { g.materials[0].reflection = 0.9f; });
     EXPECT_EQ(binsOf(plainSonar(), shiny), binsOf(plainSonar()));
     const auto rough = changed([](types::Geometry& g) { g.materials[0].roughness_slope = 0.1f; });
     EXPECT_EQ(binsOf(plainSonar(), rough), binsOf(plainSonar())) << "of reflection 0";
 }
 
-TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
+TEST(OmissionTest, TheModelOfCerqueiraHasNoSpreading) {
     for (Model model : {Model::Cerqueira2017, Model::Physical}) {
         SonarConfig twice = plainSonar(model);
         twice.range *= 2;
@@ -166,14 +166,14 @@ TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
     }
 }
 
-TEST(OmissionTest, TheModelOfCerqueiraKnowsNoBackscatter) {
+TEST(OmissionTest, TheModelOfCerqueiraHasNoBackscatter) {
     const Bins bins = binsOf(plainSonar(Model::Cerqueira2017));
     const auto hard = changed([](types::Geometry& g) { g.materials[0].lambert_db = -3; });
     EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), hard), bins);
     EXPECT_NE(binsOf(plainSonar(), hard), binsOf(plainSonar())) << "physical does";
 }
 
-TEST(OmissionTest, ReflectivityOfOneIsNone) {
+TEST(OmissionTest, ReflectivityOfOneHasNoEffect) {
     const auto plain = changed([](types::Geometry& g) { g.materials[1] = {}; });
     const auto one = changed([](types::Geometry& g) { g.materials[1] = {}, g.materials[1].reflectivity = 1; });
     EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), one), binsOf(plainSonar(Model::Cerqueira2017), plain));
@@ -181,7 +181,7 @@ TEST(OmissionTest, ReflectivityOfOneIsNone) {
         << "0.8, mapped";
 }
 
-TEST(OmissionTest, NoNormalMapIsAMapThatBendsNothing) {
+TEST(OmissionTest, NoNormalMapMatchesANeutralMap) {
     for (Model model : {Model::Physical, Model::Cerqueira2017}) {
         const Bins bins = binsOf(plainSonar(model), unmapped());
         const auto unused = changed([](types::Geometry& g) {
@@ -197,7 +197,7 @@ TEST(OmissionTest, NoNormalMapIsAMapThatBendsNothing) {
     }
 }
 
-TEST(OmissionTest, OneSlabShowsWhatSeveralDo) {
+TEST(OmissionTest, OneFrustumMatchesSeveral) {
     SonarConfig one = plainSonar(), two = plainSonar();
     one.quality.rows = two.quality.rows = 512;
     one.field_of_view_deg = one.beam_count = 60;
@@ -221,7 +221,7 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
     EXPECT_NE(cone, flat);
 }
 
-TEST(OmissionTest, RefractionIsLeftOutByItsNumbers) {
+TEST(OmissionTest, RefractionIsOmittedByItsBound) {
     const auto refraction = leftOut(plainSonar(), "refraction");
     ASSERT_TRUE(refraction);
     EXPECT_DOUBLE_EQ(refraction->value, 0.1 * 40 * 40 / (2 * 1000)) << "a gradient of 0.1 1/s";
@@ -234,7 +234,7 @@ TEST(OmissionTest, RefractionIsLeftOutByItsNumbers) {
     EXPECT_THAT(configNotices(far), testing::Contains(HasSubstr("rays are straight")));
 }
 
-TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
+TEST(OmissionTest, MotionWithinAPingIsOmittedBelowASpeed) {
     const auto motion = leftOut(plainSonar(), "motion within a ping");
     ASSERT_TRUE(motion);
     const double travel_time = 2 * 40 / 1000.0;  // [s]
@@ -293,7 +293,7 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     return all;
 }
 
-TEST(OmissionTest, EachFeatureRendersByTheWayOfItsPlan) {
+TEST(OmissionTest, EachFeatureRendersByItsPlan) {
     std::set<std::string> seen, all;
     for (std::string_view name : types::EnumNames<Feature>::names) all.emplace(name);
     for (const Effect* effect : effects())

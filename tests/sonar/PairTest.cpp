@@ -57,7 +57,7 @@ TEST(PairTest, ArithmeticHas44Bits) {
     }
 }
 
-TEST(PairTest, WhatIsBeyondACloseOriginHasAllBitsOfAFloat) {
+TEST(PairTest, TheDifferenceToACloseOriginHasAllBitsOfAFloat) {
     RandomPairs pairs;
     for (int i = 0; i < 10000; ++i) {
         const double number = pairs.number();

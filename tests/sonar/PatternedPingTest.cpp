@@ -38,7 +38,7 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
     };
 }
 
-TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
+TEST(PatternedPingTest, ABottomEchoesByThePatternInElevation) {
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 16);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 20);
@@ -72,7 +72,7 @@ test::Form weightedPitchedBottom(double height, double pitch, double delta,
     };
 }
 
-TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
+TEST(PatternedPingTest, APitchedBottomEchoesByThePatternInElevation) {
     SonarConfig config = patternedSonar(1, 1, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 12);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 16);
@@ -97,7 +97,7 @@ TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
     }
 }
 
-TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
+TEST(PatternedPingTest, ABottomEchoesByThePatternsWholeWidthInAzimuth) {
     SonarConfig config = patternedSonar(60, 30, 0.1, 200);
     config.beam_height_deg = 40;
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
@@ -112,7 +112,7 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
                    test::flatBottom(5, radians(20), radians(2)));
 }
 
-TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
+TEST(PatternedPingTest, APulseOfOneBinChangesNoBit) {
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
     const types::Sonar plain = pingOf(config, snapshot);
@@ -124,7 +124,7 @@ TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
     EXPECT_NE(pingOf(config, snapshot).bins, plain.bins);
 }
 
-TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
+TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
     const auto geometry = test::sceneOf({test::ground(-5)});
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const RenderPlan plain = makeRenderPlan(config, *geometry);
@@ -217,7 +217,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
     }
 }
 
-TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
+TEST(PatternedPingTest, AStrongTargetsSidelobesAreAnArcAcrossTheFan) {
     SonarConfig config = patternedSonar(90, 90, 0.2, 100);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
     const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
@@ -229,7 +229,7 @@ TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
     }
 }
 
-TEST(PatternedPingTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
+TEST(PatternedPingTest, AChirpsEchoHasTheWidthOfItsBandwidthAndTheRightRange) {
     SonarConfig config = patternedSonar(2, 1, 0.01, 1200);
     config.beam_height_deg = 2;
     config.quality.columns_per_beam = 64;

@@ -45,7 +45,7 @@ protected:
     int pings_ = 0;
 };
 
-TEST_F(PingDiagnosticsTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
+TEST_F(PingDiagnosticsTest, WarnsOnceAboutSilenceAndAgainAfterEnoughEchoes) {
     const auto wall = wallAt(5);
     ping(wall, 0, 2);
     EXPECT_THAT(told_, IsEmpty());
@@ -59,14 +59,14 @@ TEST_F(PingDiagnosticsTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
     EXPECT_EQ(told_.size(), 2u);
 }
 
-TEST_F(PingDiagnosticsTest, ATargetAloneIsSomethingToHear) {
+TEST_F(PingDiagnosticsTest, ATargetAloneIsAnEcho) {
     ping(wallAt(-50), 0, 3, {{{5, 0, 0}, 0}});
     EXPECT_THAT(told_, IsEmpty());
     ping(wallAt(-50), 0, 1, {{{-5, 0, 0}, 0}});
     EXPECT_THAT(told_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
 }
 
-TEST_F(PingDiagnosticsTest, ASonarInsideOfAMeshIsToldOfInPlaceOfSilence) {
+TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
     const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
     ping(hull, 0, 40);
     EXPECT_THAT(told_,

@@ -68,7 +68,7 @@ public:
     }
 };
 
-TEST(PingEffectTest, RaysAndCellsComeOnceInEveryPing) {
+TEST(PingEffectTest, RaysAndCellsAreVisitedOnceInEveryPing) {
     addEffect(std::make_unique<FollowerEffect>());
     const types::Snapshot snapshot =
         test::snapshotOf(test::sceneOf({test::ground(-3), test::sphere(1, 24)}, 0, {{}, {8, 0, -1}}));

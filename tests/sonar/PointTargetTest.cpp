@@ -141,7 +141,7 @@ std::vector<glm::dvec3> places() {
     return all;
 }
 
-TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
+TEST(PointTargetTest, HasTheLevelOfTheSonarEquationAtAnyPlaceInTheBeam) {
     double most = 0;
     for (const Law& pattern : patterns)
         for (const Law& pulse : pulses)
@@ -169,7 +169,7 @@ TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
     RecordProperty("largest difference", std::to_string(most) + " dB");
 }
 
-TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
+TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
     const auto geometry = openWater();
     for (const BeamGeometry fan : {BeamGeometry::Planar, BeamGeometry::Conical}) {
         SonarConfig config = targetSonar(60, 6);
@@ -208,7 +208,7 @@ std::vector<SonarConfig> energiesAndFields(SonarConfig config) {
     return all;
 }
 
-TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
+TEST(PointTargetTest, IsInTheBinOfBinAtOnTheEdgeOfABin) {
     std::mt19937 random(71);
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -250,7 +250,7 @@ TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
     EXPECT_GT(tried, 800);
 }
 
-TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
+TEST(PointTargetTest, IsInOneBeamOnlyAtAnyBearing) {
     SonarConfig config = targetSonar(360, 12);
     const auto geometry = openWater();
     for (double azimuth = -180; azimuth < 180; azimuth += 7.3) {
@@ -274,7 +274,7 @@ BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     return BeamCut(level, 0, step);
 }
 
-TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
+TEST(PointTargetTest, ShowsTheTableOfWeightingsWhenSweptAcrossABeam) {
     for (const test::WeightingRow& row : test::weightings)
         for (const bool in_azimuth : {true, false}) {
             acoustics::BeamLaw law = row.law();
@@ -286,7 +286,7 @@ TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
         }
 }
 
-TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) {
+TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureToTheFloor) {
     SonarConfig config = targetSonar(20, 10);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     const auto geometry = openWater();
@@ -299,7 +299,7 @@ TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) 
     EXPECT_EQ(sumOf(pingOf(config, outside)), 0);
 }
 
-TEST(PointTargetTest, NearerThanRangeMinItIsSilentAndBeyondTheRangeOnlyItsPulseIsHeard) {
+TEST(PointTargetTest, IsSilentBelowRangeMinAndOnlyItsPulseReachesIntoTheRange) {
     SonarConfig config = targetSonar(20, 1);
     config.range_min = 2;
     const auto geometry = openWater();
@@ -317,7 +317,7 @@ types::GeometryPtr plate(double x, double y = 0) {
     return test::sceneOf({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
 }
 
-TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
+TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
     SonarConfig config = targetSonar(40, 20);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     for (const SonarConfig& way : everyWay(config)) {
@@ -337,7 +337,7 @@ TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
     }
 }
 
-TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
+TEST(PointTargetTest, IsUncoveredByAnObjectThatMovesAside) {
     const auto geometry = plate(5);
     SonarRenderer renderer(targetSonar(40, 20), geometry);
     types::Sonar ping;
@@ -363,7 +363,7 @@ TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
     EXPECT_EQ(leftOut(), Reason::NoneInScene);
 }
 
-TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
+TEST(PointTargetTest, IsTheSameFarFromTheOriginAndRotated) {
     SonarConfig config = targetSonar(40, 20);
     const auto near = openWater();
     types::Snapshot snapshot = test::snapshotOf(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
@@ -373,7 +373,7 @@ TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
     for (size_t i = 0; i < far.bins.size(); ++i) EXPECT_NEAR(far.bins[i], here.bins[i], 1e-6 * here.bins[i]) << i;
 }
 
-TEST(PointTargetTest, NothingOfItChangesNoBit) {
+TEST(PointTargetTest, AnEmptyListChangesNoBit) {
     SonarConfig config = targetSonar(40, 20);
     config.pulse.emplace().bandwidth_khz = 4;
     const auto geometry = test::sceneOf({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});

@@ -66,7 +66,7 @@ TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
 }
 
 /** n . p = 0 for each sounding, the sonar turned and rolled as well. */
-TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehicleLies) {
+TEST_F(ProfilerTaskTest, SoundingsAreOnATiltedPlaneInTheWorldInAnyAttitude) {
     const double across = types::radians(15), along = types::radians(10);
     const glm::vec3 u(std::cos(along), 0, std::sin(along)), v(0, std::cos(across), std::sin(across));
     const auto plane = sceneOf({quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)});
@@ -86,7 +86,7 @@ TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehic
 }
 
 /** A box on the bottom is the strongest where it is seen, and what is farther than the range is not sounded. */
-TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone) {
+TEST_F(ProfilerTaskTest, ABeamGivesItsStrongestReturnAndASilentBeamNone) {
     ProfilerConfig config = profiler();
     config.sonar.range = 12;
     config.sonar.bin_count = 400;
@@ -102,7 +102,7 @@ TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone)
     }
 }
 
-TEST_F(ProfilerTaskTest, NothingInRangeIsACloudWithoutPoints) {
+TEST_F(ProfilerTaskTest, GivesACloudWithoutPointsForNothingInRange) {
     startWith(profiler());
     const auto cloud = soundingsOf(above(sceneOf({ground(-100)}), {0, 0, 0}));
     ASSERT_TRUE(cloud) << task_.lastError();

@@ -95,7 +95,7 @@ TEST(PublishedTest, AnEmptySeaIsTheSigmoidOfZeroInBinZero) {
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_NEAR(bins[i], i % 500 ? 0 : 6.1e-6, 1e-7) << i;
 }
 
-TEST(PublishedTest, FootprintsFillTheBinsThatItLeavesEmpty) {
+TEST(PublishedTest, FootprintsFillTheBinsThatThePublishedModelLeavesEmpty) {
     SonarConfig config = publishedSonar();
     const auto geometry = test::sceneOf({test::ground(-5)});
     const auto empty = [](const std::vector<float>& bins) {

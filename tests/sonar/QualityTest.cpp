@@ -39,7 +39,7 @@ types::GeometryPtr floorAndWall() {
 types::Snapshot outwards(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 0, 0.14); }
 types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 3.14159, 0.14); }
 
-TEST(QualityLadderTest, TheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
+TEST(QualityLadderTest, ChoosesTheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
     const QualityLadder ladder(small());
     const ErrorModel model{{64, 2}, 0.3, 0.1};
     const Quality enough = ladder.choose(model, 0.1, forever);
@@ -53,14 +53,14 @@ TEST(QualityLadderTest, TheCheapestThatReachesTheTargetElseTheFinestWithinTheCap
     EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never less than the least";
 }
 
-TEST(QualityLadderTest, ABudgetFindsRungsThatAreNoFurtherApartThanATenth) {
+TEST(QualityLadderTest, RungsForABudgetAreAtMostATenthApart) {
     const QualityLadder ladder(small());
     const ErrorModel model{{64, 2}, 0.3, 0.1};
     for (double samples = 128; samples < 3e4; samples *= 1.05)
         EXPECT_GE(ladder.choose(model, 0, samples).samples(), samples / 1.12) << samples;
 }
 
-TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
+TEST(ClimbTest, TakesLessThanTenPingsAndRendersThePingAtItsQuality) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.03;
@@ -79,7 +79,7 @@ TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
     EXPECT_EQ(ping.bins, same.bins);
 }
 
-TEST(ClimbTest, AnEmptySeaIsWithoutErrorAtOnce) {
+TEST(ClimbTest, AnEmptySeaHasNoErrorAtOnce) {
     const auto scene = test::sceneOf({test::ground(500)});
     SonarConfig config = small();
     EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)), Quality());
@@ -121,7 +121,7 @@ private:
     int count_ = 0;
 };
 
-TEST(QualityTaskTest, TheChoiceItsErrorAndItsCostAreToldOnceSomethingIsHeard) {
+TEST(QualityTaskTest, ReportsTheChoiceItsErrorAndCostAfterTheFirstEcho) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());
     sonar.ping(test::snapshotOf(scene, {}, 0, -1.2));
@@ -136,7 +136,7 @@ TEST(QualityTaskTest, TheChoiceItsErrorAndItsCostAreToldOnceSomethingIsHeard) {
                                                             HasSubstr("target 0.05"))));
 }
 
-TEST(QualityTaskTest, TheMostSamplesAreKeptAndAMissedTargetIsToldOnceWithItsNumber) {
+TEST(QualityTaskTest, RespectsTheMaxSamplesAndReportsAMissedTargetOnce) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.max_samples = 16 * 64 * 4;
@@ -148,7 +148,7 @@ TEST(QualityTaskTest, TheMostSamplesAreKeptAndAMissedTargetIsToldOnceWithItsNumb
                                                             HasSubstr("misses the target of 0.05: max_samples 4096"))));
 }
 
-TEST(QualityTaskTest, ATargetAloneTakesAsManySamplesAsItNeeds) {
+TEST(QualityTaskTest, ATargetAloneTakesTheSamplesThatItNeeds) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.01;
@@ -159,7 +159,7 @@ TEST(QualityTaskTest, ATargetAloneTakesAsManySamplesAsItNeeds) {
     EXPECT_EQ(small().mostSamples(), 400'000);
 }
 
-TEST(QualityTaskTest, ItIsChosenAgainWhenTheSceneThatIsHeardHasChangedAndLoweredLater) {
+TEST(QualityTaskTest, IsChosenAgainWhenTheEchoesHaveChangedAndLoweredLater) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());
     sonar.ping(toTheWall(scene));
@@ -175,7 +175,7 @@ TEST(QualityTaskTest, ItIsChosenAgainWhenTheSceneThatIsHeardHasChangedAndLowered
     EXPECT_EQ(sonar.quality(), Quality());
 }
 
-TEST(QualityTaskTest, ARunThatIsRepeatedHasTheSamePingsBitForBit) {
+TEST(QualityTaskTest, ARepeatedRunHasTheSamePingsBitForBit) {
     const auto scene = floorAndWall();
     const auto run = [&] {
         Fed<SonarTask> sonar(small());
@@ -187,7 +187,7 @@ TEST(QualityTaskTest, ARunThatIsRepeatedHasTheSamePingsBitForBit) {
     EXPECT_EQ(run(), run());
 }
 
-TEST(QualityTaskTest, AHeadLowersItOnlyAfterAWholeTurn) {
+TEST(QualityTaskTest, AHeadLowersTheQualityOnlyAfterAWholeTurn) {
     const auto scene = floorAndWall();
     ScanningSonarConfig config;
     config.sonar = small();
@@ -206,7 +206,7 @@ TEST(QualityTaskTest, AHeadLowersItOnlyAfterAWholeTurn) {
             << "at every turn it hears the floor again: " << i;
 }
 
-TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestThatIsChosenAndIsTold) {
+TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestQualityAndANotice) {
     const auto scene = test::sceneOf({test::ground(-3)}, -10);
     SonarConfig config = small();
     config.quality.budget_ms = 0.1;  // less than the first context switch
@@ -238,7 +238,7 @@ struct Kept {
     double ms = 0;  ///< Of the last ping.
 };
 
-TEST(QualityKeeperTest, ABudgetIsUsedAndKept) {
+TEST(QualityKeeperTest, UsesABudgetAndDoesNotExceedIt) {
     SonarConfig config = small();
     config.quality.budget_ms = 20;
     Kept kept(config);
@@ -252,7 +252,7 @@ TEST(QualityKeeperTest, ABudgetIsUsedAndKept) {
     EXPECT_THAT(kept.keeper.takeNotices(), Contains(HasSubstr("20 ms are used and kept")));
 }
 
-TEST(QualityKeeperTest, ThePeriodIsTheBudgetWhereNothingIsSaid) {
+TEST(QualityKeeperTest, ThePeriodIsTheBudgetByDefault) {
     Kept kept(small());
     kept.pings(10, 1e-4, 1000);
     const double enough = kept.keeper.quality().samples();
@@ -265,7 +265,7 @@ TEST(QualityKeeperTest, ThePeriodIsTheBudgetWhereNothingIsSaid) {
     EXPECT_GE(kept.keeper.quality().samples(), 0.9 * enough);
 }
 
-TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
+TEST(QualityKeeperTest, ThePeriodIsNoBudgetIfATargetIsGiven) {
     SonarConfig config = small();
     config.quality.target_error = 0.05;
     Kept kept(config);
@@ -273,7 +273,7 @@ TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
     EXPECT_LE(kept.keeper.quality().error, 0.05);
 }
 
-TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
+TEST(CulledTest, ThePlanStatesTheCulledPartOfTheScene) {
     SonarConfig config = small();
     config.field_of_view_deg = 180;  // three frusta
     Fed<SonarTask> sonar(config);

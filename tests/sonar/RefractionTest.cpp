@@ -92,7 +92,7 @@ double elevationAt(double range, double drop, double gradient) {
     return low;
 }
 
-TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom) {
+TEST(RefractionTest, AFlatBottomInAGradientEchoesFromTheDirectionsOfTheExactArcs) {
     constexpr double drop = 200, gradient = 0.1;
     const auto geometry = test::sceneOf({test::ground(-drop, 20000)});
     const Told told = toldOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
@@ -114,7 +114,7 @@ TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom)
 /** A plate of 40 x 8 m square to the x axis, its middle at a place. */
 types::Mesh uprightPlate(glm::vec3 middle) { return test::quad(middle - glm::vec3(0, 20, 4), {0, 40, 0}, {0, 0, 8}); }
 
-TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
+TEST(RefractionTest, ALevelRayMeetsAPointHundredMetresAboveAtTwoKilometres) {
     const auto exact = [](double seconds) {
         std::vector<acoustics::RayPoint> at(1);
         acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{seconds}, at);
@@ -140,7 +140,7 @@ TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
     EXPECT_GT(loudest(heard(0, longRange("", 0.4))), 0) << "by straight rays";
 }
 
-TEST(RefractionTest, WaterOfAnotherSpeedThanTheSonarsStretchesRangesAndSpreadsAsItIs) {
+TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
     const double ratio = 1500.0 / 1470;
     SonarConfig config = longRange(profileOf({{0, 1470}, {100, 1470}}));
     config.range = 200;
@@ -191,11 +191,12 @@ TEST(RefractionTest, BelowADuctThereIsAShadow) {
     EXPECT_GT(heardAt(95, duct), 0) << "below the shadow";
 }
 
-TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
+TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
     std::vector<acoustics::RayPoint> at(2);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
     const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
-    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}), far = test::sceneOf({uprightPlate(place(1))});
+    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}),
+               far = test::sceneOf({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
     const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
     const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
@@ -205,7 +206,7 @@ TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
     EXPECT_EQ(hidden.bins[1000 + far_bin], 0);
 }
 
-TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
+TEST(RefractionTest, BentRaysMeetAMovingObjectAtItsPlace) {
     const auto geometry = test::sceneOf({uprightPlate({0, 0, 0})}, 0, {{0, 0, 5000}});
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{1.0}, at);
@@ -218,7 +219,7 @@ TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
     EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
 }
 
-TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
+TEST(RefractionTest, APointTargetEchoesFromItsArcAndNotInAShadow) {
     const double elevation = -0.05, time = 1801 / 1500.0;
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
@@ -239,7 +240,7 @@ TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
     EXPECT_EQ(loudest(heard(linear, -elevation, place + glm::dvec3(0, 0, 20))), 0) << "out of the thin beam";
 }
 
-TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
+TEST(RefractionTest, ThePlanStatesWhetherRaysAreBentAndTheBound) {
     const auto geometry = test::sceneOf({test::ground(-20)});
     const auto planOf = [&](double range, const std::string& profile) {
         SonarConfig config = longRange(profile);
@@ -260,7 +261,7 @@ TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
     EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
 }
 
-TEST(RefractionTest, WhatIsDrawnRefusesAProfileThatMatters) {
+TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     SonarConfig config = longRange(thermocline());
     config.visibility = Visibility::Gl;
     config.device = "software";

@@ -21,7 +21,7 @@ types::Sonar ringingPing(const SonarConfig& config, const types::GeometryPtr& ge
     return test::pingOf(config, test::snapshotOf(geometry));
 }
 
-TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
+TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
     SonarConfig config = ringingSonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-30, 12};
     const types::Sonar ping = ringingPing(config, test::openWater());
@@ -36,7 +36,7 @@ TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
         }
 }
 
-TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
+TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
     const auto geometry = test::sceneOf({test::wall(10)});
     const types::Sonar plain = ringingPing(ringingSonar(), geometry);
     SonarConfig config = ringingSonar();
@@ -53,7 +53,7 @@ TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
     EXPECT_FALSE(deaf.hasEchoes());
 }
 
-TEST(RingDownTest, ThePlanSaysWhetherItIsAdded) {
+TEST(RingDownTest, ThePlanStatesWhetherItIsAdded) {
     const auto geometry = test::sceneOf({test::wall(10)});
     SonarConfig config = ringingSonar();
     EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut("transmit ring-down")->reason, Reason::NotConfigured);

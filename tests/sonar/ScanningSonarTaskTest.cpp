@@ -37,7 +37,7 @@ protected:
 
 constexpr HeadConfig sector{.left_deg = 40, .right_deg = -40, .step_deg = 40, .continuous = {}, .speed_deg_per_s = {}};
 
-TEST_F(ScanningSonarTaskTest, EachPingLooksWhereItsBearingSays) {
+TEST_F(ScanningSonarTaskTest, EachPingLooksAtItsBearing) {
     start(sector);
     for (double bearing : {40.0, 0.0, -40.0, 0.0, 40.0}) {
         const auto ping = pingAt(1);
@@ -59,7 +59,7 @@ TEST_F(ScanningSonarTaskTest, EveryPingHasItsOwnPose) {
     EXPECT_NEAR(firstEcho(*pingAt(3, 40), 0), 5, 0.16);
 }
 
-TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn) {
+TEST_F(ScanningSonarTaskTest, DecreasingTimeIsARunTimeErrorUntilItIncreases) {
     start(sector);
     ASSERT_TRUE(pingAt(2));
     EXPECT_FALSE(pingAt(1));
@@ -73,7 +73,7 @@ TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn)
     EXPECT_TRUE(pingAt(2 + 5 * 86400.0)) << "a leap of five days";
 }
 
-TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused) {
+TEST_F(ScanningSonarTaskTest, RejectsAStepThatTheHeadCannotMakeInThePingPeriod) {
     HeadConfig slow = sector;
     slow.speed_deg_per_s = 100;  // 0.4 s a step
     start(slow);
@@ -85,7 +85,7 @@ TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused
                                      "the ping period is 0.1 s"));
 }
 
-TEST_F(ScanningSonarTaskTest, AStepThatTheHeadJustMakesIsTaken) {
+TEST_F(ScanningSonarTaskTest, AcceptsAStepThatTheHeadJustMakes) {
     HeadConfig just = sector;
     just.speed_deg_per_s = 100;
     start(just);

@@ -49,7 +49,7 @@ private:
     test::Reader<types::SonarPtr> heard_{"heard"};
 };
 
-TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
+TEST(SettingsTest, EachSettingsSampleGivesAPingAndASnapshotDoesNot) {
     Asked<SonarTask> sonar(smallSonar());
     EXPECT_FALSE(sonar.ask({})) << "there is no scene yet";
     sonar.show(facingWall(5));
@@ -65,7 +65,7 @@ TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
     EXPECT_EQ(second->time, types::Time{8'000'000}) << "when it was asked for";
 }
 
-TEST(SettingsTest, WhatTheyNameHoldsFromThatPingOnAndTheRestStays) {
+TEST(SettingsTest, GivenSettingsApplyFromThePingAndOthersStay) {
     Asked<SonarTask> sonar(smallSonar());
     sonar.show(facingWall(5));
     types::SonarSettings asked;
@@ -88,7 +88,7 @@ TEST(SettingsTest, WhatTheyNameHoldsFromThatPingOnAndTheRestStays) {
     EXPECT_EQ(same->bins, ping->bins);
 }
 
-TEST(SettingsTest, WhatASonarCannotHaveIsRefusedWholeAndTheNextGoodOneRecovers) {
+TEST(SettingsTest, RejectsInvalidSettingsCompletelyAndRecoversWithTheNextValid) {
     Asked<SonarTask> sonar(smallSonar());
     sonar.show(facingWall(5));
     types::SonarSettings asked;
@@ -102,7 +102,7 @@ TEST(SettingsTest, WhatASonarCannotHaveIsRefusedWholeAndTheNextGoodOneRecovers) 
     EXPECT_EQ(sonar.task.state(), framework::TaskState::Running);
 }
 
-TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
+TEST(SettingsTest, AHeadLooksAtTheRequestedBearing) {
     ScanningSonarConfig config;
     config.sonar = smallSonar();
     config.sonar.beam_width_deg = 3;
@@ -123,7 +123,7 @@ TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
     EXPECT_NEAR(again->bearings[0].deg(), 30, 1e-9) << "it stays there";
 }
 
-TEST(SettingsTest, AGridTakesTheViewOfItsBeamsSideBySide) {
+TEST(SettingsTest, AGridHasTheFieldOfViewOfItsBeams) {
     Sonar3dConfig config;
     config.sonar.range = 10;
     config.sonar.bin_count = 100;

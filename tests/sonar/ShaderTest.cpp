@@ -171,7 +171,7 @@ TEST_F(ShaderTest, StagesFitTogether) {
     EXPECT_EQ(complaints(program("resolve", {})), "");
 }
 
-TEST_F(ShaderTest, AMistakeIsReportedWithItsFileAndPlace) {
+TEST_F(ShaderTest, ReportsAnErrorWithItsFileAndPlace) {
     const std::string right = gpu::shaderSource("deposit.comp.glsl", {"HAVE_PHYSICAL"});
     const std::string wrong = right + "float wrong() { return no_such_thing; }\n";
     EXPECT_THAT(complaints(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),

@@ -92,7 +92,7 @@ TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeM
     EXPECT_NEAR(one.binStart(last), height / std::sin(types::radians(25)), bin);
 }
 
-TEST_F(SideScanTaskTest, PortAndStarboardAreWhereTheyAreAndTheLineIsAsThinAsTheBeam) {
+TEST_F(SideScanTaskTest, PortAndStarboardAreCorrectAndTheLineHasTheWidthOfTheBeam) {
     startWith(sideScan());
     const auto echoesOf = [&](glm::dvec3 target, double yaw) {
         const auto line =

@@ -37,7 +37,7 @@ std::vector<glm::dmat4> placesOf(const types::Snapshot& snapshot) {
     return places;
 }
 
-TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
+TEST(SightlinesTest, APointIsVisibleIfNoTriangleIsBeforeIt) {
     Random random(7);
     for (const types::GeometryPtr& geometry :
          {types::GeometryPtr(clusteredHarbour()), types::GeometryPtr(test::surfaces())}) {
@@ -66,7 +66,7 @@ TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
     }
 }
 
-TEST(SightlinesTest, AnObjectThatAScaleHasMadeFlatHidesByTreesToo) {
+TEST(SightlinesTest, AnObjectFlattenedByItsScaleHidesByTreesToo) {
     auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(1, 20)}));
     geometry->objects[0].world_from_object = glm::scale(glm::dmat4(1), {0.0, 1.0, 1.0});
     Sightlines lines(*geometry, Sightlines::Lines::Many);
@@ -75,7 +75,7 @@ TEST(SightlinesTest, AnObjectThatAScaleHasMadeFlatHidesByTreesToo) {
     EXPECT_TRUE(lines.isOpen({5, 2.5, 0.2}));
 }
 
-TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
+TEST(SightlinesTest, TrianglesWithinAMillimetreOfEitherEndHideNothing) {
     const auto geometry = test::sceneOf({test::wall(5)});
     Sightlines lines(*geometry);
     lines.place(test::snapshotOf(geometry, {4.9995, 0, 0}));
@@ -86,7 +86,7 @@ TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
     EXPECT_FALSE(lines.isOpen({5.002, 0, 0}));
 }
 
-TEST(SightlinesTest, ASonarIsInsideOfWhatTurnsItsBackToItAllRound) {
+TEST(SightlinesTest, ASonarIsInsideAMeshThatShowsOnlyBacks) {
     const auto insideOf = [](const types::GeometryPtr& geometry, const glm::dvec3& place) {
         Sightlines lines(*geometry);
         lines.place(test::snapshotOf(geometry, place));

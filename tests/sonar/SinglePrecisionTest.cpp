@@ -105,7 +105,7 @@ private:
     double range = 0;
 };
 
-TEST(SinglePrecisionDepositTest, BinsAreThoseOfTheProcessor) {
+TEST(SinglePrecisionDepositTest, BinsMatchTheProcessor) {
     double most_bins = 0;
     int with_echoes = 0;
     for (uint32_t seed = 1; seed <= 24; ++seed) {

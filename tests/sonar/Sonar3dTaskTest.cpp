@@ -34,7 +34,7 @@ protected:
 };
 
 /** D / (cos e cos a); with azimuth and elevation exchanged it is the same, so the wall is turned as well. */
-TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
+TEST_F(Sonar3dTaskTest, AWallIsAtTheRangeOfEachDirection) {
     constexpr double distance = 6;
     startWith(grid());
     for (const double yaw : {0.0, 20.0}) {
@@ -56,7 +56,7 @@ TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
 }
 
 /** 1 cm is 6.67 us one way, which a ping tells as 7. */
-TEST_F(Sonar3dTaskTest, RangesAreThoseOfBinsThatLastNoWholeMicroseconds) {
+TEST_F(Sonar3dTaskTest, RangesAreExactForBinsOfFractionalMicroseconds) {
     Sonar3dConfig config = grid();
     config.sonar.range = 8;
     config.sonar.bin_count = 800;
@@ -72,7 +72,7 @@ TEST_F(Sonar3dTaskTest, RangesAreThoseOfBinsThatLastNoWholeMicroseconds) {
 }
 
 /** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; nothing beside it. */
-TEST_F(Sonar3dTaskTest, ASphereIsSeenAtTheRangeOfEachDirectionAndNothingBesideIt) {
+TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     constexpr double radius = 2;
     const glm::dvec3 centre(7, 1, 0.5);
     Sonar3dConfig config = grid();
@@ -166,7 +166,7 @@ TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
     }
 }
 
-TEST_F(Sonar3dTaskTest, WhatIsWeakBesideThePingIsNoReturn) {
+TEST_F(Sonar3dTaskTest, AWeakEchoInThePingIsNoReturn) {
     Sonar3dConfig config = grid();
     config.detection.threshold_db = -5;
     startWith(config);
@@ -189,7 +189,7 @@ types::Snapshot ballBeforeWall() {
     return test::snapshotOf(sceneOf({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}}));
 }
 
-TEST_F(Sonar3dTaskTest, EachCellOfTheMapTellsWhichObjectItShows) {
+TEST_F(Sonar3dTaskTest, EachCellOfTheMapNamesItsObject) {
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     startWith(grid());
@@ -270,7 +270,7 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
     EXPECT_GT(static_cast<double>(same_shadows), 0.97 * static_cast<double>(shadows));
 }
 
-TEST_F(Sonar3dTaskTest, WhoTakesTheTruthChangesNoBin) {
+TEST_F(Sonar3dTaskTest, ReadingTheTruthChangesNoBin) {
     startWith(grid());
     const auto before = mapOf(ballBeforeWall());
     ASSERT_TRUE(before) << task_.lastError();
@@ -284,7 +284,7 @@ TEST_F(Sonar3dTaskTest, WhoTakesTheTruthChangesNoBin) {
     EXPECT_EQ(before->remissions, after->remissions);
 }
 
-TEST_F(Sonar3dTaskTest, WhatIsTooWeakForAReturnShowsNoObject) {
+TEST_F(Sonar3dTaskTest, AnEchoTooWeakForAReturnHasNoObject) {
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     Sonar3dConfig config = grid();
@@ -303,7 +303,7 @@ TEST_F(Sonar3dTaskTest, WhatIsTooWeakForAReturnShowsNoObject) {
     EXPECT_LT(none, 1200u);
 }
 
-TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {
+TEST_F(Sonar3dTaskTest, ASilentSonarReportsItsDirections) {
     std::string told;
     auto environment = std::make_shared<framework::Environment>(task_.environment());
     environment->warn = [&](const std::string& text) { told += text; };

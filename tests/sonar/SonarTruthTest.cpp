@@ -134,7 +134,7 @@ types::Snapshot scatteredBalls() {
     return test::snapshotOf(test::sceneOf(std::move(meshes), -10, places));
 }
 
-TEST_P(SonarTruthTest, NotABinChanges) {
+TEST_P(SonarTruthTest, TruthChangesNoBin) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         SonarRenderer renderer(GetParam().of(config), snapshot.geometry);
@@ -150,7 +150,7 @@ TEST_P(SonarTruthTest, NotABinChanges) {
     }
 }
 
-TEST_P(SonarTruthTest, ItIsTheSameOnAnyNumberOfThreads) {
+TEST_P(SonarTruthTest, TruthIsTheSameOnAnyNumberOfThreads) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         const std::vector<uint32_t> one = bitsOf(truthsOf(GetParam().of(config), snapshot, 1).truth);
@@ -179,7 +179,7 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
 }
 
 /** A ball in one beam is heard by all others in their sidelobes, but seen by its own alone. */
-TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
+TEST(PatternedTruthTest, EchoesInSidelobesHaveNoTruth) {
     SonarConfig config = ways[0].of(truthFan());
     acoustics::BeamLaw law;
     law.width_deg = 5;
@@ -217,7 +217,7 @@ struct Bench {
     }
 };
 
-TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChosenIsTheSame) {
+TEST(SonarTaskTruthTest, WritesNoTruthWithoutAConnectionAndChoosesTheSameQuality) {
     SonarConfig config = ways[0].of(truthFan());
     config.quality = {};  // it is chosen, and looked after with coarser pings
     Bench alone(config), labelled(config);
@@ -242,7 +242,7 @@ TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChose
     EXPECT_EQ(labelled.task.returns.written(), 0u);
 }
 
-TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
+TEST(SonarTaskTruthTest, ThePlanOmitsTheTruthWithoutAConnection) {
     for (const Way& way : ways) {
         Bench alone(way.of(truthFan())), to_truth(way.of(truthFan())), to_returns(way.of(truthFan()));
         to_truth.task.truth.connectTo(to_truth.truths.port, framework::ConnPolicy::data());

@@ -70,7 +70,7 @@ double sum(const std::vector<float>& bins) { return std::accumulate(bins.begin()
 
 }  // namespace
 
-TEST(SurfaceMapTest, AMapThatChangesNothingLeavesEveryBin) {
+TEST(SurfaceMapTest, ANeutralMapChangesNoBin) {
     std::vector<SonarConfig> configs(3, fanOver());
     configs[1].frequency_khz = 400;
     configs[1].speckle = coherent();
@@ -81,7 +81,7 @@ TEST(SurfaceMapTest, AMapThatChangesNothingLeavesEveryBin) {
             << i;
 }
 
-TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
+TEST(SurfaceMapTest, EachPaintedRegionHasTheLevelOfItsValue) {
     // A map of 64 x 64 with eight stripes along y, at x from -40 to 40 m.
     const double decibels[8] = {0, 0, 0, 0, -3, -20, 6, -40};
     SurfaceMap map = mapOf(64, 64, {}, false);
@@ -105,7 +105,7 @@ TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
     EXPECT_LT(worst, 0.01);
 }
 
-TEST(SurfaceMapTest, ClassesAreAsLoudAsTheirMaterials) {
+TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
     SurfaceMap map = mapOf(2, 64, {}, false);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 2; ++x) map.classes.push_back(y < 32 ? 0 : SurfaceMap::no_class);
@@ -136,7 +136,7 @@ TEST(SurfaceMapTest, ClassesAreAsLoudAsTheirMaterials) {
     EXPECT_NEAR(border / border_expected, 1, 0.1) << "half of either, but for the two texels between them";
 }
 
-TEST(SurfaceMapTest, WhatIsFinerThanASampleCountsByItsMean) {
+TEST(SurfaceMapTest, DetailFinerThanASampleCountsByItsMean) {
     SurfaceMap strengths = mapOf(1024, 1024), classes = mapOf(1024, 1024);
     for (int y = 0; y < 1024; ++y)
         for (int x = 0; x < 1024; ++x) {
@@ -157,7 +157,7 @@ TEST(SurfaceMapTest, WhatIsFinerThanASampleCountsByItsMean) {
 
 /** A board of random places, sizes, turns and mirrorings, painted in blocks, against as many boards as it has blocks.
  */
-TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
+TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
     std::mt19937 random(11);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     for (int trial = 0; trial < 20; ++trial) {
@@ -210,7 +210,7 @@ TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
     }
 }
 
-TEST(SurfaceMapTest, FieldsOfScatterersAreAsMuchWeaker) {
+TEST(SurfaceMapTest, FieldsOfScatterersAreWeakerByTheSameFactor) {
     SonarConfig config = fanOver(8);
     config.frequency_khz = 400;
     config.speckle = coherent();
@@ -226,7 +226,7 @@ TEST(SurfaceMapTest, FieldsOfScatterersAreAsMuchWeaker) {
     EXPECT_NEAR(sum(binsOf(geometry, config)) / mean, 1, 0.1);
 }
 
-TEST(SurfaceMapTest, TheWaterBeforeASilentFloorIsHeardAsBefore) {
+TEST(SurfaceMapTest, ASilentFloorDoesNotChangeTheWaterBeforeIt) {
     SonarConfig config = fanOver(8);
     config.volume = {{{}, {}, -50}};
     SurfaceMap half = mapOf(2, 1, {}, false);
@@ -262,7 +262,7 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
         EXPECT_NEAR(plain.object[k] < 0 ? 0 : mapped.elevation[k] - plain.elevation[k], 0, 0.02) << k;
 }
 
-TEST(SurfaceMapTest, WaysByMirrorsAreMappedAsWell) {
+TEST(SurfaceMapTest, MapsApplyToPathsByMirrorsToo) {
     SonarConfig config = fanOver(8);
     config.multipath.emplace().surface.emplace();
     const auto ghostsOf = [&](const types::GeometryPtr& geometry) {
@@ -295,7 +295,7 @@ TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {
         }
 }
 
-TEST(SurfaceMapTest, WhereTheSceneIsDrawnTheMapIsLeftOutAloud) {
+TEST(SurfaceMapTest, TheRasterisedPathOmitsMapsWithANotice) {
     SonarConfig config = fanOver();
     config.visibility = Visibility::Gl;
     config.device = "software";
@@ -310,7 +310,7 @@ TEST(SurfaceMapTest, WhereTheSceneIsDrawnTheMapIsLeftOutAloud) {
     EXPECT_EQ(without.leftOut("surface maps")->reason, Reason::NoneInScene);
 }
 
-TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanWhateverItsSize) {
+TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanAtAnySize) {
     std::mt19937 random(3);
     for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {3, 7}, {64, 64}, {100, 1}, {37, 53}}) {
         SurfaceMap map = mapOf(width, height);

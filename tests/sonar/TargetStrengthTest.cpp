@@ -87,7 +87,7 @@ TEST(TargetStrengthTest, SmoothBodiesHaveTheirTargetStrengthInAnyMesh) {
     }
 }
 
-TEST(TargetStrengthTest, APipeBroadsideIsTheSameByRaysAndDrawn) {
+TEST(TargetStrengthTest, APipeBroadsideIsTheSameRayTracedAndRasterised) {
     const Encounter met{300, 1000, 64, 0.3};
     const Target target = study::cylinderTarget(met, 0.1, 1, 0);
     EXPECT_NEAR(target.strength_db, 10, 0.1);
@@ -109,7 +109,7 @@ TEST(TargetStrengthTest, AFacetSpreadsALobeAcrossACylinderAndNotAlongIt) {
     }
 }
 
-TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeGoesWithItsScale) {
+TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeFollowsItsScale) {
     const types::Mesh plate = study::quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
     for (const double scale : {1.0, 2.0})
         for (const FacetRecord& facet : facetLobes(plate, glm::dmat3(scale), 0.01)) {
@@ -126,7 +126,7 @@ TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeGoesWithItsScale) {
     }
 }
 
-TEST(TargetStrengthTest, OnASphereBothDirectionsAreAlikeAndFinerMeshesAddLess) {
+TEST(TargetStrengthTest, BothDirectionsOnASphereAreEqualAndFinerMeshesAddLess) {
     for (const int rings : {32, 256}) {
         const double step = std::numbers::pi / rings;
         const std::vector<FacetRecord> ball = facetLobes(study::sphere(0.1, rings), glm::dmat3(1), 0.005);

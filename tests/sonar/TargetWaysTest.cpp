@@ -150,7 +150,7 @@ size_t expectAsTried(const Case& one, Generator& random) {
     return twice;
 }
 
-TEST(TargetWaysTest, AreThoseOfAllSequencesOfTriangles) {
+TEST(TargetWaysTest, MatchAllSequencesOfTriangles) {
     Generator random(11);
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3));
     const Case cases[] = {
@@ -190,7 +190,7 @@ struct Wall {
     std::vector<types::Mesh> meshes;  ///< An object each.
 };
 
-TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
+TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOnePath) {
     Generator random(3);
     types::Mesh half = halvedWall(), other_half = half;
     half.indices.resize(3);
@@ -215,7 +215,7 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
         }
 }
 
-TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
+TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
     Generator random(5);
     const types::Mesh corner =
         joined({test::quad({4, -4, -4}, {0, 8, 0}, {0, 0, 8}), test::quad({-4, 4, -4}, {8, 0, 0}, {0, 0, 8})});
@@ -233,7 +233,7 @@ TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
     }
 }
 
-TEST(TargetWaysTest, ATargetOnAMirrorHasNoWayByIt) {
+TEST(TargetWaysTest, ATargetOnAMirrorHasNoPathByIt) {
     Generator random(6);
     for (int turn = 0; turn < 100; ++turn) {
         const glm::dmat4 place = uniformPlace(random, 20);

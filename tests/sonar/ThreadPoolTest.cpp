@@ -24,7 +24,7 @@ TEST(ThreadPoolTest, EachPartIsDoneOnceAndBeforeRunReturns) {
     }
 }
 
-TEST(ThreadPoolTest, WhoeverIsThereSharesAJob) {
+TEST(ThreadPoolTest, AvailableThreadsShareAJob) {
     ThreadPool pool(4);
     for (int job = 0; job < 500; ++job) {
         std::atomic<int> next = 0;
@@ -36,7 +36,7 @@ TEST(ThreadPoolTest, WhoeverIsThereSharesAJob) {
     }
 }
 
-TEST(ThreadPoolTest, WhatAPartThrowsIsThrownAndThePoolGoesOn) {
+TEST(ThreadPoolTest, RethrowsAnExceptionOfAPartAndContinues) {
     ThreadPool pool(3);
     for (int job = 0; job < 100; ++job) {
         EXPECT_THROW(pool.run([&](int part, int) {

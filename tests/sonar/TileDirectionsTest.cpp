@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-TEST(TileDirectionsTest, EachSampleOfEachTileLooksWhereItsCellIs) {
+TEST(TileDirectionsTest, EachSampleOfEachTileLooksAtItsCell) {
     std::mt19937 random(3);
     const auto upTo = [&](int max) { return std::uniform_int_distribution<int>(1, max)(random); };
     for (int run = 0; run < 40; ++run) {

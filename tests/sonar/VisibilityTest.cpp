@@ -128,7 +128,7 @@ double relativeDifference(const types::Sonar& a, const types::Sonar& b) {
 
 }  // namespace
 
-TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
+TEST(VisibilityTest, RaysMeetTheRasterisedTriangles) {
     const SonarConfig config = seenFan(Visibility::Gl);
     const std::vector<ViewFrustum> frusta = makeFrusta(config, makeBeams(config));
     for (const Scene& scene : seenScenes()) {
@@ -144,7 +144,7 @@ TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
     }
 }
 
-TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
+TEST(VisibilityTest, RayTracedPingsMatchRasterisedPingsUpToTheSampling) {
     for (const Scene& scene : seenScenes())
         for (Model model : {Model::Physical, Model::Cerqueira2017})
             for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical}) {
@@ -160,10 +160,12 @@ TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
             }
     SonarConfig other = seenFan(Visibility::Cpu);
     other.beam_height_deg = 40;
-    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot), pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)), 0.03);
+    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot),
+                                 pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
+              0.03);
 }
 
-TEST(VisibilityTest, NormalMapsBendBothAlike) {
+TEST(VisibilityTest, NormalMapsHaveTheSameEffectInBoth) {
     const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
     SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
     const types::Sonar drawn_ping = pingOf(gl, snapshot), cast_ping = pingOf(cpu, snapshot);
@@ -172,7 +174,7 @@ TEST(VisibilityTest, NormalMapsBendBothAlike) {
     EXPECT_GT(relativeDifference(flat, drawn_ping), 0.06);
 }
 
-TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
+TEST(VisibilityTest, PingsHaveTheSameBytesForAnyNumberOfThreads) {
     for (int columns : {1, 2, 3, 8, 512}) {  // the last: beams that several threads share
         SonarConfig config = seenFan(Visibility::Cpu);
         config.quality.columns_per_beam = columns;
@@ -185,7 +187,7 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-TEST(VisibilityTest, WhereASonarHasBeenBeforeHasNoPartInItsPing) {
+TEST(VisibilityTest, APingDoesNotDependOnEarlierPlacesOfTheSonar) {
     const types::GeometryPtr geometry = plainSurfaces();
     const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
     SonarRenderer renderer(seenFan(Visibility::Cpu), geometry);
@@ -211,7 +213,7 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     EXPECT_GT(relativeDifference(after, before), 0.05);
 }
 
-TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
+TEST(VisibilityTest, APingDoesNotDependOnEarlierPings) {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(1);
     geometry->meshes = {test::sphere(0.4f, 40)};
@@ -229,7 +231,7 @@ TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
     }
 }
 
-TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
+TEST(VisibilityTest, InstancesOfLargeMeshesEchoTheSame) {
     // 70 balls of 65,000 triangles are more than are copied.
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(1);
@@ -240,7 +242,8 @@ TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
     geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
     ASSERT_GT(geometry->triangleCount(), 4'000'000u);
     const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
-    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)), 0.03);
+    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)),
+              0.03);
 }
 
 TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
@@ -261,7 +264,7 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
     }
 }
 
-TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
+TEST(VisibilityTest, RejectsATallImageThatRaysAccept) {
     SonarConfig config = seenFan(Visibility::Gl);
     config.beam_height_deg = 170;
     types::Diagnostics diagnostics;
@@ -275,7 +278,7 @@ TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
     EXPECT_THAT(diagnostics, testing::IsEmpty());
 }
 
-TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
+TEST(VisibilityTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     const auto snapshot = test::snapshotOf(test::sceneOf(
         {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
     for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {

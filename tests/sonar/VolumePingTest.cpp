@@ -59,7 +59,7 @@ TEST(VolumePingTest, ABottomHidesTheWaterBelowIt) {
         expectForm(pingOf(way, overSilentGround(height)), right, open);
 }
 
-TEST(VolumePingTest, OpenWaterIsHeardByThePatternInElevation) {
+TEST(VolumePingTest, OpenWaterEchoesByThePatternInElevation) {
     SonarConfig config = sonarIn({layer(-70)});
     acoustics::BeamLaw law;
     law.weighting = acoustics::Weighting::Gaussian;
@@ -74,7 +74,7 @@ TEST(VolumePingTest, OpenWaterIsHeardByThePatternInElevation) {
     for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, far), right, box);
 }
 
-TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
+TEST(VolumePingTest, ALayerEchoesAtItsRanges) {
     // Between 1 and 2 m below a level sonar that is 4 m below the surface, over ground at 3 m below it.
     const double delta = radians(10), top = 1, bottom = 2;
     auto snapshot = overSilentGround(3);
@@ -88,7 +88,7 @@ TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
     for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, snapshot), right, deeper);
 }
 
-TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {
+TEST(VolumePingTest, LayersThatTogetherCoverAllDepthsEqualOneLayer) {
     const auto snapshot = overSilentGround(3);
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)}))) {
         SonarConfig split = way;
@@ -99,13 +99,13 @@ TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {
     }
 }
 
-TEST(VolumePingTest, WhatIsNearerThanTheBlankingHidesAllBehindIt) {
+TEST(VolumePingTest, ObjectsNearerThanTheBlankingHideTheWaterBehind) {
     const auto plate = test::snapshotOf(test::sceneOf({test::wall(0.5)}));
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
         EXPECT_THAT(pingOf(way, plate).bins, testing::Each(testing::Lt(1e-14f)));
 }
 
-TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
+TEST(VolumePingTest, WaterFarBeyondTheSceneEchoesWithNothingInView) {
     const auto behind = test::snapshotOf(test::sceneOf({test::wall(-5)}));
     const auto right = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
@@ -114,7 +114,7 @@ TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
         expectForm(pingOf(way, behind), right, test::times(1.02, right));
 }
 
-TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
+TEST(VolumePingTest, WaterWithoutScatteringChangesNoBin) {
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}));
     for (const SonarConfig& way : everyWay(clearSonar())) {
         SonarConfig silent = way, layered = way;

@@ -82,7 +82,7 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     EXPECT_LE(share, 1);
 }
 
-TEST(WallReturnsTest, WhatIsBehindComesLateAndRingsToo) {
+TEST(WallReturnsTest, ObjectsBehindAreLateAndRingToo) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
     const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, slab)));
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(40)}, 0)));
@@ -97,7 +97,7 @@ TEST(WallReturnsTest, WhatIsBehindComesLateAndRingsToo) {
 }
 
 /** The far side of a thick tube is met at its inner face, which is its thickness nearer. */
-TEST(WallReturnsTest, TheFarWallOfABodyIsMetFromWithin) {
+TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
     const types::Shell shell{0.6, 2500, 2000, 0, 1e-3, false};
     const SonarConfig config = wallSonar(1, 1, 1, 300);
     const auto ping = pingOf(config, snapshotOf(shellsOf({test::sphere(4, 256)}, 1, shell, {{10, 0, 0}})));
@@ -113,7 +113,7 @@ TEST(WallReturnsTest, TheFarWallOfABodyIsMetFromWithin) {
 }
 
 /** A wall whose returns are less than half a bin apart, or less than half of what the pulse resolves, has one. */
-TEST(WallReturnsTest, ReturnsWithinHalfABinAreOneByTheResponseAtTheFrequency) {
+TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
         types::Shell shell = slab;
         shell.thickness = 2 * spacing;
@@ -132,7 +132,7 @@ TEST(WallReturnsTest, ReturnsWithinHalfABinAreOneByTheResponseAtTheFrequency) {
 }
 
 /** A scene with a wall that rings and one without: the beams that do not meet it are the same bit for bit. */
-TEST(WallReturnsTest, WhatMeetsNoWallThatRingsIsTheSameBitForBit) {
+TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
     const types::Mesh left = test::quad({10, 1, -100}, {0, 100, 0}, {0, 0, 200}),
                       right = test::quad({10, -101, -100}, {0, 100, 0}, {0, 0, 200});
     SonarConfig config = wallSonar(60, 20, 16);
@@ -150,7 +150,7 @@ TEST(WallReturnsTest, WhatMeetsNoWallThatRingsIsTheSameBitForBit) {
     EXPECT_TRUE(differs);
 }
 
-TEST(WallReturnsTest, WithoutWallsToGoThroughAllReturnsAreInTheFirst) {
+TEST(WallReturnsTest, AllReturnsAreInTheFirstIfMaxWallsIsZero) {
     SonarConfig config = wallSonar(2, 0.5, 1);
     config.max_walls = 0;
     const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, slab)));
@@ -195,7 +195,7 @@ TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
     }
 }
 
-TEST(WallReturnsTest, TheTruthNamesWhatRings) {
+TEST(WallReturnsTest, TheTruthNamesTheRingingWall) {
     const SonarConfig config = wallSonar(8, 2, 4, 300);
     const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, slab));
     SonarRenderer renderer(config, snapshot.geometry);
@@ -219,7 +219,7 @@ TEST(WallReturnsTest, TheTruthNamesWhatRings) {
 }
 
 /** Any plate at any angle to any sonar: finite, and no more than all the energy. */
-TEST(WallReturnsTest, RandomPlatesGiveBackNoMoreThanARigidOne) {
+TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
     std::mt19937 random(7);
     const auto between = [&](double low, double high) {
         return std::exp(std::uniform_real_distribution(std::log(low), std::log(high))(random));

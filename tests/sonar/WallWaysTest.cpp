@@ -47,7 +47,7 @@ double energyByMirrors(SonarConfig config, const types::GeometryPtr& scene, doub
 }
 
 /** Out and back by the mirror through a screen before it, or behind it, at 35 deg. */
-TEST(WallWaysTest, AWayByAMirrorIsWeakenedByEachWallOfItsLegs) {
+TEST(WallWaysTest, APathByAMirrorIsWeakenedByEachWallOfItsLegs) {
     const double pitch = 35 * std::numbers::pi / 180, cosine = std::cos(pitch);
     const SonarConfig config = mirroring(2);
     const double open = energyByMirrors(config, withMirror({}), pitch, 11, 14);
@@ -79,7 +79,7 @@ TEST(WallWaysTest, TheDirectLegIsWeakenedToo) {
     EXPECT_LT(direct, 1);
 }
 
-TEST(WallWaysTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
+TEST(WallWaysTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
     types::Shell air = thin_screen;
     air.has_air = true;
     for (const types::Shell& shell : {air, types::Shell{0.1, 1300, 900, 0, 0.2, false}}) {
@@ -91,7 +91,7 @@ TEST(WallWaysTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
 }
 
 /** The water surface is a mirror above a tank of a shell: the way up and down its walls. */
-TEST(WallWaysTest, TheWaterSurfaceIsSeenThroughAWall) {
+TEST(WallWaysTest, TheWaterSurfaceIsVisibleThroughAWall) {
     SonarConfig config = wallSonar(2, 2, 1);
     config.multipath.emplace().surface.emplace();
     const auto level = [&](const types::GeometryPtr& scene) {

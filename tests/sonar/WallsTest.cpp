@@ -50,7 +50,7 @@ TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBoth
     }
 }
 
-TEST(WallsTest, AWallBeforeABottomWeakensTheBottomBehindItAlone) {
+TEST(WallsTest, AWallWeakensOnlyTheBottomBehindIt) {
     const SonarConfig config = wallSonar(2, 60, 1);
     const types::Mesh bottom = test::ground(-4), screen = test::quad({9, -100, -100}, {0, 200, 0}, {0, 0, 98});
     const auto alone = pingOf(config, snapshotOf(shellsOf({bottom}, 0)));
@@ -97,7 +97,7 @@ TEST(WallsTest, AHollowSphereHasBothItsSides) {
     EXPECT_NEAR(energyOf(ping, 0, distance, 12) / back, 1, 0.05);
 }
 
-TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
+TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndAnAirFilledPipeOne) {
     const SonarConfig config = wallSonar(4, 4, 1, 150);
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -119,7 +119,7 @@ TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
     EXPECT_GT(energyOf(air, 0, 8.9, 9.2), energyOf(water, 0, 8.9, 9.2)) << "air reflects all";
 }
 
-TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
+TEST(WallsTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
     for (const types::Shell& shell : {rubber, types::Shell{0.004, 1190, 2700, 1340, 5e-3, true}}) {
         SonarConfig config = wallSonar(60, 20, 16), none = config;
         none.max_walls = 0;
@@ -128,7 +128,7 @@ TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
     }
 }
 
-TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
+TEST(WallsTest, EachFurtherWallWeakensObjectsBehindUpToTheMaxNumber) {
     std::vector<types::Mesh> walls;
     for (int i = 0; i < 8; ++i) walls.push_back(test::wall(5 + 2.0f * static_cast<float>(i)));
     const auto scene = shellsOf(walls, walls.size(), sheet);
@@ -147,7 +147,7 @@ TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
 }
 
 /** What follows each echo is the same behind a wall: patterns, pulses, and the field of each scatterer. */
-TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
+TEST(WallsTest, PatternsPulsesAndCoherentSpecklePassAsEnergyDoes) {
     std::mt19937 random(5);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
         SonarConfig config = wallSonar(8, 2, 8);
@@ -166,7 +166,7 @@ TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
     }
 }
 
-TEST(WallsTest, TheTruthNamesWhatIsBehind) {
+TEST(WallsTest, TheTruthNamesTheObjectBehind) {
     const SonarConfig config = wallSonar(8, 2, 4);
     const auto snapshot = snapshotOf(shellsOf({test::wall(8), test::wall(13)}, 1));
     SonarRenderer renderer(config, snapshot.geometry);
@@ -207,7 +207,7 @@ TEST(WallsTest, ASmoothShellIsNoMirror) {
     EXPECT_NE(solid, solid_bounced);
 }
 
-TEST(WallsTest, WhyItIsLeftOutIsSaid) {
+TEST(WallsTest, ReportsWhyWallsAreOmitted) {
     const auto scene = shellsOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {
         const RenderPlan plan = makeRenderPlan(config, *geometry);
