@@ -23,7 +23,7 @@ struct DolphRow {
 };
 const DolphRow dolph[] = {{-25, 0.993}, {-30, 1.073}, {-40, 1.218}};
 
-/** In wavelengths over the length: twice the sine of half an angle, times the aperture. */
+/** Returns a width in u: twice the sine of half an angle, times the aperture [wavelengths]. */
 double inWavelengths(double width, const BeamPattern& pattern) { return 2 * std::sin(width / 2) * pattern.aperture(); }
 
 class BeamPatternTest : public ::testing::Test {
@@ -42,7 +42,7 @@ TEST_F(BeamPatternTest, WidthsMatchTheTable) {
         const CutShape two_way = shapeOf([&](double a) { return pattern.power(a) * pattern.power(a); });
         EXPECT_NEAR(inWavelengths(one_way.width_3db, pattern), row.width, 0.01 * row.width) << row.name;
         EXPECT_NEAR(inWavelengths(two_way.width_3db, pattern), row.two_way_width, 0.01 * row.two_way_width) << row.name;
-        // The amplitude taken for the power would make another width.
+        // The amplitude instead of the power would give another width.
         const CutShape amplitude = shapeOf([&](double a) { return std::sqrt(pattern.power(a)); });
         EXPECT_GT(inWavelengths(amplitude.width_3db, pattern), 1.2 * row.width) << row.name;
     }

@@ -22,7 +22,7 @@ double transmittedPower(const Plate& plate, const Fluid& fluid, double frequency
     return std::norm(plateResponse(plate, fluid, fluid, frequency, cosine).transmitted);
 }
 
-/** Draws plates of all kinds, and waves. */
+/** Draws random plates and waves. */
 class Draw {
 public:
     double between(double low, double high) {
@@ -98,8 +98,8 @@ TEST(PlateTest, AThinPlateFollowsTheLawOfMassBelowCoincidence) {
         }
 }
 
-/** Fahy and Gardonio 2007, table 5.1: critical frequency times thickness of steel in air, 12.4 m/s. Just above it a
- * plate without loss lets everything through at the angle at which its flexural waves are as fast along it. */
+/** Fahy and Gardonio 2007, table 5.1: critical frequency times thickness of steel in air, 12.4 m/s. Just above it, a
+ *  plate without loss transmits everything at the angle where the trace speed matches its flexural waves. */
 TEST(PlateTest, SteelInAirIsClearAtTheAngleOfCoincidence) {
     const double thickness = 1e-3, critical = 12.4 / thickness;
     for (const double over : {1.2, 2.0, 4.0}) {
@@ -123,7 +123,7 @@ TEST(PlateTest, AirBehindReflectsAllAndAnAbsorberTransmitsNothing) {
     EXPECT_NEAR(std::abs(lost.reflected), std::abs(1100. * 1550 - 1025. * 1500) / (1100. * 1550 + 1025. * 1500), 0.1);
 }
 
-/** Parseval: the energies of a series of pulses are the means over a period of the spectrum's. */
+/** Parseval: the sum of the energies of a series of pulses is the mean of the spectrum's energy over a period. */
 TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
     Draw draw;
     double worst = 0;
@@ -152,7 +152,7 @@ TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
     std::cout << "worst difference from the mean over a resonance: " << worst << "\n";
 }
 
-/** A train of pulses by the faces' own coefficients: at its delays it makes up the response at every frequency. */
+/** A train of pulses by the coefficients of the faces. With its delays it equals the response at every frequency. */
 TEST(PlateTest, EachReturnMatchesItsPath) {
     const Plate plate{0.01, 1190, 2700, 0, 0};
     const Fluid oil{870, 1440};

@@ -22,7 +22,7 @@ Pulse tone(double duration_us) {
     return Pulse(config, speed_of_sound);
 }
 
-/** Integral over range of a function [m]. */
+/** Returns the integral of a function over range [m]. */
 template <class F>
 double integral(const F& f, double from, double to) {
     constexpr int cells = 400000;
@@ -50,7 +50,7 @@ TEST(PulseTest, AToneIsABoxOfHalfItsLengthAboutItsEcho) {
     EXPECT_NEAR(pulse.cellLength(), 0.075, 1e-12);
     EXPECT_FALSE(pulse.peakSidelobeDb().has_value());
     EXPECT_NEAR(pulse.extent(-60), 0.0375, 1e-12);
-    // As it arrives, the echo would fill the range from the target outwards: a quarter of the pulse beyond.
+    // An echo that started at the target would be centred a quarter of the pulse beyond it.
     EXPECT_EQ(pulse.response(0.05), 0);
 }
 
@@ -75,7 +75,7 @@ TEST(PulseTest, AChirpHasTheResolutionAndSidelobesOfItsWindow) {
 
 TEST(PulseTest, AChirpOfHalfTheBandIsTwiceAsLong) {
     EXPECT_NEAR(chirp(25).resolution(), 2 * chirp(50).resolution(), 1e-9);
-    // Without the factor 2 of the way there and back it would be as long as a chirp of half the band.
+    // Without the factor 2 of the two-way path the pulse would have the length of a chirp of half the band.
     EXPECT_GT(std::abs(chirp(50).resolution() - 0.886 * speed_of_sound / 50e3), 0.01);
 }
 

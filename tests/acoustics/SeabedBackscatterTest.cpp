@@ -1,4 +1,4 @@
-// The published tables of APL-UW TR 9407 (1994): table 2, what sediments are, and table 3, how strongly they scatter.
+// The published tables of APL-UW TR 9407 (1994): table 2, parameters of sediments, and table 3, their strengths.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace insonify::acoustics {
 namespace {
 
-constexpr double report_speed = 1528;  // of the sound in the water of table 3 [m/s]
+constexpr double report_speed = 1528;  // speed of sound in the water of table 3 [m/s]
 
 constexpr double grazing_deg[] = {1, 2, 3, 5, 7, 10, 20, 40, 60, 70, 80, 85, 88, 89, 90};
 
@@ -138,7 +138,7 @@ TEST(SeabedBackscatterTest, IsExtrapolatedAboveTheBandOfTheReport) {
 }
 
 TEST(SeabedBackscatterTest, LambertParametersOfTheSeabedsAreTheirMean) {
-    // The mean difference to 20 log10(sin) over 5 to 60 deg at 100 kHz is what ACOUSTICS.md 3.2 tabulates.
+    // ACOUSTICS.md 3.2 tabulates the mean difference to 20 log10(sin) over 5 to 60 deg at 100 kHz.
     struct Case {
         const char* name;
         double lambert_db;

@@ -1,4 +1,4 @@
-// Rays through layers of water, against circles, and the files that tell of these layers.
+// Rays through layers of water, compared with circles, and files of sound profiles.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<double> timesTo(double last, int count) {
     return times;
 }
 
-/** Time along a circle whose centre is where speed would be 0, from its own integral by angle. */
+/** Returns the travel time along a circle whose centre is at the depth of speed 0, by its integral over the angle. */
 double timeOnCircle(double gradient, double from, double to) {
     return (std::asinh(std::tan(to)) - std::asinh(std::tan(from))) / gradient;
 }

@@ -1,4 +1,5 @@
-// Gazebo Fortress's own library on the other side: its services, its default partition, and its view of our datagrams.
+// The library of Gazebo Fortress as the other side: its services, its default partition, and how it reads our
+// datagrams.
 #include <gmock/gmock.h>
 #include <ignition/msgs/discovery.pb.h>
 

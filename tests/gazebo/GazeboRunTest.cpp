@@ -1,4 +1,4 @@
-// deploy/gazebo_world.yml and what is wrong with others, as a user sees it.
+// deploy/gazebo_world.yml, and errors of other deployments as a user sees them.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ const std::string deployment = test::sourceFile("deploy/gazebo_world.yml");
 
 class GazeboRunTest : public gazebo::OwnPartition {
 protected:
-    /** A world that answers what it holds, as Gazebo does, and says no poses by itself. */
+    /** A world that offers its scene as Gazebo does, and publishes no poses by itself. */
     std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
         auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");
         world->serve("/world/two_vehicles/scene/info", [](ignition::msgs::Scene& scene) {

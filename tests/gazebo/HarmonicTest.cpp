@@ -1,4 +1,4 @@
-// Poses and worlds over the wire, of one who speaks as Gazebo Harmonic does.
+// Poses and worlds over the wire, with a replacement of Gazebo Harmonic.
 #include <gmock/gmock.h>
 
 #include "components/gazebo/PoseTask.hpp"
@@ -42,7 +42,7 @@ protected:
         }
         return message.SerializeAsString();
     }
-    /** What the scene's task says that is wrong. */
+    /** Returns the error of the scene's task. */
     static std::string diagnosticOf(const scene::GazeboConfig& config) {
         scene::SceneTask task("scene");
         scene::SceneConfig scene;
@@ -68,7 +68,7 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     follow("rov");
     HarmonicWorld world({});
     types::Pose read;
-    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its taker is connected
+    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its receiver is connected
         world.publish(recording("poses"));
         task.update();
         return readers[0].port.readNew(read);
@@ -175,7 +175,7 @@ TEST_F(HarmonicTest, TasksShareAWorld) {
 }
 
 TEST_F(HarmonicTest, TheErrorForAMissingWorldListsTheAvailableWorlds) {
-    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
+    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may run on this machine
                 testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
                                     "partition " +
                                     partition + " within 0.3 s (timeout); "));

@@ -1,4 +1,4 @@
-// A world by the transport's own publisher, and the task that reads its poses.
+// A world by the publisher of Gazebo's transport, and the task that reads its poses.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -28,7 +28,7 @@ protected:
         config.bodies = std::move(bodies);
         start(config, config.bodies);
     }
-    /** Until a message has come; then nothing of it is left. */
+    /** Waits until a message has arrived, and discards it. */
     void meet(double seconds = 1) {
         ASSERT_TRUE(comesTrue([&] {
             world.publish(seconds, 0);
@@ -133,13 +133,13 @@ TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
 TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     startWith({entity("rov", "red")});
     meet(100);
-    for (int i = 0; i < 5; ++i) world.publish(100, 1);  // stands still
+    for (int i = 0; i < 5; ++i) world.publish(100, 1);  // paused
     world.publish(100.02, 2);
     EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
     double stamp = 100.02;
-    const auto is_told = [&] {  // in pairs, for after a second of silence any stamp may come
+    const auto is_told = [&] {  // in pairs, because any stamp is valid after a second of silence
         world.publish(stamp += 0.1, 2);
-        world.publish(stamp - 0.05, 3);  // of another publisher, or overtaken
+        world.publish(stamp - 0.05, 3);  // from another publisher, or out of order
         task.update();
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const auto& line) {

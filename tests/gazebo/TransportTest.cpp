@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/** Without what the machine says about the transport; puts it back. */
+/** Removes the machine's variables of the transport, and restores them. */
 class TransportTest : public testing::Test {
 protected:
     TransportTest() {

@@ -1,4 +1,4 @@
-// Scenes of the bytes that Gazebo answers.
+// Scenes from the bytes of Gazebo's replies.
 #include <gazebo_messages.pb.h>
 #include <gmock/gmock.h>
 

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/** As errorOf, on a thread of its own. */
+/** Calls errorOf() on a separate thread. */
 template <class Job>
 std::string errorElsewhere(const Job& job) {
     std::string text;

@@ -1,4 +1,4 @@
-// What messages say of a body: axes, times, and what is refused.
+// Poses from the messages of a body: axes, times, and dropped messages.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -15,7 +15,7 @@ using types::Time;
 constexpr double pi = std::numbers::pi;
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-/** A turn about an axis of the body in MAVLink's axes: forward, right, down. */
+/** Returns a rotation about an axis of the body in MAVLink's axes: forward, right, down. */
 AttitudeQuaternion turned(double radians, glm::vec3 axis, uint32_t ms = 0) {
     const auto s = static_cast<float>(std::sin(radians / 2));
     return {.time_boot_ms = ms,

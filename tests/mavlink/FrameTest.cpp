@@ -1,4 +1,4 @@
-// Frames as PyPI's pymavlink 2.4.50 packs them, and what may be wrong with them.
+// Frames as PyPI's pymavlink 2.4.50 packs them, and their errors.
 #include <gmock/gmock.h>
 
 #include "components/mavlink/Frame.hpp"

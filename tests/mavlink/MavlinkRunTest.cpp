@@ -1,4 +1,4 @@
-// deploy/mavlink_poses.yml and what is wrong with others, as a user sees it.
+// deploy/mavlink_poses.yml, and errors of other deployments as a user sees them.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -26,7 +26,7 @@ protected:
         all.insert(all.end(), more.begin(), more.end());
         return insonifyWords(all);
     }
-    /** Where the run listens, once it does. */
+    /** Waits until the run listens, and returns its port. */
     int port() const {
         std::smatch found;
         std::string text;

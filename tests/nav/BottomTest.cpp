@@ -1,4 +1,4 @@
-// Ranges of straight beams against closed forms.
+// Ranges of straight beams, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -14,7 +14,7 @@ protected:
 
     void connectScene() { scene_.port.connectTo(task_.snapshot, {}); }
     void show(types::Snapshot snapshot) { scene_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot))); }
-    /** What is told of the middle of three poses, a tenth of a second apart, up to a time. */
+    /** Returns the measurement at the middle of three poses a tenth of a second apart, the last at `time`. */
     types::DvlPtr told(double time, const Path& path) {
         answerTo(path(time - 0.2));
         answerTo(path(time - 0.1));

@@ -1,4 +1,4 @@
-// A Doppler log against the closed forms of its geometry.
+// A Doppler velocity log, compared with the closed forms of its geometry.
 #include <gmock/gmock.h>
 
 #include "components/nav/Dvl.hpp"
@@ -55,7 +55,7 @@ TEST(DvlTest, TheAltitudeOfALevelLogIsItsHeight) {
     EXPECT_EQ(told.diagnostic(), nullptr);
 }
 
-/** Covariance of velocities of many pings. */
+/** Returns the covariance of the velocities of many pings. */
 glm::dmat3 spreadOf(const Dvl& log, Motion motion, int count) {
     glm::dmat3 sum{0};
     const Bottom bottom(-12.0);
@@ -105,7 +105,7 @@ TEST(DvlTest, ThreeBeamsAreEnoughAndTwoAreNot) {
 }
 
 TEST(DvlTest, ThreeBeamsOverALevelBottomAreExact) {
-    // Rolled so far that one beam leaves the water's bottom out of reach.
+    // Rolled until the bottom is out of reach for one beam.
     const DvlConfig config{.beam_azimuth_deg = 0, .max_altitude = 14};
     const glm::dquat orientation = turned(0, 0, 25);
     const types::Dvl told = ping(Dvl(config), moving({1, 0.5, 0}, orientation), Bottom(-10.0));

@@ -1,4 +1,4 @@
-// Errors of sensors against the closed forms of IEEE Std 952-1997.
+// Errors of sensors, compared with the closed forms of IEEE Std 952-1997.
 #include <gmock/gmock.h>
 
 #include "components/nav/ErrorModel.hpp"
@@ -14,7 +14,8 @@ std::vector<double> seriesOf(Axis& axis, size_t count, double step, double truth
     return series;
 }
 
-/** Five deviations of an Allan deviation as a share of it, of so many averages (IEEE Std 952-1997, C.1). */
+/** Returns five standard deviations of an Allan deviation, as a share of it, for a number of averages (IEEE Std
+ *  952-1997, C.1). */
 double fiveDeviations(size_t count, size_t average) {
     return 5 / std::sqrt(2 * (static_cast<double>(count) / static_cast<double>(average) - 1));
 }

@@ -19,7 +19,7 @@ protected:
         config.attitude.heading_deviation_deg = 1;
         return config;
     }
-    /** What is told of a second on a circle, by stamps from `first` on. */
+    /** Returns the measurements of a second on a circle, with stamps from `first` on. */
     std::vector<types::Imu> told(double first = 0) {
         std::vector<types::Imu> all;
         for (int i = 0; i < 100; ++i) {

@@ -99,7 +99,7 @@ TEST(ImuTest, ErrorsOfTheAttitudeHaveTheirDeviations) {
         const glm::dquat error = imu.orientation * glm::conjugate(motion.orientation);
         squares += 4.0 * glm::dvec3(error.x * error.x, error.y * error.y, error.z * error.z);
     }
-    const double bound = 5 * std::sqrt(2.0 / count) + 2e-3;  // and what a sine is less than its angle
+    const double bound = 5 * std::sqrt(2.0 / count) + 2e-3;  // plus the difference of a sine and its angle
     EXPECT_NEAR(squares.x / count / std::pow(types::radians(0.5), 2), 1, bound);
     EXPECT_NEAR(squares.y / count / std::pow(types::radians(0.5), 2), 1, bound);
     EXPECT_NEAR(squares.z / count / std::pow(types::radians(2), 2), 1, bound);

@@ -44,7 +44,7 @@ TEST(MotionTest, ErrorsAreOfSecondOrderInTheTimeBetweenPoses) {
         const Motion motion = motionAt(path, 2, step);
         const glm::dvec3 ahead = motion.orientation * glm::dvec3(1, 0, 0),
                          port = motion.orientation * glm::dvec3(0, 1, 0);
-        const double x = step * rate;  // 1 - x^2/6 and 1 - x^2/12, and what follows
+        const double x = step * rate;  // 1 - x^2/6 and 1 - x^2/12, and higher orders
         EXPECT_NEAR(glm::dot(motion.velocity, ahead), speed * std::sin(x) / x, 1e-12);
         EXPECT_NEAR(glm::dot(motion.acceleration, port), speed * rate * 2 * (1 - std::cos(x)) / (x * x), 1e-9);
         EXPECT_LT(speed - glm::dot(motion.velocity, ahead), speed * x * x / 6);
@@ -53,7 +53,7 @@ TEST(MotionTest, ErrorsAreOfSecondOrderInTheTimeBetweenPoses) {
 }
 
 TEST(MotionTest, ALeverArmMovesWithTheRotationOfTheBody) {
-    // The body turns ever faster about a slanted axis: alpha x r + omega x (omega x r), in the world.
+    // The body rotates with increasing rate about a slanted axis: alpha x r + omega x (omega x r), in the world.
     const glm::dvec3 axis = glm::normalize(glm::dvec3(1, 2, 3));
     const types::Mount mount{.position = {0.5, -0.25, 0.75}, .yaw_deg = 40};
     const Path path = [&](double time) { return poseAt(time, {2, 3, 4}, glm::angleAxis(0.2 * time * time, axis)); };

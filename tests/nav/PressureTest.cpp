@@ -1,4 +1,4 @@
-// Pressures against the tables of UNESCO 44 and Saunders' formula.
+// Pressures, compared with the tables of UNESCO 44 and Saunders' formula.
 #include <gmock/gmock.h>
 
 #include "components/nav/Gravity.hpp"
@@ -54,7 +54,7 @@ TEST(PressureTest, PressureIsThatOfAirAboveTheSurfaceAndClampedAtMaxDepth) {
     EXPECT_EQ(depthAt(1e12, {}), deepest);
 }
 
-/** The mean and the deviation of readings at rest [Pa]. */
+/** Mean and standard deviation of readings at rest [Pa]. */
 std::pair<double, double> statisticsOf(const PressureConfig& config, int count) {
     PressureGauge gauge(config);
     double sum = 0, squares = 0;

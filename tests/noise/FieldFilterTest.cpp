@@ -1,4 +1,4 @@
-// Noise that has passed a receiver's filter and its averaging of looks, against closed forms.
+// Noise after a receiver's filter and averaging of looks, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -20,7 +20,7 @@ NoiseConfig filtered(const FilterConfig& filter, std::optional<SpeckleConfig> sp
 
 types::Sonar filteredField(const FilterConfig& filter) { return noisyOf(filtered(filter), pingOf(beams, bins)); }
 
-/** Correlation of intensities so many beams and bins apart. */
+/** Returns the correlation of intensities at a distance in beams and bins. */
 double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
     double sum = 0;
     const size_t count = ping.bin_count - along;
@@ -31,7 +31,7 @@ double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
     return sum / static_cast<double>(count * (ping.beam_count - across)) / varianceOf(ping.bins);
 }
 
-/** Of the logarithm of gamma variates of `looks`: psi''(L) / psi'(L)^1.5. */
+/** Returns the skew of the logarithm of gamma variates of `looks`: psi''(L) / psi'(L)^1.5. */
 double logSkewOf(int looks) {
     double trigamma = 0, tetragamma = 0;
     for (int k = looks; k < 100000; ++k) trigamma += 1 / std::pow(k, 2), tetragamma -= 2 / std::pow(k, 3);

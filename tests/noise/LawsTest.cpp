@@ -1,4 +1,5 @@
-// Each law of the speckle against its own distribution, at 1 %, and against those of the others, which must fail.
+// Each law of the speckle compared with its own distribution, at 1 %, and with those of the other laws, which must
+// fail.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -13,7 +14,7 @@ namespace {
 constexpr double count = 128000;
 constexpr double decibels_per_neper = 10 / std::numbers::ln10;
 
-/** psi(x) = d ln Gamma / dx by its recurrence and, above 20, its asymptotic series. */
+/** Returns psi(x) = d ln Gamma / dx by its recurrence and, above 20, its asymptotic series. */
 double digamma(double x) {
     double sum = 0;
     for (; x < 20; x += 1) sum -= 1 / x;
@@ -26,13 +27,13 @@ double trigamma(double x) {
     return sum + 1 / x + 1 / (2 * x * x) + 1 / (6 * x * x * x) - 1 / (30 * x * x * x * x * x);
 }
 
-/** A law, and what theory says of it. */
+/** A law, and its theoretical moments. */
 struct Law {
     std::string name;
     NoiseConfig config;
     std::function<double(double)> cdf;
     double scintillation;                 ///< Variance over the mean squared.
-    double decibel_mean, decibel_spread;  ///< Of 10 log10 of the factor [dB].
+    double decibel_mean, decibel_spread;  ///< Mean and deviation of 10 log10 of the factor [dB].
 };
 
 Law rayleighLaw() {
@@ -140,7 +141,7 @@ TEST(LawsTest, QuotedFiguresAreCorrect) {
     EXPECT_NEAR(std::sqrt(1 - amplitude * amplitude) / amplitude, 0.5227, 0.005) << "its deviation over its mean";
 }
 
-/** How often a value is above x times the mean. */
+/** Returns the share of values above x times the mean. */
 double tailOf(const std::vector<float>& values, double x) {
     return static_cast<double>(std::ranges::count_if(values, [&](float value) { return value > x; })) / count;
 }
@@ -170,7 +171,7 @@ TEST(LawsTest, ExtremeShapesAreFiniteWithAnExtremeTailOrExponential) {
         << "a skew of 0.02 is left";
 }
 
-/** Correlation of what two runs of values are by their ranks, which no long tail spoils. */
+/** Returns the rank correlation of two lists of values, which is insensitive to long tails. */
 double rankCorrelation(const Law& law, const float* a, const float* b, size_t size) {
     std::vector<float> first, second;
     for (size_t i = 0; i < size; ++i) {

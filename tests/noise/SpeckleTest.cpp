@@ -1,4 +1,4 @@
-// The laws of the noise, by their moments and by tests of their distributions.
+// The laws of the noise, compared by moments and by tests of their distributions.
 #include <gtest/gtest.h>
 
 #include "tests/noise/Distributions.hpp"

@@ -49,7 +49,7 @@ TEST(TrajectoryTest, PositionIsLinearBetweenStampsAndHeldOutside) {
     EXPECT_EQ(path.at(3).position, glm::dvec3(4, -2, 1));
 }
 
-/** Rounds of a circle of 5 m, one in 20 s, that looks along its way, with a stamp each `step` seconds. */
+/** Returns laps on a circle of 5 m, 20 s each, heading along the path, with a stamp each `step` seconds. */
 std::vector<Trajectory::Stamp> circle(double step) {
     std::vector<Trajectory::Stamp> stamps;
     for (int i = 0; i * step <= 40; ++i) {
@@ -133,7 +133,7 @@ TEST(TrajectoryTest, PositivePitchLooksDownPositiveYawTurnsToPortPositiveRollLow
     EXPECT_LT(turned({.pitch_deg = 30}, {1, 0, 0}).z, -0.49);
     EXPECT_GT(turned({.yaw_deg = 30}, {1, 0, 0}).y, 0.49);
     EXPECT_LT(turned({.roll_deg = 30}, {0, -1, 0}).z, -0.49);
-    // Rz(90) Ry(90): the nose points down, and the belly to the west, where the yaw had turned it.
+    // Rz(90) Ry(90): the nose points down, and the belly to the west, as turned by the yaw.
     EXPECT_LT(glm::distance(turned({.pitch_deg = 90, .yaw_deg = 90}, {0, 0, 1}), {0, 1, 0}), tiny);
 }
 

@@ -10,7 +10,7 @@
 namespace insonify::receiver {
 namespace {
 
-/** Three beams of these intensities, whose mean is theirs. */
+/** Returns three beams with these intensities as their mean. */
 types::Sonar beamsOf(const std::vector<float>& bins) {
     types::Sonar ping = test::pingOf(3, static_cast<uint32_t>(bins.size()));
     for (size_t i = 0; i < ping.bins.size(); ++i)

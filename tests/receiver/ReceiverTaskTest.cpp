@@ -94,7 +94,8 @@ protected:
         config_.output = Output::Code;
         config_.code = CodeConfig{.bits = 8, .law = CodeLaw::Log, .full_scale_db = -20, .dynamic_range_db = 60};
     }
-    /** Pings of 200 bins: so many of them of an intensity, the others of 1e-5, half way down the codes. */
+    /** Sends pings of 200 bins: a number of bins with an intensity, the others with 1e-5, in the middle of the
+     *  codes. */
     void receive(int bins, float intensity, int pings = 1) {
         for (int i = 0; i < pings; ++i) {
             types::Sonar ping = test::pingOf(2, 100, 1e-5f);

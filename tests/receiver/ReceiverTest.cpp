@@ -22,7 +22,7 @@ types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensit
     return ping;
 }
 
-/** One beam of these intensities. */
+/** Returns one beam with these intensities. */
 types::Sonar beamOf(const std::vector<float>& bins) {
     types::Sonar ping = test::pingOf(1, static_cast<uint32_t>(bins.size()));
     ping.bins = bins;

@@ -17,7 +17,7 @@ std::vector<std::vector<double>> rowsOf(const std::string& text, size_t least = 
     return readCsv(folder / "a.csv", columns, least, judge);
 }
 
-/** "line:column: path: message" of each. */
+/** Returns "line:column: path: message" of each diagnostic. */
 std::vector<std::string> diagnosticsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
     std::vector<std::string> diagnostics;
     try {

@@ -9,8 +9,7 @@
 namespace insonify::types {
 namespace {
 
-/** A unit square in z = 0 from the origin, one vertex beside it that no triangle uses, twice: the second one 10 m on.
- */
+/** Two unit squares in z = 0, at the origin and 10 m away, each with a vertex next to it that no triangle uses. */
 Snapshot twoSquares() {
     Mesh square;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {50, 50, 50}};

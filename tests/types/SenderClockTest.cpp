@@ -9,7 +9,7 @@ using Order = SenderClock::Order;
 
 Time at(double seconds) { return Time::fromSeconds(seconds); }
 
-/** Ours reads so many seconds more than the sender's. */
+/** Offset of our clock to the sender's [s]. */
 constexpr double ahead = 1000;
 
 TEST(SenderClockTest, UsesTheMinDelayAndNotThatOfEachMessage) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/** Beams of bins that hold 1, 2, 3... */
+/** Returns beams with bins of 1, 2, 3... */
 Sonar ping(uint32_t bins, uint32_t beams) {
     Sonar sample;
     sample.resize(bins, beams);
