@@ -1,4 +1,4 @@
-// No operator new on the sonars' threads after the first pings, even when later ones see more.
+// No operator new on the sonars' threads after the first pings, even when more is in view later.
 #include <gmock/gmock.h>
 
 #include "components/sonar/AltimeterTask.hpp"
@@ -27,7 +27,7 @@ types::GeometryPtr balls() {
     return test::sceneOf(std::move(meshes), -10, positions);
 }
 
-/** Snapshots of a sonar that looks to starboard first, and then turns to port, where things are. */
+/** Returns snapshots of a sonar that looks to starboard first, and then turns to port, where the objects are. */
 std::vector<types::SnapshotPtr> turning() {
     const types::GeometryPtr geometry = balls();
     std::vector<types::SnapshotPtr> snapshots;
@@ -43,7 +43,8 @@ std::vector<types::SnapshotPtr> turning() {
     return snapshots;
 }
 
-/** Pings of `count` equal snapshots, after as many for the quality to settle, during which the task allocates. */
+/** Returns the number of pings that allocate among `count` pings of equal snapshots. The same number of pings before
+ *  lets the quality settle. */
 int pingsThatAllocate(const SonarConfig& config, int count) {
     SonarTask task("sonar");
     test::Writer<types::SnapshotPtr> in;
@@ -66,7 +67,7 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
 
 enum class Truth { Unheard, Heard };
 
-/** A reader of what a task tells beside its pings. */
+/** A reader of a task's other outputs. */
 template <class Task>
 struct Beside {
     explicit Beside(Task&) {}

@@ -1,4 +1,4 @@
-// First returns against closed forms.
+// First returns, compared with closed forms.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ protected:
         task_.cleanup();
         startWith(config);
     }
-    /** What is told at a height above a bottom; the vehicle pitched and rolled [deg]. */
+    /** Returns the range at a height above a bottom, with the vehicle pitched and rolled [deg]. */
     types::Range rangeAt(double height, double pitch = 0, double roll = 0) {
         types::Snapshot snapshot =
             test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}, 0, types::radians(pitch), types::radians(roll));
@@ -57,11 +57,11 @@ TEST_F(AltimeterTaskTest, MeasuresTheNearestPointInTheBeamOnATiltedVehicle) {
             EXPECT_NEAR(rangeAt(10, 0, tilt).range, expected, bin) << opening << " deg, rolled by " << tilt;
         }
     }
-    // A slant of D / cos(t) would be that of the axis: wrong as soon as the beam is wider than the tilt.
+    // D / cos(t) would be the slant range on the axis: wrong if the beam is wider than the tilt.
     EXPECT_GT(10 / std::cos(types::radians(40)), nearest(10, 40, 60) + 10 * bin);
 }
 
-/** Of a plane through the foot of the axis, tilted by t: D cos(t), as far as the beam sees that point. */
+/** The range of a plane through the foot of the axis, tilted by t, is D cos(t) if that point is in the beam. */
 TEST_F(AltimeterTaskTest, MeasuresTheFootOfThePerpendicularOverASlope) {
     constexpr double height = 10;
     startWide(60);

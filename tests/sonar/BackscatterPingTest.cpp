@@ -1,5 +1,5 @@
-// Pings of materials that follow a table or have a lobe, against closed forms and target strengths (ACOUSTICS.md 3.5 to
-// 3.8). Every form stands beside a deliberately wrong one, which must fail by the same measure.
+// Pings of materials that follow a table or have a lobe, compared with closed forms and target strengths (ACOUSTICS.md
+// 3.5 to 3.8). Each form has a deliberately wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -55,12 +55,12 @@ test::Form bottomOf(double height, double elevation, double delta, const std::fu
     };
 }
 
-/** 10 log10 of what a target at `range` gives back [dB]. */
+/** Returns 10 log10 of the echo of a target at `range` [dB]. */
 double targetStrength(const types::Sonar& ping, double range) {
     return 10 * std::log10(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0) * std::pow(range, 4));
 }
 
-/** A smooth or rough mirror and nothing else. */
+/** Makes a smooth or rough mirror without diffuse scattering. */
 void makeShiny(types::Material& material, float reflection, float slope) {
     material.lambert_db = -200;
     material.reflection = reflection;
@@ -187,7 +187,7 @@ TEST(BackscatterPingTest, ARoughCylinderBroadsideHasItsTargetStrength) {
 }
 
 TEST(BackscatterPingTest, AMirrorShowsTheSonarsImageWithAnyNumberOfSamples) {
-    // All of a plane mirror's echo is what comes from the mirrored sonar, at twice the distance: R^2 / (2 D)^2.
+    // The echo of a plane mirror is the sound of the mirrored sonar at twice the distance: R^2 / (2 D)^2.
     const auto snapshot = changed(test::sceneOf({test::wall(10)}), [](types::Material& m) { makeShiny(m, 0.5f, 0); });
     const double right = 10 * std::log10(0.25 / 400);
     for (int rows : {16, 64, 512, 2048})

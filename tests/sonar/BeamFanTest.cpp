@@ -54,7 +54,7 @@ void expectTiled(const std::vector<Part>& parts, const ViewFrustum& frustum, con
     for (size_t i = 1; i < parts.size(); ++i) EXPECT_NEAR(parts[i].from, parts[i - 1].to, 1e-9);
 }
 
-/** One of 40 m range in bins of 0.1 m. */
+/** A sonar of 40 m range in bins of 0.1 m. */
 types::Sonar plainPing(SonarConfig config, const types::Snapshot& snapshot) {
     config.speed_of_sound = 1000;
     config.range = 40;
@@ -180,7 +180,7 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
             const auto parts = partsOfBeams(shares, frustum, beams.size(), row);
             for (size_t k = 0; k < beams.size(); ++k) {
                 if (parts[k].empty() || parts[k].back().to > frustum.extent_u * (1 - 1e-9))
-                    continue;  // goes on next door
+                    continue;  // continues in the next frustum
                 const double in_slab = std::atan(parts[k].back().to);
                 const double elevation = std::atan(frustum.v(row + 0.5) * std::cos(in_slab));
                 EXPECT_NEAR(std::sin(frustum.azimuth + in_slab) * std::cos(elevation), std::sin(beams[k].high), 1e-6);
@@ -219,7 +219,7 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
 }
 
 TEST(BeamFanTest, AWallThroughThreeFrustaHasNoSeam) {
-    // Turned by ten beams, the same bearings of the world lie elsewhere in the frusta.
+    // Rotated by ten beams, the same bearings of the world are at other places in the frusta.
     const auto wall = test::sceneOf({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;

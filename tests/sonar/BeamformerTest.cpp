@@ -27,7 +27,7 @@ double lobe(double azimuth, double bearing) {
     return std::exp(-off * off) + 1e-3 * (1 + std::cos(azimuth));
 }
 
-/** Bins of one beam of cells of which each has its number in each bin. */
+/** Returns the bins of one beam, with cells whose bins all contain the number of the cell. */
 std::vector<float> formed(Beamformer& beamformer, size_t beam, const std::vector<float>& echoes) {
     for (size_t group = 0; group < beamformer.groupCount(); ++group) beamformer.sumGroup(group, echoes);
     std::vector<float> bins(bin_count);

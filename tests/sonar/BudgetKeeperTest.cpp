@@ -12,8 +12,7 @@ namespace {
 
 constexpr double least = 32768, most = 4e6;
 
-/** A machine on which pings take a while whatever their samples, and a while for each; and a ladder that is climbed by
- *  rungs of 9 %. */
+/** A machine on which a ping takes a constant time plus a time per sample, and a ladder with rungs of 9 %. */
 struct Machine {
     double fixed_ms = 1, ms_per_sample = 4e-5, jitter = 0;
     std::minstd_rand random{7};
@@ -26,7 +25,7 @@ struct Machine {
         const double noise = 2 * static_cast<double>(random()) / std::minstd_rand::max() - 1;
         return (fixed_ms + samples * ms_per_sample) * (1 + jitter * noise);
     }
-    /** Times of so many pings. */
+    /** Returns the times of a number of pings. */
     std::vector<double> run(BudgetKeeper& keeper, int pings) {
         std::vector<double> times;
         for (int i = 0; i < pings; ++i) {

@@ -1,4 +1,5 @@
-// Scenes that change from ping to ping: what a renderer keeps, and that its pings are those of a renderer made anew.
+// Scenes that change from ping to ping: the data that a renderer keeps, and pings compared with those of a new
+// renderer.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -83,7 +84,7 @@ size_t threads() {
     return static_cast<size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
-/** Sonars with one effect each that meets the scene in a way of its own. */
+/** Sonars with one effect each that uses the scene in its own way. */
 std::vector<std::pair<std::string, SonarConfig>> sonars() {
     SonarConfig plain = wideFan(), coherent = wideFan(), mirrors = wideFan(), pattern = wideFan(), means = wideFan();
     coherent.speckle.emplace().coherent = true;

@@ -1,5 +1,5 @@
-// The pulses of other sonars against the one-way sonar equation, and their echoes against an integral over the sea
-// floor, both worked out here (ACOUSTICS.md 5.29).
+// The pulses of other sonars compared with the one-way sonar equation, and their echoes compared with an integral over
+// the sea floor, both computed independently here (ACOUSTICS.md 5.29).
 #include <gmock/gmock.h>
 
 #include <complex>
@@ -86,8 +86,8 @@ SonarConfig randomFan(std::mt19937& random) {
     return config;
 }
 
-/** Random fans, places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at
- * the level of the one-way sonar equation. */
+/** Random fans, places, delays, levels, absorption and patterns: every beam that receives a pulse has it in the right
+ *  bin, at the level of the one-way sonar equation. */
 TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -163,7 +163,7 @@ TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
     config = hearing(config);
     config.multipath.emplace().surface.emplace();
     types::Snapshot snapshot = openWaterWith(sentFrom({16, 0, 0}, 0.01, [](const glm::dvec3& to) {
-        return to.z > 0.1 ? 0.5 : 1.0;  // towards the surface it is weaker
+        return to.z > 0.1 ? 0.5 : 1.0;  // weaker towards the surface
     }));
     snapshot.water_surface = 6;
     const auto ping = pingOf(config, snapshot);
@@ -172,7 +172,7 @@ TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
     EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + reflected / 2) / 0.1)]} * reflected * reflected, 0.5, 1e-5);
 }
 
-/** A matched filter on sampled chirps: the energy that it passes, relative to its own pulse of the same level. */
+/** A matched filter on sampled chirps: the energy that passes, relative to the filter's own pulse of the same level. */
 double filteredEnergy(const Waveform& own, const Waveform& sent) {
     constexpr double rate = 2e6;
     const auto chirp = [&](const Waveform& form) {
@@ -224,13 +224,13 @@ TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
         if (ping.bins[k] > 0) heard.push_back(k);
     ASSERT_EQ(heard.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
     EXPECT_EQ(heard.front(), 92u);
-    // Half of its band is heard, of twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
+    // Half of the pulse's band passes, with twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
     EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1,
                 1e-4);
 }
 
-/** What a sonar hears of its own pulse, once more from a twin at its place. Fields of coherent speckle add with a phase
- *  of their own, so there the sum over the ping doubles. */
+/** A twin at the place of a sonar doubles the echoes of the sonar's own pulse. Fields of coherent speckle add with
+ *  independent phases, so with coherent speckle the sum over the ping doubles. */
 TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
     for (const bool patterned : {false, true}) {
         SonarConfig config =
@@ -318,7 +318,7 @@ TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
     EXPECT_EQ(pingOf(config, snapshot).bins, roofed.bins);
 }
 
-/** Senders at extreme places and times: what is heard is finite. */
+/** Senders at extreme places and times give finite echoes. */
 TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
     const SonarConfig config =
         hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);

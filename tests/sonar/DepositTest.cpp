@@ -69,7 +69,7 @@ types::Sonar difference(types::Sonar a, const types::Sonar& b) {
     return a;
 }
 
-/** The same with the places of its objects, and of the sonar, as large as in UTM coordinates. */
+/** Returns the snapshot with objects and sonar moved to the magnitude of UTM coordinates. */
 types::Snapshot asInUtm(types::Snapshot snapshot) {
     const glm::dvec3 offset(500'000, 4'500'000, -100);
     auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
@@ -87,7 +87,7 @@ double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     return many / sum(pingOf(config, snapshot));
 }
 
-/** Sums that no compute shader makes. */
+/** Sums that the compute shader does not support. */
 class OwnSums final : public PingEffect {
     bool hasSums() const override { return true; }
 };

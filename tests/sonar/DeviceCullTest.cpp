@@ -1,4 +1,4 @@
-// With `deposit: gpu` a compute shader culls clusters: it draws exactly what the processor draws.
+// With `deposit: gpu` a compute shader culls clusters: the same clusters as the processor.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ SonarConfig fanWith(Deposit deposit, double field_of_view_deg) {
     return config;
 }
 
-/** Bins of a ping, and the objects, triangles and frusta that were not drawn, out of how many. */
+/** Bins of a ping, and the numbers of culled and of all objects, triangles and frusta. */
 struct Result {
     std::vector<float> bins;
     std::vector<std::tuple<std::string_view, double, double>> culled;
@@ -48,7 +48,7 @@ std::vector<Result> rendered(const SonarConfig& config, const std::vector<types:
     return results;
 }
 
-/** Whether processor and device leave the same out of each ping; `config.deposit` is ignored. */
+/** Expects processor and device to cull the same in each ping; `config.deposit` is ignored. */
 void expectSameCulling(SonarConfig config, const std::vector<types::Snapshot>& snapshots) {
     config.deposit = Deposit::Cpu;
     const std::vector<Result> processor = rendered(config, snapshots);
@@ -74,7 +74,7 @@ TEST(DeviceCullTest, TheDeviceCullsTheSameWithNormalMapsAndSeveralMaterials) {
 
 TEST(DeviceCullTest, NoBinChangesWithoutCulling) {
     SonarConfig config = fanWith(Deposit::Gpu, 100);
-    config.range = 120;  // holds all of the scene
+    config.range = 120;  // contains the whole scene
     const std::vector<types::Snapshot> snapshots = passage(clusteredHarbour(), 5);
     const std::vector<Result> culled = rendered(config, snapshots);
     config.draw_all = true;

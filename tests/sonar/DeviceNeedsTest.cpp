@@ -1,4 +1,4 @@
-// What drawing needs of OpenGL's limits, held against drivers that do not exist.
+// The limits of OpenGL that rasterising needs, compared with drivers that do not exist.
 #include <gmock/gmock.h>
 
 #include "components/sonar/effects/Effects.hpp"

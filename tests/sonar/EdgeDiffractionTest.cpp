@@ -51,7 +51,7 @@ SonarConfig without(SonarConfig config) {
     return config;
 }
 
-/** Placed meshes of a smooth material that scatters nothing else. */
+/** Placed meshes of a smooth material without diffuse scattering. */
 types::GeometryPtr smooth(std::vector<types::Mesh> meshes, std::vector<glm::dmat4> places, float reflection = 1,
                           float slope = 0) {
     auto geometry = std::make_shared<types::Geometry>();
@@ -72,8 +72,7 @@ glm::dmat4 placed(const glm::dvec3& at, double pitch = 0, double yaw = 0) {
 /** A sheet across x and y about the origin. */
 types::Mesh sheet(float x, float y) { return test::quad({-x / 2, -y / 2, 0}, {x, 0, 0}, {0, y, 0}); }
 
-/** A box about the origin, each face of count x count quads, or of another number per face, with vertices of its own.
- */
+/** A box about the origin. Each face has its own vertices and count x count quads, or another number per face. */
 types::Mesh box(glm::vec3 size, std::array<int, 6> counts) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;

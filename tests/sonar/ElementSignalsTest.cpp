@@ -1,4 +1,4 @@
-// Signals of a straight array's elements: beams that are formed of them hold what the sonar's own bins do.
+// Signals of a straight array's elements: beams formed from them match the sonar's own bins.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -61,7 +61,8 @@ Heard heard(const SonarConfig& config) {
     return result;
 }
 
-/** Bins of beams that look where those of the ping do. @param turn -1: as if port were starboard */
+/** Returns the bins of beams at the bearings of the ping.
+ *  @param turn -1: with port and starboard exchanged */
 std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper, double turn = 1) {
     const types::SonarElements& signals = heard.signals;
     const size_t count = signals.positions.size();
@@ -78,8 +79,8 @@ std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper
     return bins;
 }
 
-/** Of the bins that hold at least a share of the mean at their range: how many are off by more than 0.5 dB, and what
- *  the energy of all is off by [dB]. */
+/** The errors of the bins with at least a share of the mean at their range: the share of bins with an error above 0.5
+ *  dB, and the error of the total energy [dB]. */
 struct Off {
     double share = 0, energy_db = 0;
 };
@@ -104,9 +105,9 @@ Off off(const types::Sonar& ping, const std::vector<double>& bins, double least 
 TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
     struct Bound {
         Weighting weighting;
-        double above_mean, all;  ///< Of the bins above the mean at their range, and of those to 20 dB below it.
+        double above_mean, all;  ///< For the bins above the mean at their range, and for bins to 20 dB below it.
     };
-    // The far sidelobes of elements are not quite those of an even line: without weights they are heard.
+    // The far sidelobes of elements differ from those of a continuous line, which matters without weights.
     for (const auto& [weighting, above_mean, all] :
          {Bound{Weighting::Uniform, 0.03, 0.15}, Bound{Weighting::Hann, 0.002, 0.01},
           Bound{Weighting::Taylor, 0.002, 0.03}}) {

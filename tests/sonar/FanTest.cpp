@@ -108,7 +108,7 @@ TEST(FanTest, RejectsBeamsWithoutExtent) {
     EXPECT_TRUE(Fan().empty());
 }
 
-/** Holds what every fan promises, for random tables in random order. */
+/** Checks the guarantees of every fan for random tables in random order. */
 TEST(FanTest, EveryTableMeetsItsGuarantees) {
     std::mt19937 random(11);
     for (int round = 0; round < 50; ++round)
@@ -131,7 +131,7 @@ TEST(FanTest, EveryTableMeetsItsGuarantees) {
             fan.toTableOrder(std::span(rows), 1);
             for (size_t row = 0; row < rows.size(); ++row)
                 EXPECT_NEAR(std::remainder(rows[row] - shuffled[row], 360), 0, 1e-9);
-            // What holds an azimuth is what a search through all beams finds.
+            // The beam at an azimuth is the one that a search through all beams finds.
             for (int i = 0; i < 20; ++i) {
                 const double azimuth = std::uniform_real_distribution<double>(-7, 7)(random);
                 std::vector<size_t> searched;

@@ -1,4 +1,4 @@
-// Errors of a device's elements, beams, focus and clock against closed forms (ACOUSTICS.md 5.27).
+// Errors of a device's elements, beams, focus and clock, compared with closed forms (ACOUSTICS.md 5.27).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -156,7 +156,8 @@ TEST(ImperfectionsTest, CoherentSurfacesHaveTheSidelobesOfEnergies) {
     EXPECT_GT(fields, sidelobes(true, {}) + 6) << "an ideal device has lower sidelobes";
 }
 
-/** What an array hears of a point at a range and angle, by the exact ways to its elements, focused at another range. */
+/** Returns the response of an array to a point at a range and angle, by the exact paths to its elements, focused at
+ *  another range. */
 double exactPower(double length, size_t count, double range, double angle, double focus) {
     Phasor sum;
     const double k = 2 * pi / array_wavelength;
@@ -169,7 +170,7 @@ double exactPower(double length, size_t count, double range, double angle, doubl
     return std::norm(sum);
 }
 
-/** Width between the half-power points of a pattern, the outermost ones, relative to its maximum [rad]. */
+/** Returns the width between the outermost half-power points of a pattern, relative to its maximum [rad]. */
 double mainLobeWidth(const std::function<double(double)>& power) {
     double top = 0, low = 0, high = 0;
     for (double a = -0.3; a <= 0.3; a += 2e-4) top = std::max(top, power(a));
@@ -293,7 +294,7 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
     EXPECT_EQ(one.bins, again.bins);
     EXPECT_NE(one.bins, next.bins);
     EXPECT_NE(one.bins, clean.bins);
-    // The shift of each bin, from the slope there, is the same for all beams and has the deviation that is asked for.
+    // The shift of each bin, by the slope of the level, is the same for all beams and has the configured deviation.
     double square = 0, count = 0;
     for (size_t k = 200; k + 2 < clean.bin_count; ++k) {
         double top = 0, bottom_sum = 0;

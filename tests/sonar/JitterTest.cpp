@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint rows = 256, columns = 512;
 
-/** Mean of the products of `which` of each pixel with `other` of the pixel some rows and columns on. */
+/** Returns the mean of the products of `which` of each pixel and `other` of a pixel some rows and columns further. */
 double product(uint which, uint other, uint row_step, uint column_step) {
     double sum = 0;
     for (uint row = 0; row < rows; ++row)

@@ -1,4 +1,4 @@
-// In realtime a ping comes no earlier than its last echo could.
+// In realtime a ping is written no earlier than its last echo could arrive.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -25,20 +25,20 @@ protected:
         ASSERT_TRUE(task_.start()) << task_.lastError();
         task_.activity().release();
     }
-    /** From now on the task's clock stands wherever the test sets it. */
+    /** Replaces the task's clock by a clock that the test sets. */
     void setClock(types::Time time) {
         clock_ = time.microseconds;
         task_.environment().now = [this] { return types::Time{clock_.load()}; };
         task_.environment().wall_clock = false;
     }
-    /** A snapshot of the moment, moved by so many seconds; its stamp. */
+    /** Writes a snapshot of the current time plus a number of seconds; returns its stamp. */
     types::Time send(double ahead = 0) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.time = task_.environment().now() + types::Time::fromSeconds(ahead);
         in_.port.write(std::make_shared<types::Snapshot>(snapshot));
         return snapshot.time;
     }
-    /** The next ping, waited for. */
+    /** Waits for the next ping. */
     types::SonarPtr receive() {
         types::SonarPtr ping;
         test::comesTrue([&] { return out_.port.readNew(ping); });

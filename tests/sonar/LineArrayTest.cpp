@@ -1,4 +1,4 @@
-// Elements of a straight array, and the beams that are formed of them, against sums and closed forms.
+// Elements of a straight array, and beams formed from them, compared with sums and closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Cells speckled(size_t cells, size_t samples) {
     return made;
 }
 
-/** Power that a beam hears of one echo of unit amplitude. */
+/** Returns the power of one echo of unit amplitude in a beam. */
 double heardPower(const LineArray& array, double from, double looking) {
     ComplexRows echo(1, 1);
     echo.values[0] = 1;
@@ -140,7 +140,7 @@ TEST(LineArrayTest, AnArrayCannotMakeAGaussian) {
 
 TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHaveGratingLobes) {
     const LineArray sparse(32, 1.25 * wavelength, wavelength, uniform), dense(80, wavelength / 2, wavelength, uniform);
-    const double grating = 0.1 + 1 / 1.25;  // one wavelength of way between neighbours
+    const double grating = 0.1 + 1 / 1.25;  // path difference of one wavelength between neighbours
     EXPECT_NEAR(heardPower(sparse, grating, 0.1), 1, 0.01) << "as loud as the axis";
     EXPECT_NEAR(heardPower(sparse, 0.1, 0.1), 1, 0.01);
     EXPECT_LT(heardPower(dense, grating, 0.1), 1e-3) << "the same aperture, filled";

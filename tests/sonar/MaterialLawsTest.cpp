@@ -1,4 +1,4 @@
-// What materials give back between the entries of their tables, and when a material follows Lambert's law.
+// Backscatter of materials between the entries of their tables, and materials that follow Lambert's law.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Two beams of ten bins: something at bins 2 to 5 and again at 9. */
+/** Two beams of ten bins with echoes at bins 2 to 5 and at 9. */
 const std::vector<double> reference = {0, 0, 8, 4, 2, 1, 0, 0, 0, 1, 0, 0, 8, 4, 2, 1, 0, 0, 0, 1};
 const Layout layout{2, 10, 0.5, 0};
 

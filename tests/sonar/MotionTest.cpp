@@ -1,4 +1,4 @@
-// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.20).
+// Motion during the travel of sound, compared with exact solutions of the two-way path (ACOUSTICS.md 5.20).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ types::Snapshot movingSonar(const types::GeometryPtr& geometry, glm::dvec3 veloc
     return snapshot;
 }
 
-/** The second ping of an object that has moved for 0.5 s, by its velocity, to where it is. */
+/** Returns the second ping of an object that has moved for 0.5 s, by its velocity, to its place. */
 types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& geometry, glm::dvec3 place,
                           glm::dvec3 velocity, glm::dvec3 sonar_velocity = {}) {
     SonarRenderer renderer(config, geometry);
@@ -79,8 +79,8 @@ types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& g
     return ping;
 }
 
-/** The slant range and the direction at which a point is heard: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
- *  solved by halving. */
+/** Returns the slant range and the direction of a point's echo: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
+ *  solved by bisection. */
 struct HeardAt {
     double range;
     glm::dvec3 direction;
@@ -128,8 +128,8 @@ TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
     renderer.setTruth(ping, &truth);
     renderer.render(movingSonar(geometry, velocity), ping);
     for (size_t beam = 0; beam < 40; beam += 3) {
-        // The beam hears, at the edge that is nearer to the wall's foot, the range at which the arriving ray has met
-        // it.
+        // The first echo of the beam is at its edge nearer to the wall's foot, at the range where the arriving ray has
+        // met the wall.
         const double edge = std::abs(ping.bearings[beam].rad) - radians(0.5);
         const double bearing = std::copysign(edge, ping.bearings[beam].rad);
         const glm::dvec3 ray(std::cos(bearing), std::sin(bearing), 0);
@@ -246,7 +246,7 @@ TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));
 }
 
-/** What is wrong with a configuration, joined. */
+/** Returns the errors of a configuration, joined. */
 std::string complaintOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
@@ -383,7 +383,7 @@ protected:
         config.head.sweeps = sweeps;
         startWith(config);
     }
-    /** The loudest of the ping at a time, of a plate at 200 m and a bearing in the body. */
+    /** Returns the max of the ping at a time, for a plate at 200 m and a bearing in the body. */
     Loudest heardAt(double seconds, double bearing_deg) {
         types::Snapshot snapshot = test::snapshotOf(nullptr);
         const double bearing = radians(bearing_deg);

@@ -1,4 +1,4 @@
-// Nothing of an object is nearer than its nearest point, and no echo of it is.
+// No point of an object, and no echo of it, is nearer than its nearest point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** The least distance to many points of the triangles, in double. */
+/** Returns the min distance to many points of the triangles, in double. */
 double sampledDistance(const types::Mesh& mesh, const glm::dmat4& place) {
     constexpr int steps = 40;
     double nearest = 1e9;
@@ -56,7 +56,7 @@ types::Snapshot ballAcrossItsBox() {
     return test::snapshotOf(scene, {}, std::atan2(1.0, 1.0), -std::asin(1 / std::sqrt(3.0)));
 }
 
-/** Range at which the first bin with any echo ends [m]. */
+/** Returns the range at which the first bin with an echo ends [m]. */
 double firstEcho(Visibility visibility) {
     SonarConfig config = test::sonarOf(
         {.beams = 32, .width_deg = 60, .height_deg = 60, .bins = 500, .bin = 0.02, .rows = 32, .columns = 1});

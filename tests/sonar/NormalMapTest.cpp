@@ -1,5 +1,5 @@
-// Maps whose normals all lean by one angle, on a wall that is looked at squarely: its echo goes with the cosine, its
-// range stays (ACOUSTICS.md 3.4).
+// Maps whose normals all lean by one angle, on a wall at normal incidence: its echo is proportional to the cosine, its
+// range does not change (ACOUSTICS.md 3.4).
 #include <gtest/gtest.h>
 
 #include <algorithm>

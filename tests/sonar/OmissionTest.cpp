@@ -1,5 +1,5 @@
-// What the plan leaves out: each effect equals the same effect with neutral values, bit for bit or within the bound
-// that its reason states.
+// Effects that the plan omits equal the same effects with neutral values, bit for bit or within the bound that the
+// reason states.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test
     return ping.bins;
 }
 
-/** The scene after `change`. */
+/** Returns the scene after `change`. */
 template <class Change>
 types::GeometryPtr changed(Change change) {
     auto geometry = test::surfaces();
@@ -47,24 +47,24 @@ types::GeometryPtr changed(Change change) {
     return geometry;
 }
 
-/** Without normal maps. */
+/** Returns the scene without normal maps. */
 types::GeometryPtr unmapped() {
     return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
 }
 
-/** With a material that follows a table. */
+/** Returns the scene with a material that follows a table. */
 types::GeometryPtr measured() {
     return changed([](types::Geometry& g) { g.materials[0].measured = {{0, -40}, {90, -10}}; });
 }
 
-/** The numbers with which an effect is left out; none when it is not. */
+/** Returns the numbers in the reason for omitting an effect; none when it is not omitted. */
 std::optional<LeftOut> leftOut(const SonarConfig& config, std::string_view effect) {
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
     const LeftOut* found = plan.leftOut(effect);
     return found ? std::optional(*found) : std::nullopt;
 }
 
-/** Relative L2 of their difference. */
+/** Returns the relative L2 of the difference. */
 double difference(const Bins& a, const Bins& b) {
     double error = 0, norm = 0;
     for (size_t i = 0; i < a.size(); ++i) {
@@ -247,7 +247,7 @@ TEST(OmissionTest, MotionWithinAPingIsOmittedBelowASpeed) {
     EXPECT_EQ(binsOf(at_rest), without);
 }
 
-/** Sonars that want each feature there is, by each way to render. */
+/** Sonars that need each feature, ray-traced and rasterised. */
 std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     std::vector<std::pair<SonarConfig, RenderOptions>> all;
     for (Model model : {Model::Physical, Model::Cerqueira2017})

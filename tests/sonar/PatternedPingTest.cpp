@@ -1,5 +1,5 @@
-// Pings of sonars with beam patterns and pulses, against closed forms and the properties of apertures (ACOUSTICS.md 5.8
-// to 5.13).
+// Pings of sonars with beam patterns and pulses, compared with closed forms and the properties of apertures
+// (ACOUSTICS.md 5.8 to 5.13).
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -28,7 +28,7 @@ SonarConfig patternedSonar(double fov_deg, int beams, double bin, int bins) {
     return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
-/** A flat bottom under a level fan: of what comes from an elevation, a share. */
+/** A flat bottom under a level fan, weighted by a share for each elevation. */
 test::Form weightedBottom(double height, double delta, const std::function<double(double)>& share) {
     return [=](double r1, double r2) {
         const auto density = [=](double r) {
@@ -58,7 +58,7 @@ TEST(PatternedPingTest, ABottomEchoesByThePatternInElevation) {
     }
 }
 
-/** Form 3 with a share of what comes from an elevation: a flat bottom under a thin beam that looks down by `pitch`. */
+/** Form 3 weighted by a share for each elevation: a flat bottom under a thin beam that looks down by `pitch`. */
 test::Form weightedPitchedBottom(double height, double pitch, double delta,
                                  const std::function<double(double)>& share) {
     return [=](double r1, double r2) {
@@ -149,7 +149,7 @@ TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::Pulse));
 }
 
-/** What a fan of close beams hears of a small disc straight ahead. */
+/** Returns the echo of a small disc straight ahead in a fan of close beams. */
 BeamCut cutOf(const acoustics::BeamLaw& law) {
     SonarConfig config = patternedSonar(24, 601, 0.5, 24);
     config.beam_height_deg = 2;
@@ -173,7 +173,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
     }
 }
 
-/** A beam as somebody measured it: not the same on both sides, with a shoulder. */
+/** A measured beam: asymmetric, with a shoulder. */
 struct MeasuredBeam {
     Folder folder;
     std::vector<double> angle{-12, -8, -6, -5, -4, -3, -2, -1, 0, 1, 2, 2.5, 3, 4, 6, 8, 12};

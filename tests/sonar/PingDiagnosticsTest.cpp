@@ -1,4 +1,4 @@
-// What a sonar's task says of pings in which there is nothing, and how often.
+// Warnings of a sonar's task about empty pings, and their frequency.
 #include <gmock/gmock.h>
 
 #include "components/sonar/PingDiagnostics.hpp"
@@ -27,7 +27,7 @@ protected:
         task_.config.set(config);
         EXPECT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
-    /** So many pings of a scene, the sonar turned by `yaw_deg`. */
+    /** Renders a number of pings of a scene, with the sonar rotated by `yaw_deg`. */
     void ping(const types::GeometryPtr& geometry, double yaw_deg, int count,
               const std::vector<types::PointTarget>& targets = {}) {
         for (int i = 0; i < count; ++i) {

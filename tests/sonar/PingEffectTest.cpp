@@ -1,4 +1,5 @@
-// An effect that follows the rays of pings: it gets every ray once and every cell once, whatever the parts and threads.
+// An effect that follows the rays of pings gets every ray once and every cell once, for any number of parts and
+// threads.
 #include <gmock/gmock.h>
 
 #include <atomic>

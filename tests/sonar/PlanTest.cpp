@@ -30,7 +30,7 @@ types::Plan makePlan(const SonarConfig& config, const types::Geometry& geometry)
     return report(makeRenderPlan(config, geometry), geometry);
 }
 
-/** The reason for which the plan leaves `name` out; empty when it does not. */
+/** Returns the reason for which the plan omits `name`; empty when it does not. */
 std::string reason(const types::Plan& plan, const std::string& name) {
     const auto found = std::ranges::find(plan.omitted, name, &types::Omission::name);
     return found == plan.omitted.end() ? "" : found->reason;

@@ -1,4 +1,4 @@
-// Point targets against the active sonar equation, worked out here from the laws themselves (ACOUSTICS.md 5.14).
+// Point targets compared with the active sonar equation, computed here from the laws themselves (ACOUSTICS.md 5.14).
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -50,7 +50,7 @@ glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
 
 double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
-/** The pattern of one beam at a direction, by the laws of a configuration alone. */
+/** Returns the pattern of one beam in a direction, only by the laws of a configuration. */
 double patternOf(const SonarConfig& config, double bearing, double azimuth, double elevation) {
     const auto power = [](const std::optional<acoustics::BeamLaw>& law, double angle, double axis) {
         return law ? acoustics::BeamPattern(*law).power(angle, axis) : 1.0;
@@ -64,7 +64,7 @@ double patternOf(const SonarConfig& config, double bearing, double azimuth, doub
                     : power(pattern.receive.azimuth, across - bearing, 0));
 }
 
-/** Mean of the pulse over a bin, by 2000 points of it. */
+/** Returns the mean of the pulse over a bin, by 2000 points. */
 double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double range) {
     if (!config.pulse) return range >= grid.edge(bin) && range < grid.edge(bin + 1);
     const acoustics::Pulse pulse(*config.pulse, grid.speed_of_sound);
@@ -73,7 +73,7 @@ double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double r
     return sum / 2000;
 }
 
-/** What a target leaves in a ping by the sonar equation, but for spreading and its strength. */
+/** The echo of a target in a ping by the sonar equation, without spreading and its strength. */
 std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping, const glm::dvec3& at) {
     const BinGrid grid = makeBinGrid(config);
     const double r = glm::length(at), alpha = config.absorption->db_per_m.value();
@@ -89,7 +89,7 @@ std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping,
     return shape;
 }
 
-/** How far the worst bin is from a shape at a level, of those within 45 dB of the loudest [dB]. */
+/** Returns the max deviation of a bin from a shape at a level, for bins within 45 dB of the loudest bin [dB]. */
 double worstOf(const types::Sonar& ping, const std::vector<double>& shape, double level_db) {
     const double quietest = *std::ranges::max_element(shape) * std::pow(10, -4.5);
     double worst = 0;
@@ -198,7 +198,7 @@ TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
     }
 }
 
-/** Energies in both ways of seeing, and fields. */
+/** Energies, ray-traced and rasterised, and fields. */
 std::vector<SonarConfig> energiesAndFields(SonarConfig config) {
     std::vector<SonarConfig> all(3, config);
     all[1].visibility = Visibility::Gl;
@@ -259,7 +259,7 @@ TEST(PointTargetTest, IsInOneBeamOnlyAtAnyBearing) {
     }
 }
 
-/** What one beam hears of a target that is swept about it. */
+/** Returns the echo of a target that is swept about one beam. */
 BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     const auto geometry = openWater();
     SonarRenderer renderer(config, geometry);

@@ -1,5 +1,5 @@
-// `cerqueira2017` with `published: true` against a count of pixels written down from the description of the published
-// simulator (ACOUSTICS.md 8.2).
+// `cerqueira2017` with `published: true`, compared with a count of pixels by the description of the published simulator
+// (ACOUSTICS.md 8.2).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -35,7 +35,7 @@ types::GeometryPtr floorAndWall() {
     return test::sceneOf({study::meshOf(floor), test::wall(-4)}, -10);
 }
 
-/** Towards the open floor, or the wall behind. */
+/** Looks at the open floor, or at the wall behind. */
 types::Snapshot outwards(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 0, 0.14); }
 types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 3.14159, 0.14); }
 
@@ -106,7 +106,7 @@ public:
         return ping;
     }
     Quality quality() const { return {task.plan()->rows, task.plan()->columns_per_beam, task.plan()->predicted_error}; }
-    /** Those that tell of a quality. */
+    /** Returns the messages about a quality. */
     std::vector<std::string> notices() const {
         std::vector<std::string> all = task.notices();
         std::erase_if(all, [](const std::string& notice) { return notice.find("quality") == std::string::npos; });
@@ -217,7 +217,7 @@ TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestQualityAndANotice) {
     EXPECT_THAT(sonar.notices(), Contains(HasSubstr("Warning: the coarsest quality that is chosen takes")));
 }
 
-/** A keeper that is told the times of a machine on which a sample takes so long [ms]. */
+/** A keeper with the times of a machine with a given time per sample [ms]. */
 struct Kept {
     explicit Kept(const SonarConfig& with) : config(with), renderer(config, scene), keeper(config, 1) {
         renderer.setQuality(64, 2);
@@ -235,7 +235,7 @@ struct Kept {
     SonarRenderer renderer;
     QualityKeeper keeper;
     types::Sonar ping;
-    double ms = 0;  ///< Of the last ping.
+    double ms = 0;  ///< Time of the last ping.
 };
 
 TEST(QualityKeeperTest, UsesABudgetAndDoesNotExceedIt) {

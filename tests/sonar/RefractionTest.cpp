@@ -1,4 +1,4 @@
-// Rays that a profile of the speed of sound bends, against exact arcs (ACOUSTICS.md 5.19).
+// Rays bent by a profile of the speed of sound, compared with exact arcs (ACOUSTICS.md 5.19).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 using ::testing::HasSubstr;
 using types::radians;
 
-/** A file of this process's own. */
+/** A file that is private to this process. */
 std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
     static const Folder folder;
     static int count = 0;
@@ -36,7 +36,7 @@ std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
     return file;
 }
 
-/** 1500 m/s at the surface, a strong thermocline without end. */
+/** 1500 m/s at the surface, with a strong thermocline to any depth. */
 std::string thermocline(double gradient = 0.1) { return profileOf({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
 
 /** To 2 km by bins of 2 m; the sonar's own speed is 1500 m/s. */
@@ -75,14 +75,14 @@ size_t loudestBin(const types::Sonar& ping) {
     return static_cast<size_t>(std::ranges::max_element(ping.bins) - ping.bins.begin()) % ping.bin_count;
 }
 
-/** When a ray that leaves 1500 m/s at an elevation below the horizon [rad] has gone down so far in a gradient: by its
- *  own circle [s]. */
+/** Returns the time in which a ray that starts at 1500 m/s, at an elevation below the horizon [rad], reaches a depth in
+ *  a gradient, by its circle [s]. */
 double timeDown(double elevation, double drop, double gradient) {
     const double at_bottom = -std::acos(std::cos(elevation) * (1500 + gradient * drop) / 1500);
     return (std::asinh(std::tan(at_bottom)) - std::asinh(std::tan(elevation))) / gradient;
 }
 
-/** The elevation at which the bottom is heard at a slant range, by halving. */
+/** Returns the elevation of the bottom's echo at a slant range, by bisection. */
 double elevationAt(double range, double drop, double gradient) {
     double low = -1.5, high = -std::acos(1500 / (1500 + gradient * drop)) - 1e-12;
     for (int i = 0; i < 200; ++i) {
@@ -171,7 +171,7 @@ TEST(RefractionTest, WaterOfTheSonarsOwnSpeedChangesNoBit) {
     EXPECT_GT(loudest(same), 0);
 }
 
-/** Speed grows down to 50 m, and falls below: rays of the duct stay in it, the others go down steeply. */
+/** Speed grows down to 50 m, and falls below: rays of the duct stay in it, other rays descend steeply. */
 TEST(RefractionTest, BelowADuctThereIsAShadow) {
     const std::string duct = profileOf({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
     const auto heardAt = [&](double depth, const std::string& profile) {

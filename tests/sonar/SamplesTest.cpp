@@ -1,4 +1,4 @@
-// Four samples a pixel: the cells of twice the rows and columns, seen at places that no row or column shares.
+// Four samples per pixel: the cells of twice the rows and columns, sampled at places that no row or column shares.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A sonar and its samples a pixel. */
+/** A sonar and its samples per pixel. */
 struct Sampled {
     SonarConfig config;
     RenderOptions options = {};

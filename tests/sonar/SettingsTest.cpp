@@ -1,4 +1,4 @@
-// Pings that a driver asks for: `settings` of the sonar tasks.
+// Pings that a driver requests: `settings` of the sonar tasks.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A sonar task whose pings are asked for, in front of a wall. */
+/** A sonar task in front of a wall, whose pings are requested. */
 template <class Task>
 class Asked {
 public:
@@ -30,7 +30,7 @@ public:
         scenes_.port.write(std::make_shared<types::Snapshot>(scene));
         task.update();
     }
-    /** The ping that follows; null: there is none. */
+    /** Returns the ping that follows; null when there is none. */
     types::SonarPtr ask(const types::SonarSettings& settings) {
         asked_.port.write(settings);
         task.update();

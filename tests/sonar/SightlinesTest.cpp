@@ -1,4 +1,4 @@
-// Lines from the sonar against every triangle of a scene, and sonars inside of things.
+// Lines from the sonar compared with every triangle of a scene, and sonars inside of meshes.
 #include <gmock/gmock.h>
 
 #include "components/sonar/places/Sightlines.hpp"
@@ -8,8 +8,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** Whether the line between two points passes through any triangle, each looked at: both ends on different sides of its
- *  plane, the line on the same side of its three edges. */
+/** Returns whether the line between two points passes through any triangle, by testing each: both ends are on different
+ *  sides of its plane, and the line is on the same side of its three edges. */
 bool isCrossed(const types::Geometry& geometry, const std::vector<glm::dmat4>& places, const glm::dvec3& from,
                const glm::dvec3& to) {
     const auto volume = [](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) { return glm::dot(glm::cross(a, b), c); };
@@ -92,7 +92,7 @@ TEST(SightlinesTest, ASonarIsInsideAMeshThatShowsOnlyBacks) {
         lines.place(test::snapshotOf(geometry, place));
         return lines.enclosing();
     };
-    types::Mesh pool = test::sphere(2, 20);  // its faces inward, as a tank's
+    types::Mesh pool = test::sphere(2, 20);  // with inward faces, as in a tank
     for (size_t i = 0; i < pool.indices.size(); i += 3) std::swap(pool.indices[i], pool.indices[i + 1]);
     const auto scene =
         test::sceneOf({test::ground(-4, 200), test::sphere(2, 20), pool}, 0, {{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}});

@@ -1,4 +1,5 @@
-// The compute shader, which has no doubles, beside the processor's deposit of the same pictures, for random sonars.
+// The compute shader, which has no doubles, compared with the processor's deposit of the same pictures, for random
+// sonars.
 #include <gtest/gtest.h>
 
 #include <algorithm>

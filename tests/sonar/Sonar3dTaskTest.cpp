@@ -1,4 +1,4 @@
-// Range images against closed forms: a wall and a sphere, beam by beam.
+// Range images compared with closed forms: a wall and a sphere, beam by beam.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ protected:
     }
 };
 
-/** D / (cos e cos a); with azimuth and elevation exchanged it is the same, so the wall is turned as well. */
+/** D / (cos e cos a). This is symmetric in azimuth and elevation, so the wall is also rotated. */
 TEST_F(Sonar3dTaskTest, AWallIsAtTheRangeOfEachDirection) {
     constexpr double distance = 6;
     startWith(grid());
@@ -55,7 +55,7 @@ TEST_F(Sonar3dTaskTest, AWallIsAtTheRangeOfEachDirection) {
     }
 }
 
-/** 1 cm is 6.67 us one way, which a ping tells as 7. */
+/** 1 cm is 6.67 us one way, which a ping states as 7. */
 TEST_F(Sonar3dTaskTest, RangesAreExactForBinsOfFractionalMicroseconds) {
     Sonar3dConfig config = grid();
     config.sonar.range = 8;
@@ -71,7 +71,7 @@ TEST_F(Sonar3dTaskTest, RangesAreExactForBinsOfFractionalMicroseconds) {
     EXPECT_LT(worst, 0.006);
 }
 
-/** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; nothing beside it. */
+/** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; no range next to it. */
 TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     constexpr double radius = 2;
     const glm::dvec3 centre(7, 1, 0.5);
@@ -136,7 +136,7 @@ TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
     }
 }
 
-/** The energy that a fan of the whole height hears in each azimuth. */
+/** The energy of a fan of the whole height in each azimuth. */
 TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
     test::Reader<types::SonarPtr> pings;
     task_.ping.connectTo(pings.port, framework::ConnPolicy::buffer(2));
@@ -161,7 +161,7 @@ TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
         const auto energy = [&](const types::Sonar& of) {
             return std::accumulate(of.bins.begin() + beam * 500, of.bins.begin() + (beam + 1) * 500, 0.0);
         };
-        // Its beams are bands about a vertical plane, wider in azimuth by 1 / cos(elevation) than those of a fan.
+        // Beams are bands about a vertical plane, wider in azimuth by 1 / cos(elevation) than those of a fan.
         EXPECT_NEAR(energy(*ping) / energy(fan), 1, 0.03) << beam;
     }
 }
@@ -257,7 +257,7 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
         ++heard;
         if (truth->object[at] != expected.object[at]) continue;
         ++same;
-        // The nearest bins of wall and ball are met above and below the axis: a mean of two directions.
+        // The nearest bins of wall and ball contain directions above and below the axis, and their mean.
         near += std::abs(truth->elevation[at] - expected.elevation[at]) < types::radians(2.1);
         EXPECT_NEAR(truth->share[at], expected.share[at], 0.2) << at;
     }

@@ -318,7 +318,7 @@ TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
 }
 
 TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
-    for (const char* fov : {"130", "120"}) {  // the default as well, where it is written
+    for (const char* fov : {"130", "120"}) {  // also the default, if it is given
         const std::string yaml = "{beam_count: 512, field_of_view_deg: " + std::string(fov) + ", beam_width_deg: 1}";
         EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
     }

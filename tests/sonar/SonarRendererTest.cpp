@@ -27,7 +27,7 @@ std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::ping
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
 
-/** Relative L2 of their difference. */
+/** Returns the relative L2 of the difference. */
 double difference(const std::vector<float>& a, const std::vector<float>& b) {
     double error = 0;
     for (size_t i = 0; i < a.size(); ++i) error += std::pow(double{a[i]} - b[i], 2);

@@ -18,7 +18,7 @@ class SonarTaskTest : public test::TaskBench<SonarTask, types::SnapshotPtr, type
 protected:
     SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
     void start(const SonarConfig& config = smallSonar()) { startWith(config); }
-    /** The ping for one snapshot; null when there was none. */
+    /** Returns the ping of one snapshot; null without a ping. */
     types::SonarPtr pingOf(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
@@ -41,8 +41,8 @@ TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
     EXPECT_EQ(task_.stages().count("draw"), 1u);
 }
 
-/** Beams of 10 deg that are as wide as their spacing, and the same bearings with beams of 20 deg: each hears what it
- *  heard and half of both neighbours. */
+/** Beams of 10 deg with the same spacing, and the same bearings with beams of 20 deg. Each wide beam receives the
+ *  echoes of the narrow beam and half of both neighbours. */
 TEST_F(SonarTaskTest, ABeamWiderThanItsSpacingReceivesItsNeighboursEchoes) {
     const auto energies = [&](std::optional<double> width) {
         SonarConfig config = smallSonar();

@@ -1,4 +1,4 @@
-// Cases of ACOUSTICS.md 11.2: they hold or they do not.
+// Cases of ACOUSTICS.md 11.2.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr
 
 std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }
 
-/** The wall and ball as `change` leaves them. */
+/** Returns the wall and ball after `change`. */
 template <class Change>
 std::vector<float> heardWith(const Change& change) {
     std::vector<types::Mesh> meshes = wallAndBall();

@@ -1,5 +1,5 @@
-// Maps of strengths and of materials on surfaces: levels of painted regions, means over what samples cover, and that
-// nothing else changes (ACOUSTICS.md 3.13).
+// Maps of strengths and of materials on surfaces: levels of painted regions, means over the areas of samples, and no
+// other changes (ACOUSTICS.md 3.13).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using types::SurfaceMap;
 
 float linear(double decibels) { return static_cast<float>(std::pow(10, decibels / 10)); }
 
-/** A map of strengths, or without any of what is set later. */
+/** Returns a map with or without strengths; other members are set later. */
 SurfaceMap mapOf(int width, int height, std::vector<float> strengths = {}, bool repeats = true) {
     return {width, height, std::move(strengths), {}, {}, repeats, repeats};
 }
@@ -48,7 +48,7 @@ std::shared_ptr<types::Geometry> groundWith(const SurfaceMap& map, double size =
 
 types::GeometryPtr plainGround(float lambert_db = -15) { return test::sceneOf({mappedGround(80)}, lambert_db); }
 
-/** A material of the map's classes. */
+/** Adds a material for the classes of the map. */
 int addMaterial(types::Geometry& geometry, float lambert_db) {
     geometry.materials.push_back(geometry.materials[0]);
     geometry.materials.back().lambert_db = lambert_db;
@@ -111,7 +111,7 @@ TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
         for (int x = 0; x < 2; ++x) map.classes.push_back(y < 32 ? 0 : SurfaceMap::no_class);
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -25)};
-    geometry->materials.back().reflection = 0.5;  // a law of its own, with a lobe
+    geometry->materials.back().reflection = 0.5;  // a separate law with a lobe
     geometry->materials.back().roughness_slope = 0.3f;
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
     auto other = std::make_shared<types::Geometry>(*plainGround());
@@ -155,8 +155,7 @@ TEST(SurfaceMapTest, DetailFinerThanASampleCountsByItsMean) {
     EXPECT_NEAR(sum(binsOf(of_classes, config)) / mean, 1, 0.01);
 }
 
-/** A board of random places, sizes, turns and mirrorings, painted in blocks, against as many boards as it has blocks.
- */
+/** A board of random place, size, rotation and mirroring, painted in blocks, compared with a board per block. */
 TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
     std::mt19937 random(11);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };

@@ -14,7 +14,7 @@ TEST(ThreadPoolTest, EachPartIsDoneOnceAndBeforeRunReturns) {
         ThreadPool pool(threads);
         EXPECT_EQ(pool.size(), threads);
         for (int job = 0; job < 500; ++job) {
-            std::vector<int> done(static_cast<size_t>(threads));  // not atomic: run() is what orders them
+            std::vector<int> done(static_cast<size_t>(threads));  // not atomic: run() orders the accesses
             pool.run([&](int part, int parts) {
                 EXPECT_EQ(parts, threads);
                 done[static_cast<size_t>(part)] += job + 1;

@@ -1,4 +1,4 @@
-// Tables of directions against the view that they are made of, for random fans and strips.
+// Tables of directions, compared with the view that they are made from, for random fans and strips.
 #include <gtest/gtest.h>
 
 #include <random>

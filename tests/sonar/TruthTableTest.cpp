@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t unit = 1u << 30;
 
-/** One beam of three bins as it is told. */
+/** Returns the truth of one beam of three bins. */
 types::SonarTruth told(const TruthTable& table) {
     types::Sonar ping;
     ping.beam_count = 1;
@@ -58,7 +58,7 @@ TEST(TruthTableTest, SilentBinsNearerThanTheLastEchoAreInShadow) {
     EXPECT_THAT(told(table).shadow, testing::Each(0));
 }
 
-/** Seven objects in one bin, object k with (k + 1) units: four are told apart, whichever comes first. */
+/** Seven objects in one bin, object k with (k + 1) units: four are distinguished, in any order. */
 TEST(TruthTableTest, DistinguishesTheObjectsOfLowestIndexAndCountsAllEnergy) {
     std::vector<uint32_t> order = {0, 1, 2, 3, 4, 5, 6};
     for (int shuffle = 0; shuffle < 200; ++shuffle) {

@@ -1,5 +1,5 @@
-// Pings in water that scatters sound back, against closed forms (ACOUSTICS.md 3.9). Every form stands beside a
-// deliberately wrong one, which must fail by the same measure.
+// Pings in water that scatters sound back, compared with closed forms (ACOUSTICS.md 3.9). Each form has a deliberately
+// wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include "components/sonar/SonarRenderer.hpp"
@@ -38,14 +38,14 @@ SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
     return config;
 }
 
-/** Of a beam: the water's strength times the solid angle that hears it at a range, over the range squared. */
+/** Intensity of a beam: the water's strength times the solid angle of the beam at a range, over the range squared. */
 test::Form waterOf(const std::function<double(double)>& solid_angle) {
     return test::between(1, 1e9, [=](double near, double far) {
         return test::integral(near, far, [=](double r) { return strength * solid_angle(r) / (r * r); });
     });
 }
 
-/** Ground that gives nothing back and hides the water. */
+/** Ground without an echo that hides the water. */
 types::Snapshot overSilentGround(double height) {
     return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-height))}, -200));
 }
@@ -125,7 +125,7 @@ TEST(VolumePingTest, WaterWithoutScatteringChangesNoBin) {
     }
 }
 
-/** Sums of all beams, after tiles in which no ray meets anything are deposited for the first `beams` of them. */
+/** Returns the sums of all beams, after tiles without any hit are deposited for the first `beams` beams. */
 std::vector<uint64_t> sumsOfMisses(const RenderPlan& plan, const types::Geometry& geometry, int beams) {
     const PingEffects effects(plan, geometry);
     const EchoRules rules = makeEchoRules(plan, effects);

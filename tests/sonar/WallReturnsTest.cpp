@@ -1,4 +1,4 @@
-// Ringing of thick walls as returns apart in range (ACOUSTICS.md 3.10, 5.26).
+// Ringing of thick walls as separate returns in range (ACOUSTICS.md 3.10, 5.26).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -96,7 +96,7 @@ TEST(WallReturnsTest, ObjectsBehindAreLateAndRingToo) {
     EXPECT_EQ(energyOf(both, 0, 38, 39.3), 0);
 }
 
-/** The far side of a thick tube is met at its inner face, which is its thickness nearer. */
+/** The far side of a thick tube echoes at its inner face, which is nearer by the thickness. */
 TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
     const types::Shell shell{0.6, 2500, 2000, 0, 1e-3, false};
     const SonarConfig config = wallSonar(1, 1, 1, 300);
@@ -112,7 +112,7 @@ TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
     EXPECT_EQ(energyOf(ping, 0, 9, far - 0.2), 0);
 }
 
-/** A wall whose returns are less than half a bin apart, or less than half of what the pulse resolves, has one. */
+/** A wall whose returns are less than half a bin, or half of the pulse's resolution, apart has one return. */
 TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
         types::Shell shell = slab;
@@ -131,7 +131,7 @@ TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     }
 }
 
-/** A scene with a wall that rings and one without: the beams that do not meet it are the same bit for bit. */
+/** Scenes with and without a ringing wall: the beams that do not meet it are the same bit for bit. */
 TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
     const types::Mesh left = test::quad({10, 1, -100}, {0, 100, 0}, {0, 0, 200}),
                       right = test::quad({10, -101, -100}, {0, 100, 0}, {0, 0, 200});
@@ -218,7 +218,7 @@ TEST(WallReturnsTest, TheTruthNamesTheRingingWall) {
     EXPECT_GT(rung, 4 * 4);
 }
 
-/** Any plate at any angle to any sonar: finite, and no more than all the energy. */
+/** Any plate at any angle to any sonar gives finite echoes with at most the energy of the pulse. */
 TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
     std::mt19937 random(7);
     const auto between = [&](double low, double high) {

@@ -1,4 +1,4 @@
-// Sound that goes through thin walls, against the sonar equation with the plate's own transmission (ACOUSTICS.md 5.26).
+// Sound through thin walls, compared with the sonar equation and the plate's transmission (ACOUSTICS.md 5.26).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ using test::snapshotOf;
 constexpr types::Shell sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // no resonance is narrower than a sample
 constexpr types::Shell rubber{0.1, 1300, 900, 0, 0.2, false};
 
-/** Share of the energy that goes through and back. */
+/** Returns the share of the energy that passes through and back. */
 double passed(const types::Shell& shell, double cosine) {
     return std::pow(std::norm(shellResponse(shell, cosine).transmitted), 2);
 }
@@ -55,7 +55,7 @@ TEST(WallsTest, AWallWeakensOnlyTheBottomBehindIt) {
     const types::Mesh bottom = test::ground(-4), screen = test::quad({9, -100, -100}, {0, 200, 0}, {0, 0, 98});
     const auto alone = pingOf(config, snapshotOf(shellsOf({bottom}, 0)));
     const auto seen = pingOf(config, snapshotOf(shellsOf({screen, bottom}, 1, sheet)));
-    // The screen stands from below up to 2 m under the sonar, at 9 m: it hides the bottom from 9.85 m on to where rays
+    // The upper edge of the screen at 9 m is 2 m below the sonar. The screen hides the bottom from 9.85 m to where rays
     // pass over it, at 18 m along the ground.
     const double before = std::hypot(9, 4), over = std::hypot(18, 4);
     for (double range = 8; range < 28; range += 0.1) {
@@ -67,7 +67,7 @@ TEST(WallsTest, AWallWeakensOnlyTheBottomBehindIt) {
     }
 }
 
-/** The far side of a hollow body is met from within, at the same angle as the near one. */
+/** The far side of a hollow body echoes from within, at the same angle as the near side. */
 TEST(WallsTest, AHollowSphereHasBothItsSides) {
     const double radius = 0.9, distance = 10;
     const SonarConfig config = wallSonar(12, 12, 1, 120);
@@ -146,7 +146,7 @@ TEST(WallsTest, EachFurtherWallWeakensObjectsBehindUpToTheMaxNumber) {
     }
 }
 
-/** What follows each echo is the same behind a wall: patterns, pulses, and the field of each scatterer. */
+/** Effects on each echo are the same behind a wall: patterns, pulses, and the field of each scatterer. */
 TEST(WallsTest, PatternsPulsesAndCoherentSpecklePassAsEnergyDoes) {
     std::mt19937 random(5);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
