@@ -5,7 +5,7 @@
 
 namespace insonify::sonar {
 
-/** The directions of the rays of tiles, by tables for the columns and the rows of tiles. */
+/** Directions of the rays of tiles, from tables for the columns and the rows of tiles. */
 class TileDirections {
 public:
     TileDirections() = default;
@@ -27,7 +27,7 @@ private:
 
     TileShape::Extent tile_{1, 1};
     int strip_columns_ = 1;
-    size_t tiles_across_ = 1;  ///< In a strip.
+    size_t tiles_across_ = 1;  ///< Tiles in a strip.
     std::vector<Angles> columns_, rows_;
 };
 
