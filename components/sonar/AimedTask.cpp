@@ -48,7 +48,7 @@ void AimedTask::followSnapshot(const types::Snapshot& scene) {
     if (jumps_.isDue(jumped_))
         warn(
             fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
-                        "m/s: it is taken as put there, at rest unless its pose has a velocity",
+                        "m/s: it counts as repositioned, at rest unless its pose has a velocity",
                         way, seconds, fastest));
 }
 

@@ -79,10 +79,8 @@ protected:
     const char* refusal();
     types::Snapshot& aimed() { return taken_.scene; }
     const types::Snapshot& aimed() const { return taken_.scene; }
-    const types::Pose& usedPose() const {
-        return taken_.used;
-    }                                                   ///< The sonar in aimed(), before normalisation and steer().
-    types::Time begun() const { return taken_.begun; }  ///< Time at which the input was taken.
+    const types::Pose& usedPose() const { return taken_.used; }  ///< Pose before normalisation.
+    types::Time begun() const { return taken_.begun; }           ///< Time at which the input was taken.
     /** Input of one ping. */
     struct Taken {
         types::Snapshot scene;

@@ -87,8 +87,8 @@ std::string materialText(const SonarConfig& config, const types::Geometry& geome
         name = material.name;
         if (!means) name += fmt::format("', of lambert_db {:g}", material.lambert_db);
     }
-    return means ? fmt::format("its material '{}' has reflectivity 0 and gives nothing back", name)
-                 : fmt::format("its material '{} dB, gives nothing back that could be heard", name);
+    return means ? fmt::format("its material '{}' has reflectivity 0 and returns no echo", name)
+                 : fmt::format("its material '{} dB, returns no detectable echo", name);
 }
 
 /** "; its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5 m" */
@@ -98,7 +98,7 @@ std::string surfaceText(const Coverage& coverage, const types::Snapshot& scene) 
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     std::string hindrance = hindranceText(coverage, inSonar(scene, nearest.point));
     if (hindrance.empty()) hindrance = materialText(coverage.plan.config, *scene.geometry, nearest.object);
-    return fmt::format("; the scene lies from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}",
+    return fmt::format("; the scene extends from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}",
                        text(extent.low), text(extent.high), nearest.distance, text(nearest.point),
                        scene.geometry->objects[nearest.object].name, hindrance.empty() ? "" : ": ", hindrance);
 }
@@ -131,10 +131,11 @@ bool isLoud(Model model, const types::Sonar& ping) {
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
-    return fmt::format(
-        "{} {} and {}{}{}",
-        plan.fills_water ? "hears nothing but the water. The sonar is at" : "hears nothing. The sonar is at",
-        text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene), targetText(coverage, scene));
+    return fmt::format("{} {} and {}{}{}",
+                       plan.fills_water ? "receives no echo but that of the water. The sonar is at"
+                                        : "receives no echo. The sonar is at",
+                       text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene),
+                       targetText(coverage, scene));
 }
 
 /** That the sonar is inside of an object, with where it is and how far the object's nearest point. */
@@ -142,7 +143,7 @@ std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     return fmt::format(
         "is inside of {}, which has its faces outward: the sonar is at {}, its nearest surface {:.4g} m away at {}, "
-        "and what is outside is hidden; move the sonar out of it, or turn its faces inward",
+        "and everything outside is hidden; move the sonar out of it, or turn its faces inward",
         scene.geometry->objects[object].name, text(scene.sonar.position), nearest.distance, text(nearest.point));
 }
 

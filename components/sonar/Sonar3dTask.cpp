@@ -50,7 +50,7 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
     if (sonar.quality.target_error || sonar.quality.budget_ms || sonar.quality.max_samples)
         refuse("quality", "has a target; a 3-D sonar takes rows and columns_per_beam, of one beam");
     if (sonar.beam_pattern && sonar.beam_pattern->transmit.azimuth)
-        refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is taken to send alike in all its azimuths");
+        refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is assumed to transmit equally in all azimuths");
     if (diagnostics.empty()) upright().checkBeam(diagnostics);
 }
 

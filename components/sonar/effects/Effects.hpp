@@ -8,7 +8,7 @@
 
 namespace insonify::sonar {
 
-/** All effects, in the order in which they are planned, reported and run. */
+/** Returns all effects, in the order in which they are planned, reported and run. */
 std::span<const Effect* const> effects();
 
 /** Adds an effect of a library to the end of the list, until the process ends. Call it before any sonar is configured,

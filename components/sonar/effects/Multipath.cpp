@@ -7,7 +7,7 @@ namespace {
 
 std::string noBounces(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "bounces is 0"; }
 std::string noMirror(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "no surface is asked for, and no material is `mirror: true` or smooth enough";
+    return "no surface is configured, and no material is `mirror: true` or smooth enough";
 }
 
 /** What there is to reflect sound; `bounces` says which of it does. */

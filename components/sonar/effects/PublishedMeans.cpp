@@ -11,7 +11,7 @@ std::string scaledMeans(const LeftOut& what, const BinGrid& grid) {
 }
 std::string oneBin(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "published: one bin per pixel"; }
 std::string imageEdge(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "published: the image's edge, nearer than the aperture away from ahead";
+    return "published: the image's edge, which is inside the aperture except straight ahead";
 }
 std::string oneBeam(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "published: every column belongs to one beam";

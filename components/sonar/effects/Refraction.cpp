@@ -68,7 +68,8 @@ Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient)
 std::string whyStraight(const SonarConfig& config) {
     const bool drawn = hasProfile(config) && !config.castsRays();
     if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
-    return "bends what a sonar hears of this range, which rays alone show; visibility may be auto or cpu, without "
+    return "bends the rays of a sonar of this range, which only ray tracing shows; visibility may be auto or cpu, "
+           "without "
            "published: true and deposit: gpu, in a build with rays";
 }
 

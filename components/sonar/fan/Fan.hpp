@@ -48,18 +48,19 @@ public:
 
     double low() const { return low_; }    ///< Starboard end of the arc, beam widths included [rad].
     double high() const { return high_; }  ///< Port end of the arc [rad].
-    /** Direction at which the circle is cut, above all bearings and at most a turn above the lowest: pi, or the middle
-     * of the widest gap of a fan that crosses pi [rad]. */
+    /** Returns the direction at which the circle is cut, above all bearings and at most a turn above the lowest: pi, or
+     *  the middle of the widest gap of a fan that crosses pi [rad]. */
     double seam() const { return seam_; }
-    /** Whether the arc closes to a circle. */
+    /** Returns whether the arc closes to a circle. */
     bool isRound() const { return high_ - low_ >= 2 * std::numbers::pi - 1e-9; }
-    /** Whether an azimuth lies between the ends of the arc, gaps between beams included [rad]. */
+    /** Returns whether an azimuth is between the ends of the arc, gaps between beams included [rad]. */
     bool spans(double azimuth) const;
-    /** Largest azimuth to either side of straight ahead that the arc reaches [rad]. */
+    /** Returns the largest azimuth to either side of straight ahead that the arc reaches [rad]. */
     double farthestAside() const { return std::max(std::abs(low_), std::abs(high_)); }
-    /** Whether each beam begins where the one before it ends. */
+    /** Returns whether each beam begins where the beam before it ends. */
     bool joins() const { return joins_; }
-    /** Smallest distance between the centres of two beams that differ; 2 pi where there are no two [rad]. */
+    /** Returns the smallest distance between the centres of two beams that differ; 2 pi where there are no two [rad].
+     */
     double smallestSpacing() const;
     /** Returns the bearings halfway between neighbours, size() + 1 values. The outermost are equally far beyond the
      *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */
@@ -68,7 +69,7 @@ public:
     template <class Use>
     void eachAt(double azimuth, const Use& use) const;
 
-    /** Place of beam k in the table [1]. */
+    /** Returns the place of beam k in the table [1]. */
     size_t row(size_t k) const { return rows_[k]; }
     /** Returns the centre of the beam in a row of the table [rad]. */
     double tableBearing(size_t row) const { return bearings_[row]; }

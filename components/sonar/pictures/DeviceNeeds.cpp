@@ -69,7 +69,7 @@ gpu::Limits depositNeeds(const DepositSetup& setup, const types::Geometry& geome
 void requireDrawing(const gpu::Limits& limits, const gpu::Limits& needs, const std::string& renderer) {
     if (const std::string shortfall = limits.shortfall(needs); !shortfall.empty())
         throw gpu::GlError(fmt::format(
-            "{} cannot draw this sonar's pictures: {}; set visibility: cpu, or another device", renderer, shortfall));
+            "{} cannot render this sonar's images: {}; set visibility: cpu, or another device", renderer, shortfall));
 }
 
 std::string whyOnProcessor(Deposit deposit, const gpu::Limits& limits, const gpu::Limits& needs,
@@ -78,10 +78,9 @@ std::string whyOnProcessor(Deposit deposit, const gpu::Limits& limits, const gpu
     if (shortfall.empty()) return {};
     if (deposit == Deposit::Gpu)
         throw gpu::GlError(
-            fmt::format("deposit: gpu is too much for {}: {}; set deposit: cpu, or take fewer triangles "
-                        "or bins",
+            fmt::format("deposit: gpu is too much for {}: {}; set deposit: cpu, or use fewer triangles or bins",
                         renderer, shortfall));
-    return fmt::format("pictures are summed on the processor, for {} cannot: {}", renderer, shortfall);
+    return fmt::format("images are summed on the processor, because {} cannot: {}", renderer, shortfall);
 }
 
 }  // namespace insonify::sonar

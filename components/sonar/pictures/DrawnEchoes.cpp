@@ -121,7 +121,7 @@ std::string DrawnEchoes::checkDevice() const {
     requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
     if (wantsProcessor()) return {};
     if (const std::string why = effects_.whyNotOnDevice(); !why.empty())
-        return fmt::format("pictures are summed on the processor: {}", why);
+        return fmt::format("images are summed on the processor: {}", why);
     return whyOnProcessor(plan_.config.deposit, context_.limits(),
                           depositNeeds(depositSetup(plan_, effects_), *geometry_), context_.renderer());
 }

@@ -29,7 +29,7 @@ private:
     };
     void depositPart(size_t part);
     void touchColumns();
-    /** First beam of a thread's run. */
+    /** Returns the first beam of a thread's run. */
     uint32_t firstBeam(size_t part) const;
 
     DepositSetup setup_;

@@ -14,7 +14,7 @@ std::array<GLint, 4> samplesOfQuarters() {
         glGetMultisamplefv(GL_SAMPLE_POSITION, i, at);
         samples[(at[0] > 0.5f ? 1u : 0u) + (at[1] > 0.5f ? 2u : 0u)] = static_cast<GLint>(i);
     }
-    if (std::ranges::count(samples, -1) > 0) throw gpu::GlError("this device has no sample in some quarter of a pixel");
+    if (std::ranges::count(samples, -1) > 0) throw gpu::GlError("this device has no sample in one quarter of a pixel");
     return samples;
 }
 

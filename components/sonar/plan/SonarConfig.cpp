@@ -67,7 +67,7 @@ void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostic
                              : config.crosstalk     ? "crosstalk"
                                                     : "";
     if (!name.empty() && (bends || config.motion_in_ping))
-        diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
+        diagnostics.push_back({name, std::string("needs straight sound paths; remove it, or ") +
                                          (bends ? "water.profile" : "motion_in_ping")});
 }
 
@@ -77,7 +77,7 @@ std::string whyNoArray(const SonarConfig& config) {
     if (!law) return "need beam_pattern.receive.azimuth, whose aperture they fill";
     const acoustics::Weighting weighting = law->weighting.value_or(acoustics::Weighting::Uniform);
     if (!law->file.empty() || weighting == acoustics::Weighting::Gaussian || weighting == acoustics::Weighting::Piston)
-        return "need a weighted line in beam_pattern.receive.azimuth; they make no measured table, gaussian or piston";
+        return "need a weighted line in beam_pattern.receive.azimuth; a measured table, gaussian or piston has none";
     return {};
 }
 
@@ -107,7 +107,7 @@ void checkElements(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back(
             {"elements", "need speckle: {coherent: true}; without it energies are summed, not fields"});
     else if (config.beam_geometry != BeamGeometry::Conical)
-        diagnostics.push_back({"elements", "need beam_geometry: conical, for a straight array hears cones"});
+        diagnostics.push_back({"elements", "need beam_geometry: conical, because a straight array receives cones"});
     else if (!why.empty())
         diagnostics.push_back({"elements", why});
     else if (config.frequency_khz)
@@ -177,7 +177,7 @@ void checkImages(const SonarConfig& config, types::Diagnostics& diagnostics) {
 
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
-        diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+        diagnostics.push_back({"db_per_m", "is given with frequency_khz; give one of the two"});
 }
 
 ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
@@ -289,9 +289,9 @@ SonarConfig SonarConfig::fan() const {
 
 void SonarConfig::checkFan(types::Diagnostics& diagnostics) const {
     if (field_of_view_deg && beam_width_convention == BeamWidthConvention::TotalFov)
-        return diagnostics.push_back({"field_of_view_deg",
-                                      "is given with beam_width_deg and beam_width_convention: total_fov; one of "
-                                      "the two tells the fan"});
+        return diagnostics.push_back(
+            {"field_of_view_deg",
+             "is given with beam_width_deg and beam_width_convention: total_fov; give one of the two"});
     if (field_of_view_deg && published)
         return diagnostics.push_back(
             {"beam_width_deg", "is given with field_of_view_deg; published: true has beams as wide as their spacing"});
