@@ -14,7 +14,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Makes a pose's quaternion one of unit length. Returns why the pose cannot be used, null where it can. */
+/** Normalises a pose's quaternion. Returns why the pose cannot be used, null where it can. */
 const char* normalisePose(types::Pose& pose) {
     const glm::dvec3& p = pose.position;
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "the sonar's position is not finite";

@@ -41,8 +41,7 @@ public:
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
     /** Sets the truth that the next pings fill; its grid is theirs already. Null: no truth is recorded. */
     virtual void setTruth(types::SonarTruth* truth) = 0;
-    /** Returns the field of the last ping, which is still to be squared into its bins; null where energies are summed.
-     */
+    /** Returns the field of the last ping, still to be squared into its bins; null where energies are summed. */
     virtual EchoField* field() { return nullptr; }
     /** Returns the bent sound paths of the last ping; null where all paths are straight. */
     virtual const RayPaths* bent() const { return nullptr; }

@@ -18,7 +18,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A quality to begin with, until something is heard, where none is given. */
+/** Returns the configuration with the initial quality, until the first echo, where the quality is not given. */
 SonarConfig coarsest(SonarConfig config) {
     if (!config.choosesQuality()) return config;
     const Quality quality;
@@ -140,7 +140,7 @@ void PingTask::listen() {
     hearOthers();
     if (listening_ && (now() - listening_->scene.time).seconds() >= echoTime()) endListening();
     if (!takeNext()) return;
-    if (listening_) endListening();  // the next ping cuts it off
+    if (listening_) endListening();  // the next ping ends it
     if (!begin()) return;
     if (!activity().realtime()) {
         listening_ = taken();
@@ -184,7 +184,7 @@ std::string PingTask::indivisible() const {
 
 void PingTask::prepareRenderer() {
     if (renderer_ && geometry_ == aimed().geometry) return;
-    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // until nothing refers to it
+    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // kept until unused
     aimed().moved.reserve(geometry_->objects.size());
     if (renderer_) {
         diagnostics_->takeScene(*geometry_);

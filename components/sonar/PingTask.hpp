@@ -96,8 +96,7 @@ protected:
     virtual void goOn() {}
     /** Writes the other outputs of a ping that is about to be written, from the pose where it was rendered. */
     virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
-    /** Returns the plan of a sonar that covers in one ping what this sonar covers, to explain why it receives no echo.
-     */
+    /** Returns the plan of a sonar that covers in one ping what this sonar covers, to explain missing echoes. */
     virtual RenderPlan coverage(const types::Snapshot& scene) const;
     /** Returns the pings of one revolution of a turning head [1]. */
     virtual int pingsPerTurn() const { return 1; }

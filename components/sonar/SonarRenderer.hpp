@@ -62,8 +62,7 @@ public:
     /** Returns what the last ping omitted: objects, triangles and images that were not rasterised, point targets that
      *  are missing or give no echo, a water surface that does not reflect. */
     std::vector<LeftOut> leftOut() const;
-    /** Returns the number of things other than surfaces, such as point targets, of which the last ping has an echo [1].
-     */
+    /** Returns the number of things other than surfaces, such as point targets, with an echo in the last ping [1]. */
     size_t othersHeard() const;
     const std::string& device() const;  ///< Name of the rendering device, with its driver.
 

@@ -33,8 +33,7 @@ public:
 
     /** Adds the echoes of all cells of the batch, and empties it. */
     void flush();
-    /** The first and last part of flush(), for a custom estimator in between: covers the cells, and empties the batch.
-     */
+    /** The two parts of flush(), for a custom estimator in between: covers the cells, and empties the batch. */
     void cover();
     void finish();
 

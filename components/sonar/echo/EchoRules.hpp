@@ -40,8 +40,7 @@ struct EchoRules {
     size_t channels() const { return features.has(Feature::Cerqueira2017) || features.has(Feature::Speckle) ? 2 : 1; }
     /** Returns the number of bins from one beam's first to the next beam's first. */
     size_t beamStride() const { return static_cast<size_t>(bins.bin_count) + bins_at_once; }
-    /** Returns the number of values of a beam: [bin][channel], then one for each bin for each effect with its own sums.
-     */
+    /** Returns the number of values of a beam: [bin][channel], then one per bin for each effect with its own sums. */
     size_t sumCount() const { return beamStride() * (channels() + own.size()); }
     /** Returns the index of the first of an effect's own sums in the values of a beam. */
     size_t ownOffset(size_t effect) const { return beamStride() * (channels() + effect); }

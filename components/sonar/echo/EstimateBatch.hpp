@@ -56,8 +56,7 @@ private:
         while (bin<this->bin_count&& this->edges[bin]> cell.far_end) ++bin;
         return {first, bin};
     }
-    /** Returns the bins for a cell that is deposited as a whole at its centre, with one bin of tolerance for rounding.
-     */
+    /** Returns the bins of a cell that is deposited as a whole at its centre, with a tolerance of one bin. */
     Stretch touchedByCentre(const Footprint& cell) const {
         const uint bin = cell.pixel > 0 ? nearBin(cell.pixel) : 0;
         return {bin > 0 ? bin - 1 : 0, std::min(bin + 2, this->bin_count)};

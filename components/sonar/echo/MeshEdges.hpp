@@ -11,8 +11,7 @@ namespace insonify::sonar {
 
 constexpr double crease = std::numbers::pi / 3;  ///< Neighbours in one smooth part have a smaller angle [rad].
 
-/** An edge of a triangle by the vertices at its ends, the lower first. A mesh may have several vertices at one place.
- */
+/** An edge of a triangle by the vertices at its ends, the lower first. Vertices at one place are welded. */
 struct Edge {
     uint32_t low, high, triangle;
     auto operator<=>(const Edge&) const = default;

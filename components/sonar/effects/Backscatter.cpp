@@ -27,7 +27,7 @@ std::string listed(const std::vector<std::string>& names) {
     return names.size() > 5 ? text + ", ..." : text;
 }
 
-/** What materials give back other than by Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
+/** Backscatter of materials that do not follow Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
 class Backscatter final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

@@ -45,8 +45,7 @@ private:
     std::vector<std::string> keys_;  ///< Effect::key() of each.
 };
 
-/** Adds to a cell's bins the intensities of the effects that have their own sums. `sums` contains all sums of the cell.
- */
+/** Adds to a cell's bins the intensities of effects with their own sums. `sums` contains all sums of the cell. */
 void addOwnSums(const EchoRules& rules, const uint64_t* sums, size_t cell, double unit, std::span<float> bins);
 
 }  // namespace insonify::sonar

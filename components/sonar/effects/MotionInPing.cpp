@@ -14,7 +14,7 @@ std::string speedWords(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("below {:.2g} m/s it is less than half a bin", what.value);
 }
 
-/** Sonar and objects that move while sound is under way (ACOUSTICS.md 5.20). RayPaths computes their ways. */
+/** Sonar and objects that move while sound travels (ACOUSTICS.md 5.20). RayPaths computes the sound paths. */
 class MotionInPing final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -18,7 +18,8 @@ std::string oneBeam(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
 }
 std::string fromZero(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "published: bins begin at range 0"; }
 
-/** Model `cerqueira2017`: what bins of means know nothing of, and with `published: true` the published simulator. */
+/** Model `cerqueira2017`: the effects that bins of means do not have, and with `published: true` the published
+ *  simulator. */
 class PublishedMeans final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -11,7 +11,7 @@ std::string mapsNeedRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "the scene is rasterised; surface maps need `visibility: cpu`";
 }
 
-/** Strengths and materials by maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
+/** Strengths and materials from maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
 class SurfaceMaps final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

@@ -15,7 +15,7 @@ std::string onBentWays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
 }
 std::string withoutWalls(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
 
-/** Sound that goes through thin walls (ACOUSTICS.md 5.26). CastEchoes follows it. */
+/** Sound that passes through thin walls (ACOUSTICS.md 5.26). CastEchoes traces it. */
 class ThinWalls final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

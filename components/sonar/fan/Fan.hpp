@@ -59,8 +59,7 @@ public:
     double farthestAside() const { return std::max(std::abs(low_), std::abs(high_)); }
     /** Returns whether each beam begins where the beam before it ends. */
     bool joins() const { return joins_; }
-    /** Returns the smallest distance between the centres of two beams that differ; 2 pi where there are no two [rad].
-     */
+    /** Returns the smallest distance between the centres of two different beams; 2 pi where there are none [rad]. */
     double smallestSpacing() const;
     /** Returns the bearings halfway between neighbours, size() + 1 values. The outermost are equally far beyond the
      *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */

@@ -13,8 +13,7 @@
 
 namespace insonify::sonar {
 
-/** The pulse's response in range: the contribution of each range cell to each sample of the field (ACOUSTICS.md 5.21).
- */
+/** The pulse's response in range: contribution of each range cell to each sample of the field (ACOUSTICS.md 5.21). */
 class FieldResponse {
 public:
     explicit FieldResponse(const RenderPlan& plan);

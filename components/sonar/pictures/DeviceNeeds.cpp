@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Columns or rows of the largest picture. */
+/** Returns the columns or rows of the largest picture. */
 int64_t largestSide(const std::vector<ViewFrustum>& frusta) {
     int largest = 0;
     for (const ViewFrustum& frustum : frusta) largest = std::max({largest, frustum.columns, frustum.rows});
@@ -24,7 +24,7 @@ int64_t clusterCount(const types::Geometry& geometry) {
     return static_cast<int64_t>(count);
 }
 
-/** The largest storage buffer [bytes]. */
+/** Returns the size of the largest storage buffer [bytes]. */
 int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry) {
     size_t triangles = 0, shares = 0, starts = 0;
     for (const types::Mesh& mesh : geometry.meshes) triangles += mesh.indices.size() / 3;

@@ -35,8 +35,7 @@ public:
 
     const glm::dvec3& velocity() const { return velocity_; }  ///< Velocity of the sonar, in the world [m/s].
     const glm::dvec3& turn() const { return turn_; }          ///< Its angular velocity, in the world [rad/s].
-    /** Returns the motion of an object relative to the world, about the sonar, in sonar axes; null where it is at rest.
-     */
+    /** Returns the motion of an object in the world, about the sonar, in sonar axes; null where it is at rest. */
     const Drift* drift(uint32_t object) const { return drifts_[object] ? &*drifts_[object] : nullptr; }
     /** Returns the velocity of a point target, in the world [m/s]. */
     glm::dvec3 targetVelocity(size_t target) const;

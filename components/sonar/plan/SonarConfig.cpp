@@ -28,7 +28,7 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
 }
 
-/** Four digits of a range, rounded down: bins of as many whole microseconds reach what is left. */
+/** Returns four digits of a range, rounded down, so that bins of the same number of whole microseconds reach it. */
 std::string roundedDown(double range) {
     const double unit = std::pow(10, std::floor(std::log10(range)) - 3);
     return fmt::format("{:.4g} m", std::floor(range / unit + 1e-9) * unit);
@@ -46,7 +46,7 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
                      grid.bin_duration_us > 1 ? roundedDown(shorter) + " or " : "", roundedDown(grid.range_max))});
 }
 
-/** Of a property that only rays can follow. */
+/** Checks a property that only rays support. */
 void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const std::string name = config.needsRays();
     if (name.empty()) return;
@@ -59,7 +59,7 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
 }
 
-/** Of ways that are bent, what follows straight ones alone. */
+/** Checks that properties that need straight sound paths are not combined with bent paths. */
 void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
     const std::string name = config.isCoherent()    ? "speckle"
@@ -71,7 +71,7 @@ void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostic
                                          (bends ? "water.profile" : "motion_in_ping")});
 }
 
-/** Why the receiver's law in azimuth is of no array of elements; empty where it is. */
+/** Returns why the receiver's law in azimuth does not belong to an array of elements; empty where it does. */
 std::string whyNoArray(const SonarConfig& config) {
     const auto& law = config.beam_pattern ? config.beam_pattern->receive.azimuth : std::optional<acoustics::BeamLaw>();
     if (!law) return "need beam_pattern.receive.azimuth, whose aperture they fill";
@@ -148,7 +148,7 @@ void checkAbsorption(const SonarConfig& config, types::Diagnostics& diagnostics)
                                "is given without water; a law needs the water block"});
 }
 
-/** A straight array hears nothing behind abeam that it does not hear ahead. */
+/** Checks the beams of a straight array: it cannot distinguish echoes from behind abeam from those ahead. */
 void checkCones(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (int k = 0; k < config.beams(); ++k)
         if (std::abs(config.bearingDeg(k)) + config.beamWidthDeg() / 2 > 90 * (1 + 1e-9))

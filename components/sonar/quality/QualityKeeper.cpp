@@ -14,11 +14,11 @@ constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400
 constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double watched_share = 0.2618034;  ///< Of all pings; irrational, so that a head is watched at all bearings.
-constexpr double first_turn_share = 0.5;     ///< The same while a head sees what it has not seen before.
-constexpr int rarely = 16;                   ///< Of the pings to watch, where the time is up without it.
+constexpr double watched_share = 0.2618034;  ///< Of the pings; irrational, to cover all bearings of a head.
+constexpr double first_turn_share = 0.5;     ///< The same in the first turn of a head.
+constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
-constexpr double overhead = 0.15, pings_to_choose = 10;  ///< What estimates may cost in all [1 of the pings, pings].
+constexpr double overhead = 0.15, pings_to_choose = 10;  ///< Max total cost of estimates [share of the pings, pings].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
 constexpr double worth_telling = 1.2, too_far_from_model = 4;
 

@@ -14,8 +14,7 @@ namespace insonify::sonar {
 
 class RayPaths;
 
-/** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is traced.
- */
+/** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set if ray i is traced. */
 struct TileRays {
     alignas(64) float x[tile_samples], y[tile_samples], z[tile_samples];
     uint32_t active = 0xffff;
@@ -53,8 +52,7 @@ public:
     explicit RayVisibility(const types::Geometry& geometry);
     ~RayVisibility();
 
-    /** Switches to another geometry from the next ping on, which must outlive it. Keeps the trees of unchanged objects.
-     */
+    /** Switches to another geometry from the next ping on, which must outlive it. Keeps trees of unchanged objects. */
     void takeScene(const types::Geometry& geometry);
 
     /** Forgets which objects have moved. Trees stay until the next ping has reused those that it needs. */

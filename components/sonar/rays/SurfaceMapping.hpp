@@ -28,8 +28,7 @@ public:
         glm::vec2 at, along, across;
     };
 
-    /** Throws std::invalid_argument for a map whose number of texels does not match its size, or with too many classes.
-     */
+    /** Throws std::invalid_argument for a map with a wrong number of texels for its size, or too many classes. */
     explicit MapLevels(const types::SurfaceMap& map);
     /** Returns the mean over a footprint. */
     Look look(const Footprint& footprint) const;

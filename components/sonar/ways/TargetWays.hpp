@@ -20,8 +20,7 @@ struct TargetWay {
     int reflections = 0;       ///< Number of mirrors [1].
     bool by_surface = false;   ///< Whether one of the mirrors is the water surface.
     double sine_grazing = 0;   ///< Sine of the grazing angle at the water surface [1].
-    /** Its mirrors, from the sonar: 1 is the water surface, from 2 mirror triangles in the order of the scene; 0: none.
-     */
+    /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};
 };
 
