@@ -59,8 +59,8 @@ public:
     const types::Plan& plan() const;
     /** Returns whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
-    /** Returns what the last ping omitted: objects, triangles and images that were not rasterised, point targets that
-     *  are missing or give no echo, a water surface that does not reflect. */
+    /** Returns what the last ping omitted: objects, triangles and images that were not rasterised, point targets
+     *  without echo, or a water surface that does not reflect. */
     std::vector<LeftOut> leftOut() const;
     /** Returns the number of things other than surfaces, such as point targets, with an echo in the last ping [1]. */
     size_t othersHeard() const;

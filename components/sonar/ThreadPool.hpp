@@ -27,8 +27,8 @@ public:
         if (thrown || other) std::rethrow_exception(thrown ? thrown : other);
     }
 
-    /** Calls job(part, size()) on the caller and on those workers that begin before the caller is done, each with its
-     *  own number: for jobs that the available threads share. Does not wait for workers that have not begun. */
+    /** Calls job(part, size()) on the caller, and on the workers that begin before the caller is done, each with its
+     *  own number. It is for jobs that the available threads share. Does not wait for workers that have not begun. */
     template <class Job>
     void share(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
@@ -61,7 +61,7 @@ private:
     Call call_ = nullptr;
     const void* context_ = nullptr;
     uint64_t round_ = 0;
-    int busy_ = 0, waking_ = 0;  ///< Workers that are not done; of them, those that have not begun.
+    int busy_ = 0, waking_ = 0;  ///< Workers that are not done, and the part of these that has not begun.
     std::exception_ptr thrown_;
     bool quit_ = false;
 };

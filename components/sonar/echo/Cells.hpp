@@ -32,8 +32,9 @@ inline glm::dvec3 turned(const PlacedRun& run, const vec4& normal) {
     return {by(run.normal_x), by(run.normal_y), by(run.normal_z)};
 }
 
-/** A batch of cells. A cell is the part of a triangle's plane that is seen within a rectangle of azimuth and elevation:
- *  by one ray, by neighbouring rays of one beam, or by a beam's share of a pixel. All in sonar axes. */
+/** A batch of cells. A cell is the part of a triangle's plane that is seen within a rectangle of azimuth and elevation.
+ *  The rectangle belongs to one ray, to neighbouring rays of one beam, or to a beam's share of a pixel. All in sonar
+ *  axes. */
 struct Cells {
     static constexpr int capacity = 64;  ///< Few enough to stay in the nearest cache.
 

@@ -51,8 +51,8 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects);
 /** Returns the same with energies in the plan's bins, even if the plan sums fields. */
 EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects);
 
-/** Returns the power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows: 1 except
- *  for materials, images or bins that are extreme together. */
+/** Returns the power of 2, at most 1, by which strengths must be scaled so that no sum of quanta overflows. It is 1
+ *  except for materials, images or bins that are extreme together. */
 double strengthScale(const RenderPlan& plan);
 
 }  // namespace insonify::sonar

@@ -36,7 +36,7 @@ public:
         uint64_t* const to = all_ + static_cast<size_t>(beam) * beam_numbers_;
         const int32_t row = shown_.object < 0 ? -1 : truth_.rowOf(beam);
         const auto [first, last] = touched(cell);
-        if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // what is out of range
+        if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // echoes out of range
         for (uint bin = first; bin < last; ++bin) move(bin, to, row);
     }
 

@@ -19,7 +19,7 @@ inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline uint min(uint a, uint b) { return a < b ? a : b; }
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"  // each includer has its own way to footprints
+#pragma GCC diagnostic ignored "-Wunused-function"  // each includer makes its own footprints
 inline double inverseRange(double place) { return place; }
 #include "shaders/footprint.glsl"
 using real = double;

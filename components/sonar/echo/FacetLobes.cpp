@@ -173,8 +173,8 @@ private:
             turnAt(other, one, turn, edge);
         });
     }
-    /** Returns a facet's share of the turn at an edge: half, but almost none next to a much smaller facet, which is the
-     *  curve where a flat part ends. `ratio`: its area relative to the other's. */
+    /** Returns a facet's share of the turn at an edge. It is half, but almost none next to a much smaller facet, which
+     *  is the curve where a flat part ends. `ratio`: its area relative to the other's. */
     static double shareOf(double ratio) {
         if (ratio < 1) return 1 - shareOf(1 / ratio);
         return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;

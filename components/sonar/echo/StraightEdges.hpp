@@ -31,7 +31,7 @@ struct StraightEdges {
 
 /** Returns the edges at which the surface turns by at least an angle, and those with one face only (ACOUSTICS.md 3.12).
  *  Pieces on one line between the same two flat parts are one edge, independent of the triangles. Omits edges of three
- *  or more faces, and edges that represent a curve: at both ends they continue in the same flat part with a bend of
+ *  or more faces. Omits edges that represent a curve: at both ends they continue in the same flat part with a bend of
  *  less than 60 deg.
  *  @param world_from_mesh  rotates and scales the mesh; angles and lengths are those of the world
  *  @param min_turn  [rad], above 0 */

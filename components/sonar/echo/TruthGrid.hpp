@@ -14,8 +14,8 @@
 
 namespace insonify::sonar {
 
-/** Returns for each azimuth cell of a plan the beam that shows it: the beam within half whose spacing to its neighbour
- *  the cell is; -1 for a cell in sidelobes only. Empty where cells are beams. */
+/** Returns for each azimuth cell of a plan the beam that shows it. A beam shows the cells up to halfway to its
+ *  neighbours. -1 for a cell in sidelobes only. Empty where cells are beams. */
 std::vector<int32_t> beamsOfCells(const RenderPlan& plan);
 
 /** Transfers the truth of azimuth cells to the truth of a ping's beams: each beam gets that of the cells next to its
@@ -38,8 +38,8 @@ private:
     std::deque<std::mutex> alone_;        ///< One for each such beam.
 };
 
-/** The kind of path that contributes most to a bin, and the object of its echo: sums the cells' energies by kind of
- *  path for the beams that show them. */
+/** The kind of path that contributes most to a bin, and the object of its echo. Sums the cells' energies by kind of
+ *  path, for the beams that show the cells. */
 class PathTruth {
 public:
     /** Values of types::SonarTruth::path, from 1. */

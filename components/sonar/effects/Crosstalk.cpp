@@ -56,7 +56,7 @@ private:
 class Crosstalk final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
-        const bool needs_rays = config.crosstalk && config.crosstalk->echoes;  // which is refused as such
+        const bool needs_rays = config.crosstalk && config.crosstalk->echoes;  // refused elsewhere
         if (config.crosstalk && !needs_rays && config.model == Model::Cerqueira2017)
             diagnostics.push_back({"crosstalk", "is given with model: cerqueira2017; it belongs to physical"});
     }

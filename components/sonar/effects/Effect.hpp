@@ -65,7 +65,7 @@ public:
     /** Returns whether addCells() and addToCell() are called, with one sum for each bin of a beam. */
     virtual bool hasSums() const { return false; }
     /** Returns whether the compute shader makes the same sums. It can do so for one effect. With two or more, images
-     * are summed on the processor. A notice reports it where the device was to sum them. */
+     *  are summed on the processor. A notice reports it where the device was to sum them. */
     virtual bool isOnDevice() const { return false; }
     /** Adds a batch of cells to the effect's sums. Several threads call it. */
     virtual void addCells(const CellBatch& /*batch*/) const {}

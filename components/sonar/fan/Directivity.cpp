@@ -53,9 +53,9 @@ struct FocusZone {
     double phase;  ///< [rad]
 };
 
-/** Returns zones in which the phase at the ends, pi L^2 / (4 lambda) (1 / R - 1 / F), differs from that of the zone's
- *  middle by at most a sixteenth of pi, or by 7 % of itself. A zone with a smaller phase is in focus. Ranges below the
- *  array's length count as that length: Fresnel's approximation ends there. */
+/** Returns zones of range. In a zone the phase at the array's ends, pi L^2 / (4 lambda) (1 / R - 1 / F), differs from
+ *  that of the zone's middle by at most a sixteenth of pi, or 7 % of itself. A zone with a smaller phase is in focus.
+ *  Ranges below the array's length count as that length: Fresnel's approximation ends there. */
 std::vector<FocusZone> focusZones(double length, double wavelength, double focus, double range) {
     const double scale = pi * length * length / (4 * wavelength);
     const auto phaseAt = [&](double r) { return scale * (1 / std::max(r, length) - 1 / focus); };

@@ -37,8 +37,8 @@ public:
     double heardAzimuth(double azimuth, double bearing, size_t zone) const;
     double sentElevation(double angle) const;
     double heardElevation(double angle) const;
-    /** Returns the number of range zones, from the nearest, in each of which the receiving array has one pattern: one
-     *  zone, unless the array has a fixed focus. */
+    /** Returns the number of range zones, from the nearest. The receiving array has one pattern in each: one zone,
+     *  unless the array has a fixed focus. */
     size_t zoneCount() const { return std::max<size_t>(1, zones_.size()); }
     size_t lastZone() const { return zoneCount() - 1; }
     double zoneEnd(size_t zone) const;  ///< Far end of a zone in slant range; infinity for the last zone [m].

@@ -48,8 +48,8 @@ public:
 
     double low() const { return low_; }    ///< Starboard end of the arc, beam widths included [rad].
     double high() const { return high_; }  ///< Port end of the arc [rad].
-    /** Returns the direction at which the circle is cut, above all bearings and at most a turn above the lowest: pi, or
-     *  the middle of the widest gap of a fan that crosses pi [rad]. */
+    /** Returns the direction at which the circle is cut: pi, or the middle of the widest gap of a fan that crosses pi
+     *  [rad]. It is above all bearings, and at most a turn above the lowest. */
     double seam() const { return seam_; }
     /** Returns whether the arc closes to a circle. */
     bool isRound() const { return high_ - low_ >= 2 * std::numbers::pi - 1e-9; }

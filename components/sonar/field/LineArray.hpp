@@ -47,9 +47,9 @@ public:
     /** Returns the weight of each element; their sum is 1. */
     const std::vector<double>& weights() const { return weights_; }
 
-    /** Returns the signals of the elements for echoes from cones: the sum over the cells of field times the mean of
-     *  exp(i k position sine) over the cell's sines, k the wavenumber. The field's phase is that of the path to the
-     *  array's middle and back. One row per cell. @throws std::invalid_argument when the numbers of rows and cells
+    /** Returns the signals of the elements for echoes from cones. A signal is the sum over the cells of field times the
+     *  mean of exp(i k position sine) over the cell's sines, k the wavenumber. The field's phase is that of the path to
+     *  the array's middle and back. One row per cell. @throws std::invalid_argument when the numbers of rows and cells
      *  differ */
     ComplexRows hear(const ComplexRows& field, std::span<const Cone> cells) const;
 

@@ -31,7 +31,7 @@ public:
     /** `geometry` must outlive the culler. */
     Culler(const types::Geometry& geometry, const CullRules& rules);
 
-    /** Places all objects relative to the sonar; once a ping, before `visible`. */
+    /** Places all objects relative to the sonar; call it once per ping, before `visible`. */
     void place(const types::Snapshot& snapshot) { places_.place(snapshot); }
     /** Lists the runs that a frustum may see, neighbours joined. */
     void visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const;

@@ -19,8 +19,8 @@ struct Clip {
 };
 Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum);
 
-/** Transform for a normal map: rows of the matrices from object axes to the frustum's (x into the picture, y to port, z
- *  up), for normals and for tangents. The first row's w is the scale of the map. */
+/** Transform for a normal map, for normals and for tangents: rows of the matrices from object axes to the frustum's (x
+ *  into the picture, y to port, z up). The first row's w is the scale of the map. */
 struct NormalTransform {
     vec4 normal[3], tangent[3];
 };

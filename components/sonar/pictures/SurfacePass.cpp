@@ -58,8 +58,8 @@ void SurfacePainter::setUniforms(const ViewFrustum& frustum) const {
     glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));
 }
 
-/** Issues single draws on Mesa's software renderer, which would process indirect commands one by one as well, and
- * search each in the draws of all contexts: see EglContext::drawing(). */
+/** Issues single draws on Mesa's software renderer. It would process indirect commands one by one as well, and search
+ *  each in the draws of all contexts: see EglContext::drawing(). */
 void SurfacePainter::drawGroup(const Draws& draws, const DrawGroup& group) const {
     const auto offset = [](size_t bytes) { return reinterpret_cast<const void*>(bytes); };
     scene_.bindNormalMap(group.normal_map);

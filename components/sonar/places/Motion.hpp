@@ -19,8 +19,8 @@ struct Drift {
     glm::dvec3 at(const glm::dvec3& place) const { return linear * place + constant; }
 };
 
-/** Derives the motion of sonar, objects and point targets from ping to ping: from the velocities in the sonar's pose
- *  where it has them, else from the snapshot before. Without velocities nothing moves in the first ping. */
+/** Derives the motion of sonar, objects and point targets from ping to ping. It uses the velocities in the sonar's pose
+ *  where it has them, else the snapshot before. Without velocities nothing moves in the first ping. */
 class Motion {
 public:
     /** Anything that seems to move faster than `fastest` [m/s] counts as repositioned and at rest. */

@@ -58,8 +58,8 @@ private:
  *
  *  It estimates the error of about every fourth ping (every second in the first turn of a head), for 8 % of the
  *  samples. All its renderings, for estimates and new choices, have at most 15 % of the pings' samples plus ten pings.
- *  If the error exceeds 1.2 times the target and 1.5 times the prediction, it chooses the quality again on this ping;
- *  rows and columns are not lowered then, except in exchange for each other. It lowers the quality if the error stayed
+ *  If the error exceeds 1.2 times the target and 1.5 times the prediction, it chooses the quality again on this ping.
+ *  Rows and columns are not lowered then, except in exchange for each other. It lowers the quality if the error stayed
  *  within half the target for a whole turn of the head, and at least 64 pings. All decisions depend on the pings alone,
  *  so that a run can be repeated bit for bit; with a budget also on their times. */
 class QualityKeeper {

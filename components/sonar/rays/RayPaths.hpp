@@ -54,9 +54,9 @@ public:
     /** Returns the apparent plane of normal . place = distance, for a direction near a range [m]. */
     ApparentPlane apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                            const Drift* drift) const;
-    /** Returns the apparent place of a point target of this ping, which was at `place`, sonar axes, when the pulse was
-     *  sent [m]: the place nearest to the straight one, as if its echo arrived along a straight ray. None where no path
-     *  reaches it, as in a shadow. */
+    /** Returns the apparent place of a point target of this ping, as if its echo arrived along a straight ray: the
+     *  place nearest to the straight one. `place`: of the target when the pulse was sent, sonar axes [m]. None where no
+     *  path reaches it, as in a shadow. */
     std::optional<HeardPoint> heard(const glm::dvec3& place, size_t target) const;
     /** Returns the max inverse range of echoes from places at an inverse distance or farther [1/m]. */
     double nearLimit(double inverse_distance) const;

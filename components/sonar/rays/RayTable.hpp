@@ -8,15 +8,16 @@
 namespace insonify::sonar {
 
 /** A table of rays that a sound speed profile bends. It maps the elevation at which sound leaves the sonar, and its
- *  travel time, to a place; the time is given as slant range at the sonar's own speed of sound. It is made for a depth
- *  of the sonar, and again where a change of depth could cause an error of a hundredth of a bin (ACOUSTICS.md 5.19). */
+ *  travel time, to a place. The time is given as slant range at the sonar's own speed of sound. The table is made for a
+ *  depth of the sonar, and again where a change of depth could cause an error of a hundredth of a bin (ACOUSTICS.md
+ *  5.19). */
 class RayTable {
 public:
     static constexpr int max_corners = 512;  ///< [1]
     static constexpr double beyond = 1.02;   ///< Rays extend to this share of the range, for cells at its edge [1].
 
-    /** Place of a ray about the sonar: it is `spread` times the cosine of its elevation away, and `rise` above it [m];
-     *  and the rates of both with range [1]. In water with one speed, that of the sonar, `spread` is the range. */
+    /** Place of a ray about the sonar, `spread` times the cosine of its elevation away and `rise` above it [m], and the
+     *  rates of both with range [1]. In water with one speed, that of the sonar, `spread` is the range. */
     struct Place {
         double spread, rise, spread_rate, rise_rate;
     };

@@ -13,7 +13,7 @@ public:
     TileDirections(const CastView& view, int strip_columns);
 
     /** Returns the rays of the tile that begins at a column and a row; rays outside of the strip and of the view are
-     * not active. */
+     *  not active. */
     TileRays rays(const AngularView& view, int column, int row) const;
 
 private:

@@ -41,8 +41,8 @@ private:
     std::array<Echo, max_echoes> echoes_;
 };
 
-/** Follows the rays of a tile through walls that ring and into bodies with a fill (ACOUSTICS.md 5.26), one layer of
- *  surfaces after another, each layer once per echo. Allocates nothing. */
+/** Follows the rays of a tile through walls that ring and into bodies with a fill (ACOUSTICS.md 5.26). Surfaces are
+ *  processed layer by layer, each layer once per echo. Allocates nothing. */
 class WallRays {
 public:
     static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].

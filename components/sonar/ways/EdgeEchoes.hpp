@@ -30,7 +30,7 @@ struct EdgeEcho {
     double section;  ///< Its backscattering cross section, TS = 10 log10 of it [m^2].
 };
 
-/** Appends the echoes of an edge, without regard to occlusion (ACOUSTICS.md 3.12). Appends none for a sonar within a
+/** Appends the echoes of an edge, ignoring occlusion (ACOUSTICS.md 3.12). Appends none for a sonar within a
  *  wavelength of the edge's line.
  *  @param sonar  in the world [m]
  *  @param spacing  of the sonar's beams [rad] */

@@ -21,9 +21,9 @@ struct MirrorPlane {
     }
 };
 
-/** Returns the share of the sound that a material reflects specularly, with up to `bounces` reflections per path [1]:
- *  for a material declared as mirror, or with two or more for a smooth material without shell (ACOUSTICS.md 5.23); else
- *  0. */
+/** Returns the share of the sound that a material reflects specularly, with up to `bounces` reflections per path [1].
+ *  It is above 0 for a material declared as mirror, and with two or more reflections for a smooth material without
+ *  shell (ACOUSTICS.md 5.23). */
 double reflectedPower(const types::Material& material, int bounces);
 
 /** Returns the mean square slope of a sea surface in a wind [m/s], the sum of both directions; 0 without wind [1].

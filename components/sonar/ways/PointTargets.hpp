@@ -15,8 +15,9 @@ namespace insonify::sonar {
 
 class EchoField;
 
-/** Adds the point targets of a scene to pings: the active sonar equation at each target's own place, with the pattern
- *  of each beam there and the pulse about its own range (ACOUSTICS.md 5.14). Surfaces in front of a target hide it. */
+/** Adds the point targets of a scene to pings by the active sonar equation at each target's own place. The pattern of
+ *  each beam is evaluated there, and the pulse about its own range (ACOUSTICS.md 5.14). Surfaces in front of a target
+ *  hide it. */
 class PointTargets {
 public:
     /** Needs a plan for model `physical`. Plan and geometry must outlive it. */
@@ -29,7 +30,7 @@ public:
      *  reflects. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent);
 
-    /** Adds an echo that returns along the same path, within the same ping, without regard to occlusion. Returns
+    /** Adds an echo that returns along the same path, within the same ping, ignoring occlusion. Returns
      *  whether any beam has it. */
     bool addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field);
 

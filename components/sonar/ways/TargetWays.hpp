@@ -24,8 +24,8 @@ struct TargetWay {
     std::array<uint32_t, max_mirrors> mirrors{};
 };
 
-/** All unobstructed sound paths between the sonar and points of the world: the straight path, and those via the water
- *  surface and triangles of mirrors (ACOUSTICS.md 5.23), by the image method, in double. */
+/** All unobstructed sound paths between the sonar and points of the world (ACOUSTICS.md 5.23): the straight path, and
+ *  those via the water surface and triangles of mirrors. Uses the image method, in double. */
 class TargetWays {
 public:
     /** `geometry` must outlive it. */
