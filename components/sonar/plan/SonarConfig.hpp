@@ -310,8 +310,7 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     using types::Field;
     visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
-    visit(Field{"range_min", "m", "nearer echoes are blanked; objects there still cast shadows", 0, 1e5},
-          self.range_min);
+    visit(Field{"range_min", "m", "nearer echoes are blanked; objects there cast shadows", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
     visit(Field{"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
@@ -344,15 +343,12 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
           self.motion_in_ping);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
-    visit(
-        Field{
-            "elements", "",
-            "straight array whose signals are sent on port `elements`; needs speckle: {coherent: true}, beam_geometry: "
-            "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: no signals"},
-        self.elements);
+    visit(Field{"elements", "",
+                "straight array whose signals are on port `elements`; needs speckle: {coherent: true}, beam_geometry: "
+                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: no signals"},
+          self.elements);
     visit(Field{"multipath", "", "echoes via mirrors; absent: none"}, self.multipath);
-    visit(Field{"max_walls", "1", "max walls (`shell` of a material) that sound passes through", 0, 16},
-          self.max_walls);
+    visit(Field{"max_walls", "1", "max walls (`shell` of a material) on a sound path", 0, 16}, self.max_walls);
     visit(Field{"imperfections", "",
                 "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
