@@ -28,10 +28,10 @@ namespace insonify::sonar {
  *  RunTimeError and no ping.
  *
  *  Refuses a pose that cannot be used (not finite, a quaternion of no length), a snapshot without geometry, and a
- *  snapshot that moves an object outside its geometry. In realtime it also refuses a snapshot whose time is a second
- *  ahead of the clock. A quaternion that is not of unit length is normalised. A sonar that moved faster than a tenth of
- *  the speed of sound since the last snapshot counts as repositioned. A warning reports it, and the ping gets no
- *  velocity from that displacement. */
+ *  snapshot that moves an object outside its geometry. In realtime it also refuses a snapshot whose time is more than a
+ *  second ahead of the clock. A quaternion that is not of unit length is normalised. A sonar that moved faster than a
+ *  tenth of the speed of sound since the last snapshot counts as repositioned. A warning reports it, and the ping gets
+ *  no velocity from that displacement. */
 class AimedTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -53,9 +53,7 @@ protected:
     bool jumped() const { return jumped_; }
     const BinGrid& grid() const { return grid_; }
     double binWidth() const { return grid_.bin_width; }  ///< Exact; `bin_duration` of a ping is rounded [m].
-    double echoTime() const {
-        return 2 * grid_.range_max / grid_.speed_of_sound;
-    }  ///< Travel time to the range and back [s].
+    double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
     /** Returns the shortest time between two snapshots so far [s]; infinite before the second. */
     double shortestPeriod() const { return shortest_; }
     /** Returns the period of the pings in realtime [s]; 0 where it is not known, or not in realtime. */
