@@ -311,7 +311,7 @@ std::string Publisher::answerParameters(uint64_t client, const ParameterRequest&
 std::string Publisher::setParameter(const std::string& name, const std::string& yaml, bool may_set) const try {
     if (!may_set) throw std::runtime_error("a web site may set parameters only with the viewer's token");
     const std::string task = taskOf(name);
-    if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is no property of a task");
+    if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is not a property of any task");
     std::string operation = name;
     operation.replace(task.size(), 2, std::string(".set") + static_cast<char>(std::toupper(name[task.size() + 1])));
     Request request;

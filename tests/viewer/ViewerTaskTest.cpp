@@ -227,8 +227,8 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
 
     for (const auto& [name, why] : {std::pair("source.level", "source.level: level: is 700"),
                                     {"source.levl", "no operation setLevl"},
-                                    {"sauce.level", "is no property of a task"},
-                                    {"source", "is no property of a task"},
+                                    {"sauce.level", "is not a property of any task"},
+                                    {"source", "is not a property of any task"},
                                     {"viewer.port", "does not steer itself"}}) {
         client.say(std::string(R"({"op":"setParameters","parameters":[{"name":")") + name + R"(","value":700}]})");
         const auto refused = nextOf(client, "status");
