@@ -77,7 +77,7 @@ TEST_F(TransformTaskTest, ReportsTheLinkThatInterruptsAChain) {
         sender.send({Sender::place("map", "odom", 5)});
         return readers[0].port.readNewest(*std::make_unique<types::Pose>()) == framework::FlowStatus::NewData;
     }));
-    EXPECT_TRUE(tells("missing: pose: odom in map has not come for a second"));
+    EXPECT_TRUE(tells("missing: pose: odom in map was not published for a second"));
 }
 
 TEST_F(TransformTaskTest, SendsAStaticChainTenTimesASecond) {
