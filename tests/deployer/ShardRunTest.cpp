@@ -401,7 +401,7 @@ TEST(ShardRunTest, TasksThatKeepWhatAShardCannotKnowAreToldEach) {
                 AllOf(HasSubstr("wall.yml: tasks.sonar: quality: is chosen from the pings before"),
                       HasSubstr("tasks.fan: reference_db: is absent, and the brightest colour follows the echoes")));
     EXPECT_THAT(refusal(replaced(movingWall(), "output::FanImageTask", "output::WaterfallImageTask")),
-                HasSubstr("tasks.fan: its pictures show pings of before as well"));
+                HasSubstr("tasks.fan: its pictures also show earlier pings"));
     EXPECT_THAT(refusal(replaced(movingWall(), "every: 3", "every: 3, video: fan.avi")),
                 HasSubstr("tasks.fan: video: is one file of all pictures"));
     EXPECT_THAT(refusal(replaced(movingWall(), "type: logger::LoggerTask",
