@@ -70,7 +70,7 @@ TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
     EXPECT_THAT(client.heard(), HasSubstr("no channel 99"));
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":0}]})");
     client.say("is the subscription taken?");
-    EXPECT_THAT(client.heard(), HasSubstr("no JSON object"));
+    EXPECT_THAT(client.heard(), HasSubstr("not a JSON object"));
     bench.show(blockPing());
 
     const std::string message = client.heard();

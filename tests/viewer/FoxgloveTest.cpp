@@ -91,7 +91,7 @@ TEST(FoxgloveTest, SubscriptionsComeAndGo) {
 TEST(FoxgloveTest, WhatIsWrongIsToldAndChangesNothing) {
     Subscriptions subscriptions(2);
     for (const char* text : {"", "{", "[]", "{}", R"({"op":1})", "\xff\xfe"})
-        EXPECT_THAT(subscriptions.take(text), HasSubstr("no JSON object with an op")) << text;
+        EXPECT_THAT(subscriptions.take(text), HasSubstr("not a JSON object with an op")) << text;
     for (const char* one :
          {"1", "{}", R"({"id":-1,"channelId":0})", R"({"id":1,"channelId":"0"})", R"({"id":5000000000,"channelId":0})"})
         EXPECT_THAT(subscriptions.take(std::string(R"({"op":"subscribe","subscriptions":[)") + one + "]}"),

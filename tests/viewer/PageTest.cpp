@@ -52,9 +52,9 @@ TEST_F(PageTest, TasksPlansAndLossesAreListed) {
     EXPECT_EQ(value("[...document.querySelectorAll('#plan dt, #plan dd')].map((one) => one.textContent)"),
               json({"multipath", "not asked for"}));
     EXPECT_EQ(value("[...document.querySelectorAll('#plan h3')].map((one) => one.textContent)"),
-              json({"world", "left out", "lost samples", "left aside for newer samples, as asked for"}));
+              json({"world", "omitted", "lost samples", "replaced by newer samples, as configured"}));
     EXPECT_THAT(text("plan"),
-                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 slabs, predicted error 0.01"),
+                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 frusta, predicted error 0.01"),
                                HasSubstr("compiled: cones"), HasSubstr("run: draw, sum"), HasSubstr("a notice")));
     EXPECT_TRUE(
         becomes("/^[1-9][0-9]*  world.pose > viewer.pose \\(buffer\\)$/.test(document.querySelector('#plan "

@@ -72,9 +72,9 @@ TEST(PublisherTest, TheViewerAndTheStatesOfTasksAreNotForPages) {
     Client client(blocked.publisher.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
     client.say(call(1, "viewer.setControl"));
-    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("the viewer does not steer itself"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("the viewer does not control itself"));
     client.say(call(2, "lively.stop"));
-    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("states of tasks are the deployment's to change"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("only the deployment changes the states of tasks"));
     client.say(call(3, "lively.stopwatch"));
     EXPECT_EQ(answer(client)["result"], "lively.stopwatch");
 }
@@ -86,7 +86,7 @@ TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
     for (uint64_t id = 1; id <= SerialExecutors::max_waiting + 2; ++id) client.say(call(id, "deaf.ask"));
     const auto refused = answer(client);
     EXPECT_GT(refused["id"], SerialExecutors::max_waiting);
-    EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
+    EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests are waiting"));
     blocked.release();
 }
 

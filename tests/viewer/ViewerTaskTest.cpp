@@ -53,7 +53,7 @@ TEST(ViewerTaskTest, APortThatIsTakenIsOneClearDiagnostic) {
     ASSERT_NE(second.configError(), nullptr);
     EXPECT_THAT(second.configError()->what(),
                 testing::AllOf(HasSubstr("second.port: is " + std::to_string(first.port())),
-                               HasSubstr("Address already in use"), HasSubstr("0 for any that is free")));
+                               HasSubstr("Address already in use"), HasSubstr("0 for any free port")));
 }
 
 TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearDiagnostic) {
@@ -81,7 +81,7 @@ TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
                     both.token = "x";
                     return both;
                 }()),
-                HasSubstr("token_file: is of no use"));
+                HasSubstr("token_file: is given in addition to token"));
     config.port = 0;
     bench.viewer.config.set(config);
     EXPECT_FALSE(bench.viewer.configure());
@@ -186,8 +186,8 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
     EXPECT_THAT(refused("source.setLevl", "7"), HasSubstr("no operation setLevl"));
     EXPECT_THAT(refused("sauce.setLevel", "7"), HasSubstr("no task sauce"));
     EXPECT_THAT(refused("source.stop", ""), HasSubstr("states of tasks"));
-    EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not steer itself"));
-    EXPECT_THAT(replyTo(client, "nonsense")["refused"], "is no JSON object");
+    EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not control itself"));
+    EXPECT_THAT(replyTo(client, "nonsense")["refused"], "is not a JSON object");
 }
 
 /** The next text message with this op. */
@@ -229,7 +229,7 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
                                     {"source.levl", "no operation setLevl"},
                                     {"sauce.level", "is not a property of any task"},
                                     {"source", "is not a property of any task"},
-                                    {"viewer.port", "does not steer itself"}}) {
+                                    {"viewer.port", "does not control itself"}}) {
         client.say(std::string(R"({"op":"setParameters","parameters":[{"name":")") + name + R"(","value":700}]})");
         const auto refused = nextOf(client, "status");
         EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr(why));
