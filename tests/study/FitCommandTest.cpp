@@ -164,7 +164,7 @@ TEST(FitCommandTest, WrongUseIsRefusedWithTheReasonAndNothingIsWritten) {
         {{"fit", "wall.yml", "--out", "fitted.yml"}, "--real is required"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--scene-is", "flat", "--out", "fitted.yml"}, "flat"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "nowhere/fitted.yml"},
-         "is in a folder that is not there: nowhere"},
+         "is in a folder that does not exist: nowhere"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "fitted.txt"}, "must end in .yml or .yaml"},
         {{"fit", "nothing.yml", "--real", "speckle.raw", "--out", "fitted.yml"}, "nothing.yml"},
         {{"fit", "without_noise.yml", "--real", "speckle.raw", "--out", "fitted.yml"},

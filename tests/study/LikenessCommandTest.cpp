@@ -113,6 +113,6 @@ TEST(LikenessCommandTest, WhatCannotBeComparedIsRefused) {
     writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "small.raw", "--out", "report"});
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("has too few beams or bins to tell what it looks like"));
+    EXPECT_THAT(outcome.err, HasSubstr("has too few beams or bins for these statistics"));
     EXPECT_FALSE(fs::exists(folder / "report")) << "nothing is written";
 }
