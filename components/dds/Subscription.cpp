@@ -83,7 +83,7 @@ std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose)
     if (pose.time - now > max_ahead) return "the stamp is more than a second ahead of the clock";
     if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
-    return sender_lives ? "the stamp lies before that of the previous pose" : "";
+    return sender_lives ? "the stamp is before that of the previous pose" : "";
 }
 
 std::string Subscription::absence(Node& node) const {

@@ -29,9 +29,10 @@ struct DisplayConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"width", "1", "of the picture in pixels; an odd width is rounded up to even; the height follows",
-                    256, 8192},
-              self.width);
+        visit(
+            Field{"width", "1",
+                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
+            self.width);
         visit(Field{"dynamic_range_db", "dB", "between the darkest and the brightest colour", 1, 300},
               self.dynamic_range_db);
         visit(Field{"reference_db", "dB",

@@ -21,9 +21,10 @@ struct SamplePictureConfig : RecordingConfig {
         using types::Field;
         RecordingConfig::describe(self, visit);
         visit(Field{"every", "1", "number of samples for each picture, including the first", 1, 1e6}, self.every);
-        visit(Field{"width", "1", "of the picture in pixels; an odd width is rounded up to even; the height follows",
-                    256, 8192},
-              self.width);
+        visit(
+            Field{"width", "1",
+                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
+            self.width);
         visit(Field{"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
               self.colour_map);
     }

@@ -43,7 +43,7 @@ private:
     }
 
     SideScanImage* painter_ = nullptr;
-    std::deque<types::Range> altitudes_;  ///< The altitude in use, and later ones.
+    std::deque<types::Range> altitudes_;  ///< The altitude in use, and later altitudes.
 };
 
 }  // namespace insonify::output

@@ -40,7 +40,7 @@ std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool 
     if (!link.is_static && types::elapsed(link.came, now) > max_silence) return "";
     if (link.is_static != is_static) return child + " is published on /tf and on /tf_static";
     if (link.parent != parent) return child + " has two parents, " + link.parent + " and " + parent;
-    return stamp < link.samples.back().time ? child + ": the stamp lies before the previous stamp" : "";
+    return stamp < link.samples.back().time ? child + ": the stamp is before the previous stamp" : "";
 }
 
 std::string TransformTree::add(const TransformStamped& transform, bool is_static, types::Time stamp, types::Time now) {

@@ -103,7 +103,7 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
     };
     set("range", fmt::format("{:.9g}", sonar.range), "as recorded");
     set("bin_count", fmt::format("{}", sonar.bin_count), "as recorded");
-    set("range_rounding", "exact", "bins as deep as the recorded ones");
+    set("range_rounding", "exact", "bins as deep as recorded");
     set("speed_of_sound", fmt::format("{:.7g}", sonar.speedOfSound()), "as recorded");
     set("frequency_khz", fmt::format("{:.7g}", *sonar.frequency_khz), "as recorded");
     set("pulse", blockOf(*sonar.pulse), comment(fit, "pulse length"));

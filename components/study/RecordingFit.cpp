@@ -219,11 +219,11 @@ void SpeckleFit::addTo(std::vector<Finding>& findings) const {
     else
         add("beam width", "deg", recorded_.echo_beams,
             interval(*azimuth().width_deg, beams_, recorded_.echo_beams, [&](double at) { return widthAt(at); }), 0.25,
-            "of the receiver in azimuth, from what neighbouring beams share of speckle",
+            "of the receiver in azimuth, from the correlation of speckle of neighbouring beams",
             "neighbouring beams share no more speckle than chance, or too few bins show echoes without clipping");
     add("pulse length", "m", recorded_.echo_bins,
         interval(length, bins_, recorded_.echo_bins, [&](double at) { return lengthAt(at); }), 0.25,
-        "range resolution at -3 dB, from what neighbouring bins share of speckle",
+        "range resolution at -3 dB, from the correlation of speckle of neighbouring bins",
         "neighbouring bins share no more speckle than chance: the pulse is shorter than a bin, or no bins show it");
     const double off = textureInterval();
     const Fitted shapes{1 / texture(), 1 / (texture() + off), texture() > off ? 1 / (texture() - off) : 1e9};
@@ -317,7 +317,7 @@ void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::
                         "dB",
                         {level.value, level.value - off, level.value + off},
                         is_determined,
-                        is_determined ? "highest of a beam, beside isolated targets"
+                        is_determined ? "highest of a beam, next to isolated targets"
                                       : "no target is far enough above its surroundings"});
     if (is_determined && law.weighting == acoustics::Weighting::Taylor)
         law.sidelobe_db = std::clamp(level.value, -60.0, -14.0);

@@ -220,7 +220,7 @@ Outcome mirrorAhead() {
         heard = probe(config, lookingAt(geometry));
         worst = std::max(worst, std::abs(10 * std::log10(heard.energy() * 1600)));
     }
-    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and as many columns", heard);
+    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and columns", heard);
 }
 
 /** Tests a plate whose lobe is +60 dB at its peak, over a bottom of -80 dB. */

@@ -65,8 +65,8 @@ Outcome planesCloseTogether() {
     double worst = 0;
     for (const double distance : {0.01, 1.0, 600.0})
         for (const bool hidden_first : {false, true}) worst = std::max(worst, leak(distance, hidden_first, heard));
-    return within(1e-6, worst, "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, drawn first or last",
-                  heard);
+    return within(1e-6, worst,
+                  "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, rasterised first or last", heard);
 }
 
 Outcome utmCoordinates() {

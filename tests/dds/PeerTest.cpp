@@ -253,6 +253,6 @@ TEST_P(SpoiltPoses, AreDroppedAndTheRunContinues) {
 
 INSTANTIATE_TEST_SUITE_P(PeerTest, SpoiltPoses,
                          testing::Values(std::pair("nan", "not finite"), std::pair("zero", "no length"),
-                                         std::pair("back", "the stamp lies before"),
+                                         std::pair("back", "the stamp is before"),
                                          std::pair("bytes", "not a message of its type")),
                          [](const auto& tested) { return std::string(tested.param.first); });

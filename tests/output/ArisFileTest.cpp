@@ -125,7 +125,7 @@ TEST_F(ArisFileTest, WithoutPositionStaysAtTheOriginAndWithoutAnglesHasNoPose) {
     EXPECT_FALSE(isUsable(frames.at(1).sonar));
     EXPECT_TRUE(isNoticed("1 pings have no pose"));
     turned.pitch = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_FALSE(isUsable(read(arisFile({turned})).at(0).sonar)) << "an angle that is none";
+    EXPECT_FALSE(isUsable(read(arisFile({turned})).at(0).sonar)) << "an invalid angle";
 }
 
 TEST_F(ArisFileTest, TakesTheTimeOfThePcOrElseOfTheSonar) {

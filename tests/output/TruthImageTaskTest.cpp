@@ -63,7 +63,7 @@ TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
         const cv::Point2d at = fan.layout().pixel(share * fan.layout().range(), types::radians(bearing_deg));
         return picture.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x) + 600 * half);
     };
-    EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "what is heard, in grey";
+    EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "the echoes, in grey";
     EXPECT_EQ(pixel(0.86, -23, 1), TruthImage::colourOf(0));
     EXPECT_EQ(pixel(0.86, 23, 1), TruthImage::colourOf(1));
     EXPECT_EQ(pixel(0.46, -23, 1), TruthImage::colourOf(0));

@@ -103,7 +103,7 @@ TEST(CloudsTest, WritesAnOrderedCloudOfADistanceMapAndRestoresIt) {
     EXPECT_FLOAT_EQ(numbers[0], static_cast<float>(2 * std::cos(up) * std::cos(port)));
     EXPECT_FLOAT_EQ(numbers[1], static_cast<float>(2 * std::cos(up) * std::sin(port)));
     EXPECT_FLOAT_EQ(numbers[2], static_cast<float>(2 * std::sin(up)));
-    EXPECT_TRUE(std::isnan(numbers[7])) << "nothing is heard there";
+    EXPECT_TRUE(std::isnan(numbers[7])) << "there is no echo";
     EXPECT_LT(numbers[14 + 2], 0) << "the lower row";
     types::DepthMap back;
     convert(message, back);

@@ -164,7 +164,7 @@ TEST_F(TransformTreeTest, RefusesStampsThatGoBackUntilTheirSenderHasBeenSilent) 
     moving(place("map", "base_link", {1, 0, 0}), 100);
     EXPECT_THAT(tree.add(place("map", "base_link", {9, 0, 0}), false, at(99), at(100.1)),
                 HasSubstr("before the previous stamp"));
-    EXPECT_EQ(tree.add(place("map", "base_link", {9, 0, 0}), false, at(100), at(100.1)), "") << "told twice";
+    EXPECT_EQ(tree.add(place("map", "base_link", {9, 0, 0}), false, at(100), at(100.1)), "") << "sent twice";
     expectAt(100, 100, {1, 0, 0});
     EXPECT_EQ(tree.add(place("map", "base_link", {2, 0, 0}), false, at(50), at(102)), "") << "a bag that is looped";
     expectAt(102, 50, {2, 0, 0});

@@ -138,7 +138,7 @@ TEST(ErrorAnalysisTest, AReferenceTooCoarseToDecideLeavesClaimsOpen) {
         EXPECT_STREQ(claim.verdict(), "open");
     }
     result.references[0].error_tvg = 0.001;
-    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can tell";
+    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can decide";
 }
 
 }  // namespace

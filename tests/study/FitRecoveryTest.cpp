@@ -148,7 +148,7 @@ TEST(FitSpeckleTest, MeasuresSidelobesOfIsolatedTargetsButNotOfSpeckle) {
     truth.chain.receiver.code->bits = 16;
     truth.chain.receiver.code->dynamic_range_db = 200;
     const double width_beams = truth.beam_width_deg / (fan_deg / beams);
-    EXPECT_FALSE(sidelobesOf(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is no target";
+    EXPECT_FALSE(sidelobesOf(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is not a target";
     for (const double bearing : {-0.2, 0.0, 0.25})
         truth.chain.snapshot.targets.push_back(
             {.position = 1.6 * glm::dvec3(std::cos(bearing) * std::cos(0.45), std::sin(bearing),

@@ -67,7 +67,7 @@ TEST(LikenessCommandTest, ReadsALogOfCodesLikeARecording) {
     const json report = json::parse(readFile(folder / "report/likeness.json"));
     EXPECT_EQ(report["pings"][0]["name"], "recorded_0");
     EXPECT_NEAR(report["pings"][1]["emd_codes"].get<double>(), 0, 1e-6)
-        << "the wall stands still: the same ping, the law from the log";
+        << "the wall is still: the same ping, the law from the log";
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--out", "plain"}).code, 0);
     outcome = callInsonify(folder, {"study", "likeness", "--real", "plain/wall.0.log", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);

@@ -164,7 +164,7 @@ TEST(LikenessTest, RecordingsOfAnM1200dResembleEachOtherButNotWrongPictures) {
     EXPECT_NEAR(looks.zeros, 0.0002, 0.0001);
     EXPECT_THAT(looks.contrast, AllOf(Ge(0.5), Le(0.6)));
     EXPECT_THAT(looks.beam_correlation, AllOf(Ge(0.4), Le(0.7)));
-    EXPECT_LT(looks.arc_excess_db, 3) << "no strong target stands in it";
+    EXPECT_LT(looks.arc_excess_db, 3) << "it has no strong target";
     EXPECT_LT(result.row("simulated")->apart.emd_codes, 1) << "one ping of it is like the others";
     for (const Claim& claim : claims(result.row("simulated")->apart, looks)) EXPECT_TRUE(claim.holds()) << claim.text;
     for (const char* wrong : {"uniform", "cosine"})

@@ -102,7 +102,7 @@ TEST(PointCasterTest, ANormalMapChangesOnlyTheCosine) {
         }
     EXPECT_NEAR(std::accumulate(sums.begin(), sums.end(), 0.0), expected, 1e-3 * expected);
     const Probe drawn = probe(config, scene);
-    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and so it is drawn";
+    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and it is rendered like this";
 }
 
 }  // namespace

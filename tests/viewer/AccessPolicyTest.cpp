@@ -45,7 +45,7 @@ TEST(AccessPolicyTest, WithoutATokenOnlyFoxglovesWebSitesRead) {
         EXPECT_EQ(reads(origin), 403u) << origin;
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "https://app.foxglove.dev", ""}, Use::Control), 403u);
     EXPECT_EQ(judged("ab", {"/?token=ab", "127.0.0.1:8765", "https://evil.example", ""}, Use::Read), 200u)
-        << "who has the token may";
+        << "clients with the token may";
 }
 
 TEST(AccessPolicyTest, ProgramsAndClientsWithTheTokenSetParameters) {

@@ -119,7 +119,7 @@ TEST(ClientTest, EachServerHasItsOwnSession) {
             sessions.insert(json::parse(client.heard())["sessionId"].get<std::string>());
         }
     }
-    EXPECT_EQ(sessions.size(), 2u) << "the same for who comes back, another after a start";
+    EXPECT_EQ(sessions.size(), 2u) << "the same after a reconnection, another after a restart";
 }
 
 TEST(ClientTest, SendsFoxgloveTheTimeOfTheDeployment) {

@@ -62,7 +62,7 @@ TEST_F(PageTest, ListsTasksPlansAndLosses) {
         << "a buffer of one that gets two poses each time";
     const std::string meant = "[...document.querySelectorAll('#plan .dim')].at(-1)";
     EXPECT_TRUE(becomes("/^[1-9][0-9]*  world.pose > viewer.newest \\(data\\)$/.test(" + meant + ".textContent)"))
-        << "the newest of two poses is wanted, and is no loss";
+        << "the newest of two poses is wanted, and is not a loss";
     EXPECT_EQ(value("document.querySelectorAll('#plan .refused').length"), 1);
     EXPECT_TRUE(
         becomes("document.querySelector('#graph .lost').textContent === "

@@ -21,7 +21,7 @@ struct QualityConfig {
         visit(types::Field{"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
     }
     void check(types::Diagnostics& diagnostics) const {
-        if (rows && budget_ms) diagnostics.push_back({"rows", "stands beside budget_ms"});
+        if (rows && budget_ms) diagnostics.push_back({"rows", "is given in addition to budget_ms"});
     }
 };
 
@@ -71,7 +71,7 @@ public:
     framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "of the scene"};
     framework::OutputPort<types::Pose> pose{this, "pose", "two each time"};
 
-    framework::Operation<void(double)> seek{this, "seek", "goes there in its log of 100 s", [this](double seconds) {
+    framework::Operation<void(double)> seek{this, "seek", "seeks in its log of 100 s", [this](double seconds) {
                                                 if (seconds > 90) throw std::runtime_error("not the last 10 s");
                                                 at_s_ = seconds;
                                             }};

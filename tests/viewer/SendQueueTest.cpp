@@ -50,7 +50,7 @@ TEST(SendQueueTest, ANewerReplyOfAStreamReplacesAWaitingReply) {
     outbox.forget(2);
     EXPECT_EQ(textOf(outbox.next()), "what moves");
     EXPECT_EQ(textOf(outbox.next()), "nothing");
-    EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene tells all that an older one does";
+    EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene includes all of an older scene";
 }
 
 }  // namespace

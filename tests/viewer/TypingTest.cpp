@@ -283,7 +283,7 @@ TEST_F(TypingTest, ARefusalIsRedAndTheFieldShowsThePresentValue) {
                             {"maybe", "oval", "maybe: is oval; may be round, square, flat"},
                             {"place", "[1, 2]", "place"},
                             {"weights", "1, 2", "weights"},
-                            {"quality", "{rows: 5, budget_ms: 5}", "stands beside budget_ms"},
+                            {"quality", "{rows: 5, budget_ms: 5}", "is given in addition to budget_ms"},
                             {"quality", "{row: 5}", "row"},
                             {"spare", "{rows: [", "spare"}}) {
         const std::string field = fieldOf(one.property), message = refusalOf(field);

@@ -135,12 +135,13 @@ void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings&
         ->required();
     command
         ->add_option("--side", options->side,
-                     "of a side-scan: whose lines are compared; none: starboard, if there are any")
+                     "side of a side-scan whose lines are compared; default: starboard, if it has lines")
         ->check(CLI::IsMember({"starboard", "port"}));
     command
-        ->add_option("--lines", options->lines,
-                     "of a side-scan. deployment: along its vehicle's track; recorded: a straight track, as high above "
-                     "the floor and pitched as the recording states")
+        ->add_option(
+            "--lines", options->lines,
+            "lines of a side-scan. deployment: along its vehicle's track; recorded: a straight track, as high above "
+            "the floor and pitched as the recording states")
         ->check(CLI::IsMember({"deployment", "recorded"}));
     command->callback([options, pingsAt, chainAt, readLog, &action] {
         action = [options, pingsAt, chainAt, readLog] { return runStudy(*options, pingsAt, chainAt, readLog); };
