@@ -18,7 +18,7 @@ namespace {
 constexpr int min_depth = 64;         ///< So that invalid messages do not displace a valid message before it is read.
 constexpr int max_drops = 64;         ///< In one take(): a sender of invalid messages blocks nobody.
 constexpr size_t largest = 64 << 10;  ///< A message's 712 bytes and two names, rounded up [B].
-constexpr types::Time max_ahead{1'000'000};    ///< Of a stamp before the clock; a sonar refuses later snapshots too.
+constexpr types::Time max_ahead{1'000'000};    ///< Max stamp ahead of the clock; a sonar refuses later snapshots too.
 constexpr types::Time max_silence{1'000'000};  ///< After it, a sender's clock may have been set back.
 
 const char* typeOf(PoseType type) {

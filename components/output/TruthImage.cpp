@@ -14,7 +14,7 @@ namespace {
 const std::string fan_caption = "echoes", truth_caption = "objects; dark blue: in shadow";
 constexpr double font_scale = 0.42;
 constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 118;
-constexpr int bar_width = 84, bar_height = 160;  ///< Of the fan's colour bar, whose place the names take.
+constexpr int bar_width = 84, bar_height = 160;  ///< Size of the fan's colour bar; the names are shown in its place.
 constexpr double dimmest = 0.35;                 ///< Brightness of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {

@@ -16,7 +16,7 @@ namespace insonify::study {
 struct LinePlace {
     double altitude = 0;  ///< Above the bottom [m]; 0: unknown.
     double along = 0;     ///< Distance along the track since the first line [m].
-    double pitch = 0;     ///< Of the sonar: positive looks down [rad].
+    double pitch = 0;     ///< The sonar's pitch: positive looks down [rad].
 };
 
 /** Returns the places of lines from the poses of the sonar and its altitudes; empty if both are unknown. Repeated
@@ -28,7 +28,7 @@ std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const st
 struct CodedPing {
     std::string name;
     size_t beam_count = 0, bin_count = 0;
-    std::vector<double> bearings = {};   ///< Of each beam's middle: 0 ahead, positive to port [rad].
+    std::vector<double> bearings = {};   ///< Bearing of each beam's middle: 0 ahead, positive to port [rad].
     std::vector<float> codes = {};       ///< Beam-first, as fractions of the max code [1].
     int bits = 8;                        ///< Bits of a code.
     receiver::CodeConfig law = {};       ///< The relation of codes and intensity: `law`, `gamma`, `dynamic_range_db`.

@@ -14,9 +14,9 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t first_slice = 3;        ///< Nearer, transmitters ring, and the gain changes within a slice.
-constexpr double huber_db = 3;           ///< Residuals beyond this count by their size, not their square.
-constexpr double uncut_deg = 110;        ///< Of a side-scan's beam, which is limited only by its pattern [deg].
+constexpr size_t first_slice = 3;  ///< Nearer, transmitters ring, and the gain changes within a slice.
+constexpr double huber_db = 3;     ///< Residuals beyond this count by their size, not their square.
+constexpr double uncut_deg = 110;  ///< Aperture of a side-scan's beam, which is limited only by its pattern [deg].
 constexpr double elevation_before = 15;  ///< Width of an unknown beam in elevation [deg].
 
 double medianLevel(std::vector<double> values) {

@@ -15,11 +15,11 @@ constexpr std::array<double, 7> shown_percentiles{1, 5, 25, 50, 75, 95, 99};
 /** Statistics of a ping's appearance that do not depend on the scene. */
 struct Looks {
     std::array<double, code_classes> histogram{};                ///< Fraction of the bins with each code [1].
-    std::array<double, shown_percentiles.size()> percentiles{};  ///< Of the codes; 255 is the max code.
+    std::array<double, shown_percentiles.size()> percentiles{};  ///< Percentiles of the codes; 255 is the max code.
     double zeros = 0;                                            ///< Fraction of bins with code 0 [1].
     double saturated = 0;                          ///< Fraction of bins with the max code, or the code below it [1].
     double dynamic_range_db = 0;                   ///< Level of the 99.5th percentile minus that of the 5th [dB].
-    std::array<double, range_slices> mean_code{};  ///< Of each slice of range; 255 is the max code.
+    std::array<double, range_slices> mean_code{};  ///< Mean code of each slice of range; 255 is the max code.
     std::array<double, range_slices> level_db{};   ///< Mean intensity of each slice relative to the max code [dB].
     int patches = 0;      ///< Number of homogeneous patches: 16 x 16 bins whose quarters agree within a quarter.
     double contrast = 0;  ///< Median deviation over mean of the amplitude in the patches; Rayleigh: 0.523.

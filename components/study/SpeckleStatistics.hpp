@@ -34,7 +34,7 @@ SpeckleField sliceOf(const SpeckleField& field, size_t slice);
 size_t loudestSlice(const CodedPing& ping);
 size_t loudestSlice(const types::Sonar& intensities);
 
-constexpr size_t speckle_lags = 9;  ///< Of a correlation curve, from 0 on.
+constexpr size_t speckle_lags = 9;  ///< Number of lags of a correlation curve, from 0 on.
 using LagCurve = std::array<double, speckle_lags>;
 
 /** A number and its standard error, by the jackknife over blocks of 16 x 16 bins. */
@@ -54,7 +54,7 @@ struct SpeckleFigures {
     double rayleigh_distance = 0;  ///< Kolmogorov-Smirnov distance from the exponential law, times sqrt(independent).
     LagCurve along{}, across{};    ///< Correlation of intensities at each lag of bins and of beams.
 
-    double shape() const { return 1 / texture.value; }  ///< Of the K law; negative: none.
+    double shape() const { return 1 / texture.value; }  ///< Shape of the K law; negative: none.
 };
 
 /** @throws std::invalid_argument if fewer than four blocks of a field have bins */

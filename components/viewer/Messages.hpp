@@ -48,10 +48,10 @@ struct ShownMessage<types::Snapshot> {
 /** A form of a sample for Foxglove; each has a separate channel. */
 enum class Form {
     Message,     ///< See ShownMessage.
-    Picture,     ///< Of a ping: sensor_msgs/Image, the fan, see FanPicture.
-    Points,      ///< Of a ping: sensor_msgs/PointCloud2, every bin that is a return.
-    Transforms,  ///< Of a pose and of the sonar in a snapshot: foxglove_msgs/FrameTransforms.
-    Scene        ///< Of a snapshot: foxglove_msgs/SceneUpdate, see SceneUpdates.
+    Picture,     ///< A ping as sensor_msgs/Image: the fan, see FanPicture.
+    Points,      ///< A ping as sensor_msgs/PointCloud2: every bin that is a return.
+    Transforms,  ///< A pose, or the sonar's pose in a snapshot, as foxglove_msgs/FrameTransforms.
+    Scene        ///< A snapshot as foxglove_msgs/SceneUpdate, see SceneUpdates.
 };
 
 /** A form that a source offers to Foxglove. */

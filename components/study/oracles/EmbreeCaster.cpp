@@ -29,8 +29,8 @@ struct Angle {
 /** A column or row of cells: its middle and its edges. */
 struct Strip {
     Angle middle, low, high;
-    double size;  ///< Of a column its width [rad]; of a row the difference of the sines of its edges, times its pattern
-                  ///< weight. The product is a cell's weighted solid angle.
+    double size;  ///< Column: width [rad]. Row: difference of the sines of its edges, times its pattern weight. The
+                  ///< product is a cell's weighted solid angle.
 };
 
 Strip column(double low, double high) { return {Angle((low + high) / 2), Angle(low), Angle(high), high - low}; }
@@ -80,7 +80,7 @@ struct EmbreeCaster::Fan {
 
     RayTree tree;
     Workers workers;
-    std::vector<Strip> columns, rows;  ///< Of all beams, low bearings first; rows from below.
+    std::vector<Strip> columns, rows;  ///< Strips of all beams: columns by ascending bearing, rows from below.
     int columns_per_beam = 0, beams = 0;
     int stripes = 1;  ///< Stripes of rows for separate threads: more than 1 if there are few beams.
     size_t bins = 0;
