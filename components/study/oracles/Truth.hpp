@@ -34,12 +34,10 @@ Truth sphereTruth(double radius, double centre);
 /** Returns the echo of a disc that faces the sonar, wholly inside one beam: ACOUSTICS.md 9.5. */
 Truth discTruth(double distance, double radius);
 
-/** Returns the echo of a sphere wholly inside one beam, whose sigma_b is a function of the cosine [1]: ACOUSTICS.md
- *  9.4. */
+/** Returns the echo of a sphere in one beam, whose sigma_b is a function of the cosine [1]: ACOUSTICS.md 9.4. */
 Truth sphereTruth(double radius, double centre, const std::function<double(double)>& section);
 
-/** Returns the echo of water of a strength [1/m] over a bottom under a level sonar, which hides it: ACOUSTICS.md
- *  9.10. */
+/** Returns the echo of water of a strength [1/m] under a level sonar; a bottom hides the rest: ACOUSTICS.md 9.10. */
 Truth waterTruth(double strength, double height);
 
 /** Returns the sum of echoes that do not hide each other. */
