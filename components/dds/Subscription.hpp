@@ -24,10 +24,11 @@ public:
     /** Takes the next valid pose, in Rock's axes, with an orientation of unit length. The time is `now` if the message
      *  has no stamp, or if the topic is configured so.
      *
-     *  Returns false and leaves `pose` unchanged if there is none, or after 64 drops; more() then returns true. Dropped
-     *  are: bytes that cannot be decoded or exceed 64 KiB, poses that are not finite or without an orientation, and
-     *  stamps more than a second ahead of `now` or before that of the previous pose. Earlier stamps are accepted once
-     *  the sender is gone or no valid pose arrived for a second: a looped bag and a reset simulator begin anew. */
+     *  Returns false and leaves `pose` unchanged if there is none, or after 64 drops; more() then returns true. Bytes
+     *  that cannot be decoded or exceed 64 KiB are dropped, and poses that are not finite or without an orientation.
+     *  Stamps are dropped if they are more than a second ahead of `now` or before that of the previous pose. Earlier
+     *  stamps are accepted once the sender is gone or no valid pose arrived for a second: a looped bag and a reset
+     *  simulator begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
     /** Returns why no pose arrives, from the domain's discovery: no writer, a writer of another type or quality, or

@@ -48,7 +48,7 @@ struct SonarTruth {
         visit(Field{"path", "1",
                     "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall"},
               self.path);
-        visit(Field{"shadow", "", "1: no echo, though nearer than the last echo"}, self.shadow);
+        visit(Field{"shadow", "", "1: no echo, although nearer than the last echo"}, self.shadow);
     }
 };
 

@@ -31,8 +31,8 @@ struct SpeckleMoments {
 SpeckleMoments momentsOf(const std::vector<CodedPing>& pings, const LevelFit& levels, bool with_errors);
 
 /** Returns the highest sidelobe of a beam relative to its axis [dB]: the max level of beams next to isolated targets,
- *  beyond the main lobe; the median over all targets. NaN without a suitable target, which must be unclipped and 25 dB
- *  above its surroundings, with sidelobes 6 dB above them. @param width_beams of the main lobe at -3 dB [distances of
+ *  beyond the main lobe; the median over all targets. A target must be unclipped and 25 dB above its surroundings, its
+ *  sidelobes 6 dB above them; NaN without a target. @param width_beams of the main lobe at -3 dB [distances of
  *  beams] */
 Measured sidelobesOf(const std::vector<CodedPing>& pings, double width_beams);
 
