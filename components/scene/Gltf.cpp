@@ -23,14 +23,14 @@
 namespace insonify::scene {
 namespace {
 
-/** Instances and nodes together may be this many. */
+/** Max number of instances and nodes together. */
 constexpr size_t max_objects = 1'000'000;
 
 glm::dmat4 compose(glm::dvec3 translation, glm::dquat rotation, glm::dvec3 scale) {
     return glm::scale(glm::translate(glm::dmat4(1), translation) * glm::mat4_cast(rotation), scale);
 }
 
-/** Walks the nodes of one file's scene and collects objects. */
+/** Visits the nodes of one file's scene and collects objects. */
 class GltfReader {
 public:
     explicit GltfReader(const std::filesystem::path& file)
@@ -70,7 +70,7 @@ private:
         return roots;
     }
 
-    /** Depth first without recursion, so that a deep file cannot overflow the stack. */
+    /** Visits nodes depth first without recursion, so that a deep file cannot overflow the stack. */
     void walk(const std::vector<int>& roots) {
         std::vector<Visit> waiting;
         const auto add = [&waiting](const std::vector<int>& nodes, int parent, const glm::dmat4& world_from_parent) {
@@ -203,7 +203,7 @@ private:
         return instances;
     }
 
-    /** Index into Geometry::meshes, -1 for a mesh without triangles; read when first met. */
+    /** Returns the index into Geometry::meshes, -1 for a mesh without triangles. Reads the mesh on its first use. */
     int meshIndex(size_t mesh) {
         const auto [known, is_new] = mesh_indices_.try_emplace(mesh, -1);
         if (!is_new) return known->second;
@@ -214,7 +214,7 @@ private:
         return known->second;
     }
 
-    /** Adds a mesh in clusters; a large one is split while others are read, and takes its place in finishMeshes(). */
+    /** Adds a mesh in clusters. A large mesh is split while others are read, and is stored by finishMeshes(). */
     void cluster(types::Mesh&& mesh) {
         types::Mesh& place = geometry_.meshes.emplace_back();
         if (mesh.indices.size() / 3 <= clustered_from) {
@@ -241,10 +241,10 @@ private:
         const auto count = [&notices](size_t number, const char* what) { addCount(number, what, notices); };
         const Omissions& omissions = meshes_.omissions();
         omissions.dropped.addTo(notices);
-        count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
+        count(omissions.other_primitives, "primitives of points or lines omitted, they have no surface");
         count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
-        count(omissions.unmapped_primitives, "primitives loaded without their map for want of texture coordinates");
-        count(flat_objects_, "objects left out, their scale is zero in some direction");
+        count(omissions.unmapped_primitives, "primitives loaded without their map, they have no texture coordinates");
+        count(flat_objects_, "objects omitted, their scale is zero in some direction");
         count(gltf_.model.animations.size(), "animations not played, the scene is loaded at rest");
         if (has_skin_) notices.push_back("skins not applied, the meshes are loaded at rest");
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");

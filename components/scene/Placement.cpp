@@ -12,7 +12,7 @@
 namespace insonify::scene {
 namespace {
 
-/** The turn that takes an axis of the file to z. */
+/** Returns the rotation that turns an axis of the file to z. */
 glm::dmat4 turnTo(UpAxis up) {
     switch (up) {
         case UpAxis::X: return {0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1};
@@ -32,7 +32,7 @@ glm::dmat4 worldFromZUp(const Placement& placement) {
     return glm::rotate(moved, types::radians(placement.yaw_deg), {0, 0, 1}) * glm::dmat4(frame);
 }
 
-/** "x", "-z", or the direction's numbers where it is along no axis. */
+/** Returns "x" or "-z", or the numbers of a direction that is along no axis. */
 std::string nameOf(const glm::dvec3& direction) {
     constexpr double near = 1 - 1e-9;
     for (int axis = 0; axis < 3; ++axis)
@@ -66,8 +66,9 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
         if (findNode(scene, name) < 0)
             diagnostics.push_back({"scale." + name, "is no node of the scene; " + types::didYouMean(name, names) +
                                                         "insonify scene lists them"});
-    std::vector<glm::dmat4> world_from_node;  // with the nodes above as large as they are now
-    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // of what is below a node, in the world
+    std::vector<glm::dmat4> world_from_node;  // with the nodes above at their scaled size
+    std::vector<glm::dmat4> resized(scene.nodes.size(),
+                                    glm::dmat4(1));  // scaling of the nodes below a node, in the world
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = result.nodes[i];
         const bool has_parent = node.parent >= 0;

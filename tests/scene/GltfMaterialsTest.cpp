@@ -97,14 +97,14 @@ TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"wine"}})",
          "shell.fill: is \"wine\"; may be water, air"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"air","fill_loss":0.1}})",
-         "shell.fill: is air, which nothing passes into; leave out fill_density"},
+         "shell.fill: is air, which no sound passes into; omit fill_density"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900}})",
          "shell.fill_density: needs a fill of oil, sand or mud, or both"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900,"fill_sound_speed":100}})",
          "shell.fill_sound_speed: is 100; must be a number from 200 to 6000"},
         {R"({"shell":2})", "acoustics.shell: must be a block such as"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc"},"material":"steel"})",
-         "acoustics.shell: stands beside `sediment`, `material` or `table`; give one of them"},
+         "acoustics.shell: is given with `sediment`, `material` or `table`; give one of them"},
         {R"({"sediment":{"thickness_mm":2}})", "sediment.thickness_mm: is not known"}};
     for (const auto& [json, part] : cases)
         EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
@@ -254,7 +254,7 @@ TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
     expect(R"({"table":"none.csv"})", "none.csv");
     expect(R"({"table":"floor.csv"})", "floor.csv:3:1: ");
     expect(R"({"table":7})", "table: is 7; must be the path of a file");
-    expect(R"({"table":"floor.csv","sediment":"clay"})", "table: stands beside `sediment` or `lambert_db`");
+    expect(R"({"table":"floor.csv","sediment":"clay"})", "table: is given with `sediment` or `lambert_db`");
 }
 
 TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {

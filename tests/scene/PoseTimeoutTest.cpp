@@ -55,7 +55,7 @@ TEST_F(PoseTimeoutTest, PosesThatStayAwayAreAnErrorUntilTheyAreBack) {
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_FALSE(cycle(10.7));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
-    EXPECT_THAT(task_.lastError(), HasSubstr("no pose of the last 0.5 s"));
+    EXPECT_THAT(task_.lastError(), HasSubstr("no pose in the last 0.5 s"));
     EXPECT_FALSE(cycle(20));
     EXPECT_TRUE(cycle(20.1, 20.1));
     EXPECT_EQ(task_.state(), TaskState::Running);
@@ -205,7 +205,7 @@ TEST_F(PoseTimeoutTest, ANodeWhosePosesStayAwayIsAnErrorToo) {
     EXPECT_TRUE(cycle(10.4, 10.4));
     EXPECT_FALSE(cycle(10.6, 10.6));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
-    EXPECT_THAT(task_.lastError(), HasSubstr("scene.buoy.pose: no pose of the last 0.5 s"));
+    EXPECT_THAT(task_.lastError(), HasSubstr("scene.buoy.pose: no pose in the last 0.5 s"));
     still.time = types::Time::fromSeconds(10.7);
     other.port.write(still);
     EXPECT_TRUE(cycle(10.7, 10.7));
