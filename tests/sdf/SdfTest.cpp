@@ -151,7 +151,7 @@ TEST_F(SdfTest, OfSeveralWorldsTheFirstIsRead) {
         readScene(write("two.sdf", "<sdf version='1.9'><world name='a'>" + model("m", box_) +
                                        "</world><world name='b'>" + model("n", box_) + "</world></sdf>"));
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "worlds left out, the first of the file is read: 1"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "worlds omitted, the first of the file is read: 1"));
 }
 
 TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
@@ -160,7 +160,7 @@ TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
               "</model></state><actor name='diver'><skin><filename>diver.dae</filename></skin></actor>");
     expectBounds(boundsOf(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
     EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not taken"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "actors left out: 1"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "actors omitted: 1"));
 }
 
 TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
@@ -168,7 +168,7 @@ TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
                               "\n<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>\n");
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; omitted"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
     EXPECT_TRUE(hasNotice(*scene.geometry, "in the folders of INSONIFY_MODEL_PATH"));
 }
@@ -183,7 +183,7 @@ TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
     writeModel("outer", "<model name='outer'>" + link("l") + "<include><uri>model://nowhere</uri></include></model>");
     const Scene scene = world("<include><uri>model://outer</uri></include>");
     EXPECT_TRUE(hasNotice(*scene.geometry, "outer/model.sdf:1: ")) << scene.geometry->notices.at(0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; omitted"));
 }
 
 TEST_F(SdfTest, AnIncludeThatCannotBeReadIsLeftOutWithTheReason) {
@@ -193,7 +193,7 @@ TEST_F(SdfTest, AnIncludeThatCannotBeReadIsLeftOutWithTheReason) {
     EXPECT_GE(findNode(scene, "good"), 0);
     EXPECT_LT(findNode(scene, "bad"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "must have 6 values, but 3 were found"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; omitted"));
 }
 
 TEST_F(SdfTest, LibsdformatKeepsQuiet) {

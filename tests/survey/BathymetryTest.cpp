@@ -388,14 +388,14 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
          {Case{(folder_ / "none.tif").string(), "is not there"}, Case{folder_.path().string(), "may be GeoTIFF"},
           Case{write("text.txt", "a text"), "supported file format.); may be GeoTIFF"},
           Case{write("empty.tif", ""), "may be GeoTIFF, BAG"},
-          Case{grid("degrees", 9, 9), "lies in degrees; project it to metres: gdalwarp"},
-          Case{write("nowhere.vrt", with("")), "does not say where it lies on the map"},
+          Case{grid("degrees", 9, 9), "is in degrees; project it to metres: gdalwarp"},
+          Case{write("nowhere.vrt", with("")), "has no place on the map"},
           Case{shortened(grid("short", 9, 9)), "ends too early: has 162 of 324 bytes"},
           Case{write("turned.vrt", with("<GeoTransform>0, 2, 0.1, 0, 0.1, -2</GeoTransform>")),
-               "is turned against north"},
+               "is rotated against north"},
           Case{write("flat.vrt", with("<GeoTransform>0, 0, 0, 0, 0, -2</GeoTransform>")), "posts 0 m and -2 m apart"},
           Case{write("feet.vrt", in_feet), "has elevations in ft; may be metres"},
-          Case{grid("one", 9, 9), "has 1 bands, and not one of number 2", 2},
+          Case{grid("one", 9, 9), "has 1 bands, but no band 2", 2},
           Case{grid("fine", 9, 9), "at most 4096: lower reach", 1, 5000}}) {
         BathymetryConfig config = config_;
         config.band = c.band;
@@ -427,7 +427,7 @@ TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunGoesOn) {
     };
     EXPECT_FALSE(snapshotAt(100)) << "rows that the file lacks";
     EXPECT_EQ(task.state(), framework::TaskState::RunTimeError);
-    EXPECT_THAT(task.lastError(), HasSubstr("short.tif cannot be read on; GDAL: "));
+    EXPECT_THAT(task.lastError(), HasSubstr("short.tif cannot be read any further; GDAL: "));
     const types::SnapshotPtr there = snapshotAt(300);
     ASSERT_TRUE(there);
     EXPECT_FALSE(there->geometry->objects.empty());
