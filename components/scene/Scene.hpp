@@ -20,10 +20,9 @@ struct Node {
 struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
-    std::vector<int> object_nodes;  ///< For each object of the geometry, its node.
-    std::vector<glm::dmat4>
-        node_from_object;          ///< For each object; identity except for instances and the visuals of SDF.
-    glm::dmat4 z_up_from_file{1};  ///< The turn of the file's axes to the world's.
+    std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
+    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 except for instances and visuals.
+    glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
 };
 
 /** An object that moves with a node. */

@@ -76,8 +76,7 @@ types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int hei
     map.materials = std::move(materials);
     map.classes.reserve(values.size());
     for (const float value : values) {
-        const auto known =
-            std::isnan(value) ? numbers.end() : numbers.find(value);  // find() would take NaN for equal to any key
+        const auto known = std::isnan(value) ? numbers.end() : numbers.find(value);  // NaN equals any key
         map.classes.push_back(known == numbers.end() ? types::SurfaceMap::no_class : known->second);
     }
     return map;

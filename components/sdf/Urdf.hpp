@@ -10,8 +10,7 @@ namespace insonify::sdf {
 struct Urdf {
     std::string text;  ///< With an inertia for each link that has none, as libsdformat omits links without inertia;
                        ///< fixed joints stay.
-    std::map<std::string, std::vector<std::string>>
-        materials;  ///< Materials of the visuals of each link, by the name of the link.
+    std::map<std::string, std::vector<std::string>> materials;  ///< Per link, of its visuals.
 };
 
 /** Returns whether a file is URDF, by its extension. */

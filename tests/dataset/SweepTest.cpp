@@ -94,24 +94,23 @@ TEST(SweepTest, AStarStandsForAnyLetters) {
 TEST(SweepTest, WhatCannotBeMeantIsRefused) {
     EXPECT_THAT(diagnosticsOf(Axis{}), testing::SizeIs(1));
     Axis axis = drawnFrom({4, 2}, {});
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("uniform: must be two numbers, [least, most]"));
+    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("uniform: must be two numbers, [min, max]"));
     axis = drawnFrom({}, {1, -1});
     EXPECT_THAT(diagnosticsOf(axis),
                 ElementsAre("normal: must be two numbers, [mean, deviation], the deviation not below 0"));
     axis = {};
     axis.from = 1;
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("has not all of from, to and count, which steps need"));
+    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("needs all of from, to and count for steps"));
     Split split;
     split.val = 0.2;
     EXPECT_THAT(diagnosticsOf(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
     ObjectGroup group;
     group.names = {"a"};
     group.x = {0, 1};
-    EXPECT_THAT(diagnosticsOf(group), ElementsAre("y: is missing; give [least, most]"));
+    EXPECT_THAT(diagnosticsOf(group), ElementsAre("y: is missing; give [min, max]"));
     TrajectoryPoses poses;
     poses.file = "a.csv";
-    EXPECT_THAT(diagnosticsOf(poses),
-                ElementsAre("has neither or both of count and period; one says how many poses there are"));
+    EXPECT_THAT(diagnosticsOf(poses), ElementsAre("must have one of count and period, which set the number of poses"));
 }
 
 }  // namespace

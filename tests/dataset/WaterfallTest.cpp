@@ -171,9 +171,9 @@ TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     sweepOf("count: 2, from: 16", "");
     EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines: take 4.9 s; the trajectory from 16 to 20 s is shorter"));
     sweepOf("count: 2", ", speed: 1");
-    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given beside a trajectory, which has its own"));
+    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given with a trajectory, which has its own"));
     sweepOf("count: 2", ", motion: {heave_m: 1}");
-    EXPECT_THAT(refused(), HasSubstr("lines.motion: is given beside a trajectory; give it as poses.trajectory.motion"));
+    EXPECT_THAT(refused(), HasSubstr("lines.motion: is given with a trajectory; give it as poses.trajectory.motion"));
 }
 
 }  // namespace

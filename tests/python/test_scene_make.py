@@ -200,10 +200,10 @@ def test_a_sweep_makes_its_scenes_by_recipe(tmp_path):
 @pytest.mark.parametrize(
     "scene, expected",
     [
-        ("{make: bay.yml}", "must have one of seeds and count beside make"),
-        ("{make: bay.yml, seeds: [1], count: 2}", "must have one of seeds and count beside make"),
+        ("{make: bay.yml}", "must have one of seeds and count with make"),
+        ("{make: bay.yml, seeds: [1], count: 2}", "must have one of seeds and count with make"),
         ("{file: bay.yml, count: 2}", "has seeds or count without make"),
-        ("{file: bay.yml, make: bay.yml, count: 2}", "is given beside file; give one of them"),
+        ("{file: bay.yml, make: bay.yml, count: 2}", "is given with file; give one of them"),
         ("{make: none.yml, count: 2}", "is none.yml; there is no such file, which is relative to the sweep"),
     ],
 )
