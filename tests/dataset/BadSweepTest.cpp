@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"NoClass", grid + "classes:\n  wreck: hul\n",
                  "sweep.yml:3:3: classes.wreck[0]: is hul, which is no name"},
         BadSweep{"RangesOfAFan", grid + "picture: {shape: range}\n",
-                 "sweep.yml:2:18: picture.shape: is range, a picture of 3-D sonars; the sonar of d.yml is none"},
+                 "sweep.yml:2:18: picture.shape: is range, a picture of 3-D sonars; the sonar of d.yml is not 3-D"},
         BadSweep{"ShadowsInARangeImage", grid + "picture: {shape: range}\nannotations: {shadows: true}\n",
                  "sweep.yml:3:24: annotations.shadows: is true; a range image shows the strongest return of each beam"},
         BadSweep{"Picture", grid + "picture: {shape: disc}\n",
