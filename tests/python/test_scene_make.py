@@ -46,10 +46,10 @@ BAD = [
     ("things:\n  - {thing: tire, surface: rusty}", "2:28: things[0].surface: is rusty; may be clean, weathered, fouled"),
     ("things:\n  - {thing: tire, name: 3 tires}", "2:25: things[0].name: is 3 tires; must be letters, digits and _"),
     ("things:\n  - &a {thing: tire}\n  - *a", "2:5: is an anchor or alias; write the value out"),
-    ("floor: {size_m: [4, 4]}\nthings:\n  - {thing: container, count: 3}", "3:5: things[0]: asks for 3, of which 0 found a place in 1000 tries"),
+    ("floor: {size_m: [4, 4]}\nthings:\n  - {thing: container, count: 3}", "3:5: things[0]: asks for 3, of which 0 found room in 1000 tries"),
     ("floor: {size_m: [40, 40]}\nmax_triangles: 100", "max_triangles: is 100; the recipe makes at least 80000"),
     ("floor: {depth_m: 1_0}", "1:18: floor.depth_m: is 1_0; must be a number"),
-    ("floor: {size_m: [9, 9]}\nthings: [{thing: can, x_m: 20, y_m: 0}]", "2:10: things[0]: asks for 1, of which 0 found a place at its place"),
+    ("floor: {size_m: [9, 9]}\nthings: [{thing: can, x_m: 20, y_m: 0}]", "2:10: things[0]: asks for 1, of which 0 found room at its place"),
     ("[" * 5000, "has blocks that are nested too deep"),
 ]
 

@@ -219,8 +219,8 @@ class Simulation:
 
     Runs the tasks of the deployment that lead to pings, in lockstep. The caller replaces the task that gives the
     vehicle's poses; loggers, pictures and tasks that communicate with other programs are omitted. The same seed and
-    the same poses give the same pings, as `insonify run` does with the same poses. Several simulations may live in one process, each used by one thread at
-    a time: other threads run while one renders.
+    the same poses give the same pings, as `insonify run` does. Several simulations may live in one process, each used by one
+    thread at a time: other threads run while one renders.
 
     :param deployment: a file, or a folder with one.
     :param seed: seed of the run; 0: the deployment's own seeds.

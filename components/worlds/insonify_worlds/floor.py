@@ -214,8 +214,7 @@ class Floor:
                         break
                 else:
                     item.fail(
-                        f"{number} pockmarks found a place, the next did not in 1000 tries; "
-                        "ask for fewer or smaller pockmarks"
+                        f"{number} pockmarks found room, the next did not in 1000 tries; ask for fewer or smaller"
                     )
                 places.append((x, y, radius))
                 share = np.clip(1 - ((self.x - x) ** 2 + (self.y - y) ** 2) / radius**2, 0, None)

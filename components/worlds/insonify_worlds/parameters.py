@@ -1,4 +1,4 @@
-"""The syntax of recipes: parameters with units in their names, bounds and defaults, and the laws that values are drawn by.
+"""The syntax of recipes: parameters with units in their names, bounds and defaults, and laws of random values.
 
 A number is one value, [lowest, highest], {uniform: [lowest, highest]}, {normal: [mean, deviation]} or {choice: [...]}.
 """

@@ -145,7 +145,7 @@ class World:
                 if is_inside([outline + at], self.ground) and self.taken.is_clear([outline + at], 0.0):
                     break
             else:
-                item.fail(f"are {len(sizes)}, of which {number} found a place; ask for fewer or smaller")
+                item.fail(f"are {len(sizes)}, of which {number} found room; ask for fewer or smaller")
             self.taken.add([outline + at], 0.0)
             tall = np.ptp(turned[:, 2])
             z = (self.ground.height(*(turned[:, :2] + at).T) - turned[:, 2]).max() - values["buried"] * tall
@@ -209,7 +209,7 @@ class World:
             if not self.place(thing, values, rng, node, spot):
                 tries = "at its place" if spot.is_fixed() else f"in {TRIES} tries"
                 item.fail(
-                    f"asks for {count}, of which {number} found a place {tries}: on the floor, and gap_m or more from others; "
+                    f"asks for {count}, of which {number} found room {tries}: on the floor, and gap_m or more from others; "
                     "give a larger floor, fewer things, smaller things, or a smaller gap_m"
                 )
 
