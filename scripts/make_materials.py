@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes deploy/scenes/materials.glb: a sphere, a box and a cylinder of each of five materials on a floor of sand. The
-materials have names as modellers write them and no acoustic values. Needs numpy."""
+materials have modellers' names and no acoustic values. Needs numpy."""
 from pathlib import Path
 
 import numpy as np

@@ -23,7 +23,7 @@ install(FILES ${PROJECT_BINARY_DIR}/insonify.1 DESTINATION ${CMAKE_INSTALL_MANDI
 install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
 install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
-# Where systemd looks, below /usr as below /usr/local, whatever the libraries' folder is called.
+# The folder that systemd searches, below /usr or /usr/local; independent of the name of the libraries' folder.
 install(FILES deploy/insonify.service DESTINATION lib/systemd/system COMPONENT runtime)
 file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md components/*/*.md types/*.md)
 foreach(page ${pages})

@@ -106,10 +106,10 @@ def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
     code, lines, said = asked(system, "setup", "sdf")
     assert code == 0
     assert lines[-1] == "cmake --build build --target insonify_component_meshes"
-    assert "scripts/setup: sdf cannot be built on this system, see above; it is left out" in said
+    assert "scripts/setup: sdf cannot be built on this system, see above; it is omitted" in said
     assert installed(lines) == [packages("components/meshes")]
     for name in packages("components/sdf"):
-        assert f"this system has no package {name}; what of components/sdf needs it is left out" in said
+        assert f"this system has no package {name}; the parts of components/sdf that need it are omitted" in said
 
 
 def test_without_a_package_of_the_core_it_ends_and_says_so(system):
