@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"LinesWithoutSpeed", grid + "lines: {count: 3}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:8: lines.speed: is missing; give the speed of the vehicle straight ahead [m/s]"},
         BadSweep{"LinesOfAnotherSonar", grid + "lines: {speed: 1, count: 3}\npicture: {shape: waterfall}\n",
-                 "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; those of d.yml have "},
+                 "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; the pings of d.yml have "},
         BadSweep{"OneLine", grid + "lines: {speed: 1, count: 1}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:26: lines.count: is 1; may be 2 to 10000"},
         BadSweep{"ClassOfGhosts", grid + "classes: {ghost: hull}\nannotations: {ghosts: true}\n",

@@ -83,7 +83,7 @@ def test_what_the_core_lacks_is_installed_first(system):
     code, lines, _ = asked(system, "setup", "insonify")
     assert code == 0
     assert [sorted(names) for names in installed(lines)] == [sorted(lacks)]
-    assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake looks anew"
+    assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake searches again"
 
 
 def test_a_component_library_brings_its_own_packages_alone(system):

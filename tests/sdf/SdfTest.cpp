@@ -159,7 +159,7 @@ TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
         world(model("m", box_) + "<state world_name='w'><model name='m'>" + pose("9 0 0 0 0 0") +
               "</model></state><actor name='diver'><skin><filename>diver.dae</filename></skin></actor>");
     expectBounds(boundsOf(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
-    EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not taken"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not used"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "actors omitted: 1"));
 }
 
