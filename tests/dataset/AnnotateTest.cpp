@@ -120,7 +120,7 @@ TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     EXPECT_TRUE(holds(pile.box, 40, 70));
 }
 
-TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
+TEST_F(AnnotateTest, AShadowBelongsToTheObjectThatTheSoundJustPasses) {
     sweep_.annotations.shadows = config_.shadows = true;
     truth_.shadow.assign(ping_.bins.size(), 0);
     truth_.elevation.resize(ping_.bins.size());
@@ -160,7 +160,7 @@ TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
     EXPECT_FALSE(holds(shadow.box, 52, 80));
 }
 
-TEST_F(AnnotateTest, RunsLabelsAndAreaTellTheSamePixels) {
+TEST_F(AnnotateTest, RunsLabelsAndAreaAgree) {
     const Annotated all = annotated();
     for (size_t i = 0; i < all.annotations.size(); ++i) {
         const Annotation& annotation = all.annotations[i];
@@ -185,7 +185,7 @@ TEST_F(AnnotateTest, ThePolarPictureHasAPixelForEachBin) {
     EXPECT_EQ(all.annotations[0].box, (Box{static_cast<int>(beams) - 24, bins - 60, 4, 10}));
 }
 
-TEST_F(AnnotateTest, WhatIsNotSeenIsNotAnnotated) {
+TEST_F(AnnotateTest, InvisibleObjectsAreNotAnnotated) {
     put(1, {20, 24}, {50, 60}, 1e-6f);  // below black
     EXPECT_THAT(annotated().annotations, SizeIs(1));
     put(1, {20, 24}, {50, 60}, 1, 0.4f);  // most of it is something else's
@@ -201,7 +201,7 @@ TEST_F(AnnotateTest, WhatIsNotSeenIsNotAnnotated) {
     EXPECT_EQ(std::accumulate(none.labels.begin(), none.labels.end(), 0), 0);
 }
 
-TEST_F(AnnotateTest, OfBinsThatShareACellTheLoudestGivesTheLabel) {
+TEST_F(AnnotateTest, TheLoudestBinLabelsItsCell) {
     picture_.shape = output::PlainShape::Polar;
     picture_.height = 25;
     config_.min_pixels = 1;
@@ -234,7 +234,7 @@ TEST_F(AnnotateTest, PartsOfOneThingAreOneInstance) {
     EXPECT_TRUE(holds(wheel.box, 20, 50) && holds(wheel.box, 40, 71));
 }
 
-TEST_F(AnnotateTest, WhatCameByMirrorsIsNoObjectAndWhereAskedForAGhost) {
+TEST_F(AnnotateTest, EchoesByMirrorsAreGhostsOnRequestAndNoObjects) {
     truth_.path.assign(ping_.bins.size(), 0);
     const auto came = [&](uint8_t path, Span in_beams, Span in_bins) {
         put(1, in_beams, in_bins);
@@ -277,7 +277,7 @@ TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
 }
 
 /** A rise of the floor that hides some of it, far behind an object whose top is as high as what lies behind. */
-TEST_F(AnnotateTest, AShadowOfTheFloorItselfIsNoObjects) {
+TEST_F(AnnotateTest, AShadowOfTheFloorBelongsToNoObject) {
     sweep_.annotations.shadows = config_.shadows = true;
     config_.min_pixels = 1;
     truth_.shadow.assign(ping_.bins.size(), 0);

@@ -106,7 +106,7 @@ TEST_F(WaterfallTest, EachRockIsWhereTheVehiclePassedIt) {
     EXPECT_GE(shadows, 4u);
 }
 
-TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
+TEST_F(WaterfallTest, TheBytesDoNotDependOnTheProcess) {
     std::string text = sweep_of_lines;
     writeFile(folder_ / "sweep.yml", text.replace(text.find("count: 120"), 10, "count: 12"));
     for (const char* format : {"yolo", "mcap"}) {
@@ -117,7 +117,7 @@ TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
 }
 
 /** Rocks of twice their size leave boxes of about twice as many lines. */
-TEST_F(WaterfallTest, ScaledObjectsAreAsLargeAsTheRecordSays) {
+TEST_F(WaterfallTest, ScaledObjectsHaveTheRecordedSize) {
     std::map<std::string, double> lines_of[2];
     for (const int large : {0, 1}) {
         std::string text = sweep_of_lines;

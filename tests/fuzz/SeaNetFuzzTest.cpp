@@ -73,7 +73,7 @@ void readSeaNet(const Input& input) {
     Head().take(bytes);
 }
 
-TEST(SeaNetFuzzTest, EveryLineIsPacketsAndWhatLiesBetween) {
+TEST(SeaNetFuzzTest, EveryLineIsPacketsOrNoise) {
     push({"seanet",
           "line.raw",
           {std::string("@0008\x08\0\xFF\x02\x03\x10\x80\x02\n", 14),

@@ -34,7 +34,7 @@ target_link_libraries(afterglow PRIVATE Insonify::core)
 
 }  // namespace
 
-TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
+TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
     const WallFolder folder(deploymentWith("{afterglow: {kept: 0.5}}"));
     buildEffect(folder);
     const std::string insonify = folder / "prefix/bin/insonify";

@@ -66,7 +66,7 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(insonify::test::build_dir)));
 }
 
-TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
+TEST(InstallTest, TheServiceIsInstalledWhereSystemdSearches) {
     const TestFolder folder;
     install(folder);
     EXPECT_EQ(readFile(folder / "prefix/lib/systemd/system/insonify.service"),
@@ -74,7 +74,7 @@ TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
     EXPECT_TRUE(fs::exists(folder / "prefix/share/man/man1/insonify.1")) << "which the service names";
 }
 
-TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
+TEST(InstallTest, ReadsMeshesInAProcessFromThePrefix) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     install(folder);
@@ -112,7 +112,7 @@ TEST(InstallTest, AFirstDeploymentIsMadeAndRunsAndTheManualPageIsThere) {
     EXPECT_EQ(readFile(folder / "prefix/share/man/man1/insonify.1"), call(folder, {insonify, "man"}).out);
 }
 
-TEST(InstallTest, EachComponentsLibraryIsFoundWithWhatItIsBuiltOn) {
+TEST(InstallTest, FindsEachComponentsLibraryWithItsDependencies) {
     const TestFolder folder;
     install(folder);
     std::string project = "cmake_minimum_required(VERSION 3.22)\nproject(Outside CXX)\nset(all";
@@ -131,7 +131,7 @@ endforeach()
     EXPECT_EQ(built.code, 0) << built.out << built.err;
 }
 
-TEST(InstallTest, AComponentThatIsNotThereIsRefusedByItsName) {
+TEST(InstallTest, RefusesAnUnknownComponentByItsName) {
     const TestFolder folder;
     install(folder);
     writeFile(folder / "CMakeLists.txt",

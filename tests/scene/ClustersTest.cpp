@@ -84,7 +84,7 @@ TEST(ClustersTest, VerticesWithoutTrianglesAreGone) {
     EXPECT_EQ(mesh.positions.size(), 121u);
 }
 
-TEST(ClustersTest, TrianglesInOnePlaceAreSplitAllTheSame) {
+TEST(ClustersTest, TrianglesAtOnePlaceAreSplitToo) {
     types::Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     for (size_t i = 0; i < 20'000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});

@@ -41,7 +41,7 @@ TEST_F(CorpusTest, EveryValidModelIsLoaded) { EXPECT_EQ(loadAll("valid", 11), 11
 
 TEST_F(CorpusTest, EveryConformanceCaseIsLoaded) { EXPECT_EQ(loadAll("asset-generator", 43), 43u); }
 
-TEST_F(CorpusTest, OfTheEncodingsOnlyDracoIsRefused) { EXPECT_EQ(loadAll("ext", 10), 9u); }
+TEST_F(CorpusTest, OnlyDracoIsRefusedAmongTheEncodings) { EXPECT_EQ(loadAll("ext", 10), 9u); }
 
 TEST_F(CorpusTest, EveryValidatorCaseIsASceneOrAnError) { EXPECT_GT(loadAll("validator", 150), 50u); }
 

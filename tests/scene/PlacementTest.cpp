@@ -35,7 +35,7 @@ protected:
     }
 };
 
-TEST_F(PlacementTest, APointOfTheFileIsWhereThePlacementSays) {
+TEST_F(PlacementTest, PlacesAPointOfTheFile) {
     const Scene file = scene();
     expectNear(corner(file), {1, -3, 3});  // y up: (x, -z, y)
     expectNear(corner(placed(file, {})), {1, -3, 3});
@@ -100,7 +100,7 @@ TEST_F(PlacementTest, ANodeThatPosesMoveIsAffectedByUpAlone) {
     expectNear(glm::dvec3(tip), {0, 1, 0});
 }
 
-TEST_F(PlacementTest, OneLineSaysHowASceneLies) {
+TEST_F(PlacementTest, DescribesTheOrientationInOneLine) {
     const Scene file = scene();
     EXPECT_EQ(layOf(file, {}, WorldFrame::AsIs), "the file's x is north, its -z west, its y up");
     EXPECT_EQ(layOf(file, {}, WorldFrame::Enu),
@@ -110,7 +110,7 @@ TEST_F(PlacementTest, OneLineSaysHowASceneLies) {
     EXPECT_THAT(layOf(file, {.yaw_deg = 45}, WorldFrame::AsIs), testing::HasSubstr("the file's (0.707, 0, 0.707) is"));
 }
 
-TEST_F(PlacementTest, TheTaskPlacesItsSceneAndSaysSo) {
+TEST_F(PlacementTest, TheTaskPlacesItsSceneAndReportsIt) {
     SceneTask task("scene");
     SceneConfig config;
     scene();
@@ -126,7 +126,7 @@ TEST_F(PlacementTest, TheTaskPlacesItsSceneAndSaysSo) {
 }
 
 /** Random turns of the file, of nodes and of scales, also of a node within another. */
-TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
+TEST_F(PlacementTest, AScaledNodeScalesItsSubtreeAboutItsOrigin) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(-3, 3);
     for (int round = 0; round < 50; ++round) {
@@ -160,7 +160,7 @@ TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
     }
 }
 
-TEST_F(PlacementTest, ANodeThatIsNotThereIsNotScaled) {
+TEST_F(PlacementTest, ReportsAnUnknownNodeToScale) {
     types::Diagnostics found;
     const Scene file = scene(), result = scaled(file, {{"bot", 2}}, found);
     ASSERT_EQ(found.size(), 1u);

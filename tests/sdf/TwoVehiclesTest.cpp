@@ -56,7 +56,7 @@ protected:
     };
 };
 
-TEST_F(TwoVehiclesTest, EachSeesTheOtherWhereItsPoseHasIt) {
+TEST_F(TwoVehiclesTest, EachSeesTheOtherAtItsPose) {
     const auto file = writeWorld(model("red", box_) + model("blue", box_, pose("50 0 0 0 0 0")));
     Eye of_red("red_scene", file), of_blue("blue_scene", file);
     // hulls are 2 x 4 x 6; blue is 20 m north of red and looks back at it

@@ -37,7 +37,7 @@ protected:
     const std::string small_ = "<box size='0.2 0.4 0.6'/>";
 };
 
-TEST_F(UrdfTest, LinksWithoutInertiaAreThereWithTheirNamesAtTheirPlaces) {
+TEST_F(UrdfTest, KeepsLinksWithoutInertiaAtTheirPlaces) {
     const Scene scene =
         readScene(robot(link("base", small_) + link("upper", "<cylinder radius='0.1' length='1'/>", "xyz='0 0 0.5'") +
                         link("camera", "<sphere radius='0.05'/>") +
@@ -89,7 +89,7 @@ TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
     EXPECT_THAT(testing::PrintToString(without.geometry->notices), HasSubstr("absent/fin.stl"));
 }
 
-TEST_F(UrdfTest, WhatIsNoRobotIsRefusedAtItsLine) {
+TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
     EXPECT_THAT(diagnosticOf(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
                 testing::AllOf(HasSubstr("cut.urdf:2"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
     EXPECT_THAT(diagnosticOf(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));

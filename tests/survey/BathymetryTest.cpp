@@ -121,7 +121,7 @@ std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
     return positions;
 }
 
-TEST_F(BathymetryTest, PostsStandNorthAndWestOfTheWorldsZeroAndFaceUp) {
+TEST_F(BathymetryTest, PostsAreNorthAndWestOfTheOriginAndFaceUp) {
     Bathymetry floor(config_, grid("floor", 60, 40));
     const types::GeometryPtr geometry = about(floor, {30, -50, -40});
     ASSERT_GT(geometry->objects.size(), 1u);
@@ -140,7 +140,7 @@ TEST_F(BathymetryTest, PostsStandNorthAndWestOfTheWorldsZeroAndFaceUp) {
     }
 }
 
-TEST_F(BathymetryTest, TilesThatAreStillThereAreTheSameMeshesAndTheNextOnesAreReadBefore) {
+TEST_F(BathymetryTest, KeepsMeshesOfTilesAndReadsTheNextTilesAhead) {
     const std::string file = grid("floor", 200, 200);
     Bathymetry floor(config_, file), scout(config_, file);
     types::GeometryPtr before = about(floor, {30, -200, -40});
@@ -172,7 +172,7 @@ TEST_F(BathymetryTest, TilesThatAreStillThereAreTheSameMeshesAndTheNextOnesAreRe
     EXPECT_GT(changes, 15);
 }
 
-TEST_F(BathymetryTest, TheFloorIsTheSameHoweverFastTheVehicleComes) {
+TEST_F(BathymetryTest, TheFloorDoesNotDependOnTheVehiclesSpeed) {
     const std::string file = grid("floor", 200, 200);
     for (double step : {0.5, 7.0, 45.0, 170.0}) {
         Bathymetry floor(config_, file);
@@ -186,7 +186,7 @@ TEST_F(BathymetryTest, TheFloorIsTheSameHoweverFastTheVehicleComes) {
     }
 }
 
-TEST_F(BathymetryTest, TheFloorReachesAsFarAsIsAskedForWhereverTheVehicleComesAndNoMoreThanTilesFurther) {
+TEST_F(BathymetryTest, TheFloorCoversTheReachAndAtMostTwoTilesMore) {
     Bathymetry floor(config_, grid("floor", 200, 200));
     int made = 0;
     types::GeometryPtr before;
@@ -216,7 +216,7 @@ TEST_F(BathymetryTest, AVehicleThatHoversAtTheEdgeOfATileHasOneFloor) {
     }
 }
 
-TEST_F(BathymetryTest, AFloorThatBeginsAnewFollowsFromThePlaceAlone) {
+TEST_F(BathymetryTest, AForgottenFloorFollowsFromThePlaceAlone) {
     Bathymetry floor(config_, grid("floor", 200, 200)), fresh(config_, grid("floor", 200, 200));
     about(floor, {91.5, -200, -40});
     const types::GeometryPtr kept = about(floor, {89.9, -200, -40});
@@ -226,7 +226,7 @@ TEST_F(BathymetryTest, AFloorThatBeginsAnewFollowsFromThePlaceAlone) {
     EXPECT_NE(positionsOf(*anew), positionsOf(*kept)) << "places chosen so that it matters";
 }
 
-TEST_F(BathymetryTest, WithoutAPlaceTheWorldsZeroIsTheMiddleOfTheSurvey) {
+TEST_F(BathymetryTest, TheDefaultOriginIsTheMiddleOfTheSurvey) {
     config_.easting = config_.northing = std::nullopt;
     Bathymetry floor(config_, grid("floor", 61, 41));
     config_.easting = 1060, config_.northing = 5040;
@@ -241,7 +241,7 @@ TEST_F(BathymetryTest, DepthsGoDown) {
         EXPECT_NEAR(p.z, -elevation(1000 - p.y, 5000 + p.x), 2e-5);
 }
 
-TEST_F(BathymetryTest, WhatWasNotSurveyedIsAHole) {
+TEST_F(BathymetryTest, UnsurveyedPostsAreAHole) {
     const std::string whole = grid("whole", 30, 30);
     hole_ = {10, 12};
     const std::string pierced = grid("pierced", 30, 30);
@@ -272,7 +272,7 @@ TEST_F(BathymetryTest, TheFilesOfAMosaicAreOneFloor) {
     EXPECT_EQ(positionsOf(*about(tiled, {40, -60, 0})), positionsOf(*about(floor, {40, -60, 0})));
 }
 
-TEST_F(BathymetryTest, AMosaicLiesWhereTheMapSaysWhateverItsGrid) {
+TEST_F(BathymetryTest, AMosaicIsPlacedByItsMapOnAnyGrid) {
     config_.map.emplace();
     config_.map->file = "given apart";
     config_.map->meaning.decibels = {-60, 0};
@@ -303,7 +303,7 @@ TEST_F(BathymetryTest, AMosaicLiesWhereTheMapSaysWhateverItsGrid) {
     }
 }
 
-TEST_F(BathymetryTest, AMosaicOfClassesHasTheirMaterialsAndNoneWhereItHasNone) {
+TEST_F(BathymetryTest, AMosaicOfClassesSetsMaterialsWhereItHasValues) {
     config_.map.emplace();
     config_.map->file = "given apart";
     config_.map->meaning.classes = {{"3", "rock"}, {"7", "clay"}};
@@ -434,7 +434,7 @@ TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunGoesOn) {
     EXPECT_EQ(task.state(), framework::TaskState::Running);
 }
 
-TEST_F(BathymetryTest, TheFloorSoundsAsMaterialsSayAndAWrongNameIsTold) {
+TEST_F(BathymetryTest, TheFloorHasTheConfiguredMaterialAndAWrongNameIsReported) {
     SceneConfig config;
     config.bathymetry = config_;
     config.bathymetry->file = grid("floor", 30, 30);
