@@ -1,4 +1,4 @@
-// Wrong sweeps of insonify dataset.
+// Invalid sweeps of insonify dataset.
 #include <gmock/gmock.h>
 
 #include "tests/dataset/HarbourDeployment.hpp"
@@ -42,8 +42,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "picture.shape: `lines` and `picture: {shape: waterfall}` go together"},
         BadSweep{"LinesWithoutSpeed", grid + "lines: {count: 3}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:8: lines.speed: is missing; give the speed of the vehicle straight ahead [m/s]"},
-        BadSweep{"LinesOfAnotherSonar", grid + "lines: {speed: 1, count: 3}\npicture: {shape: waterfall}\n",
-                 "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; the pings of d.yml have "},
+        BadSweep{
+            "LinesOfAnotherSonar", grid + "lines: {speed: 1, count: 3}\npicture: {shape: waterfall}\n",
+            "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; the pings of d.yml have "},
         BadSweep{"OneLine", grid + "lines: {speed: 1, count: 1}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:26: lines.count: is 1; may be 2 to 10000"},
         BadSweep{"ClassOfGhosts", grid + "classes: {ghost: hull}\nannotations: {ghosts: true}\n",

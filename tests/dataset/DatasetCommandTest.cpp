@@ -151,7 +151,7 @@ TEST_F(DatasetCommandTest, SettingsOfTheSweepAndTheSeedOfTheCommandTakePrecedenc
     EXPECT_THAT(make("plain", {"--seed", "9"}).err, HasSubstr("a sample of another sweep"));
 }
 
-/** Paths of the values of a record; those of lists of numbers, settings and files end there. */
+/** Paths of the values of a record. Lists of numbers, settings and files are not expanded. */
 void addKeys(const json& value, const std::string& path, std::set<std::string>& keys) {
     if (value.is_array() && !value.empty() && value[0].is_object()) {
         for (const json& each : value) addKeys(each, path + "[]", keys);
@@ -196,7 +196,7 @@ TEST_F(DatasetCommandTest, KeepsSamplesAndRemakesMissingOrDamagedSamples) {
 
 TEST_F(DatasetCommandTest, AKilledRunIsContinued) {
     ASSERT_EQ(make("whole").code, 0);
-    const TestFolder elsewhere;  // for the output of the one that is killed
+    const TestFolder elsewhere;  // for the output of the killed run
     for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
     const Process killed(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
     const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && namesOf(folder_ / "out").size() > 4; };

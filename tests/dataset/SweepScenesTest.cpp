@@ -83,7 +83,7 @@ types::Geometry mappedFloors() {
     return geometry;
 }
 
-/** Each change gives a digest of its own. */
+/** Expects that each change gives a different digest. */
 void expectOthers(const types::Geometry& plain, const Changes& changes) {
     std::set<std::string> digests = {digestOf(plain)};
     for (size_t i = 0; i < changes.size(); ++i) {

@@ -1,4 +1,4 @@
-// insonify dataset: waterfalls of a side-scan over rocks whose places are known.
+// insonify dataset: waterfalls of a side-scan over rocks at known places.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -88,7 +88,7 @@ TEST_F(WaterfallTest, EachRockIsWhereTheVehiclePassedIt) {
             const double ahead = x * std::cos(yaw) + y * std::sin(yaw), port = y * std::cos(yaw) - x * std::sin(yaw);
             const double row = lines - 1 - ahead / (speed * period);
             const double near = box[0].get<double>(), far = near + box[2].get<double>();
-            const double slack = 2 + 1 / (speed * period);  // a rock has a metre
+            const double slack = 2 + 1 / (speed * period);  // a rock measures one metre
             EXPECT_NEAR(box[1].get<double>() + box[3].get<double>() / 2, row, slack) << each["name"];
             const double sign = port > 0 ? -1 : 1;
             const double inner = sign * ((sign > 0 ? near : far) - 400) / 400 * 20;  // slant range [m]
@@ -116,7 +116,7 @@ TEST_F(WaterfallTest, TheBytesDoNotDependOnTheProcess) {
     }
 }
 
-/** Rocks of twice their size leave boxes of about twice as many lines. */
+/** Rocks of twice the size give boxes of about twice the number of lines. */
 TEST_F(WaterfallTest, ScaledObjectsHaveTheRecordedSize) {
     std::map<std::string, double> lines_of[2];
     for (const int large : {0, 1}) {
@@ -141,7 +141,7 @@ TEST_F(WaterfallTest, ScaledObjectsHaveTheRecordedSize) {
     EXPECT_NEAR(large / small, 2, 0.5);
 }
 
-/** Along a trajectory a run goes on from its pose, and must end before the trajectory does. */
+/** Along a trajectory, a run continues from its pose and must end before the trajectory. */
 TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     writeFile(folder_ / "t.csv", "time,x,y,z,qw,qx,qy,qz\n0,2,-14,-5,1,0,0,0\n20,32,-14,-5,1,0,0,0\n");
     const auto sweepOf = [&](const std::string& poses, const std::string& more) {

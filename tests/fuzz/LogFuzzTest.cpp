@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-/** Calls, and lets pass what a reader of logs may throw. */
+/** Calls, and ignores the exceptions that a reader of logs may throw. */
 template <class Call>
 void allowed(Call call) try {
     call();

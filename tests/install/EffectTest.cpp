@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** The wall, heard with numbers of the effect. */
+/** The wall, with numbers of the effect. */
 std::string deploymentWith(const std::string& effects) {
     return replaced(replaced(wall_deployment, "tasks:\n", "libraries: [build/afterglow.so]\ntasks:\n"),
                     "      range: 20\n", "      range: 20\n      effects: " + effects + "\n");

@@ -1,4 +1,4 @@
-// What `cmake --install` puts in a prefix works there, without sources and build.
+// The files that `cmake --install` puts in a prefix work without sources and build.
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
@@ -36,7 +36,7 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     ASSERT_EQ(
         call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code,
         0);
-    // The wall is at 10 m and all bins but those of the wall are 0, so the mean is between 0 and 1.
+    // The wall is at 10 m and all other bins are 0, so the mean is between 0 and 1.
     std::istringstream rows(readFile(folder / "mean.csv"));
     std::string row;
     std::getline(rows, row);
@@ -49,7 +49,7 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     }
     EXPECT_EQ(count, 2);
 
-    // The command's own reader refuses what the component's property may not be.
+    // The command's own reader refuses values that the component's property may not have.
     const Outcome refused = call(folder, {insonify, "run", "wall.yml", "--set", "mean.beyond=-1"});
     EXPECT_EQ(refused.code, 2);
     EXPECT_THAT(refused.err, HasSubstr("tasks.mean.properties.beyond"));

@@ -1,4 +1,5 @@
-// Mesh files that would crash, hang or fill the library that reads them: a sentence, and the program goes on.
+// Mesh files that would crash or hang the library that reads them, or exhaust memory: a message, and the program
+// continues.
 #include <signal.h>
 
 #include <atomic>
@@ -22,7 +23,7 @@ namespace {
 
 class MeshProcessTest : public SdfFiles {
 protected:
-    /** What is wrong with a mesh file; empty where it was read, and then it must be sound. */
+    /** Returns the error of a mesh file; empty if it was read, and then it must be sound. */
     std::string diagnosticOfMesh(const std::filesystem::path& file) const {
         try {
             const types::GeometryPtr geometry = readMeshFile(file);
@@ -35,7 +36,7 @@ protected:
     }
     std::string diagnosticOf(const Dae& dae) const { return diagnosticOfMesh(write("part.dae", dae.text())); }
 
-    /** Lets a shell script stand for the program that reads. */
+    /** Uses a shell script in place of the program that reads. */
     std::string diagnosticWithReader(const std::string& script) const {
         const auto reader = write("reader", "#!/bin/sh\nulimit -c 0\n" + script + "\n");
         std::filesystem::permissions(reader, std::filesystem::perms::owner_all);

@@ -1,4 +1,4 @@
-"""Reports of studies and of beams, drawn by scripts/plot."""
+"""Reports of studies and of beams, plotted by scripts/plot."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""The command `insonify scene make`: bad recipes and options, pings of what it makes, and sweeps of recipes."""
+"""The command `insonify scene make`: bad recipes and options, pings of its scenes, and sweeps of recipes."""
 
 import json
 import random
@@ -123,7 +123,7 @@ def test_a_list_may_be_read_in_part():
 
 def test_without_the_packages_the_answer_says_what_installs_them(tmp_path):
     python = tmp_path / "python3"
-    python.write_text("#!/bin/sh\nexit 97\n")  # as the package does where an import fails
+    python.write_text("#!/bin/sh\nexit 97\n")  # as the package exits if an import fails
     python.chmod(0o755)
     done = insonify("scene", "make", "--list", INSONIFY_PYTHON=str(python))
     assert done.returncode == 2

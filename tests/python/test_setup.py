@@ -1,4 +1,5 @@
-"""What scripts/setup and scripts/run install and build. Commands that note what they are asked stand in for the system."""
+"""Installations and builds by scripts/setup and scripts/run. Stand-ins for the system's commands record their
+arguments."""
 
 import os
 import shutil
@@ -54,7 +55,7 @@ def stand_in(file, line):
 
 
 def asked(system, script, *arguments):
-    """What it asked of the system, and what it said."""
+    """Returns the commands that the script ran, and its output."""
     (system / "asked").write_text("")
     done = subprocess.run(
         [f"scripts/{script}", *arguments],

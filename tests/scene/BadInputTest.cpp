@@ -1,4 +1,4 @@
-// Files that are wrong: a ConfigError that names the file, or a scene; never a crash.
+// Invalid files: a ConfigError that names the file, or a scene; never a crash.
 #include <random>
 
 #include "tests/scene/SceneFiles.hpp"
@@ -16,7 +16,7 @@ protected:
     void expectGltfDiagnostic(const std::string& rest, const std::string& part) const {
         expectDiagnostic(write("case.gltf", gltf(rest)), part);
     }
-    /** A triangle of which the accessors and bufferViews are given. */
+    /** A triangle with the given accessors and bufferViews. */
     static std::string triangle(const std::string& accessors, const std::string& views) {
         return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
                accessors + R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));

@@ -19,8 +19,8 @@ protected:
     std::string diagnosticOfAcoustics(const std::string& json) const {
         return diagnosticOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
     }
-    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside
-     *  normalTexture, `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
+    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`. `info` is inside
+     *  normalTexture, `attributes` are added to POSITION and TEXCOORD_0 (accessor 1). */
     types::GeometryPtr mapped(const std::string& image, const std::string& info = "",
                               const std::string& attributes = "") const {
         return load(

@@ -1,4 +1,4 @@
-// Where nodes put meshes, and how objects are called.
+// Places of meshes by their nodes, and names of objects.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/scene/SceneFiles.hpp"

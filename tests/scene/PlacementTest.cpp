@@ -1,4 +1,4 @@
-// Where a scene lies in the world.
+// The place of a scene in the world.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -48,7 +48,7 @@ TEST_F(PlacementTest, PlacesAPointOfTheFile) {
     expectNear(corner(placed(file, {.frame = WorldFrame::Ned, .up = UpAxis::Z})), {1, -3, -3});
 }
 
-/** A pose in the frame of the scene meets the same point of the file, whatever the frame. */
+/** A pose in the frame of the scene gives the same point of the file in any frame. */
 TEST_F(PlacementTest, APoseOfRosMeetsTheSamePointOfASceneInTheFrameOfRos) {
     const Scene file = scene();
     std::mt19937 random(3);
@@ -125,7 +125,7 @@ TEST_F(PlacementTest, TheTaskPlacesItsSceneAndReportsIt) {
     EXPECT_THAT(task.notices(), testing::Contains(testing::HasSubstr("the file's z is north, its x west")));
 }
 
-/** Random turns of the file, of nodes and of scales, also of a node within another. */
+/** Random rotations of the file, of nodes and of scales, also of a node within another. */
 TEST_F(PlacementTest, AScaledNodeScalesItsSubtreeAboutItsOrigin) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(-3, 3);
@@ -151,7 +151,7 @@ TEST_F(PlacementTest, AScaledNodeScalesItsSubtreeAboutItsOrigin) {
         expectNear(corner(scaled(file, {{"mast", 0.5}, {"boat", 2.5}}, none)), moved_mast + 1.25 * (before - mast));
         const Scene same = scaled(file, {{"boat", 1}}, none);
         expectNear(corner(same), before);
-        // A pose of the body leaves the scale.
+        // A pose of the body does not change the scale.
         const Scene large = scaled(file, {{"mast", 3}}, none);
         const Part was = partsOf(file, 1).front(), is = partsOf(large, 1).front();
         for (int column = 0; column < 3; ++column)

@@ -1,4 +1,4 @@
-// Stale and missing poses: RunTimeError until poses are back, never a snapshot of an old place.
+// Stale and missing poses: RunTimeError until poses return, never a snapshot of an old place.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -30,7 +30,7 @@ protected:
         ASSERT_TRUE(task_.configure()) << task_.lastError();
         ASSERT_TRUE(task_.start());
     }
-    /** A cycle at this time [s], with a pose of that stamp where one is given; whether there was a snapshot. */
+    /** Runs a cycle at this time [s], with a pose of that stamp if given; returns whether there was a snapshot. */
     bool cycle(double now, std::optional<double> stamp = {}) {
         now_ = types::Time::fromSeconds(now);
         types::Pose pose;

@@ -1,4 +1,4 @@
-// Point targets of a scene: where they are, with what they move, and what is wrong with them.
+// Point targets of a scene: their places, the nodes they move with, and errors.
 #include <gmock/gmock.h>
 
 #include "components/scene/SceneTask.hpp"
@@ -94,7 +94,7 @@ TEST_F(TargetsTest, ATargetMovesWithTheInnermostMovingNode) {
                        {"top", glm::dvec3(1, 0, 0), "mast", 0},
                        {"buoy", glm::dvec3(4, 5, -6), "", 0}};
     start();
-    expectClose(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is where the file has it
+    expectClose(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is at its place in the file
     boat_.port.write(at(2, {100, 0, 0}, 180));
     const auto moved = ping(2);
     expectClose(moved->targets[0].position, {97, 0, 1});

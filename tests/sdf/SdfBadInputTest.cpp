@@ -1,4 +1,4 @@
-// SDF that is wrong: a ConfigError that says where, or a scene with notices; never a crash.
+// Invalid SDF: a ConfigError with the place, or a scene with notices; never a crash.
 #include <random>
 
 #include "tests/sdf/SdfFiles.hpp"

@@ -1,4 +1,4 @@
-// Worlds, models and a sea floor made by others, from the shared folder.
+// Worlds, models and a sea floor from other sources, in the shared folder.
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Paths.hpp"
 

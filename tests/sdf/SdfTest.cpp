@@ -1,4 +1,4 @@
-// Models, links, frames and joints of SDF worlds; where things stand is known in closed form.
+// Models, links, frames and joints of SDF worlds; their places are known in closed form.
 #include "components/sdf/Sdf.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -110,7 +110,7 @@ TEST_F(SdfTest, JointsInACircleEndAtTheModel) {
 }
 
 TEST_F(SdfTest, NamesOfOldWorldsMayHoldColons) {
-    // libsdformat takes the links of a scope for those of a nested model, which old worlds did not have
+    // libsdformat takes the links of a scope for links of a nested model, which old worlds did not have
     const Scene scene = world("<model name='a::b'><link name='x::l'>" + pose("1 0 0 0 0 0") + visual("v::v", box_) +
                                   "</link>" + link("tip") + joint("x::l", "tip") + "</model>",
                               "1.6");
@@ -127,7 +127,7 @@ TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
     expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
     EXPECT_GE(findNode(scene, "a__b"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "names are read with \"__\" for \"::\""));
-    // here it throws, and no std::exception
+    // in this case it throws an object that is no std::exception
     const Scene old = world("<model name='m'>" + link("x::l") + link("x::k") +
                                 "<joint name='x::j' type='revolute'><parent>x::l</parent><child>x::k</child><axis>"
                                 "<xyz>0 0 1</xyz></axis></joint></model>",

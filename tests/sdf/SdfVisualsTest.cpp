@@ -23,7 +23,7 @@ protected:
     }
 };
 
-/** Volume of a body of revolution with 64 facets over that of the round one. */
+/** Volume of a body of revolution with 64 facets relative to the round body. */
 const double faceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numbers::pi);
 
 TEST_F(SdfVisualsTest, ABoxHasItsSize) {

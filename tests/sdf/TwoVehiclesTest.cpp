@@ -1,4 +1,4 @@
-// Two vehicles in one world, each with its own SceneTask: each sees the other where the other's poses have it.
+// Two vehicles in one world, each with its own SceneTask: each sees the other at the other's pose.
 #include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/sdf/SdfFiles.hpp"

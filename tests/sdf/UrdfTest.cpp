@@ -1,4 +1,4 @@
-// Robots in URDF: links at their places whatever they lack, meshes, names, and what is no robot.
+// Robots in URDF: links at their places even without inertia, meshes, names, and other XML.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
@@ -47,7 +47,7 @@ TEST_F(UrdfTest, KeepsLinksWithoutInertiaAtTheirPlaces) {
     for (const char* const name : {"rov", "rov::base", "rov::upper", "rov::camera"})
         EXPECT_GE(findNode(scene, name), 0) << name;
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::base")), {-0.1, -0.2, -0.3}, {0.1, 0.2, 0.3});
-    // Turned by 90 degrees about y, its length along x; at its end, which is fixed, the camera.
+    // Turned by 90 degrees about y, its length along x; the fixed camera is at its end.
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::upper")), {1, -0.1, -0.1}, {2, 0.1, 0.1}, 2e-3);
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::camera")), {1.95, -0.05, -0.05}, {2.05, 0.05, 0.05},
                  2e-3);

@@ -1,4 +1,4 @@
-// The floor of a survey: where its posts stand, how much of it is there, and files that are none.
+// The floor of a survey: places of its posts, its extent, and invalid files.
 #include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
@@ -34,7 +34,8 @@ protected:
         std::ofstream(folder_ / name) << text;
         return (folder_ / name).string();
     }
-    /** An ESRI grid of posts 2 m apart whose south-west one is at easting 1000, northing 5000 and so many columns. */
+    /** An ESRI grid of posts 2 m apart with this number of columns; its south-west post is at easting 1000, northing
+     *  5000. */
     std::string grid(const std::string& name, int columns, int rows, int first_column = 0) {
         std::vector<float> values;
         for (int row = rows - 1; row >= 0; --row)
@@ -51,7 +52,7 @@ protected:
         fs::resize_file(file, fs::file_size(file) / 2);
         return file;
     }
-    /** The same as a GeoTIFF of strips. The half of its bytes. */
+    /** The same grid as a GeoTIFF of strips, cut to half of its bytes. */
     std::string cutTiff(const std::string& name, int columns, int rows) {
         const std::string file = (folder_ / name).string();
         GDALRegister_GTiff();
@@ -63,7 +64,7 @@ protected:
         return shortened(file);
     }
     types::GeometryPtr about(Bathymetry& floor, glm::dvec3 place) { return floor.about(place, rest_); }
-    /** A mosaic of values `spacing` apart whose south-west one is at an easting and northing; NaN: none. */
+    /** A mosaic of values `spacing` apart, whose south-west value is at an easting and northing; NaN: none. */
     template <class Value>
     std::string mosaic(const std::string& name, int columns, int rows, double east, double north, double spacing,
                        Value&& value) {
@@ -113,7 +114,7 @@ protected:
     }();
 };
 
-/** Of all tiles. */
+/** Positions of all tiles. */
 std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
     std::vector<glm::vec3> positions;
     for (const types::Mesh& mesh : geometry.meshes)
