@@ -20,7 +20,7 @@ def cylinder(radius, length):
 
 
 def lying(body):
-    """With its z axis across the line of sight."""
+    """A body with its z axis across the line of sight."""
     x, y, z = body.positions.T
     return Mesh(np.c_[x, z, -y], body.faces)
 

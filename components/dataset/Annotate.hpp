@@ -27,7 +27,7 @@ struct Annotation {
     Box box;                                  ///< Contains its pixels and the centre of each of its cells.
     uint32_t area = 0;                        ///< [px]
     uint32_t bins = 0;                        ///< Number of the ping's bins that it dominates.
-    double energy = 0;                        ///< Sum over these bins of its share of their energy; linear.
+    double energy = 0;                        ///< Sum of its share of the energy in these bins; linear.
     double range_min = 0, range_max = 0;      ///< [m]
     double bearing_min = 0, bearing_max = 0;  ///< [rad], positive to port; above pi across +-180 degrees.
     std::vector<uint32_t> runs;               ///< Numbers of pixels, column by column, alternately outside and inside.
@@ -46,8 +46,9 @@ struct Annotated {
  *  that bin must be at least `min_share`, it must have a class, and the cell's grey level must be at least `min_level`.
  *  A bin with most of its energy from mirrors belongs to no object: adjacent cells of such bins are a ghost.
  *  Annotations with fewer than `min_pixels` pixels are omitted.
- *  @param picture the picture that shows the ping @param bin_width exact [m] @param ranges range of each beam of a
- *  range image, which has one bin per beam [m]
+ *  @param picture the picture that shows the ping
+ *  @param bin_width exact [m]
+ *  @param ranges range of each beam of a range image, which has one bin per beam [m]
  *
  *  Throws std::runtime_error for a truth of another grid. */
 Annotated annotate(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,

@@ -13,8 +13,8 @@ public:
      *  the number at its end: "pile_07" is a "pile". With AnnotationConfig::shadows classes of shadows follow
      *  ("pile_shadow"), with AnnotationConfig::ghosts the class "ghost". Throws types::ConfigError for a pattern
      *  without a match, and for a class that has the name of a shadow or ghost class.
-     *  @param objects names of all objects of all scenes @param nodes names of the nodes that have objects below
-     *  them */
+     *  @param objects names of all objects of all scenes
+     *  @param nodes names of the nodes that have objects below them */
     Classes(const Sweep& sweep, const std::vector<std::string>& objects, const std::vector<std::string>& nodes = {});
 
     const std::vector<std::string>& names() const { return names_; }  ///< Names of the classes from 1 on.

@@ -61,8 +61,8 @@ struct Sample {
  *  scene. */
 class Samples {
 public:
-    /** @param trajectory the run of each pose of Sweep::trajectory; empty without one @param scenes one for each of
-     *  Sweep::scenes
+    /** @param trajectory the run of each pose of Sweep::trajectory; empty without one
+     *  @param scenes one for each of Sweep::scenes
      *
      *  Throws types::ConfigError for names of objects that no scene has, and for more than 10^8 samples. */
     Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> trajectory, std::vector<SceneParts> scenes);

@@ -178,8 +178,7 @@ struct AnnotationConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"min_share", "1", "min share of a bin's energy from the object in a bin of the object", 0, 1},
-              self.min_share);
+        visit(Field{"min_share", "1", "min share of a bin's energy that comes from its object", 0, 1}, self.min_share);
         visit(Field{"min_level", "1", "min grey level of an annotated pixel", 0, 255}, self.min_level);
         visit(Field{"min_pixels", "1", "min pixels of an annotated object", 1, 1e6}, self.min_pixels);
         visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);

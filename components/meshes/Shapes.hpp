@@ -8,10 +8,10 @@ namespace insonify::meshes {
 // Shapes of SDF about their origins, faces outward. Round shapes have 64 facets around. Their vertices are on the true
 // surface, from which the facets deviate by at most 0.12 % of the radius.
 
-scene::Surface unitBox();       ///< Of side 1 [m].
+scene::Surface unitBox();       ///< Side 1 [m].
 scene::Surface unitPlane();     ///< A square of side 1 in z = 0 that faces up [m].
-scene::Surface unitSphere();    ///< Of radius 1 [m].
-scene::Surface unitCylinder();  ///< Of radius 1 and height 1 along z [m].
+scene::Surface unitSphere();    ///< Radius 1 [m].
+scene::Surface unitCylinder();  ///< Radius 1 and height 1 along z [m].
 scene::Surface unitCone();      ///< Radius 1 at its base, height 1 along z, its point up [m].
 /** A cylinder of `length` along z between half spheres of `radius` [m]. */
 scene::Surface capsule(double radius, double length);

@@ -29,7 +29,9 @@ Handle* insonify_simulation(const char* deployment, uint64_t seed, const char* c
  *  @return 0; -1 on errors. */
 int insonify_step(Handle* simulation, const char* const* ports, const double* poses, size_t port_count,
                   const double* time, Handle** pings);
-/** Resets a simulation. @param seed null: the same. @return 0; -1 on errors. */
+/** Resets a simulation.
+ *  @param seed null: the same.
+ *  @return 0; -1 on errors. */
 int insonify_reset(Handle* simulation, const uint64_t* seed);
 /** Makes several simulations of one deployment on one scene, with one vehicle and one sonar. Its facts: `{poses, pings,
  *  period, seeds}`. */
@@ -38,10 +40,13 @@ Handle* insonify_batch(const char* deployment, uint64_t seed, const char* const*
 /** Steps all simulations with seven numbers each, as for insonify_step(). Returns the pings as one sample: `bins`
  *  [simulations, beams, bins], `bearings`, `ranges`, `times` [s], and the truth by its names if it was requested. */
 Handle* insonify_batch_step(Handle* batch, const double* poses);
-/** Resets simulations of a batch. @param which numbers of simulations @param seeds one for each, not 0; null: the same.
+/** Resets simulations of a batch.
+ *  @param which numbers of simulations
+ *  @param seeds one for each, not 0; null: the same.
  *  @return 0; -1 on errors. */
 int insonify_batch_reset(Handle* batch, const size_t* which, const uint64_t* seeds, size_t count);
-/** Renders a ping as a fan: a sample with the array `pixels`. @param reference_db null: none. */
+/** Renders a ping as a fan: a sample with the array `pixels`.
+ *  @param reference_db null: none. */
 Handle* insonify_fan(const Handle* ping, uint32_t width, double dynamic_range_db, const double* reference_db,
                      const char* colour_map, const char* scale, int code_bits);
 

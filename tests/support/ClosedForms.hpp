@@ -19,7 +19,7 @@ using Form = std::function<double(double r1, double r2)>;
 /** The deviation of a ping from a form that applies to all of its beams. */
 struct Deviation {
     double relative_l2;  ///< Over all bins of all beams [1].
-    double worst_db;     ///< Of the bins above -40 dB of the form's maximum [dB].
+    double worst_db;     ///< Over the bins above -40 dB of the form's maximum [dB].
     double ripple;       ///< rms over the beams of energy / energy of the form - 1 [1].
     bool small() const { return relative_l2 < 0.01 && worst_db < 0.2 && ripple < 0.01; }
 };
