@@ -23,8 +23,8 @@ struct MaterialMaps {
     std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: no surface map.
 };
 
-/** Adds the file's materials in their order, the materials of surface maps' classes, and normal maps to `geometry`.
- *  Returns the maps of each material of the file. A normal map that cannot be read is a notice. A wrong
+/** Adds the file's materials in their order, then the materials of surface maps' classes, and normal maps to
+ *  `geometry`. Returns the maps of each material of the file. A normal map that cannot be read is a notice. A wrong
  *  `extras.acoustics` and a surface map that cannot be read are a ConfigError. */
 std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
                                         types::Geometry& geometry);

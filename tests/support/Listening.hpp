@@ -14,8 +14,8 @@
 
 namespace insonify::test {
 
-/** A bench for a task. The task runs by its own activity once released. Before that, with `by_hand`, it runs a cycle in
- *  each attempt of a wait. */
+/** A bench for a task that listens. The task runs by its own activity or, with `by_hand`, a cycle in each attempt of a
+ *  wait. */
 template <class Task>
 class Listening {
 protected:
@@ -39,7 +39,7 @@ protected:
         if (!comesTrue([&] { return work(), readers[reader].port.readNew(pose); })) return std::nullopt;
         return pose;
     }
-    /** Waits for a notice that contains this text. */
+    /** Waits for a notice that contains this text; returns whether it came. */
     bool tells(const std::string& text) {
         return comesTrue([&] {
             work();
