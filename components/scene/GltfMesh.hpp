@@ -15,8 +15,8 @@ namespace insonify::scene {
 struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
-    size_t unmapped_primitives = 0;  ///< Primitives with a map but without texture coordinates for it.
-    size_t morphed_meshes = 0;       ///< Meshes with morph targets, which are loaded unmorphed.
+    size_t unmapped_primitives = 0;  ///< With a map but no texture coordinates for it.
+    size_t morphed_meshes = 0;       ///< With morph targets, loaded unmorphed.
 };
 
 /** Converts the meshes of a file to types::Mesh, one at a time. */

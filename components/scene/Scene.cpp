@@ -85,14 +85,14 @@ glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     return above_from_node;
 }
 
-/** Returns the transform from a node to a body at the node's place: scale, shear, and the turn to z-up. */
+/** What a body that has the node's place makes of it: scale, shear, and the turn to z-up. */
 glm::dmat4 bodyFromNode(const Scene& scene, int node) {
     const glm::dmat3 world_from_node(aboveFromNode(scene, -1, node));
     return scene.z_up_from_file *
            glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
 }
 
-/** Returns the reader of the component library sdf. */
+/** That of the component library. */
 auto* sdfReader(const std::filesystem::path& file) try {
     return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
 } catch (const types::ConfigError& error) {
