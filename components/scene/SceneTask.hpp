@@ -24,11 +24,11 @@ namespace insonify::scene {
 
 /** Holds a scene and publishes, for each pose of the vehicle, a snapshot of what the sonar has in front of it.
  *
- *  In: `pose`, body in the world (x north, y west, z up). Each new pose gives one `snapshot` with the time of the pose.
- *  In: `<node>.pose` for each node of the file (in SDF a model or link, "rov", "rov::arm") that a connection names: the
- *  node's place in the world, which replaces its translation and rotation in the file. Its axes are turned like the
- *  world's; its scale stays; nodes below it move along. The newest pose is taken; it does not trigger. Before the first
- *  pose the node is at its place in the file.
+ *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
+ *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
+ *  the node's place in the world, which replaces its translation and rotation in the file. Its axes are turned like
+ *  the world's; its scale stays; nodes below it move along. The newest pose is taken; it does not trigger. Before the
+ *  first pose the node is at its place in the file.
  *  Out: `snapshot`, with the sonar in the world (body times `mount`), shared geometry, moved objects, and point targets
  *  at their current places. A target on a node moves with the node.
  *
@@ -109,8 +109,8 @@ private:
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
-    size_t part_count_ = 0;              ///< Parts of all movables; their memory is allocated before they move.
-    std::vector<const Movable*> mover_;  ///< For each object, the movable that moves it now.
+    size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
+    std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;
