@@ -240,7 +240,7 @@ TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
     EXPECT_FALSE(plan.leftOut("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
-                testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
+                testing::Contains(HasSubstr("motion within a ping is simulated from 0.12 m/s or 1.2 deg/s")));
     SonarConfig without = movingFan();
     without.motion_in_ping = false;
     EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));

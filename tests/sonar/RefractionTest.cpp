@@ -266,7 +266,7 @@ TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     config.visibility = Visibility::Gl;
     config.device = "software";
     const auto geometry = test::sceneOf({test::ground(-20)});
-    EXPECT_THAT(whyStraight(config), HasSubstr("rays alone"));
+    EXPECT_THAT(whyStraight(config), HasSubstr("only ray tracing"));
     EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
     config.range = 20;
     config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});

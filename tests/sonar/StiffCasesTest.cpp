@@ -128,7 +128,7 @@ TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {
         stiffBins(config, test::sceneOf({test::wall(10)}));
         FAIL() << "was drawn";
     } catch (const std::exception& error) {
-        EXPECT_THAT(error.what(), HasSubstr("cannot draw"));
+        EXPECT_THAT(error.what(), HasSubstr("cannot render"));
     }
 }
 
