@@ -108,9 +108,9 @@ TEST_F(TransportTest, DatagramsOfHarmonicAreRead) {
 
 TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
     Heard heard("/pose/info");
-    EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo's is heard"));
+    EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo is found"));
     EXPECT_FALSE(readDatagram(recording("alive_with_statistics"), "ours", heard).has_value());
-    EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are there"));
+    EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are running"));
     EXPECT_TRUE(readDatagram(recording("offer_topic"), "ours", heard).has_value());
     EXPECT_THAT(heard.text(),
                 StartsWith("available are /world/sea/pose/info in partition auv; programs with GZ_TRANSPORT"));
@@ -124,7 +124,7 @@ TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
     EXPECT_EQ(nothing.text(), "no name that ends in /pose/info is offered");
     Heard own("/pose/info");
     EXPECT_FALSE(readDatagram(aliveDatagram("ours"), "ours", own).has_value());
-    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo's is heard")) << "but ourselves";
+    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo is found")) << "but ourselves";
 }
 
 TEST_F(TransportTest, DamagedDatagramsAreDropped) {

@@ -160,8 +160,8 @@ TEST_F(BodyTest, MillisecondsContinueAcrossTheirWrapAround) {
 TEST_F(BodyTest, DropsEarlierStampsUnlessTheVehicleHasRebooted) {
     take(LocalPositionNed{.time_boot_ms = 600'000, .x = 7}, 50);
     take(AttitudeQuaternion{.time_boot_ms = 600'000}, 50);
-    EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
-    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
+    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
     EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position of another life";
     take(LocalPositionNed{.time_boot_ms = 200, .x = 1}, 50.3);
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 200}, 50.3).pose.value().position, {1, 0, 0});
@@ -204,7 +204,7 @@ TEST_F(BodyTest, EveryVisionEstimateIsAPoseRelativeToTheOrigin) {
     expectNear(pose->position, {101, 0, 0});
     EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "whatever its clock counts from";
     EXPECT_EQ(see({.usec = 1700000000223456}, 50.1).pose.value().time, Time::fromSeconds(50.1));
-    EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("is before"));
     EXPECT_THAT(see({.usec = ~uint64_t{0}}, 50.2).diagnostic, HasSubstr("out of bounds"));
     EXPECT_TRUE(see({.usec = 5}, 50.3).pose) << "booted again";
 }
