@@ -151,7 +151,7 @@ TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     auto pose = next();
     while (pose && pose->position.x != 4) pose = next();
     EXPECT_EQ(pose.value_or(types::Pose{}).position.x, 4);
-    EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "of our clock";
+    EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "on our clock";
 }
 
 TEST_F(PoseTaskTest, DropsAndReportsPosesThatAreNotFiniteAndMissingEntities) {

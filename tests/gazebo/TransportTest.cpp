@@ -124,7 +124,7 @@ TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
     EXPECT_EQ(nothing.text(), "no name that ends in /pose/info is offered");
     Heard own("/pose/info");
     EXPECT_FALSE(readDatagram(aliveDatagram("ours"), "ours", own).has_value());
-    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo is found")) << "but ourselves";
+    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo is found")) << "except this program";
 }
 
 TEST_F(TransportTest, DamagedDatagramsAreDropped) {

@@ -162,7 +162,7 @@ TEST_F(BodyTest, DropsEarlierStampsUnlessTheVehicleHasRebooted) {
     take(AttitudeQuaternion{.time_boot_ms = 600'000}, 50);
     EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
     EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
-    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position of another life";
+    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position from before the restart";
     take(LocalPositionNed{.time_boot_ms = 200, .x = 1}, 50.3);
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 200}, 50.3).pose.value().position, {1, 0, 0});
 }
@@ -202,7 +202,7 @@ TEST_F(BodyTest, EveryVisionEstimateIsAPoseRelativeToTheOrigin) {
     const auto [pose, diagnostic] = see({.usec = 1700000000123456, .x = 1}, 50);
     ASSERT_TRUE(pose) << diagnostic;
     expectNear(pose->position, {101, 0, 0});
-    EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "whatever its clock counts from";
+    EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "any origin of its clock";
     EXPECT_EQ(see({.usec = 1700000000223456}, 50.1).pose.value().time, Time::fromSeconds(50.1));
     EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("is before"));
     EXPECT_THAT(see({.usec = ~uint64_t{0}}, 50.2).diagnostic, HasSubstr("out of bounds"));

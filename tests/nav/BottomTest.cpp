@@ -48,11 +48,11 @@ TEST(BottomTest, FindsTheNearestOfManyMovedObjects) {
     snapshot.moved = {{ball, glm::translate(glm::dmat4(1), {-30, 30, -2})}};
     Bottom bottom = bottomOf(snapshot);
     EXPECT_NEAR(*bottom.range({-30, 30, 10}, down, 100), 10.5, 0.02);
-    EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "beside it";
+    EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "next to the ball";
     EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 14, 1e-6) << "nor is it where it was";
     snapshot.moved.clear();
     bottom.take(std::make_shared<types::Snapshot>(snapshot));
-    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "where the file has it, again";
+    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "back at its place in the file";
     EXPECT_NEAR(*bottom.range({-10, 12, 10}, down, 100), 8.5, 0.02) << "one that is mirrored and stretched";
 }
 

@@ -86,7 +86,7 @@ TEST(MotionTest, StartsAnewAfterAPauseOrARestart) {
         EXPECT_FALSE(tracker.take(poseAt(next + 0.1, {1000.1, 0, 0})));
         const auto motion = tracker.take(poseAt(next + 0.2, {1000.2, 0, 0}));
         ASSERT_TRUE(motion);
-        EXPECT_LT(glm::distance(motion->velocity, {1, 0, 0}), 1e-9) << "nothing of the thousand metres";
+        EXPECT_LT(glm::distance(motion->velocity, {1, 0, 0}), 1e-9) << "no part of the thousand metres";
     }
 }
 

@@ -82,7 +82,7 @@ TEST(PressureTest, ReadingsAreWholeStepsWithinTheRange) {
     EXPECT_EQ(reading({.errors = {.resolution = 20}}, 0), 101320.0f);
     EXPECT_EQ(reading({.max_pressure = 3e6}, -1000), 3e6f);
     EXPECT_EQ(reading({.max_pressure = 110000, .errors = {.resolution = 20000}}, -1000), 100000.0f);
-    EXPECT_EQ(reading({.errors = {.offset = -1e6}}, 0), 0.0f) << "never below nothing";
+    EXPECT_EQ(reading({.errors = {.offset = -1e6}}, 0), 0.0f) << "never below 0";
     EXPECT_EQ(reading({.water_surface = 2, .density = 1000}, -8),
               static_cast<float>(pressureAt(10, {.density = 1000})));
 }

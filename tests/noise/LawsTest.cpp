@@ -168,7 +168,7 @@ TEST(LawsTest, ExtremeShapesAreFiniteWithAnExtremeTailOrExponential) {
     const std::vector<float> smooth = drawn(gammaOf(1e4));
     EXPECT_NEAR(varianceOf(smooth), 1e-4, 0.02e-4);
     EXPECT_LT(kolmogorovSmirnov(shares(smooth, [](double x) { return normalCdf((x - 1) * 1e2); })), 3)
-        << "a skew of 0.02 is left";
+        << "a skew of 0.02 remains";
 }
 
 /** Returns the rank correlation of two lists of values, which is insensitive to long tails. */

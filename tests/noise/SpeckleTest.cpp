@@ -110,7 +110,7 @@ TEST(SpeckleTest, EchoAndSeaAddAsFieldsIfTheSpeckleIsAField) {
     EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent);
     const types::Sonar looks = noisyOf(withSea(gammaOf(16), 0), pingOf(256, 500, 2));
     EXPECT_NEAR(meanOf(looks.bins), 3, 0.02);
-    EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and a noise of one";
+    EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and noise of one look";
 }
 
 TEST(SpeckleTest, AdditiveNoiseIsExponentialWithTheMeanOfItsLevel) {

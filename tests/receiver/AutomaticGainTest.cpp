@@ -102,7 +102,7 @@ TEST(AutomaticGainTest, NoBinExceedsTheSaturation) {
         EXPECT_NEAR(bins[i], std::min(-10.0, 3 + 10 * std::log10(static_cast<double>(ping.bins[i]))), 1e-3);
     config.output = Output::Code;
     config.code = CodeConfig{.bits = 8, .law = CodeLaw::Linear, .full_scale_db = 0};
-    EXPECT_EQ(heldBins(config, ping)[3], std::round(0.1f * 255)) << "below the largest code";
+    EXPECT_EQ(heldBins(config, ping)[3], std::round(0.1f * 255)) << "below the max code";
     EXPECT_FALSE(Receiver(config).isNeutral());
 }
 

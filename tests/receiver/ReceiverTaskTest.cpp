@@ -44,7 +44,7 @@ TEST_F(ReceiverTaskTest, TheGainOfADriverAppliesFromTheNextPing) {
     ASSERT_TRUE(louder);
     EXPECT_EQ(louder->bins, std::vector<float>(20, 10));
     driver.port.write({});
-    EXPECT_EQ(answerTo(ping)->bins, louder->bins) << "who asks for none leaves it";
+    EXPECT_EQ(answerTo(ping)->bins, louder->bins) << "NaN leaves the gain unchanged";
     EXPECT_EQ(task_.config->gain_db, 10);
 }
 

@@ -107,7 +107,7 @@ TEST(ReceiverTest, BinsNearerThanTheBlankingAreSilentInEveryOutput) {
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(bins[k], silence) << "the bin of 0.3 to 0.4 m begins before";
         for (size_t k = 4; k < 10; ++k) EXPECT_NE(bins[10 + k], silence);
         config.blanking->range_min = 0.3;
-        EXPECT_NE(received(config, ping).bins[3], silence) << "a bin that begins there is heard";
+        EXPECT_NE(received(config, ping).bins[3], silence) << "a bin that begins at range_min is not silent";
     }
 }
 

@@ -163,7 +163,7 @@ TEST(BackscatterPingTest, APlateAtNormalIncidenceHasItsTargetStrength) {
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
     }
     config.frequency_khz = 60;
-    EXPECT_NEAR(targetStrength(pingOf(config, snapshot), 50), right + 6.02, 0.5) << "it goes with the frequency";
+    EXPECT_NEAR(targetStrength(pingOf(config, snapshot), 50), right + 6.02, 0.5) << "it depends on the frequency";
 }
 
 TEST(BackscatterPingTest, ARoughCylinderBroadsideHasItsTargetStrength) {

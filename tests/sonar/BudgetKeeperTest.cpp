@@ -93,7 +93,7 @@ TEST(BudgetKeeperTest, DoesNotExceedTheQualityThatAPingNeeds) {
     BudgetKeeper keeper(33);
     for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, least));
     BudgetKeeper limited(33, 1e6);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "there is room already";
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "the budget is not used up";
 }
 
 TEST(BudgetKeeperTest, AChangedBudgetAppliesAtOnce) {

@@ -202,9 +202,9 @@ TEST(ChangingSceneTest, KeepsMeshesTreesAndThreads) {
                     ++same;
                     EXPECT_FALSE(kept[k].expired()) << "the renderer has what was made of the mesh";
                     EXPECT_EQ(MeshFacts::of(snapshot.geometry->meshes.shared(i)), kept[k].lock());
-                    EXPECT_EQ(trees[k].expired(), k == 0) << "the block is in the tree of what stands still";
+                    EXPECT_EQ(trees[k].expired(), k == 0) << "the block is in the tree of objects at rest";
                 }
-        EXPECT_GE(same, before->meshes.size() * 2 / 3) << "but for the tiles that are left behind";
+        EXPECT_GE(same, before->meshes.size() * 2 / 3) << "except the tiles that are left behind";
         if (way > 70 && running == 0) running = threads();
         if (running > 0) {
             EXPECT_EQ(threads(), running);

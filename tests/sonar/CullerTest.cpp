@@ -55,7 +55,7 @@ std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std:
         marks.emplace_back(geometry.meshes[static_cast<size_t>(object.mesh)].indices.size() / 3);
     for (const Culler::DrawRange& run : runs)
         for (uint32_t i = run.first_index / 3; i < (run.first_index + run.index_count) / 3; ++i) {
-            EXPECT_FALSE(marks[run.object].at(i)) << "drawn twice";
+            EXPECT_FALSE(marks[run.object].at(i)) << "rasterised twice";
             marks[run.object].at(i) = true;
         }
     return marks;
@@ -186,7 +186,7 @@ TEST(CullerTest, CullsObjectsBehindAsideAboveOrBeyondTheRange) {
 
 TEST(CullerTest, AnObjectAroundTheSonarIsInEveryFrustum) {
     EXPECT_EQ(runsOfBall({0, 0, 0}, 360), 6u);
-    EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the slabs of a full turn meet ahead";
+    EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the frusta of a full turn meet ahead";
 }
 
 TEST(CullerTest, AMovedObjectIsCulledByItsNewPlace) {

@@ -194,7 +194,7 @@ TEST(EdgeDiffractionTest, ASoftSheetEdgeOnIsItsNearEdge) {
     EXPECT_EQ(sumOf(test::pingOf(without(edgeSonar()), test::snapshotOf(scene))), 0);
     const auto rigid = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, 1);
     EXPECT_LT(sumOf(test::pingOf(edgeSonar(), test::snapshotOf(rigid))), 1e-3 * expected)
-        << "sound passes a thin rigid sheet along its face as if it was not there";
+        << "a thin rigid sheet does not affect sound along its face";
 }
 
 TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) {

@@ -191,7 +191,7 @@ TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     types::SonarElementsPtr signals;
     ASSERT_TRUE(ping && signals_.port.readNew(signals));
     const Heard expected = heard(arrayOf(Weighting::Uniform));
-    EXPECT_EQ(ping->bins, expected.ping.bins) << "told or not";
+    EXPECT_EQ(ping->bins, expected.ping.bins) << "with or without the port";
     EXPECT_EQ(signals->in_phase, expected.signals.in_phase);
     EXPECT_EQ(signals->time, ping->time);
 }

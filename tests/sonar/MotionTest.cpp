@@ -143,7 +143,7 @@ TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
         const float* bins = &ping.bins[beam * ping.bin_count];
         const auto first = std::find_if(bins, bins + ping.bin_count, [](float x) { return x > 0; }) - bins;
         EXPECT_NEAR(0.1 * static_cast<double>(first), range, 0.2) << beam;
-        EXPECT_GT(std::abs(range - 200 / ray.x), 2) << "a wall that is heard where it stands does not pass";
+        EXPECT_GT(std::abs(range - 200 / ray.x), 2) << "ranges without motion do not pass";
     }
 }
 
@@ -259,7 +259,7 @@ TEST(MotionTest, ReportsMissingRequirements) {
     EXPECT_EQ(complaintOf(movingFan()), "");
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
-    EXPECT_TRUE(config.castsRays()) << "whatever device there is";
+    EXPECT_TRUE(config.castsRays()) << "on any device";
     config.visibility = Visibility::Gl;
     config.device = "software";
     EXPECT_THAT(complaintOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));

@@ -103,9 +103,9 @@ TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
         return test::quad(glm::vec3(at) - glm::vec3(0, 0.2f, 0.2f), {0, 0.4f, 0}, {0, 0, 0.4f});
     };
     EXPECT_EQ(returnsWith(plateAt({-50, 0, 0})), 3u);
-    EXPECT_EQ(returnsWith(plateAt({6, 0, -0.5})), 1u) << "the straight way: by the mirror there and back is left";
+    EXPECT_EQ(returnsWith(plateAt({6, 0, -0.5})), 1u) << "on the direct path: the path by the mirror both ways remains";
     const double bounce = 12.0 * 3 / 7;  // where the path meets the surface
-    EXPECT_EQ(returnsWith(plateAt({bounce / 2, 0, 1.5})), 1u) << "up to the surface: the straight one is left";
+    EXPECT_EQ(returnsWith(plateAt({bounce / 2, 0, 1.5})), 1u) << "up to the surface: the direct path remains";
     EXPECT_EQ(returnsWith(plateAt({(bounce + 12) / 2, 0, 1})), 1u) << "down from the surface";
     EXPECT_EQ(returnsWith(plateAt({bounce, 0, 5})), 3u) << "above the surface nothing hides anything";
 }
@@ -147,7 +147,7 @@ TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
                            (r1 * r1 * r2 * r2);
     const double heard = ping.bins[static_cast<size_t>((r1 + r2) / 2 / 0.1)];
     EXPECT_NEAR(decibels(heard / expected), 0, 0.01);
-    EXPECT_GT(std::abs(decibels(heard / product)), 1) << "the root of both two-way patterns is another number";
+    EXPECT_GT(std::abs(decibels(heard / product)), 1) << "the root of both two-way patterns differs";
 }
 
 /** Energies of a flat bottom 4 m below by a surface 2 m above, in coarse bins of 2 m, by a sum over the bottom. */
@@ -529,7 +529,7 @@ TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
     EXPECT_EQ(path(r2), 2);
     for (const auto& [range, heard_from] : {std::pair((r1 + r2) / 2, 0.0), {r2, std::asin(6 / r2)}}) {
         const size_t at = 300 + static_cast<size_t>(range / 0.1);
-        EXPECT_EQ(truth.object[at], 0) << "a ghost is of what is seen in it";
+        EXPECT_EQ(truth.object[at], 0) << "a ghost is of the object seen in the mirror";
         EXPECT_FLOAT_EQ(truth.share[at], 1);
         EXPECT_NEAR(truth.elevation[at], heard_from > 0 ? heard_from : truth.elevation[at], 0.1);
     }

@@ -311,7 +311,7 @@ TEST(OmissionTest, EachFeatureRendersByItsPlan) {
             for (StageOf stage : {CullStage, DrawStage, DepositStage, BeamStage})
                 EXPECT_GT(renderer.stages()[stage].seconds, 0) << stage;
         }
-    EXPECT_EQ(seen, all) << "each feature has been asked for";
+    EXPECT_EQ(seen, all) << "each feature has been used";
 }
 
 }  // namespace insonify::sonar

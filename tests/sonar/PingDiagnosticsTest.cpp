@@ -53,7 +53,7 @@ TEST_F(PingDiagnosticsTest, WarnsOnceAboutSilenceAndAgainAfterEnoughEchoes) {
     EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: receives no echo")));
     ping(wall, 0, 3);
     ping(wall, 180, 5);
-    EXPECT_EQ(told_.size(), 1u) << "heard for three pings only";
+    EXPECT_EQ(told_.size(), 1u) << "only three pings with echoes";
     ping(wall, 0, types::RecurringDiagnostic::well_after);
     ping(wall, 180, 5);
     EXPECT_EQ(told_.size(), 2u);

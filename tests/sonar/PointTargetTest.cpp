@@ -331,7 +331,7 @@ TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
         EXPECT_EQ(heardOf(plate(5), {10, 0, 0}), 0) << "before it";
         EXPECT_NEAR(heardOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
         EXPECT_NEAR(heardOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
-        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "beside it";
+        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
         EXPECT_GT(heardOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
         EXPECT_EQ(heardOf(plate(5, 5), {10, 10, 0}), 0);
     }

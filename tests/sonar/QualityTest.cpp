@@ -50,7 +50,7 @@ TEST(QualityLadderTest, ChoosesTheCheapestThatReachesTheTargetElseTheFinestWithi
     EXPECT_GT(ladder.choose(model, 0.1, 0.9 * enough.samples()).error, 0.1);
     EXPECT_EQ(ladder.choose(model, 1, forever), Quality()) << "64 x 2 will do";
     EXPECT_EQ(ladder.choose(model, 0, 1), Quality()) << "never less than 64 x 2";
-    EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never less than the least";
+    EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never below the minimum";
 }
 
 TEST(QualityLadderTest, RungsForABudgetAreAtMostATenthApart) {
@@ -73,7 +73,7 @@ TEST(ClimbTest, TakesLessThanTenPingsAndRendersThePingAtItsQuality) {
         climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
     EXPECT_LE(model.error(), 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
-    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they judge";
+    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they evaluate";
     types::Sonar same;
     renderer.render(outwards(scene), same);
     EXPECT_EQ(ping.bins, same.bins);
@@ -129,7 +129,7 @@ TEST(QualityTaskTest, ReportsTheChoiceItsErrorAndCostAfterTheFirstEcho) {
     EXPECT_EQ(sonar.quality(), Quality());
     EXPECT_THAT(sonar.notices(), testing::IsEmpty());
     sonar.ping(outwards(scene));
-    EXPECT_LE(sonar.quality().error, 0.05) << "the target where nothing is said";
+    EXPECT_LE(sonar.quality().error, 0.05) << "the default target";
     EXPECT_GT(sonar.quality().samples(), Quality().samples());
     const std::string samples = std::to_string(static_cast<int>(16 * sonar.quality().samples()));
     EXPECT_THAT(sonar.notices(),
@@ -201,10 +201,9 @@ TEST(QualityTaskTest, AHeadLowersTheQualityOnlyAfterAWholeTurn) {
         sonar.ping(test::snapshotOf(scene, {}, 0, 0.14));
         qualities.push_back(sonar.quality());
     }
-    EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor was heard";
+    EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor echoed";
     for (size_t i = 1; i < qualities.size(); ++i)
-        EXPECT_GE(qualities[i].samples(), qualities[i - 1].samples())
-            << "at every turn it hears the floor again: " << i;
+        EXPECT_GE(qualities[i].samples(), qualities[i - 1].samples()) << "the floor echoes again at every turn: " << i;
 }
 
 TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestQualityAndANotice) {

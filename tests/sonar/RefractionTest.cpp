@@ -186,7 +186,7 @@ TEST(RefractionTest, BelowADuctThereIsAShadow) {
         return loudest(ping);
     };
     EXPECT_EQ(heardAt(56, duct), 0) << "in the shadow";
-    EXPECT_GT(heardAt(56, ""), 0) << "straight rays know none";
+    EXPECT_GT(heardAt(56, ""), 0) << "straight rays have no shadow";
     EXPECT_GT(heardAt(25, duct), 0) << "in the duct";
     EXPECT_GT(heardAt(95, duct), 0) << "below the shadow";
 }
@@ -270,7 +270,7 @@ TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
     config.range = 20;
     config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});
-    EXPECT_EQ(whyStraight(config), "") << "what does not matter is left out";
+    EXPECT_EQ(whyStraight(config), "") << "negligible refraction is omitted";
     config.visibility = Visibility::Auto;
     config.device = "";
     EXPECT_TRUE(config.castsRays());

@@ -32,7 +32,7 @@ TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
             const double right = (at(r) - at(r + 0.1)) / rate / 0.1, middle = at(r + 0.05);
             const float heard = ping.bins[beam * ping.bin_count + k];
             EXPECT_NEAR(heard, right, 1e-6 * right) << k;
-            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle is another";
+            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle differs";
         }
 }
 

@@ -53,7 +53,7 @@ TEST(SettingsTest, EachSettingsSampleGivesAPingAndASnapshotDoesNot) {
     Asked<SonarTask> sonar(smallSonar());
     EXPECT_FALSE(sonar.ask({})) << "there is no scene yet";
     sonar.show(facingWall(5));
-    EXPECT_TRUE(sonar.next()) << "what was asked for has waited";
+    EXPECT_TRUE(sonar.next()) << "the request has waited";
     sonar.show(facingWall(5));
     EXPECT_FALSE(sonar.next());
     types::SonarSettings later;
@@ -62,7 +62,7 @@ TEST(SettingsTest, EachSettingsSampleGivesAPingAndASnapshotDoesNot) {
     ASSERT_TRUE(first && second) << sonar.task.lastError();
     EXPECT_EQ(first->bins, second->bins);
     EXPECT_EQ(first->time, types::Time{7'000'000});
-    EXPECT_EQ(second->time, types::Time{8'000'000}) << "when it was asked for";
+    EXPECT_EQ(second->time, types::Time{8'000'000}) << "the time of the request";
 }
 
 TEST(SettingsTest, GivenSettingsApplyFromThePingAndOthersStay) {
@@ -97,7 +97,7 @@ TEST(SettingsTest, RejectsInvalidSettingsCompletelyAndRecoversWithTheNextValid) 
     EXPECT_FALSE(sonar.ask(asked));
     EXPECT_THAT(sonar.task.lastError(), ::testing::HasSubstr("bin_count"));
     EXPECT_EQ(sonar.task.state(), framework::TaskState::RunTimeError);
-    EXPECT_EQ(sonar.task.config->range, smallSonar().range) << "nothing of it holds";
+    EXPECT_EQ(sonar.task.config->range, smallSonar().range) << "no setting applies";
     EXPECT_TRUE(sonar.ask({}));
     EXPECT_EQ(sonar.task.state(), framework::TaskState::Running);
 }

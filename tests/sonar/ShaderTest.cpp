@@ -154,7 +154,7 @@ TEST_F(ShaderTest, EachSetOfFeaturesIsValidGlsl) {
     size_t feature_sets = 0;
     forEachFeatureSet([&](const RenderPlan&, const types::Geometry&) { ++feature_sets; });
     EXPECT_EQ(deposits, feature_sets) << "a program for each";
-    EXPECT_THAT(compiled, IsSupersetOf(known)) << "each feature of a shader has been asked for";
+    EXPECT_THAT(compiled, IsSupersetOf(known)) << "each feature of a shader has been used";
 }
 
 TEST_F(ShaderTest, StagesFitTogether) {

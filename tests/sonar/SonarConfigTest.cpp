@@ -265,7 +265,7 @@ TEST(SonarConfigTest, TheDefaultQualityIsAnErrorOfFivePerCentWithACapOfSamples) 
     config.quality = {};
     config.quality.rows = 8;
     EXPECT_FALSE(config.choosesQuality() || config.mostSamples());
-    EXPECT_EQ(config.rows(), 8) << "a user may say less than what is chosen";
+    EXPECT_EQ(config.rows(), 8) << "a user may give less than the chosen quality";
 }
 
 TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {

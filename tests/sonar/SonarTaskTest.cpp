@@ -105,7 +105,7 @@ TEST_F(SonarTaskTest, ReportsAmbiguousPingsCloserThanTheTwoWayTravelTime) {
     start();  // 15 m there and back at 1500 m/s: 20 ms
     ASSERT_TRUE(pingAt(1) && pingAt(1.1));
     EXPECT_THAT(task_.notices(), ::testing::Not(warning));
-    ASSERT_TRUE(pingAt(1.101)) << "heard all the same";
+    ASSERT_TRUE(pingAt(1.101)) << "received nevertheless";
     EXPECT_THAT(task_.notices(), warning);
 }
 

@@ -126,7 +126,7 @@ TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {
     config.visibility = Visibility::Gl;
     try {
         stiffBins(config, test::sceneOf({test::wall(10)}));
-        FAIL() << "was drawn";
+        FAIL() << "was rasterised";
     } catch (const std::exception& error) {
         EXPECT_THAT(error.what(), HasSubstr("cannot render"));
     }

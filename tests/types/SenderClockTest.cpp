@@ -17,7 +17,7 @@ TEST(SenderClockTest, UsesTheMinDelayAndNotThatOfEachMessage) {
     EXPECT_EQ(clock.read(at(1), at(ahead + 1.020)).time, at(ahead + 1.020));
     EXPECT_EQ(clock.read(at(2), at(ahead + 2.005)).time, at(ahead + 2.005));
     const Time delayed = clock.read(at(2.9), at(ahead + 2.985)).time;
-    EXPECT_NEAR(delayed.seconds(), ahead + 2.905, 0.001) << "80 ms more of which next to nothing is believed";
+    EXPECT_NEAR(delayed.seconds(), ahead + 2.905, 0.001) << "a delay of 80 ms more has almost no effect";
     EXPECT_NEAR(clock.read(at(3), at(ahead + 3.005)).time.seconds(), ahead + 3.005, 0.001);
 }
 

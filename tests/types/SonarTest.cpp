@@ -66,7 +66,7 @@ TEST(SonarTest, ABeamStartsAtItsOwnTimeOrAtThatOfThePing) {
 }
 
 TEST(SonarTest, ValidationReportsEveryError) {
-    EXPECT_EQ(complaintOf(Sonar{}), "") << "empty, as Rock has it";
+    EXPECT_EQ(complaintOf(Sonar{}), "") << "empty, as in Rock";
     EXPECT_EQ(complaintOf(ping(4, 3)), "") << "unknown bearings";
     Sonar sample = ping(4, 3);
     sample.bins.pop_back();
