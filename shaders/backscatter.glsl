@@ -9,10 +9,10 @@ double tabulatedBackscatter(uint table, double cosine) {
     return low + (at - double(i)) * (backscatterEntry(table * uint(BACKSCATTER_ENTRIES) + i + 1u) - low);
 }
 
-// Returns sinc^2(beta), where beta = k L sin(t) is the phase at the end of a length relative to its middle, up to beta
-// = 3 pi / 4. Beyond it returns the mean, 1 / (2 beta^2), because the interference of both ends varies within a band
-// and with the slightest turn. `at`: beta^2 / pi; `edges`: 1 where an echo of edges replaces that mean (ACOUSTICS.md
-// 3.12), else 0.
+// Returns sinc^2(beta) up to beta = 3 pi / 4, where beta = k L sin(t) is the phase at the end of a length relative to
+// its middle. Beyond it returns the mean, 1 / (2 beta^2), because the interference of both ends varies within a band
+// and with the slightest turn. `at`: beta^2 / pi; `edges`: 1 where an echo of edges replaces that mean, else 0
+// (ACOUSTICS.md 3.12).
 double diffracted(double at, double edges) {
     double beta_square = LOBE_PI * at;
     if (beta_square > 0.5625 * LOBE_PI * LOBE_PI) return (1.0 - edges) * 0.5 / beta_square;

@@ -22,8 +22,8 @@ struct RingDownConfig {
     }
     void check(types::Diagnostics& diagnostics) const;
 
-    /** Returns the mean intensity between two slant ranges [m], relative to the source at 1 m [1]. ACOUSTICS.md
-     *  5.15. */
+    /** Returns the mean intensity between two slant ranges [m], relative to the source at 1 m [1].
+     *  ACOUSTICS.md 5.15. */
     double mean(double low, double high) const;
 };
 

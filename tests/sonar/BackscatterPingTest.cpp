@@ -1,5 +1,5 @@
-// Pings of materials that follow a table or have a lobe, compared with closed forms and target strengths (ACOUSTICS.md
-// 3.5 to 3.8). Each form has a deliberately wrong variant, which must fail by the same measure.
+// Pings of materials that follow a table or have a lobe, compared with closed forms and target strengths
+// (ACOUSTICS.md 3.5 to 3.8). Each form has a deliberately wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include <numbers>
