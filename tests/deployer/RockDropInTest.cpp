@@ -166,9 +166,8 @@ TEST_F(RockDropInTest, ThePublishedFilesLoadAsTheyAreAndWhatIsLeftOutIsNamed) {
     EXPECT_EQ(ping.bin_count, 500u);
     EXPECT_NEAR(ping.binStart(ping.bin_count), 50.25, 1e-3);  // 67 us a bin
     EXPECT_EQ(exportedPings(folder_, "out/rock.0.log", "scanning.sonar_samples").at(0).bin_count, 400u);
-    EXPECT_THAT(outcome.err,
-                HasSubstr("multibeam: left out, by ignored_properties: height, ignored_models, model_paths, "
-                          "width, world_file_path, write_shader_image"));
+    EXPECT_THAT(outcome.err, HasSubstr("multibeam: omitted by ignored_properties: height, ignored_models, model_paths, "
+                                       "width, world_file_path, write_shader_image"));
 }
 
 TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {

@@ -51,12 +51,12 @@ TEST(DeploymentSpecTest, AllDiagnosticsOfAFileAreToldInOneGo) {
             "a.yml:4:51: tasks.source.activity.period: is -1 s; may be 1e-06 to 1000000 s",
             "a.yml:4:75: tasks.source.properties.last: is 0; may be 1 to 1000000",
             "a.yml:4:78: tasks.source.properties.sed: is not a key here; did you mean seed? known: last, seed",
-            "a.yml:5:3: tasks.source: stands here twice; once is allowed",
+            "a.yml:5:3: tasks.source: is given twice; once is allowed",
             HasSubstr("a.yml:6:17: tasks.ghost.type: is test::Gost; did you mean "),
             "a.yml:7:40: tasks.relay.activity.trigger: there is no input port inn; did you mean in? known: in, extra",
             HasSubstr("a.yml:8:29: tasks.idle.activty: is not a key here; did you mean activity?"),
             "a.yml:8:9: tasks.idle: input port in (/double) is not connected; it must be",
-            "a.yml:12:5: connections[1]: stands here twice: source.value>relay.in",
+            "a.yml:12:5: connections[1]: is given twice: source.value>relay.in",
             HasSubstr("a.yml:13:12: connections[2].from: source has no output port valu; did you mean value?"),
             HasSubstr("a.yml:14:12: connections[3].from: there is no task sorce; did you mean source?"),
             HasSubstr("a.yml:14:29: connections[3].to: there is no task nobody"),
@@ -82,7 +82,7 @@ TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
             "a.yml:4:60: tasks.a.activity.scheduler: is rr; may be other, fifo",
             HasSubstr("tasks.a.activity.cpus[0]: is -1"), HasSubstr("tasks.a.activity.deadline: is 0 s"),
             HasSubstr("tasks.b.activity: has no priority; scheduler: fifo needs one, from 1 to 99"),
-            HasSubstr("tasks.c.activity.priority: is of no use with scheduler: other"),
+            HasSubstr("tasks.c.activity.priority: has no effect with scheduler: other"),
             HasSubstr("tasks.d.activity.priority: is 100"), HasSubstr("tasks.d.activity.cpus[1]: is 2000")));
 }
 
@@ -193,7 +193,7 @@ TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
                              HasSubstr("--set: t.last=1: there is no task t; did you mean s?"),
                              "--set: s.last: must be task.property=value", "--set: s=1: must be task.property=value",
                              HasSubstr("--set: s.seed=[: is not YAML"),
-                             "--set: s.last=: has no value; null takes the property out"));
+                             "--set: s.last=: has no value; null removes the property"));
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ TEST(PropertiesTest, EveryDiagnosticIsReportedAtItsPlaceInOneGo) {
             "a.yml:11:20: p.bearings[2]: is x; must be a finite number",
             "a.yml:12:9: p.layers: is gaussian; must be a list",
             "a.yml:13:26: p.materials.sand.mean: is 11; may be 0 to 10",
-            "a.yml:14:19: p.always.mean: stands here twice; once is allowed"));
+            "a.yml:14:19: p.always.mean: is given twice; once is allowed"));
 }
 
 TEST(PropertiesTest, ADiagnosticOfFieldsTogetherIsReportedWhereItStands) {

@@ -101,14 +101,14 @@ TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
         testing::UnorderedElementsAre(
             HasSubstr("a.yml:5:21: tasks.t.property_files.sections: there is no section defalt"),
             HasSubstr("bad.yml:1:1: has b:c in the head of a section"), HasSubstr("bad.yml:3:1: is not YAML"),
-            HasSubstr("bad.yml:3:1: heads a section without a name"),
+            HasSubstr("bad.yml:3:1: starts a section without a name"),
             HasSubstr("bad.yml:5:1: loop: chains loop, which chains it"),
             HasSubstr("bad.yml:5:1: loop: chains nobody; "), HasSubstr("bad.yml:6:1: loop: is a list; must be a block"),
             HasSubstr("bad.yml:8:1: holds Ruby, which is not run"),
             HasSubstr("no.yml: cannot be opened; must be a property file")));
     write("twice.yml", "--- name:a\nlast: 1\n--- name:a\nlast: 2\n");
     EXPECT_THAT(diagnostics(head + "    property_files: {files: [twice.yml], sections: [a]}\n"),
-                ElementsAre("twice.yml:3:1: a: is a section that stands here twice; once is allowed"));
+                ElementsAre("twice.yml:3:1: a: is a section that is given twice; once is allowed"));
 }
 
 TEST_F(PropertySourcesTest, ACopyStaysAndGoesToAPropertyOfAnyTaskAsWell) {
@@ -187,7 +187,7 @@ TEST_F(PropertySourcesTest, IgnoredPropertiesAreLeftOutAndNamed) {
     const DeploymentSpec spec = parse(yaml);
     EXPECT_THAT(spec.diagnostics, IsEmpty());
     EXPECT_EQ(text(spec), "{last: 280}");
-    EXPECT_THAT(spec.unused(), ElementsAre("t: left out, by ignored_properties: height, water.depth"));
+    EXPECT_THAT(spec.unused(), ElementsAre("t: omitted by ignored_properties: height, water.depth"));
     EXPECT_THAT(diagnostics(yaml, {"t.height=3"}),
                 ElementsAre(HasSubstr("t.height=3: is one of the task's ignored_properties")));
 }

@@ -97,7 +97,8 @@ TEST(RealtimeThreadTest, ATaskAndItsThreadsKeepToTheirProcessors) {
 TEST(RealtimeThreadTest, ProcessorsThatAreNotThereAreAWarning) {
     Thread own, started;
     const RunResult result = run("", ", cpus: [1022, 1023]", own, started);
-    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("note: does not keep to the CPUs 1022, 1023: there are none")));
+    EXPECT_THAT(result.warnings,
+                ElementsAre(HasSubstr("note: cannot run on only the CPUs 1022, 1023: they do not exist")));
     EXPECT_EQ(own.cpus, Thread::here().cpus);
     EXPECT_FALSE(result.failed());
 }

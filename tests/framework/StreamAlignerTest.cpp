@@ -99,7 +99,7 @@ TEST_F(StreamAlignerTest, APortThatIsSilentHoldsUpTheOthersForTheTimeoutOnly) {
     writePings({120});
     EXPECT_THAT(update(), ElementsAre("ping 20"));
     EXPECT_EQ(task_.poses.counts().awaited, 1u);
-    EXPECT_THAT(task_.aligner.notices(), ElementsAre("pose: samples of others that went on without it: 1"));
+    EXPECT_THAT(task_.aligner.notices(), ElementsAre("pose: samples of other ports handed over without it: 1"));
 }
 
 TEST_F(StreamAlignerTest, AfterAGapThePortIsWaitedForAgain) {

@@ -67,7 +67,7 @@ TEST_F(WatchdogTest, ACycleThatHangsIsReportedOnceAndWhenItIsBack) {
     const RunResult result = run("tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.3}}}\n");
     EXPECT_EQ(result.failures, std::vector<std::string>{});
     ASSERT_GE(result.warnings.size(), 2u);
-    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.3 s");
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has run for 0.3 s");
     EXPECT_THAT(result.warnings[1], MatchesRegex("slug: is back after 0\\.[3-9].* s|slug: is back after [1-9].* s"));
     EXPECT_EQ(result.warnings, told_.texts);
     EXPECT_GE(deployment_->task("slug")->timing().hangs, 1u);
@@ -76,7 +76,7 @@ TEST_F(WatchdogTest, ACycleThatHangsIsReportedOnceAndWhenItIsBack) {
 TEST_F(WatchdogTest, TheDeploymentsWatchdogIsThatOfATaskWithoutItsOwn) {
     const RunResult result = run("watchdog: 0.2\ntasks: {slug: {type: test::Hanging, activity: {period: 0.01}}}\n");
     ASSERT_GE(result.warnings.size(), 1u);
-    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.2 s");
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has run for 0.2 s");
 }
 
 TEST_F(WatchdogTest, ATaskInErrorIsReportedOnceAndWhenItHasRecovered) {
