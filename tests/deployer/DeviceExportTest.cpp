@@ -201,7 +201,7 @@ TEST_F(DeviceExportTest, ALogWithoutPosesGivesLinesWithoutPlacesAndSaysSo) {
         0);
     const Outcome outcome = toFile("receiver.ping", "pings.xtf", {}, "pings.0.log");
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("notice: pings.0.log holds no poses: the lines have no places"));
+    EXPECT_THAT(outcome.err, HasSubstr("notice: pings.0.log holds no poses: the lines have no positions"));
 }
 
 TEST_F(DeviceExportTest, WhatIsNoSideScanIsRefused) {

@@ -169,7 +169,7 @@ TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     EXPECT_EQ(to("fan.npz").code, 0);
     EXPECT_EQ(to("fan.csv").code, 0);
     const std::string info = callInsonify(folder_, {"log", "info", "dive.0.log", "--metadata"}).out;
-    EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device gave them out"));
+    EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device output them"));
     EXPECT_THAT(info, HasSubstr("\"dynamic_range_db\": 80"));
     const Outcome replay = callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"});
     EXPECT_EQ(replay.code, 0) << replay.err;

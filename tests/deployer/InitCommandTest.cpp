@@ -120,7 +120,7 @@ TEST(InitCommandTest, NothingIsOverwritten) {
     for (const char* sonar : {"oculus_m750d", "micron"}) {
         const Outcome again = callInsonify(folder, {"init", "dive", "--sonar", sonar});
         EXPECT_EQ(again.code, 2);
-        EXPECT_THAT(again.err, HasSubstr("dive/pass.csv: is there already"));
+        EXPECT_THAT(again.err, HasSubstr("dive/pass.csv: exists already"));
     }
     EXPECT_EQ(readFile(folder / "dive/pass.csv"), "mine");
     EXPECT_EQ(readFile(folder / "dive/oculus_m750d.yml"), before);

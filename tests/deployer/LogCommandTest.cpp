@@ -91,9 +91,8 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
         << "several files, several streams";
     const Outcome nothing = cut({"--from", "7"});
     EXPECT_EQ(nothing.code, 2);
-    EXPECT_THAT(nothing.err,
-                HasSubstr("out/wall.0.log: none of its samples is in the part that is asked for; they go from "
-                          "1.000000 s to 1.200000 s"));
+    EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
+                                       "1.000000 s to 1.200000 s"));
     EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
     EXPECT_EQ(cut({"--samples", "1"}).code, 2);
     EXPECT_THAT(cut({"--samples", "a:b"}).err, HasSubstr("may be FIRST:LAST"));

@@ -27,7 +27,7 @@ TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
     const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam"));
-    EXPECT_THAT(outcome.out, HasSubstr("  left out: "));
+    EXPECT_THAT(outcome.out, HasSubstr("  omitted: "));
 }
 
 TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
@@ -38,7 +38,7 @@ TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.out;
     };
-    const auto omitted = HasSubstr("left out: truth: nobody is connected");
+    const auto omitted = HasSubstr("omitted: truth: nobody is connected");
     EXPECT_THAT(printed(wall_deployment), omitted);
     for (const std::string port : {"truth", "returns"}) {
         const std::string reader = "  - {from: sonar." + port + ", to: log." + port + "}\n";

@@ -148,7 +148,7 @@ TEST_F(ReplayLiveTest, ALogWithoutItsPropertiesIsANotice) {
     fs::remove(folder_ / "out/properties.0.log");
     const Outcome outcome = score("out/wall.0.log");
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("notice: out/wall.0.log has no properties.0.log of its run beside it"));
+    EXPECT_THAT(outcome.err, HasSubstr("notice: out/wall.0.log has no properties.0.log of its run next to it"));
     expectAllSame(3);
 }
 
@@ -178,7 +178,9 @@ TEST_F(ReplayLiveTest, WhatTalksToOthersIsLeftOutUnlessAskedFor) {
     writeFile(folder_ / "wall.yml", text + "  - {from: noise.noisy, to: view.ping}\n");
     const Outcome alone = call({"replay", "out/wall.0.log", "wall.yml", "--rerender", "--out", "again"});
     EXPECT_EQ(alone.code, 0) << alone.err;
-    EXPECT_THAT(alone.err, HasSubstr("notice: view is left out, since it talks to others; --outside lets it run"));
+    EXPECT_THAT(
+        alone.err,
+        HasSubstr("notice: view is omitted, because it communicates outside the deployment; --outside runs it"));
     EXPECT_THAT(alone.err, testing::Not(HasSubstr("open http://")));
     const Outcome shown = call({"replay", "out/wall.0.log", "wall.yml", "--rerender", "--outside", "--out", "shown"});
     EXPECT_EQ(shown.code, 0) << shown.err;

@@ -238,7 +238,7 @@ TEST(ShardRunTest, AShardThatIsDoneIsLeftAsItIs) {
     const Outcome again = folder.make("1/2", "shards", {"--pings", "6"});
     EXPECT_EQ(again.code, 0) << again.err;
     EXPECT_THAT(again.out, HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "));
-    EXPECT_THAT(again.out, HasSubstr("files were there already"));
+    EXPECT_THAT(again.out, HasSubstr("files existed already"));
     EXPECT_EQ(fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log"), before);
 }
 
@@ -406,7 +406,7 @@ TEST(ShardRunTest, TasksThatKeepWhatAShardCannotKnowAreToldEach) {
                 HasSubstr("tasks.fan: video: is one file of all pictures"));
     EXPECT_THAT(refusal(replaced(movingWall(), "type: logger::LoggerTask",
                                  "type: logger::LoggerTask\n    activity: {period: 1}")),
-                HasSubstr("tasks.log: has a period and reads from others"));
+                HasSubstr("tasks.log: has a period and reads from other tasks"));
     EXPECT_THAT(refusal(replaced(movingWall(), "schedule: lockstep", "schedule: realtime")),
                 HasSubstr("schedule: is realtime"));
     EXPECT_THAT(refusal(replaced(movingWall(), "{from: noise.noisy, to: fan.ping}",

@@ -66,8 +66,7 @@ TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLos
         callInsonify(folder, {"run", "two.yml", "--pings", "3", "--out", "out", "--summary", "summary.json"});
     ASSERT_EQ(run.code, 0) << run.err;
     // Two poses of blue come between two of red, each of which takes the newer.
-    EXPECT_THAT(run.out,
-                testing::HasSubstr("passed over for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
+    EXPECT_THAT(run.out, testing::HasSubstr("skipped for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_EQ(summary["passed_over"]["blue.pose>red_scene.blue.pose"], 2);
     EXPECT_EQ(summary["losses"]["blue.pose>red_scene.blue.pose"], 0);
