@@ -98,7 +98,7 @@ TEST_F(Ping1dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithItsNameAndBounds) {
     EXPECT_EQ(bench_.refusalOf(Ping1dSetGain{7}), "gain_setting is 7; must be 0 to 6");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetPingEnable{2}), "ping_enabled is 2; must be 0 to 1");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetDeviceId{255}), "id is 255; must be 0 to 254");
-    EXPECT_EQ(bench_.refusalOf(Ping1dContinuousStart{6}), "message 6 is not sent on and on");
+    EXPECT_EQ(bench_.refusalOf(Ping1dContinuousStart{6}), "message 6 is not sent continuously");
     bench_.give(PingFrame{Ping1dSetRange::message, 0, 0, Bytes(7)}.bytes());
     EXPECT_EQ(bench_.only<PingNack>().text, "the payload is too short");
     bench_.give(PingFrame{1100, 0, 0, {}}.bytes());

@@ -157,7 +157,7 @@ TEST(Rip2Test, WhatIsShortLongOrHasAnotherSumIsNoPacket) {
 TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
     RangePixels fewer = someRanges();
     fewer.pixels.pop_back();
-    EXPECT_THAT(diagnosticOf(ripPacket(fewer)), HasSubstr("has 5 pixels where 3 x 2 are told"));
+    EXPECT_THAT(diagnosticOf(ripPacket(fewer)), HasSubstr("has 5 pixels, but its header has 3 x 2"));
     RangePixels large = someRanges();
     large.pixels[3] = 65536;
     EXPECT_THAT(diagnosticOf(ripPacket(large)), HasSubstr("has a pixel of 65536"));
@@ -169,7 +169,7 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
     EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("tells inf"));
     StrengthPixels missing = someStrengths();
     missing.height = 4;
-    EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels where 3 x 4 are told"));
+    EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels, but its header has 3 x 4"));
     EXPECT_THAT(diagnosticOf(packed({0x0A, 5, 1})), HasSubstr("holds no message"));
     EXPECT_THAT(diagnosticOf(packed({})), HasSubstr("holds no message"));
     const std::string type = "type.googleapis.com/waterlinked.sonar.protocol.RangeImage";
