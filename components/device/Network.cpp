@@ -45,7 +45,7 @@ template <class Socket, class Endpoint>
 void bindTo(Socket& socket, const Endpoint& endpoint) {
     error_code error;
     socket.open(endpoint.protocol(), error);
-    if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // for datagrams two processes would share the port unnoticed
+    if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // not UDP: two processes could share a port
         if (!error) socket.set_option(asio::socket_base::reuse_address(true), error);
     if (!error) socket.bind(endpoint, error);
     if (error) throw NetworkError("port", "is " + textOf(endpoint) + ", where it cannot listen: " + error.message());
