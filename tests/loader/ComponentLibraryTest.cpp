@@ -100,7 +100,7 @@ TEST_F(ComponentLibraryTest, OneOfAnotherVersionIsRefusedBeforeItRuns) {
     const Outcome outcome = check("other_version::Task", partsOfUser());
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("other_version.so: is for Insonify 0.0.9 00000000; this is 0.1.0 "));
-    EXPECT_THAT(outcome.err, HasSubstr("build it anew"));
+    EXPECT_THAT(outcome.err, HasSubstr("rebuild it"));
     give("no_interface");
     EXPECT_THAT(check("no_interface::Task", partsOfUser()).err, HasSubstr("has no line INSONIFY_COMPONENT_LIBRARY"));
 }
@@ -194,7 +194,7 @@ TEST_F(ComponentLibraryTest, APropertyThatNeedsAnAbsentOneIsAnsweredAtItsPlaceBe
 TEST_F(ComponentLibraryTest, InAPythonPackageAptInstallsNone) {
     writeFile(folder_ / "__init__.py", "");
     EXPECT_THAT(check("nav::ImuTask").err,
-                HasSubstr("nav, which wheels and archives do not hold; the Debian packages do, as insonify-nav"));
+                HasSubstr("nav, which is not in wheels and archives; it is in the Debian package insonify-nav"));
 }
 
 TEST_F(ComponentLibraryTest, TheCoreIsLinkedWithNoLibraryOfAComponents) {
