@@ -159,7 +159,7 @@ TEST_F(ReplayLiveTest, CutAndRepairKeepThePropertiesWithTheirLog) {
         fs::create_directory(folder_ / to);
         const Outcome outcome = call({"log", command, "out/wall.0.log", "--to", to + "/y.0.log"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_THAT(outcome.err, HasSubstr("notice: " + to + "/properties.0.log is kept with it"));
+        EXPECT_THAT(outcome.err, HasSubstr("notice: " + to + "/properties.0.log is copied with it"));
         const auto kept = log::openLog(folder_ / to / "properties.0.log");
         EXPECT_EQ(kept->samples().size(), log::openLog(folder_ / "out/properties.0.log")->samples().size());
         EXPECT_THAT(score(to + "/y.0.log").err, HasSubstr("as in the log: sonar.range=15\n"));

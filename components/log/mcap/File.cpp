@@ -1,4 +1,4 @@
-// An open file, record by record.
+// An open file, read record by record.
 #include <algorithm>
 
 #include "components/log/mcap/Contents.hpp"

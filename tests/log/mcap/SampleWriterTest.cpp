@@ -171,7 +171,7 @@ TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
         log.addStream<types::Sonar>("sonar.ping");
         FAIL() << "nothing was thrown";
     } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping is that of another stream"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping belongs to another stream"));
     }
 }
 
@@ -184,7 +184,7 @@ TEST(SampleWriterTest, TopicsThatAreNoneOrTwiceThereAreTold) {
     config.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].path, "streams.a.ping.topic");
-    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, as that of b.ping; must be another");
+    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, the topic of b.ping; must be another");
 }
 
 TEST(SampleWriterTest, NanosecondsOfAStampThatWasReadComeBack) {

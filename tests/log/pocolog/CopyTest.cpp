@@ -150,9 +150,9 @@ TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {
         return std::string();
     };
     EXPECT_THAT(message("/float", "<typelib/>", {}),
-                testing::AllOf(HasSubstr("x.1.log"), HasSubstr("a.b: is /float; in the log before it was /double")));
+                testing::AllOf(HasSubstr("x.1.log"), HasSubstr("a.b: is /float; in the previous log it was /double")));
     EXPECT_THAT(message("/double", "<other/>", {}),
-                HasSubstr("a.b: is /double of another layout; in the log before it was /double"));
+                HasSubstr("a.b: is /double of another layout; in the previous log it was /double"));
     EXPECT_FALSE(std::filesystem::exists(folder / "y.0.log")) << "refused before anything is written";
     EXPECT_EQ(message("/float", "<typelib/>", {.streams = {"c.d"}}), "") << "what is not copied may differ";
     EXPECT_EQ(message("/double", "<typelib/>", {}), "");
