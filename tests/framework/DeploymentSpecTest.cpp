@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-/** Every diagnostic of a deployment, as told before anything starts. */
+/** Returns every diagnostic of a deployment, as reported before anything starts. */
 std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vector<std::string>& sets = {}) {
     Registry registry = test::testRegistry();
     return test::refused([&] {
@@ -24,7 +24,7 @@ std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vecto
     });
 }
 
-TEST(DeploymentSpecTest, AllDiagnosticsOfAFileAreToldInOneGo) {
+TEST(DeploymentSpecTest, ReportsAllDiagnosticsOfAFileAtOnce) {
     const char* yaml =
         "schedule: sometimes\n"
         "color: red\n"
@@ -86,7 +86,7 @@ TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
             HasSubstr("tasks.d.activity.priority: is 100"), HasSubstr("tasks.d.activity.cpus[1]: is 2000")));
 }
 
-TEST(DeploymentSpecTest, APortThatIsNotThereIsNamedWithThoseThatAre) {
+TEST(DeploymentSpecTest, NamesAMissingPortAndTheExistingPorts) {
     EXPECT_THAT(
         diagnosticsOf("tasks:\n"
                       "  s: {type: test::Source, activity: {period: 1}}\n"
@@ -116,17 +116,17 @@ TEST(DeploymentSpecTest, ALoopNeedsABuffer) {
                 ElementsAre("a.yml:8:5: connections[2]: connects b with itself"));
 }
 
-TEST(DeploymentSpecTest, ATaskThatNothingWouldRunIsRefused) {
+TEST(DeploymentSpecTest, RefusesATaskThatNothingRuns) {
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source}}"),
                 ElementsAre(HasSubstr("has nothing that would run it")));
-    EXPECT_THAT(diagnosticsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event does";
+    EXPECT_THAT(diagnosticsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event runs it";
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
                 testing::Contains(HasSubstr("both period and trigger")));
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),
                 testing::Contains(HasSubstr("must be a finite number")));
 }
 
-TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
+TEST(DeploymentSpecTest, RefusesATextThatIsNotADeployment) {
     EXPECT_THAT(diagnosticsOf(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
     EXPECT_THAT(diagnosticsOf("# nothing\n"), ElementsAre(HasSubstr("is empty")));
     EXPECT_THAT(diagnosticsOf("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
@@ -140,7 +140,7 @@ TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
     EXPECT_THAT(diagnosticsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
 }
 
-TEST(DeploymentSpecTest, WhatCannotBeginAValueIsRefusedNotReadWithoutEnd) {
+TEST(DeploymentSpecTest, RefusesInvalidStartsOfValuesInsteadOfReadingForever) {
     for (const char* text : {",", "]", "}", ", 2.5, \"x\"]\nc: {d: .nan}\n", "--- a\n---\n,", "- a\n--- ]\n"})
         EXPECT_THAT(diagnosticsOf(text), ElementsAre(HasSubstr("a.yml:"))) << text;
     EXPECT_THAT(diagnosticsOf("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
@@ -162,7 +162,7 @@ TEST(DeploymentSpecTest, AMissingFileAndADirectoryAreNamed) {
                 ElementsAre(".: is a directory; must be a deployment file"));
 }
 
-TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {
+TEST(DeploymentSpecTest, SettingsOverrideTheFile) {
     Registry registry = test::testRegistry();
     DeploymentSpec spec = DeploymentSpec::parse(
         "tasks: {s: {type: test::Source, activity: {period: 1}, properties: {last: 5}}}", "a.yml");
@@ -174,7 +174,7 @@ TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {
     EXPECT_EQ(config->seed, 11u);
 }
 
-TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
+TEST(DeploymentSpecTest, SettingsReachIntoBlocks) {
     DeploymentSpec spec = DeploymentSpec::parse("tasks: {s: {type: t, properties: {tvg: {a: 1, b: 2}}}}", "a.yml");
     spec.set("s.tvg.b=[3]");
     spec.set("s.water.depth=8");
@@ -184,7 +184,7 @@ TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
     EXPECT_EQ(properties["water"]["depth"].as<int>(), 8);
 }
 
-TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
+TEST(DeploymentSpecTest, NamesSettingsThatDoNotFit) {
     EXPECT_THAT(
         diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1}}}",
                       {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
