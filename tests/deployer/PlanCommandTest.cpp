@@ -5,7 +5,7 @@
 using namespace insonify::deployer;
 using testing::HasSubstr;
 
-TEST(PlanCommandTest, JsonTellsWhatIsRunAndWhatIsLeftOut) {
+TEST(PlanCommandTest, JsonHasRunAndOmittedFeatures) {
     const WallFolder folder;
     const json plan = jsonOf(folder, {"plan", "wall.yml"});
     EXPECT_TRUE(plan["features"].is_array());
@@ -53,7 +53,7 @@ TEST(PlanCommandTest, NothingIsWritten) {
     EXPECT_FALSE(fs::exists(folder / "wall.0.log"));
 }
 
-TEST(PlanCommandTest, SeveralSonarsAreToldByName) {
+TEST(PlanCommandTest, SeveralSonarsArePrintedByName) {
     std::string two =
         replaced(wall_deployment, "  noise:\n",
                  "  second: {type: sonar::SonarTask, properties: {beam_count: 8, bin_count: 20}}\n  noise:\n");
