@@ -63,7 +63,7 @@ struct LibraryCommands {
 };
 constexpr LibraryCommands commands_of_libraries[] = {{"dataset", nullptr}, {"device", nullptr}, {"study", "fit"}};
 
-/** Adds a command that prints what to install, whatever its arguments. */
+/** Adds a command that prints what to install, for any arguments. */
 void addAbsent(CLI::App& app, Action& action, const std::string& name, const std::string& library) {
     CLI::App* command =
         app.add_subcommand(name, std::string(loader::findComponent(library)->gives) + " (not installed)");

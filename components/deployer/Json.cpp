@@ -45,7 +45,7 @@ std::string qualityText(const types::Plan& plan) {
     const std::string error =
         plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "";
     const std::string device = plan.device.empty() ? "" : fmt::format(", on {}", plan.device);
-    return fmt::format("quality: {} rows, {} columns per beam, {} slabs{}{}", plan.rows, plan.columns_per_beam,
+    return fmt::format("quality: {} rows, {} columns per beam, {} frusta{}{}", plan.rows, plan.columns_per_beam,
                        plan.slabs, error, device);
 }
 

@@ -158,7 +158,7 @@ void addReplayCommand(CLI::App& app, Action& action) {
         command->add_flag("--loop", options->replay.loop, "repeats the log until --pings, --duration or SIGINT");
     command
         ->add_flag("--step", options->step,
-                   "one instant of the log for each line on stdin; a line `seek S` goes to S seconds of the log")
+                   "one instant of the log for each line on stdin; a line `seek S` jumps to S seconds of the log")
         ->excludes(pace);
     auto* rerender =
         command->add_flag("--rerender", options->replay.rerender, "renders the pings again, at the log's poses");

@@ -16,7 +16,7 @@ constexpr const char *section_start = "--ros-args", *parameters_key = "ros__para
 
 [[noreturn]] void refuseRosArgument(const std::string& what) { throw types::ConfigError("", section_start, what); }
 
-/** `NODE:NAME:=VALUE`; an empty node stands for all. */
+/** `NODE:NAME:=VALUE`; an empty node means all nodes. */
 struct RosAssignment {
     std::string node, name, value;
 };

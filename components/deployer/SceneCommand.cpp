@@ -123,7 +123,7 @@ Json warningsOf(const std::string& file, const types::Extent& extent, const Surf
         warnings.push_back(fmt::format(
             "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} "
             "m "
-            "wide in y. glTF is y-up; a file written with z up comes out like this: export it with +Y up, or turn its "
+            "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or turn its "
             "root node by -90 degrees about x",
             100 * facing.y / (facing.x + facing.y + facing.z), extent.size().z, extent.size().y));
     if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)

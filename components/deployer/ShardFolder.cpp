@@ -128,7 +128,7 @@ std::optional<Json> ShardFolder::done() const {
     const auto manifest = manifestIn(path_);
     const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
     if (damage.empty()) return manifest;
-    fmt::print(stderr, "notice: {}: {}; the shard is made anew\n", path_.string(), damage);
+    fmt::print(stderr, "notice: {}: {}; the shard is made again\n", path_.string(), damage);
     fs::remove_all(path_);
     return std::nullopt;
 }

@@ -205,9 +205,10 @@ types::Time Simulation::timeOfStep(double seconds) const {
     const bool others_go_on = std::ranges::any_of(
         deployment_->tasks(), [](const auto& task) { return task->activity().settings().periodic(); });
     if (others_go_on && ahead > longest_step)
-        throw std::runtime_error(fmt::format(
-            "the step is {:g} s after the one before or the start, in which tasks with a period go on; at most {:g} s",
-            ahead, longest_step));
+        throw std::runtime_error(
+            fmt::format("the step is {:g} s after the one before or the start, in which tasks with a period continue; "
+                        "at most {:g} s",
+                        ahead, longest_step));
     return now;
 }
 

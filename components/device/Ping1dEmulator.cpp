@@ -207,7 +207,7 @@ void Ping1dEmulator::tell(const Wanted& wanted, bool stream) {
 
 void Ping1dEmulator::refuseWaiting() {
     for (const Wanted& wanted : std::exchange(waiting_, {}))
-        refuse(wanted.client, wanted.message, "no echoes have come");
+        refuse(wanted.client, wanted.message, "no echoes have arrived");
 }
 
 void Ping1dEmulator::proceed(types::Time now) {

@@ -203,7 +203,7 @@ void Ping360Emulator::fail(types::Time now) {
     if (scanning_) return;
     const Command failed = commands_.front();
     commands_.pop_front();
-    if (failed.client) refuse(*failed.client, Ping360Transducer::message, "no echoes have come");
+    if (failed.client) refuse(*failed.client, Ping360Transducer::message, "no echoes have arrived");
 }
 
 bool Ping360Emulator::step(types::Time now) {

@@ -76,7 +76,7 @@ void addOculus(std::vector<Probe>& all) {
          52102,
          {},
          oculusIn,
-         "no status is broadcast: drivers that find an Oculus by it wait for ever; broadcasts cross no router, "
+         "no status is broadcast: drivers that find an Oculus by it wait forever; broadcasts cross no router, "
          "and a firewall must let UDP 52102 in"});
     all.push_back({"Oculus",
                    Probe::Line::Tcp,
@@ -88,7 +88,8 @@ void addOculus(std::vector<Probe>& all) {
 
 void addSeaNet(std::vector<Probe>& all) {
     const char* const silence =
-        "no version comes: a driver that waits for mtAlive or mtVersionData waits for ever; the sonar's node is not 2, "
+        "no version arrives: a driver that waits for mtAlive or mtVersionData waits forever; the sonar's node is not "
+        "2, "
         "or "
         "it is no Micron";
     all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn,

@@ -128,7 +128,7 @@ void check(const RipImage& image, size_t pixels) {
     if (uint64_t{image.width} * image.height != pixels)
         throw BadPacket(fmt::format("has {} pixels, but its header has {} x {}", pixels, image.width, image.height));
     for (const float value : {image.speed_of_sound, image.range, image.field_of_view_deg, image.vertical_opening_deg})
-        if (!std::isfinite(value) || value < 0) throw BadPacket(fmt::format("tells {:g}", value));
+        if (!std::isfinite(value) || value < 0) throw BadPacket(fmt::format("has a value of {:g}", value));
 }
 
 RangePixels rangeImageIn(std::span<const uint8_t> bytes) {

@@ -70,7 +70,7 @@ void LockstepExecutor::runInstant(types::Time instant) {
         sources_wrote_ |= samplesWritten(*timed.task) != written;
         ++timed.cycle;
     }
-    // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
+    // Writers run before readers and update() empties the triggering ports, so one pass suffices.
     for (TaskContext* task : triggered_)
         if (task->triggered()) task->update();
 }

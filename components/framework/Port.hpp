@@ -1,5 +1,6 @@
 #pragma once
-// Typed ports. Small samples travel by value; large ones as std::shared_ptr<const T>, written once, never copied.
+// Typed ports. Small samples are copied; large samples are passed as std::shared_ptr<const T>, written once, never
+// copied.
 //
 //     InputPort<types::Pose>         pose{this, "pose", "the vehicle in the world"};
 //     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "what stands where"};
@@ -137,7 +138,7 @@ public:
 
     /** Reads the next sample. With OldData, `sample` becomes the last sample read, unless `copy_old` is false. */
     FlowStatus read(T& sample, bool copy_old = true) { return readInto(&sample, copy_old); }
-    /** Drains the port and returns its newest sample; earlier samples count as passed over in their connections. */
+    /** Drains the port and returns its newest sample; earlier samples count as skipped in their connections. */
     FlowStatus readNewest(T& sample, bool copy_old = true) { return readNewestInto(&sample, copy_old); }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
     /** Reads the sample to process: the next in lockstep, the newest (see readNewest) in realtime. False: no new

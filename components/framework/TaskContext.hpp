@@ -69,7 +69,7 @@ class OperationBase;
  *
  *      PreOperational -configure-> Stopped -start-> Running -stop-> Stopped -cleanup-> PreOperational
  *
- *  All hooks run on the task's own thread, whoever calls. cleanupHook undoes configureHook and stopHook undoes
+ *  All hooks run on the task's own thread, for any caller. cleanupHook undoes configureHook and stopHook undoes
  *  startHook, each exactly once. A hook that returns false or throws has not done its work and is not undone. If a hook
  *  throws, finished hooks are undone, exceptionHook runs, and the task ends in Exception with the message (FatalError
  *  when the undoing throws as well). A `types::ConfigError` from configureHook is kept whole in `configError()`.

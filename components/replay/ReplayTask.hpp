@@ -36,7 +36,7 @@ struct ReplayConfig {
                     0, 1e6},
               self.pace);
         visit(Field{"from", "s", "start of the replay, after the log's first stamp", 0, 1e9}, self.from);
-        visit(Field{"loop", "", "repeats the log from `from` on, with shifted stamps: time never goes back"},
+        visit(Field{"loop", "", "repeats the log from `from` on, with shifted stamps: time never runs backwards"},
               self.loop);
     }
 };

@@ -270,5 +270,5 @@ TEST_F(ReplayScoreTest, ALogWithoutPosesIsRefused) {
     record();
     const Outcome outcome = score("out/wall.0.log");
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml that comes before its sonars"));
+    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml before its sonars"));
 }

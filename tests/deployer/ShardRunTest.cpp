@@ -251,7 +251,7 @@ TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAgain) {
     const auto expectMended = [&](const std::string& what) {
         const Outcome outcome = folder.make("0/2", "shards", limit);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr(what), HasSubstr("the shard is made anew")));
+        EXPECT_THAT(outcome.err, AllOf(HasSubstr(what), HasSubstr("the shard is made again")));
         EXPECT_TRUE(filesIn(shard) == good);
     };
     std::string bytes = readFile(log);

@@ -166,7 +166,7 @@ TEST(Rip2Test, ReportsContradictionsWithTheirNumbers) {
     EXPECT_THAT(diagnosticOf(ripPacket(unscaled)), HasSubstr("has a pixel scale of nan"));
     StrengthPixels endless = someStrengths();
     endless.range = INFINITY;
-    EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("tells inf"));
+    EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("has a value of inf"));
     StrengthPixels missing = someStrengths();
     missing.height = 4;
     EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels, but its header has 3 x 4"));

@@ -118,7 +118,7 @@ TEST_F(DamageTest, TheFirstWrongByteIsNamed) {
     EXPECT_EQ(verdictOf(changed), "byte 8: the first record is no header");
     changed = whole_;
     changed.resize(changed.size() + 1);
-    EXPECT_EQ(verdictOf(changed), "byte " + std::to_string(whole_.size()) + ": the file goes on after its end");
+    EXPECT_EQ(verdictOf(changed), "byte " + std::to_string(whole_.size()) + ": the file continues after its end");
 }
 
 TEST_F(DamageTest, RefusesOtherFiles) {
