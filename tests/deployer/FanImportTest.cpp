@@ -153,7 +153,7 @@ TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
                 ASSERT_EQ(after.bins[other * bins + bin], before.bins[beam * bins + bin]) << beam << " " << bin;
         }
     }
-    const json scored = score();  // speckle goes by the time, which is another
+    const json scored = score();  // speckle depends on the time, which differs
     EXPECT_EQ(scored["compared"], 3);
     for (const json& ping : scored["pings"]) EXPECT_GT(ping["correlation"], 0.5) << ping.dump();
 }

@@ -117,7 +117,7 @@ TEST_F(Ping360EmulatorTest, WithoutTransmitTheAnswerHasNoData) {
     EXPECT_THAT(data.data, IsEmpty());
     EXPECT_FALSE(bench_.asked());
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
-    EXPECT_EQ(bench_.only<Ping360DeviceData>().acoustics, acoustics) << "which applies from now on";
+    EXPECT_EQ(bench_.only<Ping360DeviceData>().acoustics, acoustics) << "of this and later pings";
 }
 
 TEST_F(Ping360EmulatorTest, Mode0IsAcceptedAndReportedAs1) {
@@ -298,7 +298,7 @@ TEST_F(Ping360EmulatorTest, SamplesAreByTimeForAnySpeedOfSound) {
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
     bench_.say(transmitAt(0));
-    EXPECT_NEAR(bench_.asked()->range, listened * 1450 / 2, 1e-9) << "from now on";
+    EXPECT_NEAR(bench_.asked()->range, listened * 1450 / 2, 1e-9) << "for later pings";
 }
 
 TEST_F(Ping360EmulatorTest, AnswersHaveANewIdAndFramesForOthersAreIgnored) {
