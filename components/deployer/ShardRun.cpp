@@ -104,7 +104,7 @@ void refuseIndivisible(const Deployment& deployment) {
         diagnostics.push_back({path, why + " (--shard)"});
         diagnostics.back().file = spec.file;
     };
-    if (!spec.lockstep) refuse("schedule", "is realtime, whose pings depend on the wall clock; lockstep");
+    if (!spec.lockstep) refuse("schedule", "is realtime, whose pings depend on the wall clock; must be lockstep");
     for (const auto& task : deployment.tasks())
         if (const std::string why = whyWhole(*task, spec.task(task->name())->type); !why.empty())
             refuse("tasks." + task->name(), why);

@@ -66,7 +66,7 @@ TEST(DidYouMeanTest, NamesATabAndAWrongIndent) {
         {"      range: 20", "     \trange: 20", "is indented with a tab; indent with spaces"},
         {"      range: 20", "      range: 20\n     range_min: 1",
          "is indented by 5 spaces; after the lines above, it may be by 0 or 2 or 4 or 6"},
-        {"      range: 20", "      range: 20\n        range_min: 1", "is indented by 8 spaces; as the lines above are"},
+        {"      range: 20", "      range: 20\n        range_min: 1", "is indented by 8 spaces; after the lines above"},
     });
 }
 

@@ -333,7 +333,7 @@ TEST(ShardRunTest, TwoProcessesMayMakeTheSameShardAndOneIsKept) {
     EXPECT_EQ(second.wait().code, 0);
     EXPECT_EQ(folder.shards().size(), 1u);
     EXPECT_THAT(folder.leftovers(), IsEmpty());
-    EXPECT_THAT(folder.make("0/2", "shards", {"--pings", "200"}).out, HasSubstr("there already"));
+    EXPECT_THAT(folder.make("0/2", "shards", {"--pings", "200"}).out, HasSubstr("existed already"));
 }
 
 TEST(ShardRunTest, AnInterruptedShardIsReportedAndNotKept) {
@@ -413,7 +413,7 @@ TEST(ShardRunTest, ReportsEachTaskWhoseStateAShardCannotKnow) {
                                  "{from: noise.noisy, to: fan.ping}\n  - {from: sonar.pose, to: xtf.pose}\n"
                                  "  - {from: noise.noisy, to: xtf.ping}")
                             .insert(movingWall().find("  fan:"), "  xtf: {type: output::XtfTask}\n")),
-                HasSubstr("tasks.xtf: is a output::XtfTask, of which a shard cannot know"));
+                HasSubstr("tasks.xtf: is a output::XtfTask, whose state depends on earlier pings"));
 }
 
 }  // namespace

@@ -335,7 +335,7 @@ TEST_F(MicronEmulatorTest, RequestsAMissingPingAgainAndAnswersTheLineLate) {
         for (const types::SonarSettings& each : asked_) EXPECT_EQ(each.bearing.rad, asked_.front().bearing.rad);
         EXPECT_EQ(sent_[client].size(), size_t{22} * 4) << "mtAlive at 3, 4, 5 and 6 s, since the first ping is late";
         ASSERT_EQ(warnings_.size(), outage);
-        EXPECT_THAT(warnings_.back(), HasSubstr("no ping came"));
+        EXPECT_THAT(warnings_.back(), HasSubstr("a requested ping did not arrive"));
         sent_.clear();
         ping_.time = asked_.front().time - types::Time{1};
         emulator_.heard(ping_);

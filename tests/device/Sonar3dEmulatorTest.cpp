@@ -245,7 +245,7 @@ TEST_F(Sonar3dEmulatorTest, RequestsAMissingPingAgainAndWarnsOncePerOutage) {
     for (int i = 0; i < 3; ++i) advance(3);
     EXPECT_EQ(asked_.size(), 4u);
     ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_THAT(warnings_[0], HasSubstr("no range image came"));
+    EXPECT_THAT(warnings_[0], HasSubstr("a requested ping gave no range image"));
     types::DepthMap silent;
     silent.time = now_;
     emulator_.heard(silent);

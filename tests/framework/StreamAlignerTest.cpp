@@ -120,10 +120,9 @@ TEST_F(StreamAlignerTest, LateSamplesAreDroppedAndCounted) {
         << "19 is before the last sample handed over, 125 before 130";
     EXPECT_EQ(task_.poses.counts().received, 4u);
     EXPECT_EQ(task_.poses.counts().late, 2u);
-    EXPECT_THAT(
-        task_.aligner.notices(),
-        ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of others that went on without "
-                    "it: 1"));
+    EXPECT_THAT(task_.aligner.notices(),
+                ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of other ports handed over "
+                            "without it: 1"));
 }
 
 TEST_F(StreamAlignerTest, AFullPortDoesNotWaitAndLosesNothing) {
