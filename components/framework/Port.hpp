@@ -3,7 +3,7 @@
 // copied.
 //
 //     InputPort<types::Pose>         pose{this, "pose", "the vehicle in the world"};
-//     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "what stands where"};
+//     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "where each object is"};
 //
 // Ports connect and disconnect at any time, from any thread, while samples are written and read. A port's destructor
 // disconnects it. At that moment the connected ports may be in use, but must not be destroyed or disconnected from this
