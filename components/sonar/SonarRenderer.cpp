@@ -34,8 +34,8 @@ struct SonarRenderer::Parts {
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* told_ping = nullptr;
-    types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
-    std::optional<LineArray> array;      ///< From the first ping whose signals are taken on.
+    types::SonarTruth* truth = nullptr;  ///< Filled with `told_ping`; null: no truth.
+    std::optional<LineArray> array;      ///< Made at the first ping whose signals are taken.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
@@ -70,7 +70,7 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr scene) {
         plan = makeRenderPlan(plan.config, *scene, plan.options);
         effects = PingEffects(plan, *scene);
     }
-    const types::GeometryPtr before = std::exchange(geometry, scene);  // until nothing refers to it
+    const types::GeometryPtr before = std::exchange(geometry, scene);  // kept until unused
     if (!echoes->takeScene(std::move(scene), same_plan)) makeEchoes();
     if (!same_plan) describePlan();
     return !same_plan;

@@ -115,7 +115,7 @@ TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
 TEST_F(CrosstalkRunTest, RefusesWrongConnections) {
     Outcome outcome = run(replaced(pair, ", crosstalk: {}", ""), {"--pings", "2"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("others: is connected; the sonar does not hear other sonars: "
+    EXPECT_THAT(outcome.err, testing::HasSubstr("others: is connected; the sonar does not receive other sonars: "
                                                 "give it `crosstalk: {}`"));
     std::string loop = replaced(pair, "one_sonar.others, policy: {type: circular_buffer, size: 8}", "one_sonar.others");
     loop = replaced(loop, "two_sonar.others, policy: {type: circular_buffer, size: 8}", "two_sonar.others");
@@ -130,5 +130,6 @@ TEST_F(CrosstalkRunTest, RefusesWrongConnections) {
     EXPECT_THAT(outcome.err, testing::HasSubstr("visibility: is gl with crosstalk.echoes, which needs rays"));
     outcome = run(pair, {"--pings", "4", "--shard", "1/2"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("pings of other sonars are heard, which a shard does not have"));
+    EXPECT_THAT(outcome.err,
+                testing::HasSubstr("the sonar receives pings of other sonars, which a shard does not have"));
 }

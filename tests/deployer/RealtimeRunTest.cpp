@@ -70,7 +70,7 @@ TEST(RealtimeRunTest, StalePosesAreReportedAndPingsContinueWithNewPoses) {
     EXPECT_GE(summary["tasks"]["scene"]["errors"], 2);
     EXPECT_GE(summary["pings"], 3);
     EXPECT_THAT(summary["warnings"].get<std::vector<std::string>>(),
-                Contains("scene: RunTimeError: scene.pose: no pose of the last 0.2 s (pose_timeout)"));
+                Contains("scene: RunTimeError: scene.pose: no pose in the last 0.2 s (pose_timeout)"));
     EXPECT_THAT(outcome.err, HasSubstr("warning: scene: has recovered"));
 }
 
@@ -81,5 +81,5 @@ TEST(RealtimeRunTest, PosesThatEndBeforeTheRunAreReportedAndNotAFailure) {
     process.signal(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("warning: scene: RunTimeError: scene.pose: no pose of the last 0.2 s"));
+    EXPECT_THAT(outcome.err, HasSubstr("warning: scene: RunTimeError: scene.pose: no pose in the last 0.2 s"));
 }

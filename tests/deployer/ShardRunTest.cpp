@@ -399,9 +399,9 @@ TEST(ShardRunTest, ReportsEachTaskWhoseStateAShardCannotKnow) {
         replaced(movingWall(), "quality: {rows: 32, columns_per_beam: 2}", "volume: {strength_db: -70}");
     EXPECT_THAT(refusal(replaced(chosen, ", reference_db: -20", "")),
                 AllOf(HasSubstr("wall.yml: tasks.sonar: quality: is chosen from the pings before"),
-                      HasSubstr("tasks.fan: reference_db: is absent, and the brightest colour follows the echoes")));
+                      HasSubstr("tasks.fan: reference_db: is absent, so the brightest colour follows the echoes")));
     EXPECT_THAT(refusal(replaced(movingWall(), "output::FanImageTask", "output::WaterfallImageTask")),
-                HasSubstr("tasks.fan: its pictures show pings of before as well"));
+                HasSubstr("tasks.fan: its pictures also show earlier pings"));
     EXPECT_THAT(refusal(replaced(movingWall(), "every: 3", "every: 3, video: fan.avi")),
                 HasSubstr("tasks.fan: video: is one file of all pictures"));
     EXPECT_THAT(refusal(replaced(movingWall(), "type: logger::LoggerTask",

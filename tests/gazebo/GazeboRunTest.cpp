@@ -74,7 +74,7 @@ TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     EXPECT_TRUE(gazebo::comesTrue([&] { return publish(true), fs::exists(folder / "out/fan_000003.png"); }));
     EXPECT_TRUE(gazebo::comesTrue([&] {
         publish(false);
-        return readFile(folder / "stderr.txt").find("no pose of the last 2 s (pose_timeout)") != std::string::npos;
+        return readFile(folder / "stderr.txt").find("no pose in the last 2 s (pose_timeout)") != std::string::npos;
     }));
     EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);

@@ -81,7 +81,7 @@ TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollow
     auto vehicles = fly();
     EXPECT_TRUE(comesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); }));
     vehicles = {};
-    EXPECT_TRUE(says("no pose of the last 2 s (pose_timeout)"));
+    EXPECT_TRUE(says("no pose in the last 2 s (pose_timeout)"));
     vehicles = fly();
     const auto pictures = [&] {
         return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});

@@ -166,7 +166,7 @@ TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFro
     addEffect(std::make_unique<OwnSumsEffect>());
     const types::Snapshot snapshot = hardScene();
     const std::string notice =
-        "pictures are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
+        "images are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
     for (const bool with_effect : {false, true})
         for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
             SonarConfig config = depositFan(Model::Physical, BeamGeometry::Planar, where);

@@ -194,7 +194,8 @@ TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
     one.beam_count = 1;
     one.field_of_view_deg = 2;
     const auto heardAt = [&](double bearing) {
-        const auto geometry = test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        const auto geometry =
+            test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
     EXPECT_GT(heardAt(turn * flight / 2), 0);
@@ -239,7 +240,7 @@ TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
     EXPECT_FALSE(plan.leftOut("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
-                testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
+                testing::Contains(HasSubstr("motion within a ping is simulated from 0.12 m/s or 1.2 deg/s")));
     SonarConfig without = movingFan();
     without.motion_in_ping = false;
     EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));

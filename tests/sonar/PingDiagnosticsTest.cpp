@@ -50,7 +50,7 @@ TEST_F(PingDiagnosticsTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
     ping(wall, 0, 2);
     EXPECT_THAT(told_, IsEmpty());
     ping(wall, 180, 5);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: hears nothing")));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: receives no echo")));
     ping(wall, 0, 3);
     ping(wall, 180, 5);
     EXPECT_EQ(told_.size(), 1u) << "heard for three pings only";

@@ -195,7 +195,8 @@ TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
     std::vector<acoustics::RayPoint> at(2);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
     const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
-    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}), far = test::sceneOf({uprightPlate(place(1))});
+    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}),
+               far = test::sceneOf({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
     const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
     const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
@@ -265,7 +266,7 @@ TEST(RefractionTest, WhatIsDrawnRefusesAProfileThatMatters) {
     config.visibility = Visibility::Gl;
     config.device = "software";
     const auto geometry = test::sceneOf({test::ground(-20)});
-    EXPECT_THAT(whyStraight(config), HasSubstr("rays alone"));
+    EXPECT_THAT(whyStraight(config), HasSubstr("only ray tracing"));
     EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
     config.range = 20;
     config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});

@@ -228,7 +228,7 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"bearings_deg: [0, 1]", "beam_width_deg: ", "bearings_deg needs the width"},
           Case{"beam_width_deg: 3", "beam_width_deg: ", "256 beams of it cover 768 deg, may be 360"},
           Case{"{beam_width_deg: 90, beam_width_convention: total_fov, field_of_view_deg: 90}",
-               "field_of_view_deg: ", "one of the two tells the fan"},
+               "field_of_view_deg: ", "give one of the two"},
           Case{"{beam_width_deg: 1, field_of_view_deg: 90, model: cerqueira2017, published: true}",
                "beam_width_deg: ", "as wide as their spacing"},
           Case{"{bearings_deg: [0], beam_width_deg: 130}", "beam_width_deg: ", "one beam may have 120"},

@@ -133,7 +133,7 @@ TEST_F(SonarTaskTest, ASonarThatJumpsPingsFromWhereItIsPutAndIsWarnedOfOnce) {
     }
     EXPECT_THAT(jumps,
                 ::testing::ElementsAre("task: the sonar has moved 160 m in 1 s, faster than a tenth of the speed "
-                                       "of sound, 150 m/s: it is taken as put there, at rest unless its pose "
+                                       "of sound, 150 m/s: it counts as repositioned, at rest unless its pose "
                                        "has a velocity"));
     for (int i = 0; i < 10; ++i) pingAt(0);
     pingAt(200);

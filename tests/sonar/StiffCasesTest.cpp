@@ -22,7 +22,7 @@ SonarConfig stiffFan(double field_of_view_deg = 60, int beams = 16, int bins = 2
 }
 
 std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr& geometry,
-                          const RenderOptions& options = {}) {
+                             const RenderOptions& options = {}) {
     return test::pingOf(config, test::snapshotOf(geometry), options).bins;
 }
 
@@ -128,7 +128,7 @@ TEST(StiffCasesTest, APictureLargerThanAnyDevicesIsRefusedInWords) {
         stiffBins(config, test::sceneOf({test::wall(10)}));
         FAIL() << "was drawn";
     } catch (const std::exception& error) {
-        EXPECT_THAT(error.what(), HasSubstr("cannot draw"));
+        EXPECT_THAT(error.what(), HasSubstr("cannot render"));
     }
 }
 

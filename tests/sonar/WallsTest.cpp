@@ -227,7 +227,7 @@ TEST(WallsTest, WhyItIsLeftOutIsSaid) {
     EXPECT_THAT(why(config, scene), testing::HasSubstr("visibility: cpu"));
     config = wallSonar(8, 2, 4);
     config.motion_in_ping = true;
-    EXPECT_THAT(why(config, scene), testing::HasSubstr("straight ways"));
+    EXPECT_THAT(why(config, scene), testing::HasSubstr("straight paths"));
 }
 
 }  // namespace
