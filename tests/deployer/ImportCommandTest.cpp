@@ -203,7 +203,7 @@ TEST_F(ImportCommandTest, ReportsWhyAFileCannotBeImported) {
     EXPECT_THAT(import("missing.raw").err, HasSubstr("missing.raw: cannot be read"));
     record(1);
     writeFile(folder_ / "plain.yml", wall_deployment);
-    EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that gives out codes"));
+    EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that outputs codes"));
     const Outcome outcome =
         callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"});
     EXPECT_EQ(outcome.code, 2);
