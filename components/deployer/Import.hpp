@@ -19,14 +19,14 @@ struct Imported {
 };
 
 /** Makes a log of a device's recording, whose content identifies it: an XTF or JSF file of a side-scan, an .aris file,
- *  a Gemini's .glf file, or an Oculus recording. The log has every ping. Next to it, properties.0.log has the settings
- *  of sonar and receiver at each ping. The log can thus be exported, replayed, rendered again and scored like a
+ *  a Gemini's .glf file, or an Oculus recording. The log has every ping, and can be exported and replayed like a
  *  recorded run.
  *
- *  With a deployment, the pings become those of its receiver that outputs codes, and poses use its names. Without a
- *  deployment, the tasks are called sonar, receiver and vehicle. A side-scan's file has its own poses and altitudes, an
- *  .aris file may have poses and altitudes. Gemini and Oculus recordings have none, and get those of the deployment's
- *  trajectories. A network capture without times starts at 1 s.
+ *  With a deployment, the pings become those of its receiver that outputs codes, and poses use its names. Next to the
+ *  log, properties.0.log has the settings of sonar and receiver at each ping, so that the log can be rendered again and
+ *  scored. Without a deployment, the tasks are called sonar, receiver and vehicle. A side-scan's file has its own poses
+ * and altitudes, an .aris file may have poses and altitudes. Gemini and Oculus recordings have none, and get those of
+ * the deployment's trajectories. A network capture without times starts at 1 s.
  *  @throws types::ConfigError if the file is not a recording, or the deployment lacks these tasks */
 Imported importRecording(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
                          const std::filesystem::path& to);
