@@ -1,4 +1,4 @@
-// What a run says whose sonar hears nothing.
+// Warnings of runs whose sonar receives no echoes.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -27,7 +27,7 @@ size_t count(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST(SilentRunTest, ItIsToldOnceWhereTheSonarIsWhichWayItLooksAndWhereTheSceneLies) {
+TEST(SilentRunTest, WarnsOnceWithThePositionLookDirectionAndBoundsOfTheScene) {
     const std::string text = told({"sonar.range=5"});
     EXPECT_EQ(count(text, "warning: sonar: receives no echo"), 1u) << text;
     EXPECT_THAT(text, AllOf(HasSubstr("The sonar is at [0, 0, 0] and looks towards [1, 0, 0]"),
@@ -35,14 +35,14 @@ TEST(SilentRunTest, ItIsToldOnceWhereTheSonarIsWhichWayItLooksAndWhereTheSceneLi
                             HasSubstr("its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5")));
 }
 
-TEST(SilentRunTest, WhatKeepsItFromHearingTheNearestPointIsNamed) {
+TEST(SilentRunTest, NamesWhyTheNearestPointGivesNoEcho) {
     EXPECT_THAT(told({"scene.mount={yaw_deg: 180}"}), HasSubstr("at a bearing of 180 deg to "));
     EXPECT_THAT(told({"scene.mount={pitch_deg: 85}"}),
                 AllOf(HasSubstr("85 deg down"), HasSubstr("85 deg above the sonar's plane")));
     EXPECT_THAT(told({"sonar.range_min=19"}), HasSubstr("nearer than range_min, 19 m"));
 }
 
-TEST(SilentRunTest, SidelobesAreListenedToAsFarAsTheFloorSays) {
+TEST(SilentRunTest, SidelobesReceiveEchoesDownToTheFloor) {
     const std::string pattern =
         "sonar.beam_pattern={receive: {elevation: {weighting: gaussian, width_deg: 10}}, floor_db: ";
     const std::string up = "scene.mount={pitch_deg: 85}";
@@ -56,10 +56,10 @@ TEST(SilentRunTest, SidelobesAreListenedToAsFarAsTheFloorSays) {
     EXPECT_THAT(told({"scene.mount={yaw_deg: 45}",
                       "sonar.beam_pattern={receive: {azimuth: {weighting: uniform, width_deg: 4}}}"}),
                 Not(HasSubstr("receives no echo")))
-        << "the wall is heard by sidelobes";
+        << "the wall's echo is received by sidelobes";
 }
 
-TEST(SilentRunTest, AMaterialThatGivesNothingBackIsNamed) {
+TEST(SilentRunTest, NamesAMaterialWithoutBackscatter) {
     EXPECT_THAT(told({"sonar.model=cerqueira2017", "scene.materials={wall: {reflectivity: 0}}"}),
                 AllOf(HasSubstr("its nearest point 10 m away at [10, 0, 0] of wall: its material '"),
                       HasSubstr("' has reflectivity 0 and returns no echo")));
@@ -68,7 +68,7 @@ TEST(SilentRunTest, AMaterialThatGivesNothingBackIsNamed) {
         AllOf(HasSubstr("of wall: its material '"), HasSubstr("', of lambert_db -200 dB, returns no detectable echo")));
 }
 
-TEST(SilentRunTest, ATargetBehindTheWallIsNamedAsWell) {
+TEST(SilentRunTest, NamesATargetBehindTheWall) {
     EXPECT_THAT(told({"sonar.range=5",
                       "scene.targets=[{name: buoy, position: [0, 4, 0], strength_db: 0}, "
                       "{name: far, position: [9, 0, 0], strength_db: 0}]"}),
@@ -78,7 +78,7 @@ TEST(SilentRunTest, ATargetBehindTheWallIsNamedAsWell) {
                 Not(HasSubstr("receives no echo")));
 }
 
-TEST(SilentRunTest, ASonarInsideOfAClosedMeshIsToldOfOnce) {
+TEST(SilentRunTest, WarnsOnceOfASonarInsideAClosedMesh) {
     const WallFolder folder;
     writeFile(folder / "wall.gltf",
               gltfOf({-2, -2, -2, 2, -2, -2, 2, 2, -2, -2, 2, -2, -2, -2, 2, 2, -2, 2, 2, 2, 2, -2, 2, 2},
@@ -93,9 +93,9 @@ TEST(SilentRunTest, ASonarInsideOfAClosedMeshIsToldOfOnce) {
     EXPECT_THAT(text, Not(HasSubstr("receives no echo")));
 }
 
-TEST(SilentRunTest, ARunThatHearsSomethingSaysNothing) { EXPECT_THAT(told({}), Not(HasSubstr("receives no echo"))); }
+TEST(SilentRunTest, ARunWithEchoesPrintsNothing) { EXPECT_THAT(told({}), Not(HasSubstr("receives no echo"))); }
 
-TEST(SilentRunTest, AHeadIsGivenAWholeTurnToHearSomething) {
+TEST(SilentRunTest, WaitsForAFullTurnOfAHead) {
     const std::string scanning = replaced(replaced(wall_deployment, "sonar::SonarTask", "sonar::ScanningSonarTask"),
                                           "      beam_count: 16\n      bin_count: 50\n      field_of_view_deg: 60\n    "
                                           "  beam_height_deg: 10\n      quality: {rows: 32, columns_per_beam: 2}\n",

@@ -80,7 +80,7 @@ TEST_F(ScanMosaicTaskTest, CountsAndReportsAHeldPose) {
     ASSERT_TRUE(task_.stop());
     EXPECT_EQ(pictures(), 2u);
     EXPECT_THAT(task_.notices(),
-                ElementsAre("pose: samples of others that went on without it: 1",
+                ElementsAre("pose: samples of other ports handed over without it: 1",
                             "Warning: each ping at its pose, north up: 3 pings, 3 at a pose held for up to 0.7 s"));
 }
 

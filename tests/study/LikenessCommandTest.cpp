@@ -101,7 +101,7 @@ TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     record(folder / "pings.raw");
     Outcome outcome = callInsonify(folder, {"study", "likeness", "wall.yml", "--real", "pings.raw", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that gives out codes"));
+    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that outputs codes"));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "wall.yml", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("wall.yml: holds no ping of an Oculus"));
