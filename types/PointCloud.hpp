@@ -11,8 +11,8 @@ namespace insonify::types {
 
 /** Points at one time, field for field Rock's base::samples::Pointcloud.
  *
- *  Red, green and blue of a point from an echo are the intensity of the echo on the scale of the bins, and alpha is 1,
- *  because Rock's type has no other field for the intensity. */
+ *  The colour of a point contains the intensity of its echo, because Rock's type has no other field for it: red, green
+ *  and blue are the intensity on the scale of the bins, and alpha is 1. */
 struct PointCloud {
     static constexpr const char* type_name = "/base/samples/Pointcloud";
     static constexpr bool shared = true;

@@ -22,9 +22,9 @@ scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem:
 /** Makes a scene from the bytes of Gazebo's message Scene.
  *
  *  Each model and link is a node, named by its scope ("rov::arm::hand"), below the node of its model. Objects are the
- *  visuals. Meshes and pictures are searched at the path in the message, then by the last parts of the path in the
- *  folders of meshes::ModelPaths, because Gazebo may run on another machine. Geometry::notices lists visuals that
- *  cannot be shown. Throws types::ConfigError when the bytes are no Scene, or the Scene has too many parts. */
+ *  visuals. Gazebo may run on another machine. Meshes and pictures are therefore searched at the path in the message,
+ *  then by the last parts of the path in the folders of meshes::ModelPaths. Geometry::notices lists visuals that cannot
+ *  be shown. Throws types::ConfigError when the bytes are no Scene, or the Scene has too many parts. */
 World worldOf(std::string_view message, const std::filesystem::path& folder);
 
 /** Returns the names in a world when its scene was last read in this process; none when it was not read. */

@@ -61,10 +61,10 @@ public:
     /** Throws GlError with the first error that GL has reported since the last call, or when the context is lost. */
     void check();
 
-    /** Return locks to hold while rasterising, which other contexts may do at the same time, and while transferring
-     *  data or making or destroying objects, when no context of this process may rasterise. At each transfer, Mesa's
-     *  software renderer (22.3) reads the pending work of all contexts without a lock, and crashes. Both locks are
-     *  empty on a graphics card. A thread must not hold them twice. */
+    /** Return locks. Hold drawing() while rasterising; several contexts may hold it at the same time. Hold
+     *  transferring() while transferring data or making or destroying objects; then no context of this process may
+     *  rasterise. At each transfer, Mesa's software renderer (22.3) reads the pending work of all contexts without a
+     *  lock, and crashes. Both locks are empty on a graphics card. A thread must not hold them twice. */
     [[nodiscard]] std::shared_lock<std::shared_mutex> drawing() const;
     [[nodiscard]] std::unique_lock<std::shared_mutex> transferring() const;
     /** Returns the lock of transferring() for use before there is a context, which may be on the software renderer. */

@@ -109,8 +109,9 @@ public:
      *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
     static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false);
 
-    /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the
-     *  world and angular velocity [rad/s] in the body, both zero outside the stamps. Does not set Pose::time. */
+    /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run. It has a velocity in the
+     *  world [m/s] and an angular velocity in the body [rad/s], both zero outside the stamps. Does not set
+     *  Pose::time. */
     types::Pose at(double time) const;
     /** Returns the time of a looped trajectory for a time of the run [s]: unchanged before the first stamp, else from
      *  the first stamp up to the last. */

@@ -106,7 +106,7 @@ protected:
     }
 
     static inline types::GeometryPtr geometry;
-    static inline std::vector<types::Pose> poses;  ///< Of the sonar, four a second.
+    static inline std::vector<types::Pose> poses;  ///< Poses of the sonar, four per second.
     static inline SonarConfig sonar;
 };
 

@@ -39,7 +39,7 @@ std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
 /** 1500 m/s at the surface, with a strong thermocline to any depth. */
 std::string thermocline(double gradient = 0.1) { return profileOf({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
 
-/** To 2 km by bins of 2 m; the sonar's own speed is 1500 m/s. */
+/** A sonar to 2 km in bins of 2 m; its speed of sound is 1500 m/s. */
 SonarConfig longRange(const std::string& profile, double height_deg = 30) {
     SonarConfig config;
     config.range_rounding = RangeRounding::Exact;
