@@ -15,9 +15,9 @@ constexpr size_t min_node_triangles = 1000;
 /** Max triangles of a mesh's outline, for each run of one material. */
 constexpr size_t max_coarse_triangles = 4000;
 
-/** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
- *  box, and runs of a large mesh are split where their triangles lie apart, with patches over them, an outline of
- *  few triangles and, if it is closed, cones of their backs. */
+/** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material. On return each has its
+ *  box. Runs of a large mesh are split where their triangles are far apart, with patches over them and an outline of
+ *  few triangles. If such a mesh is closed, its clusters have the cones from which only their backs are visible. */
 void buildClusters(types::Mesh& mesh);
 
 }  // namespace insonify::scene

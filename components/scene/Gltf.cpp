@@ -203,7 +203,7 @@ private:
         return instances;
     }
 
-    /** Index into Geometry::meshes, -1 for a mesh without triangles; read when first met. */
+    /** Index into Geometry::meshes, -1 for a mesh without triangles. Reads the mesh on its first use. */
     int meshIndex(size_t mesh) {
         const auto [known, is_new] = mesh_indices_.try_emplace(mesh, -1);
         if (!is_new) return known->second;
@@ -214,7 +214,7 @@ private:
         return known->second;
     }
 
-    /** Adds a mesh in clusters; a large one is split while others are read, and takes its place in finishMeshes(). */
+    /** Adds a mesh in clusters. A large mesh is split while others are read, and is stored by finishMeshes(). */
     void cluster(types::Mesh&& mesh) {
         types::Mesh& place = geometry_.meshes.emplace_back();
         if (mesh.indices.size() / 3 <= clustered_from) {
@@ -241,10 +241,10 @@ private:
         const auto count = [&notices](size_t number, const char* what) { addCount(number, what, notices); };
         const Omissions& omissions = meshes_.omissions();
         omissions.dropped.addTo(notices);
-        count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
+        count(omissions.other_primitives, "primitives of points or lines omitted, they have no surface");
         count(omissions.morphed_meshes, "meshes with morph targets loaded unmorphed");
-        count(omissions.unmapped_primitives, "primitives loaded without their map for want of texture coordinates");
-        count(flat_objects_, "objects left out, their scale is zero in some direction");
+        count(omissions.unmapped_primitives, "primitives loaded without their map, they have no texture coordinates");
+        count(flat_objects_, "objects omitted, their scale is zero in some direction");
         count(gltf_.model.animations.size(), "animations not played, the scene is loaded at rest");
         if (has_skin_) notices.push_back("skins not applied, the meshes are loaded at rest");
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");

@@ -22,7 +22,7 @@ public:
     template <class Vector>
     std::vector<Vector> vectors(int accessor) const;
     std::vector<uint32_t> indices(int accessor) const;
-    /** Bytes [begin, end) of a bufferView. */
+    /** Returns the bytes [begin, end) of a bufferView. */
     std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;
     /** Returns the max value of the accessor's component type: the index that restarts a strip. */
     uint32_t restartIndex(int accessor) const;

@@ -66,8 +66,8 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
         if (findNode(scene, name) < 0)
             diagnostics.push_back({"scale." + name, "is no node of the scene; " + types::didYouMean(name, names) +
                                                         "insonify scene lists them"});
-    std::vector<glm::dmat4> world_from_node;  // with the nodes above as large as they are now
-    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // of what is below a node, in the world
+    std::vector<glm::dmat4> world_from_node;                             // with the nodes above at their scaled size
+    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // below each node, in the world
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = result.nodes[i];
         const bool has_parent = node.parent >= 0;

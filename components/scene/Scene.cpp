@@ -92,7 +92,7 @@ glm::dmat4 bodyFromNode(const Scene& scene, int node) {
            glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
 }
 
-/** That of the component library. */
+/** Returns the reader of the component library sdf. */
 auto* sdfReader(const std::filesystem::path& file) try {
     return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
 } catch (const types::ConfigError& error) {

@@ -55,7 +55,8 @@ bool isFinite(const glm::dmat4& matrix);
 /** Returns the index of the node with that name, -1 if there is none. */
 int findNode(const Scene& scene, const std::string& name);
 
-/** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
+/** Returns the objects at and below a node. With a pose of the body, world_from_object = world_from_body *
+ *  body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
 
 /** Returns a point of a node in the axes of a body. `body` is the index of a node at or above `node`, or -1 for the

@@ -135,7 +135,7 @@ struct SceneConfig {
                     "materials without acoustic values are of the matter or sediment that their names contain, such as "
                     "Steel.001; false: they are medium sand"},
               self.materials_by_name);
-        visit(Field{"targets", "", "point targets, heard by the active sonar equation; absent: none"}, self.targets);
+        visit(Field{"targets", "", "point targets, rendered by the active sonar equation; absent: none"}, self.targets);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

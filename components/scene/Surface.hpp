@@ -12,10 +12,10 @@ namespace insonify::scene {
 /** Triangles of one material as read from a file: three vertices each, in parallel arrays. */
 struct Surface {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
-    std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
-    std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
-    std::vector<glm::vec2> map_uvs;   ///< Empty, or as many as positions: of a surface map.
+    std::vector<glm::vec3> normals;   ///< Empty, or one unit vector per position.
+    std::vector<glm::vec4> tangents;  ///< Empty, or one unit vector and handedness per position.
+    std::vector<glm::vec2> uvs;       ///< Empty, or one per position.
+    std::vector<glm::vec2> map_uvs;   ///< Empty, or one per position: of a surface map.
     std::vector<uint32_t> indices;
 };
 
@@ -27,7 +27,8 @@ struct DroppedTriangles {
     void addTo(std::vector<std::string>& notices) const;
 };
 
-/** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0. */
+/** Drops triangles that cannot be rasterised, and counts them. A damaged vertex, which is no longer used, is set to
+ *  0. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
 /** Calls `use(a, b, c, d)` for each cell of a grid whose vertices are stored row by row. a and b are neighbours in one
