@@ -8,7 +8,7 @@
 
 namespace insonify::scene {
 
-/** A node of a scene, as the file arranges them. Every parent comes before its children. */
+/** A node of a scene, as the file arranges them. Every parent precedes its children. */
 struct Node {
     std::string name;                ///< Unique: the file's, else its mesh's, else "node_3".
     int parent = -1;                 ///< Index of a node, -1 at the root.

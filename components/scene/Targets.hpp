@@ -16,7 +16,7 @@ struct PlacedTarget {
     };
     glm::dvec3 in_world{0};         ///< Place before any node has moved [m].
     double strength_db = 0;         ///< [dB re 1 m^2]
-    std::vector<Carrier> carriers;  ///< Inner nodes before outer ones.
+    std::vector<Carrier> carriers;  ///< Inner nodes before outer nodes.
 };
 
 /** Places targets in a scene whose nodes `moving` move. Adds errors to `diagnostics` at path

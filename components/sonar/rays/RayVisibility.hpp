@@ -28,7 +28,7 @@ struct TileHits {
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
     float distance[tile_samples];            ///< In lengths of the ray's direction [1].
-    float range[tile_samples];               ///< Slant range, set by castAlong() only [m].
+    float range[tile_samples];               ///< Slant range, set by traceAlong() only [m].
 };
 
 /** Rays of a tile with any origins, sonar axes; distances along them in lengths of their directions. */
@@ -65,14 +65,14 @@ public:
 
     /** Traces tiles from the sonar, at most `tiles_at_once`, which should be neighbours: hits[i] are the hits of
      *  rays[i]. Thread-safe. */
-    void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
+    void trace(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
     /** Finds the first hits of rays with other origins. */
-    void cast(const PathRays& rays, TileHits& hits) const;
+    void trace(const PathRays& rays, TileHits& hits) const;
     /** Returns the active rays, as bits, that hit anything. */
     uint32_t blocked(const PathRays& rays) const;
     /** Traces a tile along paths that are not straight, by straight pieces between their corners. */
-    void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
+    void traceAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 
     /** Returns the commands that hits refer to: one for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
@@ -87,15 +87,15 @@ private:
         double start, end;
         Places from, to;
     };
-    void castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
-                   TileHits& hits) const;
+    void tracePiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                    TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
     /** Records the objects of a snapshot as moving; every tree is to be rebuilt. */
     void forgetTrees(const types::Snapshot& snapshot);
     void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
-    void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
+    void traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
