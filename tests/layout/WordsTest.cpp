@@ -18,12 +18,11 @@ using Texts = std::vector<std::string>;
 
 /** Words of no identifier, comment or page. */
 const std::set<std::string, std::less<>> unwanted{
-    "tell",      "tells",      "told",   "telling", "hear",    "hears",    "heard", "hearing",
-    "unheard",   "beside",     "aim",    "aims",    "aimed",   "slab",     "slabs", "lane",
-    "judge",     "judges",     "judged", "regard",  "regards", "regarded", "casts", "caster",
-    "complaint", "complaints", "stands", "goes",    "comes",   "lies",     "ones"};
-/** In addition of no identifier: bounds are "max" and "min". */
-const std::set<std::string, std::less<>> unwanted_in_names{"most", "least", "largest", "smallest", "cast", "lanes"};
+    "tell",    "tells",    "told",   "telling",   "hear",       "hears",  "heard", "hearing", "unheard", "beside",
+    "aim",     "aims",     "aimed",  "slab",      "slabs",      "lane",   "judge", "judges",  "judged",  "regard",
+    "regards", "regarded", "caster", "complaint", "complaints", "stands", "goes",  "comes",   "lies",    "ones"};
+/** In addition of no variable or function: bounds are "max" and "min". */
+const std::set<std::string, std::less<>> unwanted_in_names{"most", "least", "largest", "smallest", "lanes"};
 /** Two words of no comment or page. */
 constexpr std::array<std::array<std::string_view, 2>, 6> unwanted_pairs{
     {{"so", "many"}, {"so", "much"}, {"as", "many"}, {"as", "much"}, {"left", "out"}, {"leaves", "out"}}};
@@ -57,13 +56,14 @@ Texts unwantedIn(std::string_view prose) {
 /** Returns the name if it has an unwanted word, but for names of other libraries and of `types::Plan`, which logs
  * contain. */
 Texts unwantedInName(std::string_view name) {
-    static const std::set<std::string, std::less<>> others{"ones", "ones_like", "cast", "cast_shadows", "slabs"};
+    static const std::set<std::string, std::less<>> others{"ones", "ones_like", "slabs"};
     Texts found;
-    if (name.ends_with("_cast") || others.contains(name)) return found;
+    if (others.contains(name)) return found;
+    const bool is_type = std::isupper(static_cast<unsigned char>(name[0])) && name.find('_') == std::string_view::npos;
     const Texts words = wordsOf(name);
     for (size_t i = 0; i < words.size(); ++i) {
         const bool is_bound = (words[i] == "most" || words[i] == "least") && i > 0 && words[i - 1] == "at";
-        if (unwanted.contains(words[i]) || (unwanted_in_names.contains(words[i]) && !is_bound))
+        if (unwanted.contains(words[i]) || (unwanted_in_names.contains(words[i]) && !is_bound && !is_type))
             found.push_back(std::string(name));
     }
     return found;

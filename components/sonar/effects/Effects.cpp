@@ -21,7 +21,7 @@ const Effect& volume();
 const Effect& speckle();
 const Effect& multipath();
 const Effect& thinWalls();
-const Effect& frusta();
+const Effect& furtherFrusta();
 const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
@@ -38,7 +38,7 @@ struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{&absorption(),      &backscatter(),   &publishedMeans(), &beamPatterns(),
                                    &pulse(),           &ringDown(),      &volume(),         &speckle(),
-                                   &multipath(),       &thinWalls(),     &frusta(),         &refraction(),
+                                   &multipath(),       &thinWalls(),     &furtherFrusta(),         &refraction(),
                                    &motionInPing(),    &normalMaps(),    &surfaceMaps(),    &pointTargets(),
                                    &edgeDiffraction(), &imperfections(), &crosstalk(),      &truth()};
 };
