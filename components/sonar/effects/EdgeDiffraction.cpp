@@ -26,7 +26,7 @@ public:
 
     void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
-        received_ = edges_->add(ping.snapshot, ping.ping, ping.field);
+        received_ = edges_->add(ping);
         pinged_ = true;
     }
     size_t received() const override { return received_; }
