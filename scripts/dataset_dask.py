@@ -28,7 +28,7 @@ def main():
     given_up = (KilledWorker, OSError)    # no worker survived it, or none has the command
     with Client(cluster) as client:
         shards = [client.submit(make, args.command, index, args.shards, pure=False) for index in range(args.shards)]
-        done = [shard_workers.tell(shard.result, given_up, args.shards) for shard in as_completed(shards)]
+        done = [shard_workers.report(shard.result, given_up, args.shards) for shard in as_completed(shards)]
     if not args.scheduler:
         cluster.close()
     return 0 if all(done) else 1

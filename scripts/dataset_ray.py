@@ -37,7 +37,7 @@ def main():
     all_done = True
     while waiting:
         (shard,), waiting = ray.wait(waiting)
-        all_done &= shard_workers.tell(lambda: ray.get(shard), ray.exceptions.RayError, args.shards)
+        all_done &= shard_workers.report(lambda: ray.get(shard), ray.exceptions.RayError, args.shards)
     return 0 if all_done else 1
 
 

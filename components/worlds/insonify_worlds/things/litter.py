@@ -69,7 +69,7 @@ def can(rng, p):
 
 
 def lying(body, p, materials, radius=None):
-    """A round body, lying on its side unless it stands."""
+    """A round body, on its side unless it is upright."""
     if not p["upright"]:
         body = moved(body, turn=rotation(pitch=90))
     return Model([(body, materials[0])])
