@@ -4,7 +4,7 @@
     scripts/dataset_dask.py --shards 16 --workers 2 -- insonify run deploy/x.yml --pings 1600 --out DIR
     scripts/dataset_dask.py --shards 16 --scheduler tcp://HOST:8786 -- insonify dataset ...
 
-All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes what is missing.
+All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes the missing shards.
 It prints a line for each finished shard; the exit code is 1 if a shard has failed. Needs PyPI's distributed."""
 import subprocess
 import sys

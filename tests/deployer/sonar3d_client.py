@@ -54,9 +54,9 @@ sonar.set_salinity("fresh")
 sonar.set_output_imu_batch_enabled(True)
 sonar.set_time_ntp(wlsonar.NTPConfiguration("10.0.0.1"))
 results["kept"] = [sonar.get_speed_of_sound(), sonar.get_range(), sonar.get_mode(), sonar.get_salinity(),
-                sonar.get_output_imu_batch_enabled(), sonar.get_time_ntp().ntp_address]
+                   sonar.get_output_imu_batch_enabled(), sonar.get_time_ntp().ntp_address]
 results["refused"] = [refused(lambda: sonar.set_range(0, 1000)), refused(lambda: sonar.set_speed_of_sound(10)),
-                   refused(lambda: sonar.set_udp_unicast("nowhere", 1))]
+                      refused(lambda: sonar.set_udp_unicast("nowhere", 1))]
 
 if way == "unicast":
     sock = wlsonar.open_sonar_udp_unicast_socket(udp_port=0, iface_ip="127.0.0.1")
@@ -100,7 +100,7 @@ wall = points[points[:, 0] > 4.8]
 ways = wall / numpy.linalg.norm(wall, axis=1, keepdims=True)
 whole = numpy.linalg.norm(numpy.cross(ways, centre), axis=1) > radius + 0.1  # past the ball by more than half a beam
 results["wall"] = {"voxels": int(whole.sum()), "mean": float(wall[:, 0].mean()),
-                "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
+                   "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
 
 sonar.set_mode("high-frequency")
 sonar.set_range(0.3, 6)

@@ -112,7 +112,7 @@ def random_recipe(rng):
 def test_things_of_random_recipes_rest_on_the_floor_and_do_not_overlap(tmp_path, number):
     rng = np.random.default_rng(number)
     recipe = random_recipe(rng)
-    recipe["things"][-1], recipe["things"][0] = recipe["things"][0], recipe["things"][-1]  # what is largest first
+    recipe["things"][-1], recipe["things"][0] = recipe["things"][0], recipe["things"][-1]  # the largest thing first
     glb = Glb(make(tmp_path, json.dumps(recipe), seed=number))
     ground = FloorGrid(glb.nodes.pop("sea_floor"))
     counted = {}
