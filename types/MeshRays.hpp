@@ -95,8 +95,7 @@ struct TrianglesOnLine {
     bool any(size_t first_index, size_t index_count, const Use& use) const {
         for (size_t i = first_index; i < first_index + index_count; i += 3) {
             const auto met = meetTriangle(way, corner(i), corner(i + 1), corner(i + 2));
-            if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored, i))
-                return true;
+            if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored, i)) return true;
         }
         return false;
     }

@@ -17,13 +17,13 @@ using test::pingOf;
 using test::snapshotOf;
 
 constexpr types::Shell half_clear{0.0012, 2700, 6000, 3100, 0, false};  // reflects about a half
-constexpr double slope = 0.05;
+constexpr double wall_relief = 0.05;
 
-double reflected() { return std::norm(shellResponse(half_clear, 1).reflected); }
-double transmitted() { return std::norm(shellResponse(half_clear, 1).transmitted); }
+double wallReflected() { return std::norm(shellResponse(half_clear, 1).reflected); }
+double wallTransmitted() { return std::norm(shellResponse(half_clear, 1).transmitted); }
 
 /** Smooth walls of which the first are shells; the others are rigid. */
-types::GeometryPtr smoothWalls(std::vector<types::Mesh> meshes, size_t shells, float wall_slope = slope) {
+types::GeometryPtr smoothWalls(std::vector<types::Mesh> meshes, size_t shells, float wall_slope = wall_relief) {
     const auto scene = std::make_shared<types::Geometry>(*shellsOf(std::move(meshes), shells, half_clear));
     for (types::Material& material : scene->materials) {
         material.lambert_db = -200;
@@ -32,12 +32,12 @@ types::GeometryPtr smoothWalls(std::vector<types::Mesh> meshes, size_t shells, f
     }
     return scene;
 }
-SonarConfig facing(double width_deg = 40, int beams = 1) {
+SonarConfig facingWalls(double width_deg = 40, int beams = 1) {
     SonarConfig config = wallSonar(width_deg, 40, beams);
     config.quality.columns_per_beam = 256 / beams;
     return config;
 }
-double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+double sumOfWalls(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 /** Returns the energy about a range, in all beams, times the square of the range, relative to a rigid wall. */
 double levelAt(const types::Sonar& ping, double range, double rigid) {
     double sum = 0;
@@ -45,22 +45,22 @@ double levelAt(const types::Sonar& ping, double range, double rigid) {
     return sum * range * range / rigid;
 }
 double rigidLevel(const SonarConfig& config) {
-    return sumOf(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0)))) * 25;
+    return sumOfWalls(pingOf(config, snapshotOf(smoothWalls({test::wall(5)}, 0)))) * 25;
 }
 
 /** Return n is at r1 + (n + 1) d, with the level T^4 R^(2 + 4 n) of sound pressures. */
 TEST(ReverberationTest, TwoPlatesHaveTheReturnsOfSoundBackAndForth) {
-    const SonarConfig config = facing();
+    const SonarConfig config = facingWalls();
     const double rigid = rigidLevel(config);
     for (const bool is_rigid : {false, true}) {
         const auto ping = pingOf(config, snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, is_rigid ? 1 : 2)));
-        const double second = is_rigid ? 1 : reflected();
-        EXPECT_NEAR(levelAt(ping, 5, rigid) / reflected(), 1, 0.02);
-        double expected = std::pow(transmitted(), 2) * second;
-        for (int n = 0; n < 5 && expected > 1e-5; ++n, expected *= reflected() * second) {
+        const double second = is_rigid ? 1 : wallReflected();
+        EXPECT_NEAR(levelAt(ping, 5, rigid) / wallReflected(), 1, 0.02);
+        double expected = std::pow(wallTransmitted(), 2) * second;
+        for (int n = 0; n < 5 && expected > 1e-5; ++n, expected *= wallReflected() * second) {
             const double level = levelAt(ping, 7 + 2 * n, rigid);
-            std::cout << "a plate before a " << (is_rigid ? "rigid wall" : "plate") << ", " << n << " times back: "
-                      << 10 * std::log10(level) << " dB at " << 7 + 2 * n << " m, by the formula "
+            std::cout << "a plate before a " << (is_rigid ? "rigid wall" : "plate") << ", " << n
+                      << " times back: " << 10 * std::log10(level) << " dB at " << 7 + 2 * n << " m, by the formula "
                       << 10 * std::log10(expected) << " dB\n";
             EXPECT_NEAR(10 * std::log10(level / expected), 0, 0.25) << n;
             EXPECT_EQ(energyOf(ping, 0, 6 + 2 * n, 6.8 + 2 * n), 0);
@@ -69,11 +69,11 @@ TEST(ReverberationTest, TwoPlatesHaveTheReturnsOfSoundBackAndForth) {
 }
 
 TEST(ReverberationTest, ReturnsArriveAlongTheNormalOfTheWalls) {
-    const SonarConfig config = facing(60, 32);
+    const SonarConfig config = facingWalls(60, 32);
     const double rigid = rigidLevel(config);
     const double yaw = 0.2;
     const auto ping = pingOf(config, snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 2), {}, yaw));
-    const double expected = std::pow(transmitted(), 2) * std::pow(reflected(), 3);
+    const double expected = std::pow(wallTransmitted(), 2) * std::pow(wallReflected(), 3);
     EXPECT_NEAR(10 * std::log10(levelAt(ping, 9, rigid) / expected), 0, 0.3);
     double bearing = 0, energy = 0;
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam) {
@@ -86,7 +86,7 @@ TEST(ReverberationTest, ReturnsArriveAlongTheNormalOfTheWalls) {
 
 /** Between tilted walls sound returns from the image of the near wall in the far wall. */
 TEST(ReverberationTest, ATiltedWallHasItsReturnsAtTheImagesOfTheOther) {
-    const SonarConfig config = facing(60, 32);
+    const SonarConfig config = facingWalls(60, 32);
     const double tilt = 0.06;
     types::Mesh far = test::quad({7 - 100 * std::sin(0.06f), -100 * std::cos(0.06f), -100},
                                  {200 * std::sin(0.06f), 200 * std::cos(0.06f), 0}, {0, 0, 200});
@@ -106,7 +106,7 @@ TEST(ReverberationTest, ATiltedWallHasItsReturnsAtTheImagesOfTheOther) {
 }
 
 TEST(ReverberationTest, RoughCurvedAndSingleWallsHaveNoneBitForBit) {
-    const SonarConfig config = facing();
+    const SonarConfig config = facingWalls();
     const auto reverberates = [&](const types::GeometryPtr& scene) {
         const auto ping = pingOf(config, snapshotOf(scene));
         return energyOf(ping, 0, 8.5, 30) > 0;
@@ -127,7 +127,7 @@ TEST(ReverberationTest, RoughCurvedAndSingleWallsHaveNoneBitForBit) {
 
 /** With `multipath` a rigid wall behind a plate is a mirror as well: its return by the plate counts once. */
 TEST(ReverberationTest, ReturnsThatPathsByMirrorsHaveCountOnce) {
-    SonarConfig config = facing(), with_paths = config;
+    SonarConfig config = facingWalls(), with_paths = config;
     with_paths.multipath.emplace().bounces = 2;
     const auto snapshot = snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 1));
     const double rigid = rigidLevel(config);
@@ -140,9 +140,9 @@ TEST(ReverberationTest, ReturnsThatPathsByMirrorsHaveCountOnce) {
 }
 
 TEST(ReverberationTest, PatternsPulsesAndCoherentSpeckleKeepTheEnergy) {
-    const double expected = transmitted() * transmitted() * std::pow(reflected(), 3);
+    const double expected = wallTransmitted() * wallTransmitted() * std::pow(wallReflected(), 3);
     for (const std::string effect : {"pattern", "pulse", "coherent"}) {
-        SonarConfig config = facing(40, 8);
+        SonarConfig config = facingWalls(40, 8);
         config.quality.rows = 64;
         if (effect == "pattern") config.beam_pattern.emplace().receive.azimuth.emplace().width_deg = 5;
         if (effect == "pulse") config.pulse.emplace().bandwidth_khz = 4;
@@ -164,7 +164,7 @@ TEST(ReverberationTest, PatternsPulsesAndCoherentSpeckleKeepTheEnergy) {
 }
 
 TEST(ReverberationTest, TheTruthIsTheWallThatReturnsTheSound) {
-    const SonarConfig config = facing();
+    const SonarConfig config = facingWalls();
     const auto snapshot = snapshotOf(smoothWalls({test::wall(5), test::wall(7)}, 2));
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;

@@ -18,30 +18,30 @@ using test::pingOf;
 using test::snapshotOf;
 using types::radians;
 
-constexpr types::Shell sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // without narrow resonances
+constexpr types::Shell clear_sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // without narrow resonances
 
 /** Returns the share of the energy that passes through and back. */
-double passed(double cosine) { return std::pow(std::norm(shellResponse(sheet, cosine).transmitted), 2); }
-double decibels(double power) { return 10 * std::log10(power); }
+double sheetPassed(double cosine) { return std::pow(std::norm(shellResponse(clear_sheet, cosine).transmitted), 2); }
+double inDecibels(double power) { return 10 * std::log10(power); }
 
 /** Walls without an echo of their own. */
-types::GeometryPtr silent(const std::vector<types::Mesh>& walls, const types::Shell& shell = sheet,
-                          std::vector<glm::dvec3> positions = {}) {
-    const auto scene =
-        std::make_shared<types::Geometry>(*shellsOf(walls, walls.size(), shell, std::move(positions)));
+types::GeometryPtr silentWalls(const std::vector<types::Mesh>& walls, const types::Shell& shell = clear_sheet,
+                               std::vector<glm::dvec3> positions = {}) {
+    const auto scene = std::make_shared<types::Geometry>(*shellsOf(walls, walls.size(), shell, std::move(positions)));
     for (types::Material& material : scene->materials) material.lambert_db = -200;
     return scene;
 }
-types::Snapshot withTarget(const types::GeometryPtr& scene, const glm::dvec3& at) {
+types::Snapshot pingedTarget(const types::GeometryPtr& scene, const glm::dvec3& at) {
     types::Snapshot snapshot = snapshotOf(scene);
     snapshot.targets = {{at, 0}};
     return snapshot;
 }
-double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
+double sumOfTargets(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 /** Returns the energy of a target behind walls relative to that in open water. */
-double shareOf(const SonarConfig& config, const types::GeometryPtr& scene, const glm::dvec3& at) {
-    return sumOf(pingOf(config, withTarget(scene, at))) / sumOf(pingOf(config, withTarget(test::openWater(), at)));
+double shareBehind(const SonarConfig& config, const types::GeometryPtr& scene, const glm::dvec3& at) {
+    return sumOfTargets(pingOf(config, pingedTarget(scene, at))) /
+           sumOfTargets(pingOf(config, pingedTarget(test::openWater(), at)));
 }
 
 TEST(WallTargetsTest, ATargetBehindAPlateIsWeakenedBothWaysAtItsAngle) {
@@ -49,45 +49,45 @@ TEST(WallTargetsTest, ATargetBehindAPlateIsWeakenedBothWaysAtItsAngle) {
     for (const double angle_deg : {0.0, 40.0}) {
         const double angle = radians(angle_deg), cosine = std::cos(angle);
         const glm::dvec3 at = 14.03 * glm::dvec3(cosine, std::sin(angle), 0);
-        const double one = shareOf(config, silent({test::wall(8)}), at),
-                     two = shareOf(config, silent({test::wall(8), test::wall(9)}), at);
-        std::cout << angle_deg << " deg: " << decibels(one) << " dB behind a plate, by the formula "
-                  << decibels(passed(cosine)) << "; behind two " << decibels(two) << "\n";
-        EXPECT_NEAR(decibels(one / passed(cosine)), 0, 0.02);
-        EXPECT_NEAR(decibels(two / std::pow(passed(cosine), 2)), 0, 0.04);
-        EXPECT_NEAR(shareOf(config, silent({test::wall(16)}), at), 1, 1e-6) << "before the wall";
+        const double one = shareBehind(config, silentWalls({test::wall(8)}), at),
+                     two = shareBehind(config, silentWalls({test::wall(8), test::wall(9)}), at);
+        std::cout << angle_deg << " deg: " << inDecibels(one) << " dB behind a plate, by the formula "
+                  << inDecibels(sheetPassed(cosine)) << "; behind two " << inDecibels(two) << "\n";
+        EXPECT_NEAR(inDecibels(one / sheetPassed(cosine)), 0, 0.02);
+        EXPECT_NEAR(inDecibels(two / std::pow(sheetPassed(cosine), 2)), 0, 0.04);
+        EXPECT_NEAR(shareBehind(config, silentWalls({test::wall(16)}), at), 1, 1e-6) << "before the wall";
     }
 }
 
 TEST(WallTargetsTest, AHollowSphereIsCrossedOnceToItsMiddleAndTwiceToATargetBehind) {
     const SonarConfig config = wallSonar(20, 20, 4);
-    const auto scene = silent({test::sphere(2, 256)}, sheet, {{10, 0, 0}});
-    const double within = shareOf(config, scene, {10.03, 0, 0}), behind = shareOf(config, scene, {14.03, 0, 0});
-    std::cout << "inside a hollow sphere " << decibels(within) << " dB, behind it " << decibels(behind)
-              << " dB; by the formula " << decibels(passed(1)) << " dB for each wall\n";
-    EXPECT_NEAR(decibels(within / passed(1)), 0, 0.02);
-    EXPECT_NEAR(decibels(behind / std::pow(passed(1), 2)), 0, 0.04);
-    const double aside = shareOf(config, scene, {14.03, 1, 0});  // each wall at the same angle
+    const auto scene = silentWalls({test::sphere(2, 256)}, clear_sheet, {{10, 0, 0}});
+    const double within = shareBehind(config, scene, {10.03, 0, 0}), behind = shareBehind(config, scene, {14.03, 0, 0});
+    std::cout << "inside a hollow sphere " << inDecibels(within) << " dB, behind it " << inDecibels(behind)
+              << " dB; by the formula " << inDecibels(sheetPassed(1)) << " dB for each wall\n";
+    EXPECT_NEAR(inDecibels(within / sheetPassed(1)), 0, 0.02);
+    EXPECT_NEAR(inDecibels(behind / std::pow(sheetPassed(1), 2)), 0, 0.04);
+    const double aside = shareBehind(config, scene, {14.03, 1, 0});  // each wall at the same angle
     const double distance = 10 * 1 / std::hypot(14.03, 1), cosine = std::sqrt(1 - distance * distance / 4);
-    EXPECT_NEAR(decibels(aside / std::pow(passed(cosine), 2)), 0, 0.05);
+    EXPECT_NEAR(inDecibels(aside / std::pow(sheetPassed(cosine), 2)), 0, 0.05);
 }
 
 TEST(WallTargetsTest, AnOpaqueWallHidesATargetBitForBit) {
-    types::Shell air = sheet;
+    types::Shell air = clear_sheet;
     air.has_air = true;
     const types::Shell rubber{0.1, 1300, 900, 0, 0.2, false};
-    types::Shell oil = sheet;
+    types::Shell oil = clear_sheet;
     oil.fill_density = 900;
     oil.fill_speed = 1200;
     for (const types::Shell& shell : {air, rubber, oil}) {
         const SonarConfig config = wallSonar(60, 20, 16);
         const auto scene = shellsOf({test::wall(8)}, 1, shell);
-        EXPECT_EQ(pingOf(config, withTarget(scene, {13, 1, 0})).bins, pingOf(config, snapshotOf(scene)).bins);
+        EXPECT_EQ(pingOf(config, pingedTarget(scene, {13, 1, 0})).bins, pingOf(config, snapshotOf(scene)).bins);
     }
     SonarConfig none = wallSonar(60, 20, 16);
     none.max_walls = 0;
-    const auto scene = shellsOf({test::wall(8)}, 1, sheet);
-    EXPECT_EQ(pingOf(none, withTarget(scene, {13, 1, 0})).bins, pingOf(none, snapshotOf(scene)).bins);
+    const auto scene = shellsOf({test::wall(8)}, 1, clear_sheet);
+    EXPECT_EQ(pingOf(none, pingedTarget(scene, {13, 1, 0})).bins, pingOf(none, snapshotOf(scene)).bins);
 }
 
 TEST(WallTargetsTest, TargetsAreReceivedThroughUpToTheMaxNumberOfWalls) {
@@ -97,8 +97,8 @@ TEST(WallTargetsTest, TargetsAreReceivedThroughUpToTheMaxNumberOfWalls) {
         SonarConfig config = wallSonar(10, 10, 2);
         config.max_walls = maximum;
         for (int count = 0; count <= 5; ++count) {
-            const double share = shareOf(config, silent(walls), {4.53 + count, 0, 0});
-            EXPECT_NEAR(share, count <= maximum ? std::pow(passed(1), count) : 0, 0.01) << maximum << " " << count;
+            const double share = shareBehind(config, silentWalls(walls), {4.53 + count, 0, 0});
+            EXPECT_NEAR(share, count <= maximum ? std::pow(sheetPassed(1), count) : 0, 0.01) << maximum << " " << count;
         }
     }
 }
@@ -109,21 +109,24 @@ TEST(WallTargetsTest, FieldsPatternsAndPulsesPassAsEnergyDoes) {
         if (effect == "pattern") config.beam_pattern.emplace().receive.azimuth.emplace().width_deg = 3;
         if (effect == "pulse") config.pulse.emplace().bandwidth_khz = 2;
         if (effect == "coherent") config.speckle.emplace().coherent = true;
-        EXPECT_NEAR(decibels(shareOf(config, silent({test::wall(8)}), {13.03, 0.3, 0}) / passed(1)), 0, 0.05) << effect;
+        EXPECT_NEAR(inDecibels(shareBehind(config, silentWalls({test::wall(8)}), {13.03, 0.3, 0}) / sheetPassed(1)), 0,
+                    0.05)
+            << effect;
     }
 }
 
 TEST(WallTargetsTest, ATargetBehindARingingPlateIsLateAndRingsToo) {
     constexpr types::Shell plate{1, 2500, 2000, 0, 0, false};  // returns 0.5 m apart
     const SonarConfig config = wallSonar(2, 2, 1, 600);
-    const auto ping = pingOf(config, withTarget(silent({test::wall(10)}, plate), {40.03, 0, 0}));
+    const auto ping = pingOf(config, pingedTarget(silentWalls({test::wall(10)}, plate), {40.03, 0, 0}));
     const auto returns = acoustics::plateReturns({1, 2500, 2000, 0, 0}, {1025, water_speed}, {1025, water_speed},
                                                  1000 * shell_khz, WallLaw::max_returns);
-    const double there = sumOf(pingOf(config, withTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
+    const double there =
+        sumOfTargets(pingOf(config, pingedTarget(test::openWater(), {40.03, 0, 0}))) * std::pow(40.03, 4);
     for (size_t k = 0; k < 4; ++k) {
         const double at = 40.03 - 1 + 0.5 * static_cast<double>(k + 1);
         const double level = energyOf(ping, 0, at - 0.2, at + 0.2) * std::pow(at, 4) / there;
-        EXPECT_NEAR(decibels(level / returns.passed[k]), 0, 0.05) << k;
+        EXPECT_NEAR(inDecibels(level / returns.passed[k]), 0, 0.05) << k;
     }
 }
 
@@ -138,16 +141,16 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceAreWeakenedByTheirOwnAngles) {
         const auto ping = pingOf(config, snapshot);
         return std::array{energyOf(ping, 0, 11.8, 12.2), energyOf(ping, 0, 13, 13.5), energyOf(ping, 0, 14.3, 14.7)};
     };
-    const auto open = energies(silent({test::wall(20)})), through = energies(silent({test::wall(6)}));
-    const double level = passed(1), up = passed(12.03 / std::hypot(12.03, 8));
+    const auto open = energies(silentWalls({test::wall(20)})), through = energies(silentWalls({test::wall(6)}));
+    const double level = sheetPassed(1), up = sheetPassed(12.03 / std::hypot(12.03, 8));
     const std::array expected{level, std::sqrt(level * up), up};
-    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(decibels(through[i] / open[i] / expected[i]), 0, 0.03) << i;
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(inDecibels(through[i] / open[i] / expected[i]), 0, 0.03) << i;
 }
 
 TEST(WallTargetsTest, TheTruthOfABinWithATargetBehindAWallIsItsWay) {
     const SonarConfig config = wallSonar(8, 8, 1);
-    const auto scene = shellsOf({test::wall(8)}, 1, sheet);
-    types::Snapshot snapshot = withTarget(scene, {13.03, 0, 0});
+    const auto scene = shellsOf({test::wall(8)}, 1, clear_sheet);
+    types::Snapshot snapshot = pingedTarget(scene, {13.03, 0, 0});
     snapshot.targets.push_back({{4.03, 0, 0}, 0});
     SonarRenderer renderer(config, scene);
     types::Sonar ping;
@@ -165,7 +168,7 @@ TEST(WallTargetsTest, TheTruthOfABinWithATargetBehindAWallIsItsWay) {
 TEST(WallTargetsTest, AnEdgeBehindAPlateIsWeakenedBothWaysAtItsAngle) {
     SonarConfig config = wallSonar(40, 40, 1);
     config.effects["edge_diffraction"] = {};
-    const auto energy = [&](double angle, bool with_wall, const types::Shell& shell = sheet) {
+    const auto energy = [&](double angle, bool with_wall, const types::Shell& shell = clear_sheet) {
         const glm::vec3 across(-std::sin(angle), std::cos(angle), 0);
         std::vector<types::Mesh> meshes{
             test::quad(glm::vec3(5, 0, -100) - 100.0f * across, 200.0f * across, {0, 0, 200}),
@@ -182,11 +185,11 @@ TEST(WallTargetsTest, AnEdgeBehindAPlateIsWeakenedBothWaysAtItsAngle) {
     ASSERT_GT(open, 0);
     for (const double angle_deg : {0.0, 40.0}) {
         const double angle = radians(angle_deg), share = energy(angle, true) / open;
-        std::cout << "an edge behind a plate at " << angle_deg << " deg: " << decibels(share) << " dB, by the formula "
-                  << decibels(passed(std::cos(angle))) << " dB\n";
-        EXPECT_NEAR(decibels(share / passed(std::cos(angle))), 0, 0.02);
+        std::cout << "an edge behind a plate at " << angle_deg << " deg: " << inDecibels(share)
+                  << " dB, by the formula " << inDecibels(sheetPassed(std::cos(angle))) << " dB\n";
+        EXPECT_NEAR(inDecibels(share / sheetPassed(std::cos(angle))), 0, 0.02);
     }
-    types::Shell air = sheet;
+    types::Shell air = clear_sheet;
     air.has_air = true;
     EXPECT_EQ(energy(0, true, air), 0);
 }

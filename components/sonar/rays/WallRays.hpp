@@ -23,8 +23,8 @@ struct Reverberation {
     Reverberation(const RenderPlan& plan, const types::Geometry& geometry, std::span<const MeshFacts::Facets> facets);
 
     bool isInPaths(uint32_t material) const { return !in_paths.empty() && in_paths[material]; }
-    /** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns of
-     *  its wall together [1]; 0: its lobe is wide, or it has none. */
+    /** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns
+     * of its wall together [1]; 0: its lobe is wide, or it has none. */
     static double mirrored(const MaterialLaws& laws, size_t material);
     static bool isFlat(const FacetRecord& facet) {
         return facet.first.x == 0 && facet.first.z == 0 && facet.second.x == 0 && facet.second.z == 0;

@@ -14,14 +14,14 @@ namespace insonify::sonar {
 struct TargetWay {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
-    double length = 0;         ///< [m]
-    glm::dvec3 direction{0};   ///< Unit direction from the sonar, sonar axes [1].
-    glm::dvec3 from_point{0};  ///< Unit direction from the point along the path, world axes [1].
-    double power = 1;          ///< Share of the sound's power after its mirrors and walls [1].
-    int reflections = 0;       ///< Number of mirrors [1].
-    int walls = 0;             ///< Number of thin walls that the sound passes [1].
-    bool by_surface = false;   ///< Whether one of the mirrors is the water surface.
-    double sine_grazing = 0;   ///< Sine of the grazing angle at the water surface [1].
+    double length = 0;                 ///< [m]
+    glm::dvec3 direction{0};           ///< Unit direction from the sonar, sonar axes [1].
+    glm::dvec3 from_point{0};          ///< Unit direction from the point along the path, world axes [1].
+    double power = 1;                  ///< Share of the sound's power after its mirrors and walls [1].
+    int reflections = 0;               ///< Number of mirrors [1].
+    int walls = 0;                     ///< Number of thin walls that the sound passes [1].
+    bool by_surface = false;           ///< Whether one of the mirrors is the water surface.
+    double sine_grazing = 0;           ///< Sine of the grazing angle at the water surface [1].
     const EchoTrain* train = nullptr;  ///< Echoes out and back along it; null: one without delay.
     /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};

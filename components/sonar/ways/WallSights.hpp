@@ -11,9 +11,9 @@ namespace insonify::sonar {
 /** Sound on straight lines through thin walls with water behind them (ACOUSTICS.md 5.26). */
 class WallSights {
 public:
-    static constexpr double min_passed = 1e-3;     ///< One way: 60 dB two-way [1].
-    static constexpr double nearest_wall = 1e-4;   ///< Between two walls, with `same_wall` of their range [m].
-    static constexpr double same_wall = 1e-5;      ///< [1]
+    static constexpr double min_passed = 1e-3;    ///< One way: 60 dB two-way [1].
+    static constexpr double nearest_wall = 1e-4;  ///< Between two walls, with `same_wall` of their range [m].
+    static constexpr double same_wall = 1e-5;     ///< [1]
 
     /** `plan` must outlive it. Without the pass of walls all surfaces hide. */
     explicit WallSights(const RenderPlan& plan);
