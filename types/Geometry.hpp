@@ -97,6 +97,31 @@ struct ClusterNode {
     glm::vec3 half{0};           ///< Half the box's size [m].
 };
 
+/** How much a vertex follows one joint. */
+struct JointShare {
+    uint32_t joint;  ///< Of the pose [1].
+    float weight;    ///< Above 0 [1].
+};
+
+/** What a morph target at weight 1 adds to each vertex of a mesh. Each list is empty or has one entry per vertex. */
+struct MorphTarget {
+    std::vector<glm::vec3> positions;  ///< [m]
+    std::vector<glm::vec3> normals;    ///< [1]
+    std::vector<glm::vec3> tangents;   ///< [1]
+};
+
+/** How the vertices of a mesh follow the joints of a skin and the weights of morph targets. Its lists are in the order
+ *  of the mesh's vertices. */
+struct Deformation {
+    std::vector<glm::vec3> positions;   ///< Before joints and targets move them [m].
+    std::vector<glm::vec3> normals;     ///< Empty, or one per vertex [1].
+    std::vector<glm::vec4> tangents;    ///< Empty, or one per vertex [1].
+    uint32_t joint_count = 0;           ///< Joints that a pose has; 0: there is no skin.
+    std::vector<uint32_t> share_begin;  ///< First of each vertex among `shares`, and their end; empty without a skin.
+    std::vector<JointShare> shares;     ///< Weights of one vertex add up to 1.
+    std::vector<MorphTarget> targets;
+};
+
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
  *  finite. */
 struct Mesh {
@@ -111,6 +136,7 @@ struct Mesh {
     std::vector<Cluster> clusters;           ///< Together they cover all indices, in order.
     std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each patch before its parts; or none.
     std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, to look at; never what a sonar hears.
+    std::shared_ptr<const Deformation> deformation = {};  ///< How a pose changes its shape (PosedMesh.hpp); null: none.
 };
 
 using MeshPtr = std::shared_ptr<const Mesh>;

@@ -1,4 +1,5 @@
 #pragma once
+#include <glm/mat4x3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,27 @@ namespace insonify::types {
 struct MovedObject {
     uint32_t object = 0;  ///< Index into Geometry::objects [1].
     glm::dmat4 world_from_object{1};
+    /** Rate of the matrix, where an animation says it; absent: it follows from the snapshot before [1/s]. */
+    std::optional<glm::dmat4> rate = {};
+};
+
+/** Where a joint of a skin is. */
+struct JointPose {
+    glm::dmat4x3 mesh_from_bind{1};  ///< Moves a vertex that follows this joint alone, in the axes of the mesh.
+    glm::dmat4x3 rate{0};            ///< [1/s]
+};
+
+/** How far a morph target is taken. */
+struct MorphPose {
+    double weight = 0;  ///< [1]
+    double rate = 0;    ///< [1/s]
+};
+
+/** An object whose mesh has another shape than in the geometry (PosedMesh.hpp). */
+struct DeformedObject {
+    uint32_t object = 0;       ///< Index into Geometry::objects; its mesh has a Deformation [1].
+    uint32_t first_joint = 0;  ///< Of its joints in Snapshot::joints, as many as the Deformation has [1].
+    uint32_t first_morph = 0;  ///< Of its targets in Snapshot::morphs [1].
 };
 
 /** What gives an echo and is too small to be resolved. */
@@ -35,6 +57,9 @@ struct Snapshot {
     /** Meshes that later geometries may have: what takes long to make of them may be made before. Null: none known. */
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
+    std::vector<DeformedObject> deformed;  ///< Ascending by object, each at most once.
+    std::vector<JointPose> joints;         ///< Of all deformed objects.
+    std::vector<MorphPose> morphs;         ///< Of all deformed objects.
     std::vector<PointTarget> targets;
     std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that this one may hear; none is null.
     std::shared_ptr<const std::vector<std::string>> target_names;  ///< Of each of `targets`; may be null without any.

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "types/Geometry.hpp"
 
@@ -16,7 +18,9 @@ constexpr size_t max_coarse_triangles = 4000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its
  *  box, and runs of a large mesh are split where their triangles lie apart, with patches over them, an outline of
- *  few triangles and, if it is closed, cones of their backs. */
-void buildClusters(types::Mesh& mesh);
+ *  few triangles and, if it is closed, cones of their backs.
+ *  @param numbers  of a mesh that deforms: one for each vertex, which takes the vertex's new place. Such a mesh keeps
+ *                  vertices apart that are in one place, and has no cones. */
+void buildClusters(types::Mesh& mesh, std::vector<uint32_t>* numbers = nullptr);
 
 }  // namespace insonify::scene

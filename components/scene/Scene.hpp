@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/scene/Animation.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
@@ -23,6 +24,7 @@ struct Scene {
     std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
     std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances and the visuals of SDF.
     glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
+    std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
 };
 
 /** An object that moves with a node. */
@@ -55,6 +57,9 @@ bool isFinite(const glm::dmat4& matrix);
 /** Index of the node of that name, -1 for none. */
 int findNode(const Scene& scene, const std::string& name);
 
+/** What a body that has the node's place makes of the node: scale, shear, and the turn to z-up. */
+glm::dmat4 bodyFromNode(const Scene& scene, int node);
+
 /** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
 
@@ -62,5 +67,7 @@ std::vector<Part> partsOf(const Scene& scene, int node);
  *  -1. The point is given in the node's axes, which are the body's where neither is turned, without scale [m]. Not
  *  finite where the node is scaled to nothing and the point is not its origin. */
 glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point);
+/** The same of a node that is where a matrix has it. */
+glm::dvec3 placeIn(const Scene& scene, int node, const glm::dmat4& body_from_node, const glm::dvec3& point);
 
 }  // namespace insonify::scene

@@ -12,6 +12,7 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/scene/Animator.hpp"
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
@@ -25,6 +26,8 @@ namespace insonify::scene {
 /** Holds a scene and says, for each pose of the vehicle, what the sonar has before it.
  *
  *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
+ *  In: `<animation>.time` for any animation of the file that a connection names: time within the animation [s], in
+ *  place of the time since the start of the run. The newest is taken; it does not trigger.
  *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
  *  the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
  *  scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
@@ -75,6 +78,14 @@ private:
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
         types::Time newest;                         ///< Stamp of that pose; the start before the first.
         types::Time arrived;                        ///< When that pose came; the start before the first.
+        glm::dmat4 rate{0};                         ///< Of world_from_body, by the pose or the one before [1/s].
+    };
+    /** An animation that follows a port. */
+    struct Timed {
+        std::unique_ptr<framework::InputPort<double>> port;
+        std::string animation;
+        std::optional<double> newest;  ///< [s]; none before the first.
+        types::Time taken;             ///< Stamp of the snapshot that had it first.
     };
 
     std::shared_ptr<const Scene> load() const;
@@ -91,6 +102,10 @@ private:
     void addMoved(std::vector<types::MovedObject>& moved);
     void addTargets(std::vector<types::PointTarget>& targets) const;
     const Movable* movableOf(int node) const;
+    framework::InputPortBase* makeTimeInput(const std::string& port);
+    void makeAnimator(const std::shared_ptr<const Scene>& scene, types::Diagnostics& diagnostics);
+    void animate(types::Time time);
+    void readTimes(types::Time time);
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
@@ -107,6 +122,9 @@ private:
     std::vector<Movable> movables_;      ///< Outer nodes before inner ones, once configured.
     size_t part_count_ = 0;              ///< Of all movables, room for which is made before they move.
     std::vector<const Movable*> mover_;  ///< For each object, who moves it now.
+    std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
+    std::vector<Timed> timed_;
+    std::vector<DrivenNode> driven_;  ///< Of each movable, for the animator.
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;

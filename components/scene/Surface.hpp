@@ -16,6 +16,7 @@ struct Surface {
     std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
     std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
     std::vector<glm::vec2> map_uvs;   ///< Empty, or as many as positions: of a surface map.
+    std::vector<uint32_t> numbers;    ///< Empty, or as many as positions: vertices in the file's mesh that deforms.
     std::vector<uint32_t> indices;
 };
 
@@ -27,7 +28,8 @@ struct DroppedTriangles {
     void addTo(std::vector<std::string>& notices) const;
 };
 
-/** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0. */
+/** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0.
+ *  Triangles without area stay where the surface has `numbers`, for a pose may open them. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
 /** Calls `use(a, b, c, d)` for each cell of a grid whose vertices stand row by row: a and b are of one row, c and d

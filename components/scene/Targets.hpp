@@ -17,6 +17,8 @@ struct PlacedTarget {
     glm::dvec3 in_world{0};         ///< Where the file has it [m].
     double strength_db = 0;         ///< [dB re 1 m^2]
     std::vector<Carrier> carriers;  ///< Inner nodes before outer ones.
+    int node = -1;                  ///< The target's node, -1 for none.
+    glm::dvec3 offset{0};           ///< Place in the axes of that node, as in the configuration [m].
 };
 
 /** Places targets in a scene of which the nodes `moving` move. What is wrong goes to `diagnostics`, at path
