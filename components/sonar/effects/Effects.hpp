@@ -27,6 +27,7 @@ public:
 
     void takeQuality();
     void takeScene(const types::Geometry& geometry);
+    void takeShapes(const types::Snapshot& snapshot);
     void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
     /** Why a compute shader cannot sum what they sum, a clause. Empty: it can. */

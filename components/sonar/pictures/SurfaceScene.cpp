@@ -85,12 +85,16 @@ gpu::Texture uploadedMap(int width, int height, const uint8_t* rgb, bool repeat_
 }  // namespace
 
 std::vector<PlaneRecord> planesOf(const types::Mesh& mesh) {
-    std::vector<PlaneRecord> planes;
-    planes.reserve(mesh.indices.size() / 3);
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-        planes.push_back(planeOf(mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
-                                 mesh.positions[mesh.indices[i + 2]]));
+    std::vector<PlaneRecord> planes(mesh.indices.size() / 3);
+    findPlanes(mesh, planes);
     return planes;
+}
+
+void findPlanes(const types::Mesh& mesh, std::vector<PlaneRecord>& planes) {
+    for (size_t t = 0; t < planes.size(); ++t) {
+        const uint32_t* const corners = &mesh.indices[3 * t];
+        planes[t] = planeOf(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]);
+    }
 }
 
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry) {

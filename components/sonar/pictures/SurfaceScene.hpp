@@ -11,6 +11,8 @@ namespace insonify::sonar {
 
 /** Planes of a mesh's triangles. */
 std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
+/** The same into a list of as many. */
+void findPlanes(const types::Mesh& mesh, std::vector<PlaneRecord>& planes);
 /** Planes of all meshes' triangles, mesh after mesh, without those that stand for patches: as SurfaceScene::planes().
  */
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);

@@ -31,6 +31,10 @@ public:
     static std::vector<std::shared_ptr<MeshFacts>> ofAll(const types::Geometry& geometry);
     explicit MeshFacts(types::MeshPtr mesh) : mesh_(std::move(mesh)) {}
 
+    /** Takes the mesh as it is now, after its vertices have moved: all that has been asked for, but facets, curves and
+     *  edges, is made again in place. For the owner of the mesh, while nobody asks. */
+    void renew();
+
     /** The box of all positions, in the mesh's axes [m]. */
     const Box& box();
     /** Of all triangles [m]. */
@@ -41,6 +45,8 @@ public:
     Planes planes();
     /** How each triangle spreads a lobe, as facetLobes() finds it; null where no material of the mesh has one. */
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
+    /** The same of a mesh as it is now, made anew. */
+    static Facets facetsNow(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
     /** How each triangle bends, as facetCurves() finds it; empty where no part of the mesh is a smooth body. */
     Curves curves(const glm::dmat3& world_from_mesh);
     /** The straight edges of at least a turn [rad], as straightEdges() finds them; null where no material of the mesh
@@ -56,7 +62,7 @@ private:
     Lazy<Box> box_;
     Lazy<double> longest_edge_;
     Lazy<BoxTree> triangles_;
-    Lazy<Planes> planes_;
+    Lazy<std::shared_ptr<std::vector<PlaneRecord>>> planes_;
     Lazy<std::vector<float>> map_density_;
     /** By matrix, wavelength [m] and turn of sharp edges [rad]. */
     SharedValues<std::array<double, 11>, const std::vector<FacetRecord>> facets_;

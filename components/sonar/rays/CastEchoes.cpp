@@ -11,11 +11,13 @@
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/echo/EchoGrid.hpp"
+#include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/field/EchoField.hpp"
 #include "components/sonar/pictures/SurfaceScene.hpp"
+#include "components/sonar/places/DeformedMeshes.hpp"
 #include "components/sonar/places/MeshesAhead.hpp"
 #include "components/sonar/places/ObjectPlaces.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
@@ -37,6 +39,9 @@ constexpr int part_samples = 8192;
 /** Share of the energy below which a ray ends that has gone through walls: 60 dB [1]. */
 constexpr auto min_passed = static_cast<float>(WallRays::min_passed);
 
+/** Triangles of meshes that deform, up to which those that stand for smooth bodies are found anew in each ping [1]. */
+constexpr size_t max_bent = 10'000;
+
 /** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
 struct Part {
     int first_beam, beams, first_row, rows;
@@ -56,6 +61,8 @@ public:
     CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
+    void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -143,6 +150,8 @@ private:
     std::vector<MeshFacts::Curves> curves_;  ///< One for each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
     std::optional<SurfaceMapping> surface_maps_;  ///< Where the plan has them.
+    DeformedMeshes* deformed_ = nullptr;          ///< Null: no mesh deforms.
+    bool bends_ = true;                           ///< Whether the facets of meshes that deform are taken to be bent.
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
     ThreadPool threads_;
@@ -170,9 +179,35 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, Ping
     takeScene(geometry_, false);
 }
 
+void CastEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
+    deformed_ = meshes;
+    takeScene(std::move(geometry), true);
+    size_t triangles = 0;
+    for (const uint32_t object : meshes ? meshes->objects() : std::vector<uint32_t>())
+        triangles += std::as_const(*geometry_).meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
+    bends_ = triangles <= max_bent;
+}
+
+void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
+    threads_.run([&](int part, int parts) {
+        deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
+        const std::vector<uint32_t>& objects = deformed_->objects();
+        for (size_t i = static_cast<size_t>(part); i < objects.size(); i += static_cast<size_t>(parts)) {
+            const auto number = static_cast<size_t>(geometry_->objects[objects[i]].mesh);
+            const types::Mesh& mesh = std::as_const(*geometry_).meshes[number];
+            const glm::dmat3 world_from_mesh = worldFromMesh(*geometry_, number);
+            if (facets_[number]) facets_[number] = MeshFacts::facetsNow(mesh, world_from_mesh, plan_.laws);
+            curves_[number] = std::make_shared<const std::vector<CurveRecord>>(
+                bends_ ? facetCurves(mesh, world_from_mesh) : std::vector<CurveRecord>());
+        }
+    });
+}
+
 bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
-    if (before != geometry_) visibility_.takeScene(*geometry_);
+    if (before != geometry_)
+        visibility_.takeScene(*geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects())
+                                                    : std::span<const uint32_t>());
     // What these share with their predecessors is kept, for the predecessors go after they are made.
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
@@ -268,6 +303,12 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);
+    if (visibility_.hasDeforming()) {
+        threads_.run([this](int part, int parts) {
+            visibility_.fitDeforming(static_cast<size_t>(part), static_cast<size_t>(parts));
+        });
+        visibility_.joinDeforming();
+    }
     if (ray_paths_) ray_paths_->place(snapshot);
     placeRuns();
     ahead_.take(snapshot.ahead, plan_.laws);

@@ -46,6 +46,10 @@ public:
     bool areStraight() const { return !table_ && !moves_; }
     /** How an object moves in this ping; null where it does not. */
     const Drift* drift(uint32_t object) const { return moves_ ? motion_->drift(object) : nullptr; }
+    /** The same of one of its triangles; `own` is filled where the object deforms. */
+    const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
+        return moves_ ? motion_->driftOf(object, triangle, own) : nullptr;
+    }
     /** What is heard from a direction, unit, at a slant range [m], was there about the sonar when the pulse was sent
      *  [m]; of an object that moves by `drift`. */
     glm::dvec3 at(const glm::dvec3& direction, double range, const Drift* drift = nullptr) const;

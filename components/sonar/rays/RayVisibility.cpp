@@ -243,18 +243,28 @@ struct RayVisibility::Tree {
     bool is_built = false;
 };
 
-RayVisibility::RayVisibility(const types::Geometry& geometry)
+RayVisibility::RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming)
     : here_(std::make_unique<Tree>()), before_(std::make_unique<Tree>()) {
-    takeScene(geometry);
+    takeScene(geometry, deforming);
 }
 
 RayVisibility::~RayVisibility() = default;
 
-void RayVisibility::takeScene(const types::Geometry& geometry) {
+void RayVisibility::takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming) {
     geometry_ = &geometry;
     moves_.resize(geometry.objects.size());
     here_->is_built = before_->is_built = false;
     listCommands();
+    deforms_.assign(deforming.empty() ? 0 : geometry.objects.size(), false);
+    std::vector<DeformingTrees::Object> objects;
+    for (const uint32_t object : deforming) {
+        deforms_[object] = true;
+        const auto mesh = static_cast<size_t>(geometry.objects[object].mesh);
+        if (!geometry.meshes[mesh].indices.empty())
+            objects.push_back({object, first_command_[object], geometry.meshes.shared(mesh)});
+    }
+    deforming_ = DeformingTrees(std::move(objects));
+    deforming_places_.resize(deforming_.size());
 }
 
 void RayVisibility::listCommands() {
@@ -276,7 +286,7 @@ void RayVisibility::listCommands() {
 }
 
 bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
-    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object]; });
+    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object] && !doesDeform(moved.object); });
 }
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
@@ -287,6 +297,21 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
     world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
     place_ = glm::vec3(snapshot.sonar.position - origin);
     placeMovers(snapshot);
+    if (!deforming_.isEmpty()) placeDeforming(snapshot);
+}
+
+void RayVisibility::placeDeforming(const types::Snapshot& snapshot) {
+    for (size_t i = 0; i < deforming_.size(); ++i) {
+        const uint32_t object = deforming_.object(i);
+        const auto moved = std::ranges::find(snapshot.moved, object, &types::MovedObject::object);
+        deforming_places_[i] = moved == snapshot.moved.end() ? geometry_->objects[object].world_from_object
+                                                             : moved->world_from_object;
+        deforming_places_[i][3] -= glm::dvec4(here_->origin, 0);
+    }
+}
+
+void RayVisibility::fitDeforming(size_t part, size_t parts) {
+    for (size_t i = part; i < deforming_.size(); i += parts) deforming_.fit(i, deforming_places_[i]);
 }
 
 void RayVisibility::forget() {
@@ -318,6 +343,7 @@ void RayVisibility::build(const glm::dvec3& origin) {
         const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
         glm::dmat4 place = object.world_from_object;
         place[3] -= glm::dvec4(origin, 0);
+        if (doesDeform(i)) continue;
         if (moves_[i]) {
             Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
             mover.tree = mover.mesh->tree().scene();
@@ -359,8 +385,15 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::sp
         std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
         take(all[i], hits[i],
              [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
-        castAtMovers(rays[i], all[i], hits[i]);
     }
+    if (!deforming_.isEmpty()) {
+        for (size_t i = 0; i < rays.size(); ++i) forgetHits(all[i]);
+        intersect(deforming_.scene(), std::span(all).first(rays.size()));
+        for (size_t i = 0; i < rays.size(); ++i)
+            take(all[i], hits[i],
+                 [this](uint32_t geometry, uint32_t instance) { return deforming_.meaning(geometry, instance); });
+    }
+    for (size_t i = 0; i < rays.size(); ++i) castAtMovers(rays[i], all[i], hits[i]);
 }
 
 void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
@@ -403,6 +436,7 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
     aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
     intersect(here_->trees->scene(), valid, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    if (!deforming_.isEmpty()) castPieceAtDeforming(paths, rays, piece, valid, all, hits);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
@@ -415,6 +449,20 @@ void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const
     }
 }
 
+/** Each object by itself, for it moves by a drift of its own. */
+void RayVisibility::castPieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece,
+                                         const int* valid, RTCRayHit16& all, TileHits& hits) const {
+    for (size_t i = 0; i < deforming_.size(); ++i) {
+        if (const Drift* drift = paths.drift(deforming_.object(i)))
+            aim(Rows(world_from_sonar_), place_, placesOf(paths, rays, piece.start, drift),
+                placesOf(paths, rays, piece.end, drift), all);
+        else
+            aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+        intersect(deforming_.scene(i), valid, all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return deforming_.meaningIn(i, geometry); });
+    }
+}
+
 void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     RTCRayHit16 all;
@@ -424,6 +472,12 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     forgetHits(all);
     intersect(here_->trees->scene(), valid.of, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    if (!deforming_.isEmpty()) {
+        forgetHits(all);
+        intersect(deforming_.scene(), valid.of, all);
+        take(all, hits,
+             [this](uint32_t geometry, uint32_t instance) { return deforming_.meaning(geometry, instance); });
+    }
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
@@ -441,6 +495,7 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
     const bool are_coherent = !here_->trees->hasInstances();
     occlude(here_->trees->scene(), valid.of, are_coherent, all);
+    if (!deforming_.isEmpty()) occlude(deforming_.scene(), valid.of, false, all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         aim(Rows(mover.from_sonar), mover.place, rays, all);

@@ -6,6 +6,7 @@
 
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/rays/AngularView.hpp"
+#include "components/sonar/rays/DeformingTrees.hpp"
 #include "types/Snapshot.hpp"
 
 struct RTCRayHit16;
@@ -40,19 +41,21 @@ struct PathRays {
 
 /** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
  *  an origin near the sonar, on a coarse grid, so that world coordinates may be large. Each object that moves, or is
- *  transient, has a tree of its mesh, which is placed anew and never built again. All trees are shared with whoever
+ *  transient, has a tree of its mesh, which is placed anew and never built again. Objects that deform have trees that
+ *  are fitted to their meshes in each ping. All trees are shared with whoever
  *  else renders the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
     static constexpr size_t tiles_at_once = 4;  ///< They go through the tree together, which takes less time [1].
 
-    /** The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
-    explicit RayVisibility(const types::Geometry& geometry);
+    /** @param deforming  objects whose meshes change from ping to ping, ascending.
+     *  The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
+    explicit RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
     ~RayVisibility();
 
     /** Another geometry from the next ping on, which must outlive it. Trees of what has not changed are kept. */
-    void takeScene(const types::Geometry& geometry);
+    void takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
 
     /** Forgets which objects have moved. Trees stay until the next ping has taken those that it needs. */
     void forget();
@@ -61,6 +64,12 @@ public:
      *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
      * the snapshot alone, whatever came before. */
     void place(const types::Snapshot& snapshot);
+    /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a time.
+     */
+    void fitDeforming(size_t part, size_t parts);
+    /** Ends the fitting, before anything is cast. */
+    void joinDeforming() { deforming_.join(); }
+    bool hasDeforming() const { return !deforms_.empty(); }
 
     /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
      *  rays[i] meet. Several threads may do so at a time. */
@@ -94,12 +103,19 @@ private:
     void forgetTrees(const types::Snapshot& snapshot);
     void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
+    void placeDeforming(const types::Snapshot& snapshot);
+    bool doesDeform(size_t object) const { return !deforms_.empty() && deforms_[object]; }
+    void castPieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece, const int* valid,
+                              RTCRayHit16& all, TileHits& hits) const;
     void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< Of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
+    std::vector<bool> deforms_;            ///< Whether an object deforms; empty: none does.
+    DeformingTrees deforming_;
+    std::vector<glm::dmat4> deforming_places_;  ///< Of each of its objects, about the origin.
     /** The scene about the origin at hand, and about the one before, for a sonar that stays between the two. */
     std::unique_ptr<Tree> here_, before_;
     glm::mat3 world_from_sonar_;  ///< [1]

@@ -42,6 +42,8 @@ public:
     /** @param plan one whose laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
     EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
+    /** Finds the edges of objects anew that the snapshot deforms. */
+    void takeShapes(const types::Snapshot& snapshot);
     /** Once the bins are filled, or `field` is, where there is one. Returns the number of edges that any beam hears. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
     size_t count() const { return edges_.size(); }  ///< Edges of the scene [1].
@@ -52,9 +54,10 @@ private:
         size_t object;
         PlacedEdge edge;
     };
-    void addObject(size_t object, const types::Geometry& geometry);
+    void addObject(size_t object);
 
     const RenderPlan& plan_;
+    const types::Geometry& geometry_;
     PointTargets points_;
     Sightlines sightlines_;
     std::vector<std::shared_ptr<const StraightEdges>> of_meshes_;
