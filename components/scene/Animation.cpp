@@ -49,6 +49,8 @@ glm::dmat3 rotationRate(const glm::dquat& q, const glm::dquat& rate) {
 }  // namespace
 
 void KeyFrames::at(double time, std::span<double> value, std::span<double> rate) const {
+    value = value.first(width);
+    rate = rate.first(width);
     const size_t stride = (interpolation == Interpolation::CubicSpline ? 3 : 1) * width;
     const size_t middle = interpolation == Interpolation::CubicSpline ? width : 0;
     const auto next = static_cast<size_t>(std::ranges::upper_bound(times, time) - times.begin());

@@ -208,12 +208,12 @@ bool SceneTask::configureHook() {
         movable.parts = partsOf(*scene, movable.node);
     }
     placeTargets(*scene, diagnostics);
+    part_count_ = 0;
+    for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     makeAnimator(scene, diagnostics);
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     lay_ = layText(*scene);
-    part_count_ = 0;
-    for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     std::ranges::sort(movables_, {}, &Movable::node);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
@@ -236,6 +236,7 @@ void SceneTask::makeAnimator(const std::shared_ptr<const Scene>& scene, types::D
     for (const Movable& movable : movables_) nodes.push_back(movable.node);
     animator_ = std::make_unique<Animator>(scene, config->animations, nodes, diagnostics);
     driven_.resize(movables_.size());
+    part_count_ += geometry_->objects.size();
 }
 
 bool SceneTask::startHook() {
