@@ -65,8 +65,7 @@ glm::vec3 unitOr(const glm::dvec3& vector, const glm::vec3& otherwise) {
 
 void posePositions(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& positions) {
     for (size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3 p =
-            morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
+        const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
         const auto shares = sharesOf(deformation, i);
         glm::dvec3 sum = shares.empty() ? p : glm::dvec3(0);
         for (const JointShare& share : shares)
@@ -83,13 +82,11 @@ void poseFrames(const MeshPose& pose, const Deformation& deformation, Mesh& mesh
         // Cofactors are the inverse transpose up to a factor, and are there for a flat matrix as well.
         const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                    glm::cross(linear[0], linear[1]));
-        const glm::dvec3 normal =
-            morphed(deformation.normals[i], pose.morphs, deformation, i, &MorphTarget::normals);
+        const glm::dvec3 normal = morphed(deformation.normals[i], pose.morphs, deformation, i, &MorphTarget::normals);
         mesh.normals[i] = unitOr(cofactors * normal, deformation.normals[i]);
         if (mesh.tangents.empty()) continue;
         const glm::vec4& rest = deformation.tangents[i];
-        const glm::dvec3 tangent =
-            morphed(glm::vec3(rest), pose.morphs, deformation, i, &MorphTarget::tangents);
+        const glm::dvec3 tangent = morphed(glm::vec3(rest), pose.morphs, deformation, i, &MorphTarget::tangents);
         mesh.tangents[i] = glm::vec4(unitOr(linear * tangent, glm::vec3(rest)), rest.w);
     }
 }
@@ -140,8 +137,7 @@ void poseMesh(const MeshPose& pose, Mesh& mesh) {
 void velocitiesOf(const MeshPose& pose, const Deformation& deformation, std::vector<glm::vec3>& velocities) {
     velocities.resize(deformation.positions.size());
     for (size_t i = 0; i < velocities.size(); ++i) {
-        const glm::dvec3 p =
-            morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
+        const glm::dvec3 p = morphed(deformation.positions[i], pose.morphs, deformation, i, &MorphTarget::positions);
         glm::dvec3 rate(0);
         for (size_t k = 0; k < pose.morphs.size(); ++k) {
             const std::vector<glm::vec3>& added = deformation.targets[k].positions;

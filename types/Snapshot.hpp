@@ -23,12 +23,16 @@ struct MovedObject {
 struct JointPose {
     glm::dmat4x3 mesh_from_bind{1};  ///< Moves a vertex that follows this joint alone, in the axes of the mesh.
     glm::dmat4x3 rate{0};            ///< [1/s]
+
+    bool operator==(const JointPose&) const = default;
 };
 
 /** How far a morph target is taken. */
 struct MorphPose {
     double weight = 0;  ///< [1]
     double rate = 0;    ///< [1/s]
+
+    bool operator==(const MorphPose&) const = default;
 };
 
 /** An object whose mesh has another shape than in the geometry (PosedMesh.hpp). */
@@ -36,6 +40,8 @@ struct DeformedObject {
     uint32_t object = 0;       ///< Index into Geometry::objects; its mesh has a Deformation [1].
     uint32_t first_joint = 0;  ///< Of its joints in Snapshot::joints, as many as the Deformation has [1].
     uint32_t first_morph = 0;  ///< Of its targets in Snapshot::morphs [1].
+
+    bool operator==(const DeformedObject&) const = default;
 };
 
 /** What gives an echo and is too small to be resolved. */

@@ -74,8 +74,8 @@ struct DeformingObject {
 
 /** All of a scene that moves by itself, or may be deformed. */
 struct Animations {
-    std::vector<Animation> all;           ///< In the order of the file.
-    std::vector<AnimatedNode> nodes;      ///< Ascending.
+    std::vector<Animation> all;            ///< In the order of the file.
+    std::vector<AnimatedNode> nodes;       ///< Ascending.
     std::vector<DeformingObject> objects;  ///< Ascending.
 
     bool empty() const { return all.empty() && objects.empty(); }

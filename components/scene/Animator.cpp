@@ -62,10 +62,10 @@ Animator::Animator(std::shared_ptr<const Scene> scene, const AnimationConfigs& c
     for (const auto& [name, config] : configs)
         if (name != "*" && std::ranges::count(names, name) == 0)
             diagnostics.push_back(
-                {"animations." + name,
-                 names.empty() ? "is no animation of the scene, which has none"
-                               : fmt::format("is no animation of the scene; {}may be {}", types::didYouMean(name, names),
-                                             fmt::join(names, ", "))});
+                {"animations." + name, names.empty()
+                                           ? "is no animation of the scene, which has none"
+                                           : fmt::format("is no animation of the scene; {}may be {}",
+                                                         types::didYouMean(name, names), fmt::join(names, ", "))});
     const size_t count = scene_->nodes.size();
     slots_.assign(count, -1);
     animated_.assign(count, false);
@@ -109,27 +109,30 @@ void Animator::addTracks(const AnimationConfigs& configs) {
                 ++lost;
                 continue;
             }
-            const auto slot =
-                std::ranges::find(scene_->animations->nodes, channel.node, &AnimatedNode::node) -
-                scene_->animations->nodes.begin();
+            const auto slot = std::ranges::find(scene_->animations->nodes, channel.node, &AnimatedNode::node) -
+                              scene_->animations->nodes.begin();
             tracks_.push_back({playing_.size() - 1, &animation->keys[channel.keys], channel.node, channel.path,
                                static_cast<size_t>(slot)});
-            if (channel.path != AnimatedPath::Weights) slots_[static_cast<size_t>(channel.node)] = static_cast<int>(slot);
+            if (channel.path != AnimatedPath::Weights)
+                slots_[static_cast<size_t>(channel.node)] = static_cast<int>(slot);
         }
         played.push_back(fmt::format("{} ({:.3g} s)", animation->name, animation->duration));
-        if (lost > 0) hindered.push_back(fmt::format("{} ({} of {} channels)", animation->name, lost,
-                                                     animation->channels.size()));
+        if (lost > 0)
+            hindered.push_back(
+                fmt::format("{} ({} of {} channels)", animation->name, lost, animation->channels.size()));
     }
     constexpr size_t shown = 8;
     const auto listed = [](std::vector<std::string> names) {
         const size_t count = names.size();
         if (count > shown) names.resize(shown);
-        return fmt::format("{}{}", fmt::join(names, ", "), count > shown ? fmt::format(" and {} more", count - shown) : "");
+        return fmt::format("{}{}", fmt::join(names, ", "),
+                           count > shown ? fmt::format(" and {} more", count - shown) : "");
     };
     if (!played.empty())
-        notices_.push_back(fmt::format("animations that play: {}; `animations: {{\"*\": {{play: false}}}}` keeps the "
-                                       "scene at rest",
-                                       listed(played)));
+        notices_.push_back(
+            fmt::format("animations that play: {}; `animations: {{\"*\": {{play: false}}}}` keeps the "
+                        "scene at rest",
+                        listed(played)));
     if (!still.empty()) notices_.push_back("animations that do not play: " + listed(still));
     if (!hindered.empty())
         notices_.push_back("animations that move what an earlier one moves, which is taken: " + listed(hindered));
@@ -165,11 +168,9 @@ void Animator::findLive() {
     for (const DeformingObject& object : scene_->animations->objects) {
         const int node = nodeOf(object);
         const std::vector<int> with_mesh = moversOf(node);
-        const bool bends =
-            std::ranges::any_of(object.joints, [&](int joint) { return moversOf(joint) != with_mesh; });
-        const bool morphs = std::ranges::any_of(tracks_, [&](const Track& track) {
-            return track.path == AnimatedPath::Weights && track.node == node;
-        });
+        const bool bends = std::ranges::any_of(object.joints, [&](int joint) { return moversOf(joint) != with_mesh; });
+        const bool morphs = std::ranges::any_of(
+            tracks_, [&](const Track& track) { return track.path == AnimatedPath::Weights && track.node == node; });
         if (!bends && !morphs) continue;
         Live& live = live_.emplace_back(&object);
         for (const double weight : object.rest_weights) live.morphs.push_back({weight, 0});

@@ -72,7 +72,8 @@ public:
     void setTime(const std::string& animation, double time, double rate);
     /** All animations follow the time of the run again. */
     void forgetTimes();
-    /** Takes the shape of the scene at a time after the start of the run [s]. Allocates nothing after the first call. */
+    /** Takes the shape of the scene at a time after the start of the run [s]. Allocates nothing after the first call.
+     */
     void take(double seconds, const std::vector<DrivenNode>& driven);
 
     /** Whether an animation moves a node: one of its own, or of a node above it that is not above a driven one. */
@@ -119,11 +120,11 @@ private:
     std::vector<Track> tracks_;
     std::vector<Live> live_;
     std::vector<std::string> notices_;
-    std::vector<bool> is_mover_;       ///< Of each node: an animation or a port may move it.
-    std::vector<int> involved_;        ///< Movers and all nodes below them, parents first.
-    std::vector<int> slots_;           ///< Of each node its place in Animations::nodes, -1 where no track moves it.
-    std::vector<NodeShape> shapes_;    ///< Of Animations::nodes.
-    std::vector<bool> animated_;       ///< Of each node, isAnimated().
+    std::vector<bool> is_mover_;     ///< Of each node: an animation or a port may move it.
+    std::vector<int> involved_;      ///< Movers and all nodes below them, parents first.
+    std::vector<int> slots_;         ///< Of each node its place in Animations::nodes, -1 where no track moves it.
+    std::vector<NodeShape> shapes_;  ///< Of Animations::nodes.
+    std::vector<bool> animated_;     ///< Of each node, isAnimated().
     std::vector<const DrivenNode*> driven_;  ///< Of each node; null: no pose has come.
     std::vector<double> value_, rate_;       ///< Scratch.
     NodePlaces places_;

@@ -289,10 +289,9 @@ private:
                 if (channel.path != AnimatedPath::Weights) moved.insert(channel.node);
         for (size_t i = 0; i < node_in_scene_.size(); ++i)
             if (const int node = node_in_scene_[i]; moved.contains(node))
-                animations->nodes.push_back({node,
-                                             scene_.nodes[static_cast<size_t>(node)].parent < 0 ? z_up_from_y_up
-                                                                                                : glm::dmat4(1),
-                                             shapeOf(gltf_.model.nodes[i], fmt::format("nodes[{}]", i))});
+                animations->nodes.push_back(
+                    {node, scene_.nodes[static_cast<size_t>(node)].parent < 0 ? z_up_from_y_up : glm::dmat4(1),
+                     shapeOf(gltf_.model.nodes[i], fmt::format("nodes[{}]", i))});
         std::ranges::sort(animations->nodes, {}, &AnimatedNode::node);
         if (!animations->empty()) scene_.animations = std::move(animations);
     }
@@ -347,8 +346,8 @@ private:
     std::map<size_t, int> mesh_indices_;
     UniqueNames names_;
     size_t flat_objects_ = 0;
-    std::array<size_t, 3> not_animated_{};  ///< Channels of other paths, outside of the scene, doubled.
-    std::vector<int> node_in_scene_;        ///< Of each node of the file, -1 for one that is not there.
+    std::array<size_t, 3> not_animated_{};     ///< Channels of other paths, outside of the scene, doubled.
+    std::vector<int> node_in_scene_;           ///< Of each node of the file, -1 for one that is not there.
     std::vector<glm::dmat4> world_from_node_;  ///< Of each node of the scene.
     std::vector<DeformingNode> deforming_;
     /** Meshes before joints and targets move them, by mesh and skin of the file. */

@@ -75,8 +75,7 @@ private:
         const bool has_mesh = node.mesh >= 0 && static_cast<size_t>(node.mesh) < gltf_.model.meshes.size();
         const size_t count = has_mesh ? targetCount(gltf_, static_cast<size_t>(node.mesh)) : 0;
         if (count == 0)
-            fail(path + ".target.path",
-                 fmt::format("is weights; nodes[{}] has no mesh with morph targets", number));
+            fail(path + ".target.path", fmt::format("is weights; nodes[{}] has no mesh with morph targets", number));
         return count;
     }
 

@@ -11,9 +11,9 @@ namespace insonify::scene {
 /** Animations of a file, and what of them is not played. */
 struct GltfAnimations {
     std::vector<Animation> all;
-    size_t other_paths = 0;     ///< Channels that animate neither a node nor weights, by an extension.
-    size_t outside_scene = 0;   ///< Channels whose node is not in the scene.
-    size_t doubled = 0;         ///< Channels that change what an earlier channel of the animation changes.
+    size_t other_paths = 0;    ///< Channels that animate neither a node nor weights, by an extension.
+    size_t outside_scene = 0;  ///< Channels whose node is not in the scene.
+    size_t doubled = 0;        ///< Channels that change what an earlier channel of the animation changes.
 };
 
 /** Reads the animations of a file. What is wrong with them is a types::ConfigError.

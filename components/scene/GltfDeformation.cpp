@@ -64,9 +64,9 @@ size_t targetCount(const GltfFile& gltf, size_t mesh) {
     const size_t count = primitives.empty() ? 0 : primitives.front().targets.size();
     for (size_t i = 1; i < primitives.size(); ++i)
         if (primitives[i].targets.size() != count)
-            throw types::ConfigError(gltf.name, fmt::format("meshes[{}].primitives[{}].targets", mesh, i),
-                                     fmt::format("are {}; those of the mesh's first primitive are {}",
-                                                 primitives[i].targets.size(), count));
+            throw types::ConfigError(
+                gltf.name, fmt::format("meshes[{}].primitives[{}].targets", mesh, i),
+                fmt::format("are {}; those of the mesh's first primitive are {}", primitives[i].targets.size(), count));
     return count;
 }
 

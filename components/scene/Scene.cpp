@@ -55,8 +55,9 @@ void refuseMissing(const std::filesystem::path& file) {
     const std::string near = types::didYouMean(file.filename().string(), scenesIn(place.parent_path()));
     throw types::ConfigError(
         file.string(), "",
-        fmt::format("does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf",
-                    near, place.string()));
+        fmt::format(
+            "does not exist; {}looked for at {}; must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf",
+            near, place.string()));
 }
 
 struct Formats {

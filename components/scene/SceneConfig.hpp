@@ -107,10 +107,12 @@ struct SceneConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"file", "",
-                    "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent beside gazebo or "
-                    "bathymetry"},
-              self.file);
+        visit(
+            Field{
+                "file", "",
+                "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent beside gazebo or "
+                "bathymetry"},
+            self.file);
         visit(
             Field{"gazebo", "",
                   "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
@@ -145,10 +147,11 @@ struct SceneConfig {
                     "Steel.001; false: they are medium sand"},
               self.materials_by_name);
         visit(Field{"targets", "", "point targets, heard by the active sonar equation; absent: none"}, self.targets);
-        visit(Field{"animations", "",
-                    "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "
-                    "from the start of the run"},
-              self.animations);
+        visit(
+            Field{"animations", "",
+                  "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "
+                  "from the start of the run"},
+            self.animations);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

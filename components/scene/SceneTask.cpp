@@ -30,7 +30,8 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
     sonar.angular_velocity = glm::inverse(mount.orientation()) * turn;
 }
 
-/** How fast a node's place changes: by the velocities of its pose, else by the pose before; 0 where neither is known. */
+/** How fast a node's place changes: by the velocities of its pose, else by the pose before; 0 where neither is known.
+ */
 glm::dmat4 rateOf(const types::Pose& pose, const glm::dmat4& place, const std::optional<glm::dmat4>& before,
                   types::Time time_before) {
     glm::dmat4 rate(0);

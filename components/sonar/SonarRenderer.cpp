@@ -69,11 +69,13 @@ void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
     if (!plan.casts_rays) return;
     if (!deformed || !deformed->serves(snapshot)) {
         const auto before = std::exchange(
-            deformed, std::make_unique<DeformedMeshes>(snapshot, deformed ? deformed->objects() : std::vector<uint32_t>()));
+            deformed,
+            std::make_unique<DeformedMeshes>(snapshot, deformed ? deformed->objects() : std::vector<uint32_t>()));
         const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
         effects.takeScene(*geometry);
         echoes->deform(deformed.get(), geometry);
     }
+    if (!deformed->changes(snapshot)) return;
     echoes->takeShapes(snapshot);
     effects.takeShapes(snapshot);
 }
@@ -167,6 +169,7 @@ void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements&
 
 bool SonarRenderer::forget() {
     parts_->effects = PingEffects(parts_->plan, *parts_->geometry);
+    if (parts_->deformed) parts_->deformed->forget();
     return parts_->echoes->forget();
 }
 

@@ -31,8 +31,8 @@ private:
     template <class T>
     int add(const std::string& type, int component, const std::vector<T>& values, size_t width) {
         bytes_.resize((bytes_.size() + 3) / 4 * 4);
-        views_.push_back(fmt::format(R"({{"buffer":0,"byteOffset":{},"byteLength":{}}})", bytes_.size(),
-                                     values.size() * sizeof(T)));
+        views_.push_back(
+            fmt::format(R"({{"buffer":0,"byteOffset":{},"byteLength":{}}})", bytes_.size(), values.size() * sizeof(T)));
         accessors_.push_back(fmt::format(R"({{"bufferView":{},"componentType":{},"type":"{}","count":{}}})",
                                          views_.size() - 1, component, type, values.size() / width));
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
@@ -59,8 +59,8 @@ struct Tube {
         const auto at = [&](uint32_t ring, uint32_t side) { return ring * sides + side % sides; };
         for (uint32_t ring = 0; ring + 1 < rings; ++ring)
             for (uint32_t side = 0; side < sides; ++side)
-                indices.insert(indices.end(), {at(ring, side), at(ring, side + 1), at(ring + 1, side), at(ring, side + 1),
-                                               at(ring + 1, side + 1), at(ring + 1, side)});
+                indices.insert(indices.end(), {at(ring, side), at(ring, side + 1), at(ring + 1, side),
+                                               at(ring, side + 1), at(ring + 1, side + 1), at(ring + 1, side)});
         for (uint32_t side = 0; side < sides; ++side)
             indices.insert(indices.end(), {rings * sides, at(0, side + 1), at(0, side), rings * sides + 1,
                                            at(rings - 1, side), at(rings - 1, side + 1)});
@@ -94,7 +94,7 @@ inline std::string eelText(const Tube& tube, const std::string& more_nodes = "")
     const int long_times = arrays.floats("SCALAR", {0, 2});
     const int way = arrays.floats("VEC3", {0, 0, 0, 1, 0.25f, 0});
     return fmt::format(
-        R"("scenes":[{{"nodes":[0]}}],
+               R"("scenes":[{{"nodes":[0]}}],
         "nodes":[{{"name":"eel","children":[1,2]}},{{"name":"skin","mesh":0,"skin":0}},
                  {{"name":"joint_0","children":[3]}},{{"name":"joint_1","translation":[0.5,0,0],"children":[4]}},
                  {{"name":"joint_2","translation":[0.5,0,0]}}{}],
@@ -105,7 +105,8 @@ inline std::string eelText(const Tube& tube, const std::string& more_nodes = "")
                                    {{"sampler":0,"target":{{"node":4,"path":"rotation"}}}}]}},
                       {{"name":"goes","samplers":[{{"input":{},"output":{}}}],
                        "channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}]}}],)",
-        more_nodes, positions, joints_0, weights_0, indices, inverse, times, turns, long_times, way) + arrays.text();
+               more_nodes, positions, joints_0, weights_0, indices, inverse, times, turns, long_times, way) +
+           arrays.text();
 }
 
 /** A tube with two morph targets, `bends` of which moves the weights; default weights 0.25 and 0. */
@@ -121,12 +122,13 @@ inline std::string kelpText(const Tube& tube) {
     const int a = arrays.floats("VEC3", first), b = arrays.floats("VEC3", second);
     const int times = arrays.floats("SCALAR", {0, 1, 2}), weights = arrays.floats("SCALAR", {0, 0.5f, 1, 0, 0, 0.5f});
     return fmt::format(
-        R"("nodes":[{{"name":"kelp","mesh":0,"translation":[5,0,0]}}],
+               R"("nodes":[{{"name":"kelp","mesh":0,"translation":[5,0,0]}}],
         "meshes":[{{"weights":[0.25,0],"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{},
                     "targets":[{{"POSITION":{}}},{{"POSITION":{}}}]}}]}}],
         "animations":[{{"name":"bends","samplers":[{{"input":{},"output":{}}}],
                        "channels":[{{"sampler":0,"target":{{"node":0,"path":"weights"}}}}]}}],)",
-        positions, indices, a, b, times, weights) + arrays.text();
+               positions, indices, a, b, times, weights) +
+           arrays.text();
 }
 
 }  // namespace insonify::scene

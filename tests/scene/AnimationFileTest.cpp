@@ -125,7 +125,8 @@ TEST_F(AnimationFileTest, AJointThatAPortMovesDeformsTheSkin) {
     DrivenNode joint{.node = findNode(*scene, "joint_2")};
     joint.world_from_node = glm::dmat4(1);
     (*joint.world_from_node)[3] = {1, 1, 0, 1};
-    const types::Snapshot still = at(scene, 0, {{"*", {.play = false}}}), moved = at(scene, 0, {{"*", {.play = false}}}, {joint});
+    const types::Snapshot still = at(scene, 0, {{"*", {.play = false}}}),
+                          moved = at(scene, 0, {{"*", {.play = false}}}, {joint});
     EXPECT_TRUE(still.deformed.empty());
     ASSERT_EQ(moved.deformed.size(), 1u);
     EXPECT_GT(glm::distance(moved.joints[2].mesh_from_bind[3], glm::dvec3(-1, 0, 0)), 0.5);
@@ -184,7 +185,8 @@ TEST_F(AnimationFileTest, TwoAnimationsThatMoveTheSameAreReported) {
     const std::string second = R"(],"animations":[{"name":"rests","samplers":[{"input":7,"output":8}],
         "channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]},)";
     const std::string text = with(eelText(tube), R"(],
-        "animations":[)", second);
+        "animations":[)",
+                                  second);
     const auto scene = shared(text);
     types::Diagnostics diagnostics;
     const Animator animator(scene, {}, {}, diagnostics);
@@ -226,22 +228,26 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"counts", R"("samplers":[{)", R"("samplers":[{"interpolation":"CUBICSPLINE",)",
                 "animations[0].samplers[0].output: has 16 numbers; 4 keys of 3 values with 4 numbers need 48"},
         BadFile{"input", R"("input":5)", R"("input":99)", "accessors[99]: does not exist"},
-        BadFile{"type", R"("input":5)", R"("input":0)", "accessors[0].type: is not the one needed here; must be SCALAR"},
-        BadFile{"component", R"("input":5)", R"("input":1)", "animations[0].samplers[0].input: is not of componentType 5126"},
+        BadFile{"type", R"("input":5)", R"("input":0)",
+                "accessors[0].type: is not the one needed here; must be SCALAR"},
+        BadFile{"component", R"("input":5)", R"("input":1)",
+                "animations[0].samplers[0].input: is not of componentType 5126"},
         BadFile{"weights", R"("node":3,"path":"rotation")", R"("node":3,"path":"weights")",
                 "animations[0].channels[0].target.path: is weights; nodes[3] has no mesh with morph targets"},
         BadFile{"matrix", R"("name":"joint_1","translation":[0.5,0,0])",
                 R"("name":"joint_1","matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0.5,0,0,1])",
                 "animations[0].channels[0].target.node: is nodes[3], which has a matrix"},
         BadFile{"skin", R"("mesh":0,"skin":0)", R"("mesh":0,"skin":4)", "nodes[1].skin: is 4; the file has 1 skins"},
-        BadFile{"joint", R"("joints":[2,3,4])", R"("joints":[2,3,99])", "skins[0].joints[2]: is 99; the file has 5 nodes"},
+        BadFile{"joint", R"("joints":[2,3,4])", R"("joints":[2,3,99])",
+                "skins[0].joints[2]: is 99; the file has 5 nodes"},
         BadFile{"few_joints", R"("joints":[2,3,4])", R"("joints":[2,3])",
                 "meshes[0].primitives[0].attributes.JOINTS_0: is 2 at vertex"},
         BadFile{"matrices", R"("joints":[2,3,4])", R"("joints":[2,3,4,0])",
                 "skins[0].inverseBindMatrices: are 3; the skin has 4 joints"},
         BadFile{"no_weights", R"(,"WEIGHTS_0":3)", "", "meshes[0].primitives[0].attributes: has no WEIGHTS_0"},
         BadFile{"no_joints", R"(,"JOINTS_0":2,"WEIGHTS_0":3)", "", "has no JOINTS_0 and no WEIGHTS_0"},
-        BadFile{"joint_type", R"("JOINTS_0":2)", R"("JOINTS_0":3)", "JOINTS_0: has componentType 5126; must be 5121 or 5123"},
+        BadFile{"joint_type", R"("JOINTS_0":2)", R"("JOINTS_0":3)",
+                "JOINTS_0: has componentType 5126; must be 5121 or 5123"},
         BadFile{"outside", R"("name":"joint_0","children":[3])", R"("name":"joint_0")",
                 "skins[0].joints[1]: is nodes[3], which is not in the scene"}),
     [](const auto& one) { return std::string(one.param.name); });
@@ -249,16 +255,20 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(AnimationFileTest, TimesMustIncrease) {
     const auto diagnosticOfTimes = [&](const std::vector<float>& times) {
         Arrays arrays;
-        const int positions = arrays.floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0}), input = arrays.floats("SCALAR", times),
+        const int positions = arrays.floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0}),
+                  input = arrays.floats("SCALAR", times),
                   output = arrays.floats("VEC3", std::vector<float>(3 * times.size(), 1.0f));
-        return diagnosticOfGltf(fmt::format(
-            R"("nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":{}}}}}]}}],
+        return diagnosticOfGltf(
+            fmt::format(
+                R"("nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":{}}}}}]}}],
             "animations":[{{"samplers":[{{"input":{},"output":{}}}],"channels":[{{"sampler":0,"target":{{"node":0,"path":"scale"}}}}]}}],)",
-            positions, input, output) + arrays.text());
+                positions, input, output) +
+            arrays.text());
     };
     EXPECT_EQ(diagnosticOfTimes({0, 1, 2}), "");
     const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-    EXPECT_TRUE(has(diagnosticOfTimes({0, 1, 1}), "input: is 1 s at key 2, and 1 s at the key before; times must increase"));
+    EXPECT_TRUE(
+        has(diagnosticOfTimes({0, 1, 1}), "input: is 1 s at key 2, and 1 s at the key before; times must increase"));
     EXPECT_TRUE(has(diagnosticOfTimes({0, NAN, 1}), "input: is nan s at key 1; must be 0 or more"));
     EXPECT_TRUE(has(diagnosticOfTimes({-1, 0, 1}), "input: is -1 s at key 0; must be 0 or more"));
     EXPECT_TRUE(has(diagnosticOfTimes({}), "input: has no times"));
@@ -269,7 +279,8 @@ TEST_F(AnimationFileTest, BadMorphTargetsAreRefused) {
         const std::string said = diagnosticOfGltf(with(kelpText(tube), from, to));
         EXPECT_NE(said.find(part), std::string::npos) << said;
     };
-    has(R"("weights":[0.25,0])", R"("weights":[0.25])", "meshes[0].weights: has 1 numbers; the mesh has 2 morph targets");
+    has(R"("weights":[0.25,0])", R"("weights":[0.25])",
+        "meshes[0].weights: has 1 numbers; the mesh has 2 morph targets");
     has(R"({"POSITION":2})", R"({"POSITION":4})", "accessors[4].type");
     has(R"("name":"kelp")", R"("name":"kelp","weights":[1,2,3])", "nodes[0].weights: has 3 numbers; the mesh has 2");
     has(R"("output":5)", R"("output":4)", "animations[0].samplers[0].output: has 3 numbers; 3 keys of 1 values with 2");
@@ -278,7 +289,8 @@ TEST_F(AnimationFileTest, BadMorphTargetsAreRefused) {
 
 TEST_F(AnimationFileTest, NumbersThatAreNotFiniteAreRefused) {
     Tube broken = tube;
-    broken.positions[4] = NAN;  // of the mesh: its triangles are dropped, as ever; of targets and weights it is an error
+    broken.positions[4] =
+        NAN;  // of the mesh: its triangles are dropped, as ever; of targets and weights it is an error
     const std::string said = diagnosticOfGltf(kelpText(broken));
     EXPECT_EQ(said, "");
     broken = tube;

@@ -57,7 +57,8 @@ TEST_F(AnimationTaskTest, AllAnimationsPlayFromTheStartOfTheRun) {
     EXPECT_NEAR(*wayAt(1.5), 0.75, 1e-12);
     EXPECT_NEAR(*wayAt(2.5), 0.25, 1e-12);
     EXPECT_EQ(at(0.5)->deformed.size(), 1u);
-    EXPECT_THAT(task_.notices(), testing::Contains(testing::HasSubstr("animations that play: waves (1 s), goes (2 s)")));
+    EXPECT_THAT(task_.notices(),
+                testing::Contains(testing::HasSubstr("animations that play: waves (1 s), goes (2 s)")));
 }
 
 TEST_F(AnimationTaskTest, AnimationsThatAreNotToPlayLeaveTheSceneAtRest) {

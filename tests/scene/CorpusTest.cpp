@@ -4,8 +4,8 @@
 
 #include "components/scene/Animator.hpp"
 #include "tests/scene/SceneFiles.hpp"
-#include "types/PosedMesh.hpp"
 #include "tests/support/Paths.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::scene {
 namespace {

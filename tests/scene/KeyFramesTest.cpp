@@ -93,7 +93,8 @@ TEST(KeyFramesTest, RatesAreThoseOfDifferences) {
         const auto before = sampleAt<4>(keys, time - step), now = sampleAt<4>(keys, time),
                    after = sampleAt<4>(keys, time + step);
         for (size_t k = 0; k < keys.width; ++k)
-            EXPECT_NEAR(now.rate[k], (after.value[k] - before.value[k]) / (2 * step), 1e-4 * (1 + std::abs(now.rate[k])))
+            EXPECT_NEAR(now.rate[k], (after.value[k] - before.value[k]) / (2 * step),
+                        1e-4 * (1 + std::abs(now.rate[k])))
                 << trial;
     }
 }

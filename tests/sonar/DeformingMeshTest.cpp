@@ -20,7 +20,8 @@ namespace {
 using test::pingOf;
 
 SonarConfig eelFan() {
-    SonarConfig config = test::sonarOf({.beams = 40, .width_deg = 60, .height_deg = 40, .bins = 300, .bin = 0.02, .rows = 128});
+    SonarConfig config =
+        test::sonarOf({.beams = 40, .width_deg = 60, .height_deg = 40, .bins = 300, .bin = 0.02, .rows = 128});
     config.quality.columns_per_beam = 4;
     config.visibility = Visibility::Cpu;
     return config;
@@ -58,11 +59,11 @@ protected:
                 if (moved.object == i) place = moved.world_from_object;
             nodes += fmt::format(R"({}{{"name":"object_{}","mesh":{},"translation":[{:.17g},{:.17g},{:.17g}]}})",
                                  i ? "," : "", i, i, place[3].x, place[3].z, -place[3].y);
-            meshes += fmt::format(R"({}{{"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{}}}]}})", i ? "," : "",
-                                  vertices, indices);
+            meshes += fmt::format(R"({}{{"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{}}}]}})",
+                                  i ? "," : "", vertices, indices);
         }
-        const auto file = write("by_hand.gltf", gltf(fmt::format(R"("nodes":[{}],"meshes":[{}],)", nodes, meshes) +
-                                                     arrays.text()));
+        const auto file =
+            write("by_hand.gltf", gltf(fmt::format(R"("nodes":[{}],"meshes":[{}],)", nodes, meshes) + arrays.text()));
         types::Snapshot still = snapshot;
         auto geometry = std::make_shared<types::Geometry>(*scene::loadScene(file));
         for (types::Material& material : geometry->materials) material = snapshot.geometry->materials.front();
@@ -91,8 +92,9 @@ TEST_F(DeformingMeshTest, ASkinnedMeshIsTheSameMeshPosedByHandBitForBit) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> number(-1, 1);
     for (int trial = 0; trial < 40; ++trial) {
-        const types::Snapshot snapshot = at(scene, 1 + number(random), {-3 + number(random), number(random), number(random)},
-                                            0.1 * number(random), 0.1 * number(random));
+        const types::Snapshot snapshot =
+            at(scene, 1 + number(random), {-3 + number(random), number(random), number(random)}, 0.1 * number(random),
+               0.1 * number(random));
         ASSERT_EQ(snapshot.deformed.size(), 1u);
         const types::Sonar animated = pingOf(eelFan(), snapshot), still = pingOf(eelFan(), byHand(snapshot));
         ASSERT_GT(echoesOf(animated), 20u) << trial;
@@ -120,7 +122,8 @@ TEST_F(DeformingMeshTest, SoItIsWithEveryEffectThatKnowsMeshes) {
     mirror.mirror = true;
     SonarConfig plain = eelFan();
     plain.frequency_khz = 500;
-    SonarConfig published = eelFan(), edges = plain, multipath = plain, coherent = plain, conical = plain, water = plain;
+    SonarConfig published = eelFan(), edges = plain, multipath = plain, coherent = plain, conical = plain,
+                water = plain;
     published.model = Model::Cerqueira2017;
     edges.effects["edge_diffraction"] = {};
     multipath.multipath.emplace();

@@ -37,11 +37,11 @@ namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(),   &backscatter(),     &publishedMeans(), &beamPatterns(), &pulse(),
-                                   &ringDown(),     &volume(),          &speckle(),        &multipath(),    &thinWalls(),
-                                   &slabs(),        &refraction(),      &motionInPing(),   &normalMaps(),   &surfaceMaps(),
-                                   &deformingMeshes(), &pointTargets(), &edgeDiffraction(), &imperfections(), &crosstalk(),
-                                   &truth()};
+    std::vector<const Effect*> all{
+        &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),        &ringDown(),
+        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &slabs(),        &refraction(),
+        &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(), &edgeDiffraction(),
+        &imperfections(), &crosstalk(),   &truth()};
 };
 
 List& list() {

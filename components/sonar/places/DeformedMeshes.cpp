@@ -34,14 +34,25 @@ DeformedMeshes::DeformedMeshes(const types::Snapshot& snapshot, const std::vecto
 
 bool DeformedMeshes::serves(const types::Snapshot& snapshot) const {
     return snapshot.geometry == scene_ && std::ranges::all_of(snapshot.deformed, [&](const auto& one) {
-        return std::ranges::binary_search(objects_, one.object);
-    });
+               return std::ranges::binary_search(objects_, one.object);
+           });
+}
+
+bool DeformedMeshes::changes(const types::Snapshot& snapshot) {
+    if (has_taken_ && snapshot.deformed == deformed_ && snapshot.joints == joints_ && snapshot.morphs == morphs_)
+        return false;
+    has_taken_ = true;
+    deformed_ = snapshot.deformed;
+    joints_ = snapshot.joints;
+    morphs_ = snapshot.morphs;
+    return true;
 }
 
 void DeformedMeshes::take(const types::Snapshot& snapshot, size_t part, size_t parts) {
     for (size_t i = part; i < objects_.size(); i += parts) {
         Own& own = own_[i];
-        const auto deformed = std::ranges::lower_bound(snapshot.deformed, objects_[i], {}, &types::DeformedObject::object);
+        const auto deformed =
+            std::ranges::lower_bound(snapshot.deformed, objects_[i], {}, &types::DeformedObject::object);
         if (deformed != snapshot.deformed.end() && deformed->object == objects_[i]) {
             types::poseMesh(types::poseOf(snapshot, *deformed, *own.mesh->deformation), *own.mesh);
         } else {

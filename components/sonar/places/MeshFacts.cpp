@@ -103,7 +103,7 @@ MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const Mat
 }
 
 MeshFacts::Facets MeshFacts::facetsNow(const types::Mesh& mesh, const glm::dmat3& world_from_mesh,
-                                      const MaterialLaws& laws) {
+                                       const MaterialLaws& laws) {
     if (!hasLobes(mesh, laws)) return nullptr;
     std::optional<StraightEdges> edges;
     if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);

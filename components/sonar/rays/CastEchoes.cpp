@@ -184,11 +184,13 @@ void CastEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     takeScene(std::move(geometry), true);
     size_t triangles = 0;
     for (const uint32_t object : meshes ? meshes->objects() : std::vector<uint32_t>())
-        triangles += std::as_const(*geometry_).meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
+        triangles +=
+            std::as_const(*geometry_).meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
     bends_ = triangles <= max_bent;
 }
 
 void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
+    visibility_.takeShapes();
     threads_.run([&](int part, int parts) {
         deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
         const std::vector<uint32_t>& objects = deformed_->objects();
@@ -206,8 +208,8 @@ void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
 bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
     if (before != geometry_)
-        visibility_.takeScene(*geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects())
-                                                    : std::span<const uint32_t>());
+        visibility_.takeScene(
+            *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
     // What these share with their predecessors is kept, for the predecessors go after they are made.
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
@@ -303,7 +305,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);
-    if (visibility_.hasDeforming()) {
+    if (visibility_.needsFitting()) {
         threads_.run([this](int part, int parts) {
             visibility_.fitDeforming(static_cast<size_t>(part), static_cast<size_t>(parts));
         });

@@ -265,6 +265,7 @@ void RayVisibility::takeScene(const types::Geometry& geometry, std::span<const u
     }
     deforming_ = DeformingTrees(std::move(objects));
     deforming_places_.resize(deforming_.size());
+    is_fitted_ = false;
 }
 
 void RayVisibility::listCommands() {
@@ -286,7 +287,8 @@ void RayVisibility::listCommands() {
 }
 
 bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
-    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object] && !doesDeform(moved.object); });
+    return std::ranges::any_of(
+        snapshot.moved, [this](const auto& moved) { return !moves_[moved.object] && !doesDeform(moved.object); });
 }
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
@@ -304,10 +306,17 @@ void RayVisibility::placeDeforming(const types::Snapshot& snapshot) {
     for (size_t i = 0; i < deforming_.size(); ++i) {
         const uint32_t object = deforming_.object(i);
         const auto moved = std::ranges::find(snapshot.moved, object, &types::MovedObject::object);
-        deforming_places_[i] = moved == snapshot.moved.end() ? geometry_->objects[object].world_from_object
-                                                             : moved->world_from_object;
-        deforming_places_[i][3] -= glm::dvec4(here_->origin, 0);
+        glm::dmat4 place =
+            moved == snapshot.moved.end() ? geometry_->objects[object].world_from_object : moved->world_from_object;
+        place[3] -= glm::dvec4(here_->origin, 0);
+        is_fitted_ = is_fitted_ && place == deforming_places_[i];
+        deforming_places_[i] = place;
     }
+}
+
+void RayVisibility::joinDeforming() {
+    deforming_.join();
+    is_fitted_ = true;
 }
 
 void RayVisibility::fitDeforming(size_t part, size_t parts) {

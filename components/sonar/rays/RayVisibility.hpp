@@ -64,12 +64,16 @@ public:
      *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
      * the snapshot alone, whatever came before. */
     void place(const types::Snapshot& snapshot);
-    /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a time.
+    /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a
+     * time.
      */
     void fitDeforming(size_t part, size_t parts);
     /** Ends the fitting, before anything is cast. */
-    void joinDeforming() { deforming_.join(); }
-    bool hasDeforming() const { return !deforms_.empty(); }
+    void joinDeforming();
+    /** The meshes of objects that deform have other shapes now. */
+    void takeShapes() { is_fitted_ = false; }
+    /** Whether trees of objects that deform are to be fitted in this ping. */
+    bool needsFitting() const { return !deforming_.isEmpty() && !is_fitted_; }
 
     /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
      *  rays[i] meet. Several threads may do so at a time. */
@@ -116,6 +120,7 @@ private:
     std::vector<bool> deforms_;            ///< Whether an object deforms; empty: none does.
     DeformingTrees deforming_;
     std::vector<glm::dmat4> deforming_places_;  ///< Of each of its objects, about the origin.
+    bool is_fitted_ = false;                    ///< To these places, and to the meshes as they are.
     /** The scene about the origin at hand, and about the one before, for a sonar that stays between the two. */
     std::unique_ptr<Tree> here_, before_;
     glm::mat3 world_from_sonar_;  ///< [1]
