@@ -3,8 +3,10 @@
 animations, `swim_NNN`, a wave from head to tail, and `path_NNN`, a circle in the water.
 
 scripts/make_fish.py OUT.glb [--scene deploy/scenes/harbour.glb] [--count 100] [--box 5 -6 -8 40 6 -3] [--seed 1]
+scripts/make_fish.py deploy/scenes/fish.glb --count 12 --box 3 -2 -7.5 8 2 -6.5 --seed 4
 
-The box has the middles of the circles: north, west, up of one corner and of the other [m]. Needs numpy."""
+The box has the middles of the circles: north, west, up of one corner and of the other [m]. Without a scene there is a level floor of
+sand, 1.5 m below the box. Needs numpy."""
 import argparse
 import json
 import struct
@@ -134,7 +136,13 @@ def main():
     parser.add_argument("--box", type=float, nargs=6, default=[5, -6, -8, 40, 6, -3])
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    glb = read_scene(options.scene) if options.scene else Glb()
+    if options.scene:
+        glb = read_scene(options.scene)
+    else:
+        glb, low = Glb(), options.box[2] - 1.5
+        corners = [[-5, -15, low], [25, -15, low], [25, 15, low], [-5, 15, low]]
+        floor = Mesh(corners, [[0, 1, 2], [0, 2, 3]])
+        glb.node("floor", glb.mesh("floor", [floor], glb.material("sand", {"sediment": "medium_sand"}, (0.8, 0.7, 0.5))))
     school = School(glb, glb.material("fish", {"lambert_db": -20}, (0.5, 0.55, 0.6)))
     random = np.random.default_rng(options.seed)
     for number in range(options.count):

@@ -327,9 +327,9 @@ private:
         count(omissions.unweighted_vertices, "vertices of skins without weights follow the first joint of their skin");
         count(omissions.unmapped_primitives, "primitives loaded without their map for want of texture coordinates");
         count(flat_objects_, "objects left out, their scale is zero in some direction");
-        count(not_animated_[0], "channels of animations left out, they animate what is not read");
-        count(not_animated_[1], "channels of animations left out, their nodes are not in the scene");
-        count(not_animated_[2], "channels of animations left out, an earlier one animates the same");
+        count(not_animated_[0], "channels of animations omitted, they animate what is not read");
+        count(not_animated_[1], "channels of animations omitted, their nodes are not in the scene");
+        count(not_animated_[2], "channels of animations omitted, an earlier one animates the same");
         if (geometry_.objects.empty()) notices.push_back("the scene has no triangles: an empty sea");
     }
 

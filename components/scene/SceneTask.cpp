@@ -133,7 +133,7 @@ framework::InputPortBase* SceneTask::makeTimeInput(const std::string& port) {
         if (!scene->animations || std::ranges::count(scene->animations->all, name, &Animation::name) == 0)
             return nullptr;
     } catch (const types::ConfigError&) {
-        // check() tells what is wrong with the file; the port may well be right
+        // check() reports what is wrong with the file; the port may well be right
     }
     auto made = std::make_unique<framework::InputPort<double>>(this, port, "time within the animation " + name + " [s]",
                                                                framework::Need::Optional);

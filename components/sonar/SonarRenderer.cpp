@@ -127,7 +127,12 @@ SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
     parts_->stages = no_time;
-    if (!snapshot.deformed.empty() || parts_->deformed) parts_->takeShapes(snapshot);
+    if (!snapshot.deformed.empty() || parts_->deformed) {
+        const auto start = std::chrono::steady_clock::now();
+        parts_->takeShapes(snapshot);
+        parts_->stages[CullStage].seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
     if (truth) truth->takeGrid(ping);

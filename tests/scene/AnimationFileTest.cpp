@@ -92,7 +92,7 @@ TEST_F(AnimationFileTest, MorphTargetsAddUpByWeight) {
     }
 }
 
-TEST_F(AnimationFileTest, AnimationsPlayInALoopUnlessToldOtherwise) {
+TEST_F(AnimationFileTest, AnimationsPlayInALoopUnlessConfiguredOtherwise) {
     const auto scene = shared(eelText(tube));
     const auto placeAt = [&](double seconds, const AnimationConfig& config) {
         const auto snapshot = at(scene, seconds, {{"goes", config}});
@@ -301,9 +301,9 @@ TEST_F(AnimationFileTest, NumbersThatAreNotFiniteAreRefused) {
         << of_target;
 }
 
-TEST_F(AnimationFileTest, OtherPathsAreLeftOutWithANotice) {
+TEST_F(AnimationFileTest, OtherPathsAreOmittedWithANotice) {
     const auto scene = read(with(eelText(tube), R"("node":3,"path":"rotation")", R"("node":3,"path":"pointer")"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "channels of animations left out, they animate what is not read: 1"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "channels of animations omitted, they animate what is not read: 1"));
 }
 
 }  // namespace

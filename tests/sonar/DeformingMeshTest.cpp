@@ -183,16 +183,16 @@ TEST_F(DeformingMeshTest, TruthNamesTheObject) {
 TEST_F(DeformingMeshTest, APointTargetIsHiddenWhereTheMeshBendsBeforeIt) {
     const auto scene = read(kelpText(tube_));
     SonarConfig config = eelFan();
-    std::vector<double> heard;
+    std::vector<double> echoes;
     for (const double time : {0.0, 1.0}) {  // straight, and with its end 0.4 m to the side
         types::Snapshot snapshot = at(scene, time, {5.95, 0, 3}, 0, 1.5707963);  // looks down
         snapshot.targets = {{{5.95, 0, -2}, 0}};
         SonarRenderer renderer(config, snapshot.geometry);
         types::Sonar ping;
         renderer.render(snapshot, ping);
-        heard.push_back(static_cast<double>(renderer.othersHeard()));
+        echoes.push_back(static_cast<double>(renderer.othersHeard()));
     }
-    EXPECT_EQ(heard[0] + heard[1], 1) << heard[0];
+    EXPECT_EQ(echoes[0] + echoes[1], 1) << echoes[0];
 }
 
 /** A plate about its origin, all of it on one joint. */
@@ -247,8 +247,8 @@ double centreOf(const types::Sonar& ping) {
     return at / sum;
 }
 
-/** |p + v t1| = c t1, and the same way back: the range that a plate in front of the sonar is heard at. */
-TEST(DeformingMotionTest, AJointThatComesNearerIsHeardAsAnObjectThatDoes) {
+/** |p + v t1| = c t1, and the same way back: the range of the echo of a plate in front of the sonar. */
+TEST(DeformingMotionTest, AJointThatComesNearerEchoesAsAnObjectThatDoes) {
     glm::dmat4 place(1), rate(0);
     place[3] = {200, 0, 0, 1};
     rate[3] = {-12, 0, 0, 0};
@@ -260,7 +260,7 @@ TEST(DeformingMotionTest, AJointThatComesNearerIsHeardAsAnObjectThatDoes) {
     EXPECT_NEAR(centreOf(joint), centreOf(object), 0.01);
 }
 
-TEST(DeformingMotionTest, AJointThatTurnsIsHeardAsAnObjectThatDoes) {
+TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
     glm::dmat4 place(1), rate(0);
     place[3] = {60, 3, 0, 1};
     const glm::dvec3 turn(0, 0, 2);  // [rad/s]

@@ -182,11 +182,13 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, Ping
 void CastEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     deformed_ = meshes;
     takeScene(std::move(geometry), true);
+    if (!meshes) return;
     size_t triangles = 0;
-    for (const uint32_t object : meshes ? meshes->objects() : std::vector<uint32_t>())
-        triangles +=
-            std::as_const(*geometry_).meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
+    for (const uint32_t object : meshes->objects())
+        triangles += geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
     bends_ = triangles <= max_bent;
+    const auto flat = std::make_shared<const std::vector<CurveRecord>>();
+    for (const uint32_t object : meshes->objects()) curves_[static_cast<size_t>(geometry_->objects[object].mesh)] = flat;
 }
 
 void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
@@ -196,11 +198,12 @@ void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
         const std::vector<uint32_t>& objects = deformed_->objects();
         for (size_t i = static_cast<size_t>(part); i < objects.size(); i += static_cast<size_t>(parts)) {
             const auto number = static_cast<size_t>(geometry_->objects[objects[i]].mesh);
-            const types::Mesh& mesh = std::as_const(*geometry_).meshes[number];
+            const types::Mesh& mesh = geometry_->meshes[number];
             const glm::dmat3 world_from_mesh = worldFromMesh(*geometry_, number);
             if (facets_[number]) facets_[number] = MeshFacts::facetsNow(mesh, world_from_mesh, plan_.laws);
-            curves_[number] = std::make_shared<const std::vector<CurveRecord>>(
-                bends_ ? facetCurves(mesh, world_from_mesh) : std::vector<CurveRecord>());
+            if (bends_)
+                curves_[number] =
+                    std::make_shared<const std::vector<CurveRecord>>(facetCurves(mesh, world_from_mesh));
         }
     });
 }
