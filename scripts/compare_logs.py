@@ -1,4 +1,4 @@
-"""How the pings of two runs differ, stream by stream: scripts/compare_logs.py FOLDER OTHER, with the module `insonify`."""
+"""Prints how the pings of two runs differ, stream by stream: scripts/compare_logs.py FOLDER OTHER, with the module `insonify`."""
 import pathlib
 import sys
 

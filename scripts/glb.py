@@ -10,7 +10,7 @@ from insonify_worlds.rings import circle, skin  # noqa: E402
 
 
 class Mesh:
-    """Triangles seen counter-clockwise from outside: positions [n, 3], faces [m, 3], optionally normals and uvs."""
+    """Triangles, counter-clockwise seen from outside: positions [n, 3], faces [m, 3], optionally normals and uvs."""
 
     def __init__(self, positions, faces, normals=None, uvs=None):
         self.positions = np.asarray(positions, float)
@@ -25,7 +25,7 @@ class Mesh:
         return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
     def volume(self):
-        """Positive where a closed mesh is wound outward [m^3]."""
+        """Volume; positive if a closed mesh is wound outward [m^3]."""
         a, b, c = np.moveaxis(self.corners(), 1, 0)
         return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
 
@@ -33,8 +33,8 @@ class Mesh:
         return Mesh(self.positions @ np.asarray(turn).T + offset, self.faces)
 
     def textured(self, tile, smooth):
-        """With normals, those of the faces or smooth ones, and uvs projected along each face's dominant axis,
-        `tile` metres to a repeat."""
+        """The mesh with normals, either of the faces or smooth, and uvs projected along each face's
+        dominant axis, `tile` metres to a repeat."""
         a, b, c = np.moveaxis(self.corners(), 1, 0)
         face_normals = np.cross(b - a, c - a)
         vertex_normals = np.zeros_like(self.positions)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes deploy/scenes/bay.flt and bay.hdr: the floor of a bay as a survey has it, 161 x 161 posts 2.5 m apart, elevations of -24 to
+"""Makes deploy/scenes/bay.flt and bay.hdr: the surveyed floor of a bay, 161 x 161 posts 2.5 m apart, elevations of -24 to
 -12 m: a slope with sand waves, a channel, a field of pockmarks, and the roughness of a floor. Needs numpy."""
 from pathlib import Path
 
@@ -11,7 +11,7 @@ EASTING, NORTHING = 451000.0, 5962000.0    # of the south-west post, UTM
 rng = np.random.default_rng(7)
 north, east = np.meshgrid(np.arange(POSTS) * SPACING, np.arange(POSTS) * SPACING, indexing="ij")
 
-# Roughness whose spectrum falls with the third power of the wave number, as floors' do.
+# Roughness whose spectrum falls with the third power of the wave number, as on real floors.
 waves = np.hypot(*np.meshgrid(np.fft.fftfreq(POSTS, SPACING), np.fft.fftfreq(POSTS, SPACING), indexing="ij"))
 waves[0, 0] = np.inf
 rough = np.fft.ifft2(np.fft.fft2(rng.normal(size=waves.shape)) * waves**-1.5).real

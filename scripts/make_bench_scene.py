@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes a benchmark scene: make_bench_scene.py FILE.glb [--cells N] [--in-view]. A sea floor of N x N cells (200: 80,000
 triangles) with 20 objects. Needs numpy. The floor is 60 x 60 m, 3 m below z = 0, centred 20 m north of the origin; with
---in-view only what a fan of 120 x 20 degrees and 30 m, pitched by 10 degrees, has wholly in view is left of it."""
+--in-view only the part remains that is wholly in view of a fan of 120 x 20 degrees and 30 m, pitched by 10 degrees."""
 import argparse
 from pathlib import Path
 
@@ -17,7 +17,7 @@ def height(x, y):
 
 
 def in_view(points):
-    """Whether a point lies a little within the fan, seen from the origin."""
+    """Whether a point is inside the fan with a margin, seen from the origin."""
     x, y, z = points.T
     pitch = np.radians(10)
     ahead, up = x * np.cos(pitch) - z * np.sin(pitch), x * np.sin(pitch) + z * np.cos(pitch)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes scenes of objects that hang in open water, and sweeps to learn them from: scripts/make_hanging_objects.py FOLDER
+"""Makes scenes of objects that hang in open water, and sweeps to train on them: scripts/make_hanging_objects.py FOLDER
 Five classes of random shape and material: big and small propellers, cylinders, fishing nets, soft pipelines. Each hangs on a line.
 FOLDER gets scenes of several objects of each class, deployment.yml, sweeps of each scene and set.yml, which scripts/sim_to_real
 reads. Needs numpy."""
@@ -58,7 +58,7 @@ def cylinder(rng):
 
 
 def fishing_net(rng):
-    """A sheet of twine with knots and floats, which hangs, more or less gathered."""
+    """A sheet of twine with knots and floats, hanging more or less gathered."""
     height, width = rng.uniform(1.5, 4.5), rng.uniform(0.6, 1.2)
     columns, rows = rng.integers(5, 9), int(height / rng.uniform(0.1, 0.16))
     u, v = np.meshgrid(np.linspace(-0.5, 0.5, columns), np.linspace(-0.5, 0.5, rows), indexing="ij")
@@ -103,7 +103,7 @@ def mooring(rng):
 
 
 def rough(rng, softer=0):
-    """From clean and smooth to fouled: a lobe about the normal, and what is scattered in all directions."""
+    """A surface from clean and smooth to fouled: a lobe about the normal, and diffuse scattering."""
     return {"roughness_slope": round(rng.uniform(0.2, 1), 3), "lambert_db": round(rng.uniform(-16, 2) - softer, 2)}
 
 
@@ -115,7 +115,7 @@ CLASSES = {each.__name__: each for each in (big_propeller, small_propeller, cyli
 MOORED = {"big_propeller": 0.9, "small_propeller": 0.9, "cylinder": 0.9, "soft_pipeline": 0.3}  # probability
 
 DEPLOYMENT = """\
-# A part of the fan of an Oculus M750d, at either of its frequencies: scripts/sim_to_real draws range, noise and what hangs there.
+# A part of the fan of an Oculus M750d, at either of its frequencies: scripts/sim_to_real draws range, noise and objects.
 schedule: lockstep
 tasks:
   vehicle:
@@ -173,16 +173,16 @@ annotations: {min_level: 70, min_pixels: 15}
 """
 
 SET = """\
-# What scripts/sim_to_real makes, and what --ablate leaves out: by name, values of the deployment in place of its own.
+# The sets of scripts/sim_to_real, and the effects that --ablate omits: by name, values that replace the deployment's.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
 ablated: ["near_[0-2].yml", "far_[0-2].yml"] # of these, to compare with and without an effect; absent: all
-decibels: 100               # of white over black: crops are given back as amplitudes; absent: grey levels as they are
+decibels: 100               # of white over black: crops are converted to amplitudes; absent: grey levels as they are
 range_down: true            # real pictures have far ranges below; simulated ones above
-margin: [0.0, 0.25]         # of a box, drawn, on each side
+margin: [0.0, 0.25]         # of a box, random, on each side
 turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
-white_share: [0, 4]         # displays are set so that this share of a window is white, drawn [%]
-visible_db: 8               # a window is the box of those pixels of an object that exceed the median level by this
+white_share: [0, 4]         # displays are set so that this random share of a window is white [%]
+visible_db: 8               # a window is the box of the object's pixels that exceed the median level by this
 effects:
   speckle: {sonar.speckle.coherent: false}
   beams_and_pulse: {sonar.beam_pattern: null, sonar.pulse: null, sonar.speckle.coherent: false}

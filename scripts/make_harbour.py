@@ -2,8 +2,8 @@
 """Makes deploy/scenes/harbour.glb, harbour_pass.csv and harbour_round.csv: a quay, a wreck and a fractal sea floor.
 
 The water surface is z = 0, the floor about z = -9; the quay runs north along y = 9 (west) and the vehicle passes it at
-y = 0. Same script, same bytes; needs numpy. With a survey's .npz (array `elev`, 2 m spacing) as argument the spectral slope of that
-tile is printed beside the floor's.
+y = 0. The script always makes the same bytes; it needs numpy. With a survey's .npz (array `elev`, 2 m spacing) as argument the spectral slope of that
+tile is printed next to the floor's.
 
 The spectral slope is that of the radial power spectrum: power per unit area of the wave-number plane, averaged over
 direction, falls as |k|^slope. The floor is a Gaussian surface whose slope is -2.7, as measured on a real survey.
@@ -20,7 +20,7 @@ SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
 SPECTRAL_SLOPE = -2.7
 SPACING = 0.32          # of the floor's grid [m]
 TILE = 800              # grid points on a side of the whole fractal surface: 256 m
-RELIEF = 1.0            # highest less lowest point of the whole surface [m]
+RELIEF = 1.0            # height difference over the whole surface [m]
 DEPTH = 9.0             # mean [m]
 SOUTH, EAST = -30.0, -52.0   # corner of the part that is kept [m]
 ROWS, COLUMNS = 352, 194     # its grid points: 112 m north, 62 m west
@@ -66,7 +66,7 @@ class Floor:
         return ((1 - a) * ((1 - b) * h[i, j] + b * h[i, j + 1]) + a * ((1 - b) * h[i + 1, j] + b * h[i + 1, j + 1]))
 
     def parts(self, strips=4, ripple_tile=4.0):
-        """Strips of fewer than 65,536 points, so that indices are short."""
+        """Strips of fewer than 65,536 points, so that indices have 16 bits."""
         dx, dy = np.gradient(self.height, SPACING)
         normals = unit(np.stack([-dx, -dy, np.ones_like(dx)], -1))
         i, j = np.mgrid[:ROWS, :COLUMNS]
@@ -164,7 +164,8 @@ def link():
 
 
 def chain_path(floor):
-    """From beside the mooring block in curves over the floor, then up as a catenary: points 0.2 m apart."""
+    """From the side of the mooring block in curves over the floor, then up as a catenary: points 0.2 m
+    apart."""
     t = np.linspace(0, 1, 400)
     x, y = 20 + 7 * t, -7 + 1.6 * np.sin(2 * np.pi * t) + 2.5 * t
     lying = np.stack([x, y, floor.z(x, y) + 0.06], 1)
@@ -193,7 +194,7 @@ def add_chain(glb, floor, steel, concrete):
 
 
 def add_pipeline(glb, floor, steel, concrete):
-    """Half buried, from the quay out to the south-east, on saddles."""
+    """The pipeline: half buried, from the quay out to the south-east, on saddles."""
     ends = np.array([[50.0, 8.6], [4.0, -30.0]])
     t = np.linspace(0, 1, 60)[:, None]
     plan = ends[0] + t * (ends[1] - ends[0])
@@ -207,8 +208,8 @@ def add_pipeline(glb, floor, steel, concrete):
 
 
 def rock_places(rng):
-    """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]; none of them
-    under another."""
+    """Riprap along the toe of the wall, a reef to starboard, and single stones ahead: (x, y, size) [m]; none
+    below another."""
     toe = [(rng.uniform(9, 58), QUAY - rng.uniform(0.3, 2.2), rng.uniform(0.25, 0.7)) for _ in range(50)]
     reef = [(*(np.array([26, -24]) + rng.normal(0, (4.5, 2.0)) @ rotation(yaw=30)[:2, :2]), rng.uniform(0.5, 2.2))
             for _ in range(45)]
@@ -241,7 +242,8 @@ def add_quay(glb, rng, floor, steel, concrete, rubber):
 
 
 def weathered(material, reflection):
-    """Long in the water, rough and overgrown: Lambert's law at every frequency, by its reflection (ACOUSTICS.md 3.3)."""
+    """A material long in the water, rough and overgrown: Lambert's law at every frequency, by its reflection
+    (ACOUSTICS.md 3.3)."""
     return {"material": material, "lambert_db": -9.23 + 20 * math.log10(reflection)}
 
 
@@ -264,7 +266,7 @@ def make_scene(rng, floor):
 
 
 def write_pass(path, duration=18.0, step=0.2):
-    """North at about 1 m/s, 3.5 m above the floor, swaying as a small vehicle does."""
+    """A pass north at about 1 m/s, 3.5 m above the floor, swaying like a small vehicle."""
     lines = ["time,x,y,z,qw,qx,qy,qz"]
     for t in np.arange(0, duration + step / 2, step):
         w = 2 * np.pi * t
@@ -275,8 +277,8 @@ def write_pass(path, duration=18.0, step=0.2):
 
 
 def write_round(path, length=24.0, radius=6.0, step=0.2):
-    """North along the quay, round to starboard, back south over the open floor and round again, at 1 m/s and swaying: it
-    ends where it begins, so that it can be gone round for ever."""
+    """A round: north along the quay, round to starboard, back south over the open floor and round again, at 1 m/s
+    and swaying. It ends where it begins, so that it can be repeated without end."""
     turn, lines = np.pi * radius, ["time,x,y,z,qw,qx,qy,qz"]
     duration = round((2 * (length + turn)) / step) * step
     for t in np.linspace(0, duration, round(duration / step) + 1):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes deploy/scenes/materials.glb: a sphere, a box and a cylinder of each of five materials on a floor of sand. The
-materials have names as modellers write them and no acoustic values. Needs numpy."""
+materials have modellers' names and no acoustic values. Needs numpy."""
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ def cylinder(radius, length):
 
 
 def lying(body):
-    """With its z axis across the line of sight."""
+    """A body with its z axis across the line of sight."""
     x, y, z = body.positions.T
     return Mesh(np.c_[x, z, -y], body.faces)
 

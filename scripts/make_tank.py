@@ -8,7 +8,7 @@ import numpy as np
 from glb import Glb, box, quaternion, rotation, tube
 
 SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
-NORTH, WEST = 13.2, 9.0    # faces of the walls; the others lie at the negative [m]
+NORTH, WEST = 13.2, 9.0    # faces of the walls; the others are at the negative values [m]
 HEIGHT, THICK = 2.4, 0.5   # of the walls [m]
 PILLARS = [(7.0, -4.5), (-8.0, 5.0)]  # [m]
 DURATION, STEP = 21.0, 0.25           # of the trajectory [s]

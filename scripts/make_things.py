@@ -17,9 +17,9 @@ from matplotlib import pyplot
 from PIL import Image
 
 PICTURES = Path(__file__).resolve().parent.parent / "deploy" / "pictures"
-LEFT_OUT = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or plain
+LEFT_OUT = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or without detail
 DEPTH = 30.0
-SETTINGS = {  # by thing: what shows it best
+SETTINGS = {  # by thing: settings for the picture
     "pipeline": {"length_m": 12}, "cable": {"length_m": 4}, "rope": {"length_m": 2.5, "meander_m": 0.5}, "chain": {"length_m": 2.5},
     "mooring": {"line_m": 2.5, "lean_deg": 30, "heading_deg": 90}, "moored_mine": {"line_m": 1.5, "lean_deg": 40, "heading_deg": 90}, "diver": {"height_m": 0.6}, "rov": {"height_m": 0.3},
     "auv": {"height_m": 0.3}, "net": {"length_m": 2.5, "width_m": 1.6, "mesh_m": 0.1}, "wreck": {"length_m": 12},

@@ -28,7 +28,7 @@ def bottle(radius, height):
     return revolved(profile)
 
 
-VESSELS = [  # name, body, acoustics, east of the middle [m], turned about z; upright unless it lies
+VESSELS = [  # name, body, acoustics, east of the middle [m], turned about z; upright unless lying
     ("pvc pipe", revolved([(0.08, -0.5), (0.08, 0.5)]), shell(3, "pvc"), -1.25, 75),
     ("steel pipe", revolved([(0.08, -0.5), (0.08, 0.5)]), ROUGH | {"material": "steel"}, -0.9, 75),
     ("acrylic bottle", bottle(0.12, 0.5), shell(2, "acrylic"), -0.1, None),

@@ -1,10 +1,10 @@
-"""What dataset_dask.py and dataset_ray.py share: their options, and what they print of each shard."""
+"""Shared by dataset_dask.py and dataset_ray.py: options, and the output per shard."""
 import argparse
 import sys
 
 
 def parser(text):
-    """Of the options that both have."""
+    """A parser of the common options."""
     options = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("--shards", type=int, required=True, help="parts that the work is cut into")
     options.add_argument("--workers", type=int, default=1, help="processes on this machine")
@@ -13,8 +13,8 @@ def parser(text):
 
 
 def tell(get, given_up, shards):
-    """Prints what `get()` tells of a shard, (index, exit code, error output), or that it raised `given_up`; returns
-    whether the shard is done."""
+    """Prints the result of `get()`, (shard index, exit code, error output), or that it raised `given_up`;
+    returns whether the shard is done."""
     try:
         index, code, told = get()
     except given_up as error:

@@ -2,7 +2,7 @@
 import numpy as np
 from PIL import Image
 
-SIDE = 40  # of what a classifier sees [px]
+SIDE = 40  # of the input of a classifier [px]
 
 
 def normalised(pixels, side=SIDE):
@@ -23,7 +23,7 @@ def arrays(crops, labels):
 
 
 def answers(kind, count, parts, x, seed):
-    """What a classifier that learns from parts finds in x."""
+    """The features of x for a classifier that learns from parts."""
     model = kind(count)
     model.learn(parts, seed)
     return model.find(x)
@@ -96,7 +96,7 @@ class Cnn:
 
     def learn(self, parts, seed):
         import torch
-        torch.set_num_threads(1)  # the network is too small to share; several are trained at a time
+        torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
         layers, before = [], 2

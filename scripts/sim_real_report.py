@@ -109,7 +109,7 @@ def write(folder, result, simulated, test):
     lines += recall(labels, rows) + ["", "![Confusions](confusion.png)", "", "![Simulated and real](examples.png)", ""]
     if effects:
         lines += ["## Effects", "", "The same windows and places, with and without.", ""] + table(effects) + [""] + paired(effects) + [""]
-    lines += ["## How alike the halves are", "",
+    lines += ["## Likeness of the halves", "",
               "Distance to the nearest neighbour, 16 x 16 pixels without mean and contrast: 0 the same, 1.41 unrelated.", "",
               "| from | 10 % | median | 90 % |", "| --- | --- | --- | --- |"]
     lines += [f"| {name} | " + " | ".join(f"{each:.2f}" for each in values) + " |" for name, values in result["distances"].items()]

@@ -27,7 +27,7 @@ class Wrong(Exception):
 class Crop:
     pixels: np.ndarray  # grey levels 0 to 1
     label: str
-    group: str  # film or object; what is of one group is in one half. Empty: unknown
+    group: str  # film or object: crops of a group are in one half. Empty: unknown
     name: str
 
 
@@ -86,7 +86,7 @@ def boxes(file):
 
 
 def cut(pixels, box, margin):
-    """The box and a margin of its sides; what is outside the picture is left out."""
+    """The box and a margin of its sides; pixels outside the picture are omitted."""
     left, top, width, height = box
     grow_x, grow_y = margin * width, margin * height
     rows = slice(max(0, round(top - grow_y)), max(0, round(top + height + grow_y)))
@@ -116,12 +116,12 @@ def real(folder):
     labels = sorted({crop.label for crop in crops})
     if len(labels) < 2:
         raise Wrong(f"{folder}: has {len(labels)} classes; there must be at least two, each a folder or a zip file of "
-                    "pictures, or a COCO file beside frames")
+                    "pictures, or a COCO file with frames")
     return crops, labels
 
 
 def halves(crops):
-    """(train, test): of each class by film or object where they are known, else by numbering. Films are never cut."""
+    """(train, test): halves of each class, by film or object where they are known, else by numbering. Films are never cut."""
     train, test, where = [], [], {}
     for label in sorted({crop.label for crop in crops}):
         mine = [crop for crop in crops if crop.label == label]
@@ -131,7 +131,7 @@ def halves(crops):
             train += mine[:middle]
             test += mine[middle:]
             continue
-        for group in groups:  # a film that shows several classes goes where it went first
+        for group in groups:  # a film with several classes stays in the half of its first class
             if group not in where:
                 sizes = [sum(each.label == label for each in part) for part in (train, test)]
                 where[group] = int(sizes[1] < sizes[0])
@@ -170,7 +170,7 @@ def inputs_hash(files, values):
 
 
 def made(insonify, plan, sweep, effect, cache):
-    """Returns the folder of a sweep's set, without the effect if one is named. What is there is taken."""
+    """Returns the folder of a sweep's set, without the effect if one is named. An existing set is reused."""
     values = plan["effects"][effect] if effect else {}
     scenes = [sweep.parent / each["file"] if isinstance(each, dict) else sweep.parent / each
               for each in (yaml.safe_load(sweep.read_text()) or {}).get("scenes", [])]
@@ -193,7 +193,7 @@ def made(insonify, plan, sweep, effect, cache):
 
 
 def generate(insonify, plan, effect, cache):
-    """Folders of the sets, one for each sweep, as many at a time as there are processors."""
+    """Folders of the sets, one per sweep, made in parallel on all processors."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(lambda sweep: made(insonify, plan, sweep, effect, cache), plan["ablated" if effect else "sweeps"]))
 
@@ -233,7 +233,8 @@ def cut_turned(pixels, window, margin):
 
 
 def visible(levels, mask, decibels):
-    """Of a mask, the pixels that exceed the median of their surroundings, mean of 3 x 3 pixels, as people see an object in noise."""
+    """The pixels of a mask that exceed the median of their surroundings, in the mean of 3 x 3 pixels, as people see
+    an object in noise."""
     rows, columns = mask
     margin = 6
     part = levels[max(0, rows.min() - margin):rows.max() + margin, max(0, columns.min() - margin):columns.max() + margin]
@@ -280,13 +281,13 @@ def windows(folders, sweeps, plan):
 
 
 def displayed(pixels, share):
-    """Amplitudes as 8 bits of a display show them whose gain makes a share of the pixels white [%]."""
+    """Amplitudes as 8 bits of a display with a gain that makes a share of the pixels white [%]."""
     white = max(np.percentile(pixels, 100 - share), 1e-12)
     return np.round(255 * np.minimum(pixels / white, 1)) / 255
 
 
 def simulated(folders, sweeps, plan, shown):
-    """Crops of a set at `shown` windows, which may be those of another set: so that two are compared in pairs."""
+    """Crops of a set at `shown` windows, which may come from another set, to compare two sets in pairs."""
     crops = {}
     low, high = plan.get("margin", [0.1, 0.1])
     names = {sweep.stem: {int(file.name.split("_")[0]): file for file in folder.glob("[0-9]*_*.png")}

@@ -1,5 +1,6 @@
-// Shared by C++ and GLSL: what a surface gives back beyond Lambert's law, as sigma_b / cos(theta) [1] (ACOUSTICS.md 3.5 to
-// 3.8). `law` is that of a MaterialRecord. The includer defines double backscatterEntry(uint i), of tables one after another.
+// Shared by C++ and GLSL: backscatter of a surface beyond Lambert's law, as sigma_b / cos(theta) [1] (ACOUSTICS.md 3.5
+// to 3.8). `law` is that of a MaterialRecord. The includer defines double backscatterEntry(uint i), which indexes all
+// tables in sequence.
 
 double tabulatedBackscatter(uint table, double cosine) {
     double at = min(cosine, 1.0) * double(BACKSCATTER_ENTRIES - 1);
@@ -8,9 +9,10 @@ double tabulatedBackscatter(uint table, double cosine) {
     return low + (at - double(i)) * (backscatterEntry(table * uint(BACKSCATTER_ENTRIES) + i + 1u) - low);
 }
 
-// sinc^2 of the phase beta = k L sin(t) at one end of a length over that in its middle, up to 3 pi / 4; from there on its mean,
-// 1 / (2 beta^2), for the interference of both ends changes within a band, and with the slightest turn. `at`: beta^2 / pi;
-// `edges`: 1 where that mean is an echo of edges instead (ACOUSTICS.md 3.12), else 0.
+// Returns sinc^2(beta) up to beta = 3 pi / 4, where beta = k L sin(t) is the phase at the end of a length relative to
+// its middle. Beyond it returns the mean, 1 / (2 beta^2), because the interference of both ends varies within a band
+// and with the slightest turn. `at`: beta^2 / pi; `edges`: 1 where an echo of edges replaces that mean, else 0
+// (ACOUSTICS.md 3.12).
 double diffracted(double at, double edges) {
     double beta_square = LOBE_PI * at;
     if (beta_square > 0.5625 * LOBE_PI * LOBE_PI) return (1.0 - edges) * 0.5 / beta_square;
@@ -22,7 +24,7 @@ double diffracted(double at, double edges) {
     return sum;
 }
 
-// `power`: R^2 / (4 pi). What is rough or curved has slopes, what is flat diffracts.
+// `power`: R^2 / (4 pi). The rough or curved share has slopes; the flat share diffracts.
 double lobeOverCosine(double power, LobeSlopes slopes, double cosine) {
     double secant = 1.0 / max(cosine, MIN_LOBE_COSINE), square = secant * secant;
     double at_1 = slopes.sine_1 / slopes.square_1, at_2 = slopes.sine_2 / slopes.square_2;
@@ -36,23 +38,23 @@ double lobeOverCosine(double power, LobeSlopes slopes, double cosine) {
            (both * square * square * secant + (all - both) * cosine);
 }
 
-// Of a material with Lambert's parameter mu at a cosine.
+// Backscatter of a material with Lambert's parameter mu at a cosine of incidence.
 double backscatterOverCosine(vec4 law, double mu, double cosine, LobeSlopes slopes) {
     double section = law.x < 0.0 ? mu * cosine : tabulatedBackscatter(uint(law.x), cosine);
     if (law.y > 0.0) section += lobeOverCosine(double(law.y), slopes, cosine);
     return section;
 }
 
-// The mean square slope of a lobe in a principal direction of a facet: that of the micro-relief, the facet's, and half the square
-// of the angle by which a sample turns against the normal, so that samples together catch all of a lobe that is narrower.
-// `sample_square`: of the sample's width [rad^2].
+// Returns the mean square slope of a lobe in a principal direction of a facet: that of the micro-relief plus the
+// facet's plus half the square of the angle by which the normal turns within a sample. The last term makes the samples
+// together cover all of a narrower lobe. `sample_square`: square of the sample's width [rad^2].
 double meanSquareSlope(vec4 direction, double relief, double sample_square, double range) {
     double turn = 1.0 + 4.0 * range * double(direction.z);
     return relief + double(direction.x) + double(direction.y) + 0.5 * sample_square * turn * turn;
 }
 
-// Of a sample with planeFootprint()'s plane, direction and extent. `axis`: the facet's first direction, of any length; `bent`:
-// cosine of a bent normal, 0: it is the plane's.
+// Returns the slopes of a sample with planeFootprint()'s plane, direction and extent. `axis`: the facet's first
+// direction, of any length; `bent`: cosine of a mapped normal, 0: the plane's normal applies.
 LobeSlopes lobeSlopes(FacetRecord facet, double relief, double range, double normal_x, double normal_y, double normal_z,
                       double axis_x, double axis_y, double axis_z, double cos_az, double sin_az, double cos_el, double sin_el,
                       double width, double height, double bent) {

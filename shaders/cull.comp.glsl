@@ -1,11 +1,11 @@
-// One cluster of one object: its draw, empty unless the frustum may see it.
+// One cluster of one object: writes its draw, which is empty unless the cluster may be in the frustum.
 #include "interface.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = OBJECTS_BINDING) readonly buffer Objects { ObjectRecord objects[]; };
 layout(std430, binding = CLUSTERS_BINDING) readonly buffer Clusters { ClusterRecord clusters[]; };
 layout(std430, binding = VIEWED_BINDING) readonly buffer Viewed { ViewedObject viewed[]; };
-layout(std430, binding = DRAWS_BINDING) writeonly buffer Draws { uint draws[]; };  // five for each
-layout(std430, binding = CLIPS_BINDING) writeonly buffer Clips { vec4 clips[]; };  // three rows for each
+layout(std430, binding = DRAWS_BINDING) writeonly buffer Draws { uint draws[]; };  // five per cluster
+layout(std430, binding = CLIPS_BINDING) writeonly buffer Clips { vec4 clips[]; };  // three rows per cluster
 #ifdef HAVE_NORMAL_MAP
 layout(std430, binding = NORMAL_TRANSFORMS_BINDING) writeonly buffer NormalTransforms { vec4 normal_transforms[]; };  // six rows
 #endif

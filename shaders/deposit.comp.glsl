@@ -1,6 +1,7 @@
-// One pixel of a frustum: its echo into the bins of the beams that own its column, in 64-bit fixed point. All in single precision,
-// for many devices do 1/32 or 1/64 as many operations in double. Where an echo lies among the bins is exact nevertheless: the way
-// from picture and plane to inverse range is in pairs of floats, and a cell's places are from the inverse range of its own middle.
+// One pixel of a frustum: adds its echo to the bins of the beams that own its column, in 64-bit fixed point. All
+// numbers are in single precision, because many devices are 32 or 64 times slower in double. The place of an echo among
+// the bins is exact nevertheless: inverse range is computed from picture and plane in pairs of floats, and the places
+// of a cell are relative to the inverse range of its middle.
 #include "interface.glsl"
 #include "pair.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -11,7 +12,7 @@ layout(std430, binding = PLANES_BINDING) readonly buffer Planes { vec4 planes[];
 layout(std430, binding = MATERIALS_BINDING) readonly buffer Materials { MaterialRecord materials[]; };
 layout(std430, binding = SHARES_BINDING) readonly buffer Shares { DeviceShare shares[]; };
 layout(std430, binding = SHARE_STARTS_BINDING) readonly buffer ShareStarts { uint share_starts[]; };
-layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { float numbers[]; };  // edges of the bins, two each, then tables
+layout(std430, binding = NUMBERS_BINDING) readonly buffer Numbers { float numbers[]; };  // edges of the bins, two floats each, then tables
 layout(std430, binding = SUMS_BINDING) buffer Sums { uvec2 sums[]; };  // low and high word
 
 uniform ivec2 image_size;
@@ -38,14 +39,14 @@ float backscatterEntry(uint i) { return numbers[first_backscatter + i]; }
 
 Pair pairOf(vec2 both) { return Pair(both.x, both.y); }
 
-// The cell at hand: the inverse range from which its places count, and the place of its pixel's echo.
+// The current cell: the inverse range to which its places are relative, and the place of its pixel's echo.
 float origin = 0.0, pixel_place = 0.0;
 float inverseRange(float place) { return origin + place; }
 
 Pair edgeOf(uint k) { return Pair(numbers[2u * k], numbers[2u * k + 1u]); }
 float binEdge(uint k) { return beyond(edgeOf(k), origin); }
 
-// The bin in which a place in range lies. Edge 0 is the near blanking, which may lie in any bin.
+// Returns the bin that contains a place in range. Edge 0 is the near blanking, which may be in any bin.
 uint binOf(float place) {
     uint bin = min(uint(1.0 / (inverseRange(place) * bin_width)), bin_count - 1u);
     while (bin > 0u && binEdge(bin) < place) --bin;
@@ -53,7 +54,7 @@ uint binOf(float place) {
     return bin;
 }
 
-// Length of a part of a bin: exact where it is the whole bin, however far from the origin.
+// Length of a part of a bin; exact for a whole bin, at any distance from the origin.
 float lengthOf(uint bin, float below, float above) {
     bool whole = below == binEdge(bin + 1u) && above == binEdge(bin);
     return whole ? sumOf(edgeOf(bin), negative(edgeOf(bin + 1u))).high : above - below;
@@ -66,7 +67,7 @@ const uint channels = 1u;
 #endif
 
 #ifdef HAVE_VOLUME
-uint cellOf(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride + bin; }  // the volume comes after it
+uint cellOf(uint beam, uint bin, uint channel) { return 2u * beam * beam_stride + bin; }  // the volume follows
 #else
 uint cellOf(uint beam, uint bin, uint channel) { return channels * (beam * beam_stride + bin) + channel; }
 #endif
@@ -84,15 +85,15 @@ void addToMemory(uint cell, uvec2 quanta) {
     if (high != 0u) atomicAdd(sums[cell].y, high);
 }
 
-// The pixels of a group lie in few beams and, as a rule, in a narrow span of bins. What lies there is summed in the group's
-// own memory, and each of its sums is brought out once.
+// The pixels of a group are in few beams and usually in a narrow span of bins. Their echoes are summed in the group's
+// shared memory, and each sum is added to the buffer once.
 const uint group_beams = 8u, group_bins = 32u, group_cells = group_beams * group_bins * channels;
 shared uint first_beam, first_bin;
 shared uint group_low[group_cells], group_high[group_cells];
 
 void add(uint beam, uint bin, uint channel, float amount) {
     uvec2 quanta = quantaOf(amount);
-    uint row = beam - first_beam, column = bin - first_bin;  // of what comes before these, far beyond the span
+    uint row = beam - first_beam, column = bin - first_bin;  // earlier beams and bins wrap to beyond the span
     if (row >= group_beams || column >= group_bins) {
         addToMemory(cellOf(beam, bin, channel), quanta);
         return;
@@ -103,7 +104,7 @@ void add(uint beam, uint bin, uint channel, float amount) {
     if (high != 0u) atomicAdd(group_high[cell], high);
 }
 
-// Called by all of a group, each with the first beam and bin of its echo; bin_count: it has none.
+// Called by all invocations of a group, each with the first beam and bin of its echo; bin_count: no echo.
 void beginGroup(uint beam, uint bin) {
     for (uint i = gl_LocalInvocationIndex; i < group_cells; i += 64u) group_low[i] = group_high[i] = 0u;
     if (gl_LocalInvocationIndex == 0u) first_beam = first_bin = 0xffffffffu;
@@ -132,7 +133,7 @@ void addToBin(uint beam, uint bin, float amount, float weight) {
 }
 
 #include "jitter.glsl"
-Pair jitterOf(ivec2 pixel, uint which) {  // jitter(), of all 32 bits
+Pair jitterOf(ivec2 pixel, uint which) {  // jitter() with all 32 bits
     uint word = jitterWord(uint(pixel.x), uint(pixel.y), which);
     return exactSum(float(word >> 8u) * (1.0 / 16777216.0) - 0.5, float(word & 255u) * (1.0 / 4294967296.0));
 }
@@ -170,7 +171,7 @@ void depositVolume(Footprint cell, uint beam, vec2 uv) {
 }
 #endif
 
-// Where a ray meets the picture.
+// The place where a ray meets the picture.
 struct Ray {
     Pair u, v;
 };
@@ -187,7 +188,7 @@ Pair dotOf(vec3 a, vec3 b) {
 }
 Pair difference(Pair a, Pair b) { return sumOf(a, negative(b)); }
 
-// A normal, or what is turned as normals are.
+// Transforms a normal, or another vector that transforms like normals.
 Placed placed(ObjectRecord object, vec3 normal) {
     Pair x = dotOf(object.normal_x.xyz, normal), y = dotOf(object.normal_y.xyz, normal);
     Pair c = pairOf(axis_cosine), s = pairOf(axis_sine);
@@ -203,16 +204,16 @@ float strengthOf(uint material) {
 #endif
 }
 
-// What a pixel shows: its triangle's plane in the frustum's axes, and what belongs to its material and object.
+// The surface in a pixel: its triangle's plane in the frustum's axes, and properties of its material and object.
 struct Seen {
     Placed normal;
     Pair distance;
     Pair normal_length;
-    Ray ray;          // where the pixel is looked at
+    Ray ray;         // through the pixel's centre, or jittered
     float strength;  // at normal incidence
-    float mapped;    // cosine of a bent normal; 0: it is the plane's
+    float mapped;    // cosine of a mapped normal; 0: the plane's normal applies
     vec2 reach;      // inverse ranges of the object [1/m]
-    float weight;    // of the pattern in elevation [1]
+    float weight;    // pattern in elevation [1]
     uint material, triangle;
     vec3 axis;  // of the facet's lobe
 };
@@ -226,7 +227,7 @@ Pair distanceOf(PlaneRecord plane, ObjectRecord object) {
     return sum;
 }
 
-// Length times the cosine of incidence, and the ray's own length.
+// Length times the cosine of incidence, and the length of the ray.
 Pair alongRay(Placed normal, Ray ray) {
     return sumOf(sumOf(normal.x, productOf(normal.y, ray.u)), productOf(normal.z, ray.v));
 }
@@ -266,10 +267,10 @@ Seen seenAt(ivec2 pixel, Ray ray) {
     return seen;
 }
 
-// Where in share_starts a pixel's shares begin and end.
+// Index in share_starts of the begin of a pixel's shares; the next entry is their end.
 uint sharesOf(ivec2 pixel) {
 #ifdef HAVE_CONICAL
-    return uint(pixel.x + pixel.y * image_size.x);  // the boundaries of beams bend from row to row
+    return uint(pixel.x + pixel.y * image_size.x);  // the boundaries of beams differ between rows
 #else
     return uint(pixel.x);
 #endif
@@ -284,13 +285,14 @@ Angles anglesOf(vec2 uv) {
     return Angles(1.0 / level, uv.x / level, level * per_length, uv.y * per_length);
 }
 
-// A cell's footprint, and how it faces the sonar.
+// A cell's footprint, and the distance of its plane.
 struct Covered {
     Footprint footprint;
     float perpendicular;  // distance of the plane [m]; 0: no echo
 };
 
-// What a cell covers of the plane that is seen along a ray, as planeFootprint() in C++. Sets the origin of its places.
+// Returns the part of the plane along a ray that a cell covers, as planeFootprint() in C++. Sets `origin` and
+// `pixel_place`.
 Covered covered(Seen seen, Ray towards, PictureCell cell) {
     Angles at = anglesOf(directionOf(towards));
     vec3 normal = rounded(seen.normal);
@@ -314,7 +316,7 @@ Covered covered(Seen seen, Ray towards, PictureCell cell) {
     return result;
 }
 
-// Strength times slant range of a cell that is looked at along `towards` [m].
+// Strength times slant range of a cell in the direction `towards` [m].
 float strengthRange(Seen seen, Covered cell, vec2 towards, float width, float height) {
     float inverse_range = cell.footprint.pixel;
     bool mapped = seen.mapped > 0.0 && cell.perpendicular > 0.0;
@@ -376,7 +378,7 @@ void depositPixel(ivec2 pixel, Ray ray, Seen seen) {
     for (uint i = share_starts[at]; i < share_starts[at + 1u]; ++i) depositShare(shares[i], ray, seen);
 }
 
-// The bin in which a pixel's echo lies, nearly; bin_count: there is none.
+// The approximate bin of a pixel's echo; bin_count: no echo.
 uint firstBin(Seen seen) {
     float facing = alongRay(seen.normal, seen.ray).high / lengthOfRay(seen.ray).high;
     float inverse_range = seen.distance.high != 0.0 ? facing / seen.distance.high : 0.0;

@@ -1,7 +1,7 @@
-// Shared by C++ and GLSL: one cell's echo, spread over the bins that its footprint covers.
-// The includer has footprint.glsl and trapezoid.glsl before this file, and defines:
+// Shared by C++ and GLSL: spreads one cell's echo over the bins that its footprint covers.
+// The includer includes footprint.glsl and trapezoid.glsl before this file, and defines:
 //     double binEdge(uint k);                      place of edge k [1/m]; edge 0 is the near blanking, edge n the far end
-//     uint binOf(double place);                    the bin in which a place in range lies, give or take a rounding
+//     uint binOf(double place);                    the bin that contains a place in range, up to rounding
 //     void addToBin(uint beam, uint bin, double amount, double weight);
 //     uint bin_count; double bin_width [m], attenuation (amplitude, one way, cerqueira2017) [Np/m]
 
@@ -11,7 +11,7 @@ double cerqueiraEcho(double x) { return 1.0 / (1.0 + double(exp(float(12.0 - 18.
 #endif
 
 #ifdef HAVE_ABSORPTION
-// What absorption leaves of a cosine, there and back.
+// A cosine after two-way absorption.
 double attenuated(double cosine, double range) { return cosine * double(exp(float(-2.0 * attenuation * range))); }
 #endif
 
@@ -33,11 +33,12 @@ void depositPart(Footprint cell, uint beam, uint bin, double share, double above
 #endif
 }
 
-// Share of a cell up to an inverse range, but for a number that is the same all over the cell.
+// Share of a cell up to an inverse range, plus a constant of the cell.
 double shareAt(Footprint cell, double inverse_range) {
     return cell.limb > 0.0 ? limbShare(cell, inverse_range) : trapezoidShare(cell, inverse_range - cell.centre);
 }
-// What the nearest point cuts off lies about that point; what object, blanking and range cut off is gone.
+// The share that the nearest point cuts off is deposited at that point; the shares that object, blanking and range cut
+// off are lost.
 double firstShare(Footprint cell, double inverse_range) {
     if (inverse_range < cell.nearest) return shareAt(cell, inverse_range);
     if (!(cell.limb > 0.0)) return 0.5;
@@ -45,8 +46,8 @@ double firstShare(Footprint cell, double inverse_range) {
 }
 
 #ifdef HAVE_PUBLISHED
-// cerqueira2017 to the letter (ACOUSTICS.md 8.2, items 3, 4): each pixel counts once, in the bin of its centre; what meets
-// nothing in range counts in bin 0 with a cosine of 0.
+// cerqueira2017 exactly as published (ACOUSTICS.md 8.2, items 3, 4): each pixel counts once, in the bin of its centre.
+// A pixel without an echo in range counts in bin 0 with a cosine of 0.
 void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
 #ifdef GLSL
@@ -63,7 +64,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
     addToBin(beam, bin, cerqueiraEcho(cosine), 1.0);
 }
 #elif defined(HAVE_NEAREST)
-// All of a cell in one bin, that of a point in its pixel.
+// Deposits a whole cell in one bin, that of a point in its pixel.
 void depositCell(Footprint cell, uint beam, double strength_range) {
 #ifdef GLSL
     double place = pixel_place;
@@ -78,7 +79,7 @@ void depositCell(Footprint cell, uint beam, double strength_range) {
 #else
 // `strength_range` = strength times slant range [m].
 void depositCell(Footprint cell, uint beam, double strength_range) {
-    if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // neither of which NaN is
+    if (!(cell.near_end > cell.far_end && strength_range >= 0.0)) return;  // false for NaN
     uint bin = binOf(cell.near_end);
     while (bin > 0u && binEdge(bin) < cell.near_end) --bin;
     while (binEdge(bin + 1u) >= cell.near_end) ++bin;

@@ -1,5 +1,6 @@
-// Shared by C++ and GLSL: the two-way pattern at the elevation of a ray through (u, v) of a frustum's picture, from a table
-// of elevationPower(0) to elevationPower(ELEVATION_STEPS), even in the sine of elevation from -elevation_reach to it.
+// Shared by C++ and GLSL: the two-way pattern at the elevation of a ray through (u, v) of a frustum's picture. The
+// table elevationPower(0) to elevationPower(ELEVATION_STEPS) is evenly spaced in the sine of elevation, from
+// -elevation_reach to elevation_reach.
 double elevationWeight(double u, double v) {
     double sine = v / sqrt(1.0 + u * u + v * v);
     double at = 0.5 * double(ELEVATION_STEPS) * (1.0 + sine / elevation_reach);

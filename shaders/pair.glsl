@@ -1,7 +1,8 @@
-// Shared by GLSL and a test in C++: numbers as sums of two floats, for devices that count slowly in double. They have 44 bits at
-// least, however roughly the device divides and takes roots. Sum and product with their rounding: D. E. Knuth, The Art of
-// Computer Programming 2, 4.2.2; T. J. Dekker, "A floating-point technique for extending the available precision",
-// Numer. Math. 18, 1971. `precise` keeps a compiler from rearranging them; C++ defines it as nothing.
+// Shared by GLSL and a test in C++: numbers as sums of two floats, for devices that are slow in double. They have at
+// least 44 bits, even if the device divides and takes roots imprecisely. Sum and product with their rounding errors: D.
+// E. Knuth, The Art of Computer Programming 2, 4.2.2; T. J. Dekker, "A floating-point technique for extending the
+// available precision", Numer. Math. 18, 1971. `precise` keeps a compiler from rearranging the terms; C++ defines it as
+// nothing.
 
 struct Pair {
     float high, low;  // high is the sum, rounded
@@ -46,7 +47,7 @@ Pair quotientOf(Pair a, Pair b) {
     return exactSum(first, second);
 }
 
-// Of a number above 0.
+// The square root of a number above 0.
 Pair rootOf(Pair a) {
     precise float first = sqrt(a.high);
     Pair rest = sumOf(a, negative(exactProduct(first, first)));
@@ -54,7 +55,7 @@ Pair rootOf(Pair a) {
     return exactSum(first, second);
 }
 
-// What a number is beyond a float: exact where the two are close.
+// The difference of a number and a float; exact where the two are close.
 float beyond(Pair a, float origin) {
     precise float difference = (a.high - origin) + a.low;
     return difference;

@@ -1,8 +1,9 @@
 // Shared by C++ and GLSL: the cell that is a beam's share of a pixel, in the picture of a frustum: u = tan(azimuth),
 // v = tan(elevation) / cos(azimuth).
 
-// What of a pixel's row lies within the aperture, all in v from any origin: one about `at`, `dv` high. Rows follow curves of
-// constant elevation, so that at u that of a pixel at (u_0, v_0) is about v_0 + v_0 shear (u - u_0), its share's `shear`.
+// The part within the aperture of a pixel's row, which is `dv` high about `at`; all in v from any origin. Rows follow
+// curves of constant elevation: at u, the row of a pixel at (u_0, v_0) is about v_0 + v_0 shear (u - u_0), with the
+// share's `shear`.
 struct PictureRow {
     double middle, rise;
 };
@@ -20,7 +21,7 @@ struct PictureCell {
     double size;           // solid angle, in pixels at the picture's centre [1]
 };
 
-// A cell about (u, v) that is `width` wide in u and `rise` high in v. `per_pixel`: 1 / (du dv).
+// Returns the cell about (u, v) that is `width` wide in u and `rise` high in v. `per_pixel`: 1 / (du dv).
 PictureCell pictureCell(double u, double v, double width, double rise, double per_pixel) {
     PictureCell cell;
     double p2 = 1.0 + u * u;

@@ -1,11 +1,11 @@
-// Shared by C++ and GLSL: what a cell of azimuth and elevation covers of a plane. The includer has footprint.glsl before
-// this file.
+// Shared by C++ and GLSL: the part of a plane that a cell of azimuth and elevation covers. The includer includes
+// footprint.glsl before this file.
 
-// How a cell of azimuth and elevation lies across a plane normal.p = distance, in inverse range: n.d / D is linear in azimuth and
-// elevation but for the curvature of sine and cosine. `ahead`, `aside`: of the normal along and across the azimuth of the cell's
-// middle. `width`, `height` [rad]; `lean`: dazimuth / delevation of the cell's sides.
+// The extent in inverse range of a cell of azimuth and elevation on a plane normal.p = distance. n.d / D is linear in
+// both angles except for the curvature of sine and cosine. `ahead`, `aside`: components of the normal along and across
+// the azimuth of the cell's middle. `width`, `height` [rad]; `lean`: dazimuth / delevation of the cell's sides.
 struct PlaneExtent {
-    double sag;            // 1/r is a sinusoid of either angle, so its mean over the cell is a little less than at its middle
+    double sag;            // 1/r is a sinusoid of either angle: its mean over the cell is a little less than in the middle
     double along, across;  // lengths of the two boxes
 };
 PlaneExtent planeExtent(double ahead, double aside, double normal_z, double cos_el, double sin_el, double per_distance,
@@ -19,16 +19,16 @@ PlaneExtent planeExtent(double ahead, double aside, double normal_z, double cos_
     return extent;
 }
 
-// What a cell covers of a plane, and how far the plane is.
+// The part of a plane that a cell covers, and the distance of the plane.
 struct PlaneFootprint {
     Footprint footprint;
     double perpendicular;  // distance of the plane [m]; 0: no echo
 };
 
 #ifndef GLSL
-// The trapezoid of inverse ranges that a cell covers of a plane, as planeExtent. The normal may have any length and sign.
-// `cos_az` to `sin_el`: of the direction of the cell's middle. Closer to edge-on than EDGE_ON_COSINE there is no echo, but
-// still a shadow.
+// Returns the trapezoid of inverse ranges that a cell covers on a plane, with the parameters of planeExtent(). The
+// normal may have any length and sign. `cos_az` to `sin_el`: direction of the cell's middle. A plane closer to edge-on
+// than EDGE_ON_COSINE has no echo, but still a shadow.
 PlaneFootprint planeFootprint(double normal_x, double normal_y, double normal_z, double distance, double cos_az,
                               double sin_az, double cos_el, double sin_el, double width, double height, double lean,
                               double size, double near_limit, double far_limit, double near_edge, double far_edge) {
@@ -36,7 +36,7 @@ PlaneFootprint planeFootprint(double normal_x, double normal_y, double normal_z,
     double ahead = normal_x * cos_az + normal_y * sin_az;
     double aside = normal_y * cos_az - normal_x * sin_az;
     double facing = ahead * cos_el + normal_z * sin_el;
-    // Both at once, without a branch, so that a processor does several cells together.
+    // Both conditions without a branch, so that a processor computes several cells together.
     bool echo = (distance * facing > 0.0 ? abs(facing) - EDGE_ON_COSINE * normal : 0.0) > 0.0;
     double per_distance = echo ? 1.0 / distance : 0.0;
     double inverse_range = facing * per_distance;

@@ -1,4 +1,4 @@
-// Lays the four samples of each pixel out as four pixels, each in its quarter.
+// Writes the four samples of each pixel as four pixels, each in its quarter.
 layout(binding = 0) uniform usampler2DMS samples;
 uniform ivec4 sample_of_quarter;  // left below, right below, left above, right above
 

@@ -1,5 +1,5 @@
-// One pixel: which triangle it shows, and with a normal map how steeply sound meets the mapped surface.
-// Range, slope and strength follow from the triangle's plane, exactly, in plane.glsl.
+// One pixel: writes its triangle and, with a normal map, the cosine of incidence on the mapped surface.
+// plane.glsl computes range, slope and strength exactly from the triangle's plane.
 
 flat in uvec2 seen;
 #ifdef HAVE_NORMAL_MAP
@@ -21,7 +21,7 @@ float mappedCosine(vec3 direction, float scale) {
     vec3 texel = texture(normal_map, map_uv).xyz * 2.0 - 1.0;
     vec3 bent = normalize(mat3(t, cross(n, t) * frustum_tangent.w, n) * (texel * vec3(scale, scale, 1.0)));
     float cosine = -dot(bent, direction) * sign(-dot(n, direction));  // both sides of a surface reflect
-    return cosine > 1e-6f ? cosine : 1e-6f;                            // also where normal and tangent make no frame
+    return cosine > 1e-6f ? cosine : 1e-6f;                            // also where normal and tangent form no frame
 }
 
 void main() {

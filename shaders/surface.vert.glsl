@@ -1,5 +1,5 @@
-// One vertex: from object axes to one frustum's image. Whatever is the same for a draw comes as attributes of its one
-// instance: llvmpipe reads those once, and buffers once for each vertex.
+// One vertex: transforms it from object axes to one frustum's image. Constants of a draw are attributes of its only
+// instance, because llvmpipe reads these once, but buffers once per vertex.
 #extension GL_ARB_shader_draw_parameters : require
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 clip_x;  // rows of the matrix from object axes to the image: u, v, and depth along its axis

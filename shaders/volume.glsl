@@ -1,13 +1,14 @@
-// Shared by C++ and GLSL: volume reverberation as changes over range, which are summed up from bin to bin afterwards
-// (ACOUSTICS.md 3.9). The includer has footprint.glsl before this file, and defines:
-//     void addVolume(uint beam, uint bin, double amount);  // of either sign; with layers the bin behind the last one as well
+// Shared by C++ and GLSL: volume reverberation as changes over range, which are accumulated from bin to bin afterwards
+// (ACOUSTICS.md 3.9). The includer includes footprint.glsl before this file, and defines:
+//     void addVolume(uint beam, uint bin, double amount);  // of either sign; with layers also the bin behind the last bin
 //     uint bin_count; double bin_width [m]
 // and with HAVE_VOLUME_LAYERS:
 //     uint layer_count; double layerNumber(uint i);        // three each: low and high above the surface [m], share [1]
 //     double sonar_height;                                 // above the surface [m]
 
-// From `range` on a beam hears so much more of the volume: layers between two bins by its place, for all of their rays enter
-// close to each other; what hides the volume to the nearest edge of a bin, for it is heard more than what it hides.
+// Changes the volume reverberation of a beam by `amount` from `range` on. Layers split the change between two bins by
+// its place, because all rays enter a layer close to each other. Without layers the change is at the nearest edge of a
+// bin, because the echo of a surface is louder than the volume that it hides.
 void changeVolume(uint beam, double range, double amount) {
 #ifdef HAVE_VOLUME_LAYERS
     double at = range / bin_width;
@@ -22,7 +23,7 @@ void changeVolume(uint beam, double range, double amount) {
 }
 
 #ifdef HAVE_VOLUME_LAYERS
-// A ray hears each layer from where it enters it to where it leaves it or ends. `rise`: metres up for each metre.
+// Adds the reverberation of each layer from the ray's entry to its exit or `end`. `rise`: metres up per metre of ray.
 void hearLayers(uint beam, double rise, double end, double amount) {
     for (uint i = 0u; i < layer_count; ++i) {
         double low = layerNumber(3u * i) - sonar_height, high = layerNumber(3u * i + 1u) - sonar_height;
@@ -35,7 +36,8 @@ void hearLayers(uint beam, double rise, double end, double amount) {
 }
 #endif
 
-// What a cell of a solid angle `size` meets hides what is behind it: one that covers several bins in up to four parts.
+// Ends the volume reverberation behind the surface that a cell of a solid angle `size` meets. A cell that covers
+// several bins ends it in up to four parts.
 void hideVolume(Footprint cell, uint beam, double rise, double size) {
     double depth = cell.wide + cell.narrow, of_a_bin = bin_width * cell.pixel * cell.pixel;
     uint parts = depth < of_a_bin ? 1u : depth < 2.0 * of_a_bin ? 2u : 4u;

@@ -12,7 +12,7 @@ struct Angle {
     static constexpr const char* type_name = "/base/Angle";
     double rad = std::numeric_limits<double>::quiet_NaN();
 
-    /** Normalised to (-pi, pi]; -pi becomes +pi. */
+    /** Returns an angle normalised to (-pi, pi]; -pi becomes +pi. */
     static Angle fromRad(double rad) {
         const double turned = std::remainder(rad, 2 * std::numbers::pi);
         return {turned <= -std::numbers::pi ? std::numbers::pi : turned};

@@ -10,10 +10,11 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double rounding = 1e-9;  ///< [rad]
 
-/** A bearing within half a turn of ahead; logs of other programs may hold others. */
+/** Returns a bearing within half a turn of ahead; logs of other programs may contain larger bearings. */
 double normalised(Angle bearing) { return std::abs(bearing.rad) <= pi ? bearing.rad : Angle::fromRad(bearing.rad).rad; }
 
-/** The place behind the widest gap of ascending bearings; 0, that behind astern, unless another is clearly wider. */
+/** Returns the place behind the widest gap of ascending bearings; 0, behind the gap astern, unless another gap is
+ *  clearly wider. */
 size_t beginOf(const std::vector<double>& ascending) {
     size_t begin = 0;
     double widest = ascending.front() + 2 * pi - ascending.back() + 1e-6;

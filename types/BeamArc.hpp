@@ -10,7 +10,7 @@
 namespace insonify::types {
 
 /** The beams of a ping from starboard to port along the arc that they cover. The ping may list its beams in any order,
- *  with gaps and overlaps, and across +-180 degrees: the arc leaves out the widest gap between two beams.
+ *  with gaps and overlaps, and across +-180 degrees: the arc excludes the widest gap between two beams.
  *
  *  Beams of unknown bearing are omitted. Neighbours join when they are at most two widths apart, or when the ping does
  *  not state the width. Joined beams meet half way between their centres. Other neighbours have a gap between them. */
@@ -26,31 +26,33 @@ struct BeamArc {
     explicit BeamArc(const Sonar& ping, double lone_width = usual_width) { take(ping, lone_width); }
     /** @param lone_width the width of a single beam when the ping does not state it [rad] */
     void take(const Sonar& ping, double lone_width = usual_width);
-    /** Allocates nothing when it had as many beams. */
+    /** Allocates nothing when the arc had this number of beams before. */
     void take(std::span<const Angle> table, Angle beam_width, double lone_width = usual_width);
 
     bool fullCircle() const { return left - right > 2 * std::numbers::pi - 1e-6; }
-    /** Whether the beam at a place in `beams` joins the next one to port. */
+    /** Returns whether the beam at a place in `beams` joins the next beam to port. */
     bool joins(size_t place) const;
-    /** The place in `beams` at a bearing. Between the centres of two joined beams it is a fraction, which rounds to the
-     *  nearest beam. Nothing where no beam is. */
+    /** Returns the place in `beams` at a bearing; none when there is no beam. Between the centres of two joined beams
+     *  it is a fraction, which rounds to the nearest beam. */
     std::optional<double> placeAt(double bearing) const;
-    /** Index into the ping's beams of the beam whose centre is nearest to a bearing; nothing where no beam is. */
+    /** Returns the index into the ping's beams of the beam whose centre is nearest to a bearing; none when there is no
+     *  beam. */
     std::optional<uint32_t> beamAt(double bearing) const;
-    /** The same direction as `bearing`, within half a turn of the arc's middle [rad]. */
+    /** Returns the same direction as `bearing`, within half a turn of the arc's middle [rad]. */
     double turned(double bearing) const;
 
     /** A part of the arc, from its starboard to its port edge [rad]. */
     struct Sector {
         double right, left;
     };
-    /** What each beam shows of the arc. An outermost beam reaches as far outwards as towards its joined neighbour. */
+    /** Returns the sector of each beam. An outermost beam reaches the same distance outwards as towards its joined
+     *  neighbour. */
     std::vector<Sector> sectors() const;
-    /** How far a beam reaches from its centre to either side [rad]. */
+    /** The reach of a beam from its centre to either side [rad]. */
     struct Reach {
         double right, left;
     };
-    /** The reach of the beam at a place: `half_width`, but no more than half way to the next beam. */
+    /** Returns the reach of the beam at a place: `half_width`, but at most half way to the next beam. */
     Reach within(size_t place, double half_width) const;
 
 private:

@@ -6,25 +6,24 @@
 
 namespace insonify::types {
 
-/** One thing that is wrong with a configuration or a file. A struct that judges its own fields fills in `path`, below
- *  itself ("tvg.max_db"), and `message`; who reads the file adds the place. */
+/** One error in a configuration or a file. A struct that checks its own fields fills in `message` and the `path` below
+ *  itself ("tvg.max_db"); the reader of the file adds the place. */
 struct Diagnostic {
-    std::string path;     ///< What it concerns: "tasks.sonar.properties.range", "meshes[2].primitives[0]".
-    std::string message;  ///< What it is, and what it may be.
+    std::string path;     ///< Place in the data: "tasks.sonar.properties.range", "meshes[2].primitives[0]".
+    std::string message;  ///< The value that is wrong, and the values that are allowed.
     std::string file = {};
     int line = 0, column = 0;  ///< From 1; 0: the place is unknown.
 
-    /** `file:line:column: path: message`, without the parts that are not known. */
+    /** Returns `file:line:column: path: message`, without unknown parts. */
     std::string text() const;
 };
 using Diagnostics = std::vector<Diagnostic>;
 
-/** Wrong usage, file or configuration: the program answers with exit code 2. Carries every diagnostic that was found.
- */
+/** An error in usage, a file or a configuration, with all diagnostics. The program exits with code 2. */
 class ConfigError : public std::runtime_error {
 public:
     explicit ConfigError(Diagnostics diagnostics);
-    /** One diagnostic of which only the file (may be empty) and the object in it are known. */
+    /** Makes an error of one diagnostic with a file, which may be empty, and a path, but without line and column. */
     ConfigError(std::string file, std::string path, std::string message);
     const Diagnostics& diagnostics() const { return diagnostics_; }
 

@@ -26,7 +26,7 @@ std::string headerOf(const std::vector<CsvColumn>& columns) {
     return header;
 }
 
-/** "a finite number", "a number from 0 to 90" */
+/** Returns "a finite number", or a text such as "a number from 0 to 90". */
 std::string wantedOf(const CsvColumn& column) {
     if (std::isinf(column.min) && std::isinf(column.max)) return "a finite number";
     char text[80];
@@ -34,7 +34,7 @@ std::string wantedOf(const CsvColumn& column) {
     return text;
 }
 
-/** Reads line by line and collects all that is wrong. */
+/** Reads line by line and collects all errors. */
 class Reader {
 public:
     Reader(std::string file, const std::vector<CsvColumn>& columns, const CsvJudge& judge)
@@ -111,7 +111,7 @@ private:
     std::string file_;
     const std::vector<CsvColumn>& columns_;
     const CsvJudge& judge_;
-    std::vector<std::vector<double>> rows_;  ///< Of good numbers, judged or not.
+    std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `judge_`.
     Diagnostics diagnostics_;
     int line_number_ = 0;
     bool has_header_ = false;

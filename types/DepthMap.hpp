@@ -15,8 +15,8 @@ enum class Projection : int32_t { Polar = 0, Planar = 1 };
 
 /** Distances by direction, field for field Rock's base::samples::DepthMap.
  *
- *  Rows from top to bottom, each from left to right. Polar: `vertical_interval` holds the turn of each row about y,
- *  which looks down where it is positive, `horizontal_interval` that of each column about z, positive to port. */
+ *  Rows are from top to bottom, columns from left to right. Polar: `vertical_interval` contains the angle of each row
+ *  about y, positive down, and `horizontal_interval` the angle of each column about z, positive to port. */
 struct DepthMap {
     static constexpr const char* type_name = "/base/samples/DepthMap";
     static constexpr bool shared = true;
@@ -33,7 +33,8 @@ struct DepthMap {
     std::vector<float> distances;
     std::vector<float> remissions;
 
-    /** Unit vector of a cell of a polar map with one angle for each row and column, x ahead, y to port, z up. */
+    /** Returns the unit vector of a cell of a polar map with one angle for each row and column, x ahead, y to port, z
+     *  up. */
     glm::dvec3 direction(size_t row, size_t column) const {
         const double v = vertical_interval[row], h = horizontal_interval[column];
         return {std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), -std::sin(v)};

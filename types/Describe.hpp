@@ -1,5 +1,5 @@
 #pragma once
-// How a struct tells what it holds, once: YAML, log, export and help are all read from this description.
+// Descriptions of structs. YAML, logs, exports and help all use the description of a struct, which is written once.
 //
 //     struct Sample {
 //         double range = 0;
@@ -26,7 +26,7 @@ struct Field {
     double max = std::numeric_limits<double>::infinity();
 };
 
-/** True for a struct that describes itself as above. */
+/** Visitor that accepts every field, for the concept Described: structs with a describe() as above. */
 struct AnyVisitor {
     template <class T>
     void operator()(const Field&, T&) {}
@@ -45,7 +45,7 @@ concept NamedEnum = requires {
     EnumNames<E>::names;
 };
 
-/** Rock's name of an enum and its symbols, for one that samples hold: specialise with `name` and `symbols[]`. */
+/** Rock's name and symbols of an enum that samples contain: specialise with `name` and `symbols[]`. */
 struct EnumSymbol {
     const char* symbol;
     int32_t value;
@@ -53,13 +53,13 @@ struct EnumSymbol {
 template <class E>
 struct EnumTable;
 
-/** The value of a key that is another task's now: whatever a file gives it is refused with the doc of its field. */
+/** The value of a key that has moved to another task. Any value in a file is an error with the doc of the field. */
 struct MovedTo {
     template <class Self, class V>
     static void describe(Self&, V&) {}
 };
 
-/** A described struct may judge its fields together: `void check(types::Diagnostics&) const`. */
+/** A described struct that validates its fields together: `void check(types::Diagnostics&) const`. */
 template <class T>
 concept Checked = requires(const T& value, Diagnostics& diagnostics) {
     value.check(diagnostics);

@@ -13,7 +13,8 @@ std::string lower(std::string_view text) {
     return small;
 }
 
-/** Letters missing, added, changed or swapped with a neighbour (Damerau 1964, restricted to one edit a place). */
+/** Returns the number of letters that are missing, added, changed or swapped with a neighbour (Damerau 1964, restricted
+ *  to one edit per place). */
 size_t editDistance(std::string_view a, std::string_view b) {
     std::vector<size_t> two(b.size() + 1), one(b.size() + 1), row(b.size() + 1);
     for (size_t j = 0; j <= b.size(); ++j) one[j] = j;
@@ -33,14 +34,14 @@ size_t editDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known) {
-    constexpr size_t longest = 200;  // beyond which nobody has mistyped a name
+    constexpr size_t longest = 200;  // longer texts are no mistyped names
     if (wrong.size() > longest) return "";
     const std::string meant = lower(wrong);
     size_t least = std::numeric_limits<size_t>::max();
     std::vector<std::string> nearest, holding;
     for (const std::string& name : known) {
         const std::string last =
-            lower(name).substr(name.rfind(':') + 1);  // of sonar::SonarTask; all, where there is none
+            lower(name).substr(name.rfind(':') + 1);  // SonarTask of sonar::SonarTask; the whole name without ':'
         const size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
         if (distance < least) nearest = {name};
         least = std::min(least, distance);

@@ -5,9 +5,9 @@
 
 namespace insonify::types {
 
-/** "did you mean range? " for a name that is close to one of `known`, else empty: at most a third of its letters are
- *  missing, added, changed or swapped with a neighbour, whatever their case, or it is a part of one name alone. Of a
- *  name with a namespace the last part is enough. */
+/** Returns a text such as "did you mean range? " for a name that is close to a name in `known`, else empty. A name is
+ *  close if at most a third of its letters are missing, added, changed or swapped with a neighbour, ignoring case. A
+ *  part of exactly one known name is close, too. The last part of a known name with a namespace is enough. */
 std::string didYouMean(std::string_view wrong, const std::vector<std::string>& known);
 
 }  // namespace insonify::types

@@ -9,11 +9,11 @@
 
 namespace insonify::types {
 
-/** What a Doppler velocity log measures with one ping, over the bottom. Rock has no such type, only the velocity as a
- *  RigidBodyState; the fields here are those of marine_acoustic_msgs/Dvl.
+/** The measurement of one ping of a Doppler velocity log over the bottom. Rock has no type for it, only the velocity as
+ *  a RigidBodyState; the fields are those of marine_acoustic_msgs/Dvl.
  *
- *  Axes are the instrument's: x forward, y left, z up, its beams look down. NaN means unknown: what a lost beam, or a
- *  log without bottom lock, has not measured. Lists are empty or hold an element for each beam, at most four. */
+ *  The axes are those of the instrument: x forward, y left, z up; its beams look down. NaN means unknown, for lost
+ *  beams and without bottom lock. Lists are empty or have an element for each beam, at most four. */
 struct Dvl {
     static constexpr const char* type_name = "/insonify/Dvl";
     static constexpr bool shared = true;
@@ -29,9 +29,9 @@ struct Dvl {
     std::vector<double> beam_velocities;
     std::vector<double> beam_velocity_variances;
 
-    /** Whether it knows its velocity over the bottom. */
+    /** Returns whether the velocity over the bottom is known. */
     bool hasBottomLock() const { return std::isfinite(velocity.x + velocity.y + velocity.z); }
-    /** Beams with an echo [1]. */
+    /** Returns the number of beams with an echo [1]. */
     size_t goodBeams() const {
         size_t good = 0;
         for (const double range : beam_ranges) good += std::isfinite(range);
@@ -53,7 +53,7 @@ struct Dvl {
         visit(Field{"speed_of_sound", "m/s", "that the instrument takes for its ranges and velocities"},
               self.speed_of_sound);
         visit(Field{"beam_directions", "1", "unit vectors"}, self.beam_directions);
-        visit(Field{"beam_ranges", "m", "along each beam; NaN: a lost one"}, self.beam_ranges);
+        visit(Field{"beam_ranges", "m", "along each beam; NaN: a lost beam"}, self.beam_ranges);
         visit(Field{"beam_velocities", "m/s", "of the instrument along each beam, positive towards the bottom"},
               self.beam_velocities);
         visit(Field{"beam_velocity_variances", "m^2/s^2", "of each beam's velocity"}, self.beam_velocity_variances);

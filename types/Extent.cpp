@@ -12,7 +12,7 @@ glm::dvec3 placed(const glm::dmat4& world_from_mesh, const glm::vec3& position) 
     return glm::dvec3(world_from_mesh * glm::dvec4(position, 1));
 }
 
-/** world_from_object of every object at that instant. */
+/** Returns world_from_object of every object at the time of the snapshot. */
 std::vector<glm::dmat4> placesOf(const Snapshot& snapshot) {
     std::vector<glm::dmat4> places;
     for (const Object& object : snapshot.geometry->objects) places.push_back(object.world_from_object);
@@ -24,7 +24,7 @@ const Mesh& meshOf(const Geometry& geometry, size_t object) {
     return geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)];
 }
 
-/** How far along an edge, 0 to 1, the foot of a perpendicular lies. */
+/** Returns the place of the foot of a perpendicular along an edge, clamped to 0 to 1. */
 double clampedShare(double along, double whole) { return whole > 0 ? std::clamp(along / whole, 0.0, 1.0) : 0.0; }
 
 glm::dvec3 nearestOfEdge(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {

@@ -14,39 +14,40 @@
 
 namespace insonify::types {
 
-/** A wall that a surface stands for, with water on both sides, or air or another fluid behind it. */
+/** A wall that a surface represents, with water on both sides, or air or another fluid behind it. */
 struct Shell {
     double thickness = 0;     ///< [m]
     double density = 0;       ///< [kg/m^3]
     double sound_speed = 0;   ///< Speed of longitudinal waves [m/s].
-    double shear_speed = 0;   ///< 0: as a fluid [m/s].
+    double shear_speed = 0;   ///< Speed of shear waves [m/s]; 0: a fluid.
     double loss = 0;          ///< Imaginary over real part of the wave numbers [1].
-    bool has_air = false;     ///< Air behind it, and not water.
-    double fill_density = 0;  ///< Of the fluid behind it; 0: air or water [kg/m^3].
-    double fill_speed = 0;    ///< Speed of sound there [m/s].
-    double fill_loss = 0;     ///< Imaginary over real part of the wave number there [1].
+    bool has_air = false;     ///< Air instead of water behind the wall.
+    double fill_density = 0;  ///< Density of the fluid behind the wall [kg/m^3]; 0: air or water.
+    double fill_speed = 0;    ///< Speed of sound in this fluid [m/s].
+    double fill_loss = 0;     ///< Imaginary over real part of the wave number in this fluid [1].
 
     bool operator==(const Shell&) const = default;
 };
 
-/** What a surface does to sound. Neutral: medium sand in `physical`, reflectivity 1 in `cerqueira2017`. */
+/** Acoustic properties of a surface. The defaults are neutral: medium sand in `physical`, reflectivity 1 in
+ *  `cerqueira2017`. */
 struct Material {
     std::string name;
     float lambert_db = -16.7f;  ///< Lambert parameter mu, backscatter at normal incidence [dB].
-    std::string seabed = {};    ///< By APL-UW TR 9407, for Lambert's law where a sonar has a frequency.
-    std::string matter = {};    ///< By name: a rough solid, for Lambert's law where a sonar has a frequency.
-    std::vector<glm::dvec2> measured = {};  ///< Grazing angles, ascending, and strengths, in place of both [deg, dB].
-    float reflection = 0;                   ///< Pressure reflection coefficient at normal incidence, signed [1].
+    std::string seabed = {};    ///< Sediment of APL-UW TR 9407; replaces Lambert's law if the sonar has a frequency.
+    std::string matter = {};    ///< A rough solid by name; replaces Lambert's law if the sonar has a frequency.
+    std::vector<glm::dvec2> measured = {};      ///< Ascending grazing angles and strengths; replace both [deg, dB].
+    float reflection = 0;                       ///< Pressure reflection coefficient at normal incidence, signed [1].
     std::optional<float> roughness_slope = {};  ///< Rms slope of the micro-relief: adds a specular lobe [1].
-    std::optional<Shell> shell = {};            ///< A thin wall: what goes through is heard; else nothing does.
-    bool mirror = false;                        ///< Reflects sound as a flat mirror does, beside what it scatters.
+    std::optional<Shell> shell = {};            ///< A thin wall, which transmits sound; without it no sound passes.
+    bool mirror = false;                        ///< Reflects sound as a flat mirror, in addition to scattering.
     float reflectivity = 1;                     ///< Factor of `cerqueira2017` [1].
-    bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above stand.
-    bool is_named = false;                      ///< Its acoustic values follow from its name.
-    bool double_sided = false;                  ///< As the file says; sound is reflected by both sides in any case.
+    bool has_acoustics = false;                 ///< False: no acoustic values in the file, the defaults above apply.
+    bool is_named = false;                      ///< The acoustic values follow from the material's name.
+    bool double_sided = false;                  ///< Flag of the file; both sides reflect sound in any case.
     int normal_map = -1;                        ///< Index into Geometry::normal_maps, -1 for none [1].
     float normal_scale = 1;                     ///< Scale of the map's x and y [1].
-    float max_map_strength = 0;                 ///< Surfaces of it have maps, with factors up to this; 0: none [1].
+    float max_map_strength = 0;                 ///< Max factor of maps on its surfaces; 0: no maps [1].
 
     bool operator==(const Material&) const = default;
 };
@@ -58,15 +59,15 @@ struct NormalMap {
     bool repeat_u = true, repeat_v = true;  ///< Else clamped to the edge.
 };
 
-/** A picture on a surface: how much of its echo each place returns, of which material it is, or both. Rows from top to
+/** A picture on a surface with a factor of the echo, a material, or both for each texel. Rows are from top to
  *  bottom. */
 struct SurfaceMap {
-    static constexpr uint8_t no_class = 255;  ///< Of the surface's own material.
+    static constexpr uint8_t no_class = 255;  ///< The texel has the surface's own material.
 
     int width = 0, height = 0;
-    std::vector<float> strengths;           ///< Factor of each texel's intensity, at least 0 [1]; or empty: 1.
-    std::vector<uint8_t> classes;           ///< Index of each texel into `materials`, or no_class; or empty.
-    std::vector<int> materials;             ///< Of each class an index into Geometry::materials.
+    std::vector<float> strengths;           ///< Factor of each texel's intensity, at least 0 [1]; empty: 1.
+    std::vector<uint8_t> classes;           ///< Index of each texel into `materials`, or no_class; may be empty.
+    std::vector<int> materials;             ///< Index of each class into Geometry::materials.
     bool repeat_u = true, repeat_v = true;  ///< Else clamped to the edge.
 };
 
@@ -76,24 +77,24 @@ struct MappedMaterial {
     std::shared_ptr<const SurfaceMap> map;
 };
 
-/** A run of triangles of one material that is drawn or culled as one. */
+/** Consecutive triangles of one material that are rasterised or culled together. */
 struct Cluster {
     uint32_t first_index = 0;  ///< Into Mesh::indices; a multiple of 3 [1].
     uint32_t index_count = 0;  ///< A multiple of 3 [1].
     int material = 0;          ///< Index into Geometry::materials [1].
-    glm::vec3 centre{0};       ///< Of a box along the mesh's axes that holds all its triangles [m].
+    glm::vec3 centre{0};       ///< Centre of the bounding box along the mesh's axes [m].
     glm::vec3 half{0};         ///< Half the box's size [m].
-    glm::vec3 cone_apex{0};    ///< Of a cone from which only backs of its triangles are seen [m].
-    glm::vec3 cone_axis{0};    ///< Unit, from the apex away from there [1].
-    float cone_cutoff = 2;     ///< Cosine between the axis and the cone's side; 2: there is no such cone [1].
+    glm::vec3 cone_apex{0};    ///< Apex of a cone from which only backs of the triangles are visible [m].
+    glm::vec3 cone_axis{0};    ///< Unit vector from the apex, away from the cone [1].
+    float cone_cutoff = 2;     ///< Cosine between the axis and the cone's side; 2: no cone [1].
 };
 
-/** A part of a large mesh, so that what is out of view is found out for many clusters at once. */
+/** A part of a large mesh, to cull many clusters at once. */
 struct ClusterNode {
     uint32_t first_cluster = 0;  ///< Into Mesh::clusters [1].
-    uint32_t cluster_count = 0;  ///< All of one material [1].
-    uint32_t next = 0;           ///< The first patch that is no part of this one; its parts come directly after it [1].
-    glm::vec3 centre{0};         ///< Of a box along the mesh's axes that holds all its triangles [m].
+    uint32_t cluster_count = 0;  ///< Number of clusters, all of one material [1].
+    uint32_t next = 0;           ///< Index of the first node behind this node and its parts, which follow it [1].
+    glm::vec3 centre{0};         ///< Centre of the bounding box along the mesh's axes [m].
     glm::vec3 half{0};           ///< Half the box's size [m].
 };
 
@@ -127,38 +128,38 @@ struct Deformation {
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;  ///< [m]
-    std::vector<glm::vec3> normals;    ///< Per vertex, unit, for normal maps; empty or as many as positions [1].
-    std::vector<glm::vec4> tangents;   ///< Per vertex, w = handedness; empty or as many as positions [1].
-    std::vector<glm::vec2> uvs;  ///< Of the normal map, texture transform applied; empty or as many as positions [1].
-    std::vector<glm::vec2> map_uvs;          ///< Of `maps`, transform applied; empty or as many as positions [1].
-    std::vector<MappedMaterial> maps;        ///< At most one of a material.
-    std::vector<uint32_t> indices;           ///< Three a triangle.
-    std::vector<Cluster> clusters;           ///< Together they cover all indices, in order.
-    std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each patch before its parts; or none.
-    std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, to look at; never what a sonar hears.
-    std::shared_ptr<const Deformation> deformation = {};  ///< How a pose changes its shape (PosedMesh.hpp); null: none.
+    std::vector<glm::vec3> normals;    ///< Per vertex or empty; unit, for normal maps [1].
+    std::vector<glm::vec4> tangents;   ///< Per vertex or empty; w = handedness [1].
+    std::vector<glm::vec2> uvs;        ///< Per vertex or empty; for the normal map, texture transform applied [1].
+    std::vector<glm::vec2> map_uvs;    ///< Per vertex or empty; for `maps`, texture transform applied [1].
+    std::vector<MappedMaterial> maps;  ///< At most one map per material.
+    std::vector<uint32_t> indices;     ///< Three per triangle.
+    std::vector<Cluster> clusters;     ///< Together they cover all indices, in order.
+    std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each node before its parts; may be empty.
+    std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, for display only.
+    std::shared_ptr<const Deformation> deformation = {};  ///< Shape by pose (PosedMesh.hpp); null: rigid.
 };
 
 using MeshPtr = std::shared_ptr<const Mesh>;
 
-/** One placing of a mesh in the world. */
+/** An instance of a mesh in the world. */
 struct Object {
-    std::string name;                 ///< Of the node; unique, but that all tiles of a survey have the same.
+    std::string name;                 ///< Name of the node; unique, except that all tiles of a survey share a name.
     int mesh = 0;                     ///< Index into Geometry::meshes.
     glm::dmat4 world_from_object{1};  ///< May scale and mirror [m].
-    /** Whether it appears and disappears from one geometry to the next: what a renderer makes of its mesh is then kept
-     *  apart from the rest, so that the rest is not made again. */
+    /** Whether the object may appear or disappear between geometries. A renderer keeps the data of its mesh separate,
+     *  so that the data of other objects need not be made again. */
     bool transient = false;
 };
 
-/** A scene, immutable once loaded: an equal pointer means that nothing changed. A geometry that is copied and then
- *  changed shares with the first one all that has not changed. World is z-up. */
+/** A scene, immutable once loaded: an equal pointer means that nothing has changed. A changed copy shares all unchanged
+ *  items with the original. The world is z-up. */
 struct Geometry {
     SharedList<Mesh> meshes;
     std::vector<Object> objects;
     std::vector<Material> materials;  ///< Never empty when there is a mesh.
     SharedList<NormalMap> normal_maps;
-    std::vector<std::string> notices;  ///< What the loader left out or mended, a sentence each.
+    std::vector<std::string> notices;  ///< What the loader has omitted or repaired, a sentence each.
 
     size_t triangleCount() const {
         size_t count = 0;

@@ -3,7 +3,7 @@
 
 namespace insonify::types {
 
-/** Mixes the bits of a word: the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
+/** Mixes the bits of a word by the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
  *  generators", 2014). */
 inline uint64_t mixedBits(uint64_t x) {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
@@ -11,13 +11,13 @@ inline uint64_t mixedBits(uint64_t x) {
     return x ^ x >> 31;
 }
 
-/** The random word of a place (a, b) in a stream: the same whenever and wherever it is asked for. */
+/** Returns a random word that depends only on the seed of a stream and a place (a, b) in it. */
 inline uint64_t hashed(uint64_t seed, uint64_t a, uint64_t b) {
     constexpr uint64_t golden = 0x9e3779b97f4a7c15u;
     return mixedBits(mixedBits(mixedBits(seed + golden) + a * golden + 1) + b * golden);
 }
 
-/** 32 random bits as a number in (0, 1), never an end. */
+/** Returns 32 random bits as a number in (0, 1), ends excluded. */
 inline double unit(uint64_t bits32) { return (static_cast<double>(bits32) + 0.5) * 0x1p-32; }
 
 }  // namespace insonify::types

@@ -8,7 +8,7 @@
 
 namespace insonify::types {
 
-/** Values are Rock's, those that are made or shown here; others may come from a log, where an enum is an int32. */
+/** The values of Rock that are written or shown here. A log, where an enum is an int32, may contain others. */
 enum class ImageMode : int32_t { Undefined = 0, Grayscale = 1, Rgb = 2, Bgr = 4 };
 enum class ImageStatus : int32_t { Empty = 0, Valid = 1, Invalid = 2 };
 
@@ -50,7 +50,8 @@ struct Image {
     ImageMode frame_mode = ImageMode::Undefined;
     ImageStatus frame_status = ImageStatus::Empty;
 
-    /** Whether `image` holds `size` pixels of pixel_size bytes, in rows of row_size: false for JPEG and PNG. */
+    /** Returns whether `image` contains `size` pixels of pixel_size bytes, in rows of row_size; false for JPEG and
+     *  PNG. */
     bool holdsPixels() const {
         return row_size >= uint64_t{size.width} * pixel_size && image.size() >= uint64_t{size.height} * row_size;
     }

@@ -7,8 +7,8 @@
 
 namespace insonify::types {
 
-/** What an inertial unit measures, field for field Rock's base::samples::IMUSensors. Axes are the unit's: x forward, y
- *  left, z up. NaN means unknown. */
+/** The measurement of an inertial unit, field for field Rock's base::samples::IMUSensors. The axes are those of the
+ *  unit: x forward, y left, z up. NaN means unknown. */
 struct ImuSensors {
     static constexpr const char* type_name = "/base/samples/IMUSensors";
 
@@ -26,8 +26,8 @@ struct ImuSensors {
     }
 };
 
-/** Attitude and what an inertial unit measures in one sample. Rock has two for it (IMUSensors and RigidBodyState);
- *  the fields here are those of ROS's sensor_msgs/Imu.
+/** Attitude and measurement of an inertial unit in one sample. Rock has two types for it (IMUSensors and
+ *  RigidBodyState); the fields are those of ROS's sensor_msgs/Imu.
  *
  *  Axes as in types::Pose: unit x forward, y left, z up; world x north, y west, z up. NaN means unknown. */
 struct Imu {

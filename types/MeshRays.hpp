@@ -1,5 +1,5 @@
 #pragma once
-// Straight lines and the triangles of meshes, by themselves and in double: what needs no tree of its own.
+// Intersections of straight lines with the triangles of meshes, in double precision and without a search tree.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -13,7 +13,8 @@
 
 namespace insonify::types {
 
-/** A box along an object's axes as one along the world's that holds it, rounded by the floats that tell it [m]. */
+/** The box along the world's axes that contains a box along an object's axes, enlarged by the rounding of floats
+ *  [m]. */
 struct WorldBox {
     glm::dvec3 centre, half;
 
@@ -25,7 +26,7 @@ struct WorldBox {
     }
 };
 
-/** Whether a line from `from` to `from + way` meets a box, or nearly. */
+/** Returns whether a line from `from` to `from + way` meets a box, with a small tolerance. */
 inline bool meetsBox(const glm::dvec3& from, const glm::dvec3& way, const glm::dvec3& centre, const glm::dvec3& half) {
     double enters = 0, leaves = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -42,12 +43,12 @@ inline bool meetsBox(const glm::dvec3& from, const glm::dvec3& way, const glm::d
     return enters <= leaves;
 }
 
-/** Where on its way from the origin a line meets a triangle [1], and whether at its back. */
+/** The place on a line, as a share of its length [1], where it meets a triangle, and whether at the triangle's back. */
 struct TriangleMet {
     double share;
     bool is_back;
 };
-/** None where it passes by. Möller and Trumbore 1997, edges included. */
+/** Intersects a line from the origin with a triangle, edges included (Möller and Trumbore 1997); none for a miss. */
 inline std::optional<TriangleMet> meetTriangle(const glm::dvec3& way, const glm::dvec3& a, const glm::dvec3& b,
                                                const glm::dvec3& c) {
     constexpr double slack = 1e-12;
@@ -61,8 +62,8 @@ inline std::optional<TriangleMet> meetTriangle(const glm::dvec3& way, const glm:
     return TriangleMet{glm::dot(across, q) / volume, volume < 0};
 }
 
-/** Calls `use` for the clusters of a mesh whose boxes, and those of the patches about them, `mayMeet` lets pass; ends
- *  when it says true, which is then returned. */
+/** Calls `use` for the clusters of a mesh for which `mayMeet` accepts the box and the boxes of all nodes above. Ends
+ *  when `use` returns true, and returns that. */
 template <class MayMeet, class Use>
 bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
     const auto among = [&](std::span<const Cluster> clusters) {
@@ -80,7 +81,7 @@ bool anyCluster(const Mesh& mesh, const MayMeet& mayMeet, const Use& use) {
     return false;
 }
 
-/** The triangles of a mesh in its place, and the line from a point to `from + way`. */
+/** The triangles of a placed mesh, and the line from `from` to `from + way`. */
 struct TrianglesOnLine {
     const Mesh& mesh;
     const glm::dmat4& world_from_object;
@@ -102,7 +103,7 @@ struct TrianglesOnLine {
     }
 };
 
-/** The same as TrianglesOnLine::any for all triangles of a mesh. Tests only clusters whose boxes the line meets. */
+/** Applies TrianglesOnLine::any to all triangles of a mesh. Tests only clusters whose boxes the line meets. */
 template <class Use>
 bool anyTriangleMet(const Mesh& mesh, const glm::dmat4& world_from_object, const glm::dvec3& from,
                     const glm::dvec3& way, const Use& use) {

@@ -7,7 +7,7 @@
 
 namespace insonify::types {
 
-/** Where a sensor sits in the body: x forward, y left, z up; R = Rz(yaw) Ry(pitch) Rx(roll). */
+/** The pose of a sensor in the body: x forward, y left, z up; R = Rz(yaw) Ry(pitch) Rx(roll). */
 struct Mount {
     glm::dvec3 position{0};                           ///< [m]
     double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;  ///< Positive pitch looks down, positive yaw turns to port [deg].
@@ -26,7 +26,7 @@ struct Mount {
     }
 };
 
-/** Pose of the sensor in the world, at the body's time; velocities stay unknown. */
+/** Sets the pose of the sensor in the world, at the body's time; velocities stay unknown. */
 inline void place(const Pose& body, const Mount& mount, Pose& sensor) {
     const glm::dquat world_from_body = glm::normalize(body.orientation);
     sensor.time = body.time;

@@ -18,23 +18,23 @@ struct Omission {
     }
 };
 
-/** What a sonar compiles and runs for its scene, decided once; the answer of `insonify plan`. */
+/** The plan of a sonar for its scene: features, passes and omissions, decided once. `insonify plan` prints it. */
 struct Plan {
-    std::vector<std::string> features;  ///< Compiled into what renders.
-    std::vector<std::string> passes;    ///< Run for each ping, in order.
+    std::vector<std::string> features;  ///< Features that are compiled into the renderer.
+    std::vector<std::string> passes;    ///< Passes that run for each ping, in order.
     std::vector<Omission> omitted;
-    std::vector<std::string> notices;  ///< Warnings and choices that a user should know of, a sentence each.
-    int rows = 0;                      ///< Of samples, over the elevation aperture [1].
+    std::vector<std::string> notices;  ///< Warnings and choices that a user should know, a sentence each.
+    int rows = 0;                      ///< Rows of samples over the elevation aperture [1].
     int columns_per_beam = 0;          ///< [1]
     int slabs = 0;                     ///< Perspective images that make up the fan; 0: rays [1].
     double predicted_error = 0;        ///< rel_l2_tvg; NaN: not predicted [1].
-    std::string device;                ///< What renders, with its driver; empty: not known before the first ping.
+    std::string device;                ///< The device that renders, with its driver; empty before the first ping.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(Field{"features", "", "compiled into what renders"}, self.features);
         visit(Field{"passes", "", "run for each ping, in order"}, self.passes);
-        visit(Field{"omitted", "", "what is left out, and why"}, self.omitted);
+        visit(Field{"omitted", "", "what is omitted, and why"}, self.omitted);
         visit(Field{"notices", "", "warnings and choices"}, self.notices);
         visit(Field{"rows", "1", "rows of samples over the elevation aperture"}, self.rows);
         visit(Field{"columns_per_beam", "1", "columns of samples"}, self.columns_per_beam);

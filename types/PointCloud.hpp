@@ -9,10 +9,10 @@
 
 namespace insonify::types {
 
-/** Points of one instant, field for field Rock's base::samples::Pointcloud.
+/** Points at one time, field for field Rock's base::samples::Pointcloud.
  *
- *  Where an echo has made a point, red, green and blue of its colour are the echo's intensity on the scale of the bins,
- *  and alpha is 1: Rock's type has no other place for it. */
+ *  The colour of a point contains the intensity of its echo, because Rock's type has no other field for it: red, green
+ *  and blue are the intensity on the scale of the bins, and alpha is 1. */
 struct PointCloud {
     static constexpr const char* type_name = "/base/samples/Pointcloud";
     static constexpr bool shared = true;
@@ -28,7 +28,7 @@ struct PointCloud {
         points.push_back(point);
         colors.emplace_back(intensity, intensity, intensity, 1);
     }
-    /** Of point k; 0 for points without colours [1]. */
+    /** Returns the intensity of point k; 0 for points without colours [1]. */
     double intensity(size_t k) const { return colors.empty() ? 0 : colors[k].x; }
 
     const char* diagnostic() const {

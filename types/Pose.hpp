@@ -35,7 +35,7 @@ struct Pose {
     glm::dvec3 angular_velocity{unknown};
     glm::dmat3 cov_angular_velocity = unknownMatrix();
 
-    /** Homogeneous transform from body to world coordinates; `orientation` must be of unit length. */
+    /** Returns the homogeneous transform from body to world coordinates; `orientation` must be of unit length. */
     glm::dmat4 worldFromBody() const {
         glm::dmat4 transform = glm::mat4_cast(orientation);
         transform[3] = glm::dvec4(position, 1);
@@ -60,23 +60,23 @@ struct Pose {
     }
 };
 
-/** Whether position and orientation are finite, and the quaternion has a length. */
+/** Returns whether position and orientation are finite, and the quaternion is longer than 1e-6. */
 inline bool isUsable(const Pose& pose) {
     const double length = glm::length(pose.orientation);
     return std::isfinite(pose.position.x) && std::isfinite(pose.position.y) && std::isfinite(pose.position.z) &&
            std::isfinite(length) && length > 1e-6;
 }
 
-/** Sets position and orientation to what they are between two poses, or whatever has both: position linear,
- *  orientation by slerp the shorter way. Share 0 is `from`, 1 is `to` [1]. */
+/** Interpolates position and orientation between two poses, or other types with both: position linearly, orientation by
+ *  slerp along the shorter way. Share 0 is `from`, 1 is `to` [1]. */
 template <class Placed>
 void interpolate(const Placed& from, const Placed& to, double share, Pose& pose) {
     pose.position = glm::mix(from.position, to.position, share);
     pose.orientation = glm::normalize(glm::slerp(from.orientation, to.orientation, share));
 }
 
-/** A pose as its velocities have it at `time`, but at most `most` seconds on and never back; its stamp as well. As it
- *  is where they are not known. */
+/** Returns a pose, with its stamp, extrapolated by its velocities to `time`, but at most `most` seconds forward and
+ *  never back. Returns the pose unchanged when its velocities are unknown. */
 inline Pose extrapolatePose(Pose pose, Time time, double most) {
     const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
     const double turn = glm::length(pose.angular_velocity) * seconds;

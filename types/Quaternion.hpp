@@ -5,15 +5,16 @@
 
 namespace insonify::types {
 
-/** True where a quaternion's length is more than 1 % off 1: its parts may be degrees, or in another order. */
+/** Returns whether a quaternion's length differs from 1 by more than 1 %: its components may be degrees, or in another
+ *  order. */
 inline bool isOddlyLong(const glm::dquat& orientation) { return std::abs(glm::length(orientation) - 1) > 0.01; }
 
-/** Turns about z, then y, then x: R = Rz(yaw) Ry(pitch) Rx(roll), as types::Mount has it [rad]. */
+/** Rotation angles about z, then y, then x: R = Rz(yaw) Ry(pitch) Rx(roll), as in types::Mount [rad]. */
 struct Turns {
     double yaw = 0, pitch = 0, roll = 0;
 };
 
-/** The turns of a unit quaternion. */
+/** Returns the rotation angles of a unit quaternion. */
 inline Turns turnsOf(const glm::dquat& q) {
     return {.yaw = std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)),
             .pitch = std::asin(std::clamp(2 * (q.w * q.y - q.z * q.x), -1.0, 1.0)),

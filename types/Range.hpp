@@ -7,7 +7,7 @@
 
 namespace insonify::types {
 
-/** How far it is along the axis of a sonar of one beam. Rock has no such type; its fields are those of ROS's
+/** The range along the axis of a sonar with one beam. Rock has no type for it; the fields are those of ROS's
  *  sensor_msgs/Range. */
 struct Range {
     static constexpr const char* type_name = "/insonify/Range";
@@ -25,8 +25,8 @@ struct Range {
     static void describe(Self& self, V& visit) {
         visit(Field{"time", "us", "when the range was true in the world"}, self.time);
         visit(Field{"range", "m", "to the first return; NaN: there is none"}, self.range);
-        visit(Field{"range_min", "m", "nearer ones are not heard"}, self.range_min);
-        visit(Field{"range_max", "m", "farther ones are not heard"}, self.range_max);
+        visit(Field{"range_min", "m", "min range of returns"}, self.range_min);
+        visit(Field{"range_max", "m", "max range of returns"}, self.range_max);
         visit(Field{"field_of_view", "rad", "opening of the beam"}, self.field_of_view);
     }
 };

@@ -7,8 +7,8 @@
 namespace insonify::types {
 namespace {
 
-/** Its texts begin with the function that throws: "stoi", "map::at", "basic_string::substr: __pos (which is 9) > ...".
- */
+/** Returns whether a text is from the standard library. Such texts begin with the function that throws: "stoi",
+ *  "map::at", "basic_string::substr: __pos (which is 9) > ...". */
 bool isOfStandardLibrary(std::string_view text) {
     const std::string_view first = text.substr(0, text.find_first_of(" :"));
     const std::string_view rest = text.substr(first.size());
@@ -23,10 +23,10 @@ bool isOfStandardLibrary(std::string_view text) {
 }  // namespace
 
 std::string reasonOf(const std::exception& failure) {
-    if (dynamic_cast<const std::bad_alloc*>(&failure)) return "there is not memory enough for it";
+    if (dynamic_cast<const std::bad_alloc*>(&failure)) return "out of memory";
     if (!isOfStandardLibrary(failure.what())) return failure.what();
-    if (dynamic_cast<const std::length_error*>(&failure)) return "there is not memory enough for it";
-    return "a number, a count or an index in it is out of its bounds";
+    if (dynamic_cast<const std::length_error*>(&failure)) return "out of memory";
+    return "a number, a count or an index in it is out of bounds";
 }
 
 }  // namespace insonify::types

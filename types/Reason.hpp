@@ -4,8 +4,8 @@
 
 namespace insonify::types {
 
-/** What an exception tells a user: its own text, or a sentence of ours where that is only the name of a function of the
- *  standard library ("vector::_M_range_check", "stoi") or std::bad_alloc. */
+/** Returns the text of an exception for users. Texts that are only the name of a function of the standard library
+ *  ("vector::_M_range_check", "stoi") and std::bad_alloc are replaced by a sentence. */
 std::string reasonOf(const std::exception& failure);
 
 }  // namespace insonify::types

@@ -1,6 +1,6 @@
 #pragma once
-// Every type of sample that travels, is logged, exported, replayed, sent and shown, declared in this one place. A new
-// one takes a line in SampleTypes; components/log/README.md has the recipe.
+// The list of all types of samples that are passed on ports, logged, exported, replayed, sent and shown. A new type
+// needs a line in SampleTypes; components/log/README.md has the recipe.
 #include <algorithm>
 #include <array>
 #include <concepts>
@@ -32,7 +32,7 @@ using SampleTypes = std::tuple<Sonar, SonarBeam, SonarScan, SonarTruth, SonarRet
                                Pose, Image, PointCloud, DepthMap, Range, ImuSensors, Imu, Dvl, Pressure, Time, Angle,
                                double, float, int32_t, int64_t, bool, std::string>;
 
-/** What travels on a port for a T: samples that say so (`shared`), by reference, the others as they are. */
+/** The type that a port passes for a T: a shared pointer for samples with `shared`, otherwise T itself. */
 template <class T>
 concept Shared = requires {
     requires T::shared;
@@ -40,7 +40,7 @@ concept Shared = requires {
 template <class T>
 using Carried = std::conditional_t<Shared<T>, std::shared_ptr<const T>, T>;
 
-/** The sample itself, whichever way it travels; null when there is none. */
+/** Returns the sample of a Carried; null when there is none. */
 template <class T>
 const T* carriedSample(const T& sample) {
     return &sample;
@@ -58,12 +58,12 @@ struct Variants<std::tuple<T...>> {
     using View = std::variant<const T*...>;
     using Room = std::variant<T*...>;
 };
-/** Any sample: as it travels, to be read from, to be filled. Alternatives stand in the order of SampleTypes. */
+/** Any sample: as a port passes it, to read, to fill. The alternatives have the order of SampleTypes. */
 using AnySample = Variants<SampleTypes>::Carried;
 using SampleView = Variants<SampleTypes>::View;
 using SampleRoom = Variants<SampleTypes>::Room;
 
-/** Place of T in SampleTypes. */
+/** Returns the index of T in SampleTypes. */
 template <class T>
 constexpr size_t sampleIndex() {
     return SampleView(std::in_place_type<const T*>, nullptr).index();
@@ -81,7 +81,7 @@ void forEachSampleType(Use&& use) {
 template <class T>
 concept Scalar = std::is_arithmetic_v<T> || std::is_same_v<T, Time> || std::is_same_v<T, Angle>;
 
-/** Its number, a truth value as 0 or 1. */
+/** Returns the number of a sample, a truth value as 0 or 1. */
 template <Scalar T>
 auto numberOf(const T& value) {
     if constexpr (std::is_same_v<T, Time>)
@@ -99,7 +99,7 @@ concept Stamped = requires(const T& sample) {
     { sample.time } -> std::convertible_to<Time>;
 };
 
-/** When the sample was true in the world; `otherwise` for one without a stamp or with a null one. */
+/** Returns the time at which the sample was true in the world; `otherwise` without a stamp or with a null stamp. */
 template <class T>
 Time sampleTime(const T& sample, Time otherwise) {
     if constexpr (Stamped<T>)
@@ -108,7 +108,7 @@ Time sampleTime(const T& sample, Time otherwise) {
         return otherwise;
 }
 
-/** Moves the stamps of a sample that are not null: `time`, and those that its `forEachStamp` tells. */
+/** Shifts the stamps of a sample that are not null: `time`, and the stamps from its `forEachStamp`. */
 template <class T>
 void moveStamps(T& sample, Time shift) {
     const auto move = [shift](Time& time) {
@@ -118,7 +118,7 @@ void moveStamps(T& sample, Time shift) {
     if constexpr (requires { sample.forEachStamp(move); }) sample.forEachStamp(move);
 }
 
-/** What of a T goes into tables, beside its time: specialise with `forEach(sample, visit)`, which calls
+/** The columns of a T in tables, in addition to its time: specialise with `forEach(sample, visit)`, which calls
  *  `visit(array, columns, numbers)` for each array. */
 template <class T>
 struct Columns;
@@ -174,7 +174,7 @@ struct Columns<Imu> {
 };
 template <>
 struct Columns<Dvl> {
-    /** A list of up to four as four numbers, unknown beyond its end. */
+    /** Returns a list of up to four numbers as four numbers, unknown beyond its end. */
     static std::array<double, Dvl::max_beams> four(const std::vector<double>& list) {
         std::array<double, Dvl::max_beams> all;
         all.fill(Pose::unknown);
@@ -207,8 +207,8 @@ concept Tabular = requires(const T& sample) {
     Columns<T>::forEach(sample, AnyColumns{});
 };
 
-/** A sample that is arrays of one shape: it tells its `shape()`, and by `forEachArray` each array as
- *  `visit(name, numbers, std::type_identity<Number>{})`, Number being what files hold of it. */
+/** A sample of arrays of one shape. It has `shape()`, and `forEachArray`, which calls `visit(name, numbers,
+ *  std::type_identity<Number>{})` for each array; Number is the type of its numbers in files. */
 struct AnyArray {
     void operator()(const char*, const auto&, auto) const {}
 };
@@ -218,13 +218,14 @@ concept Arrayed = requires(const T& sample) {
     T::forEachArray(sample, AnyArray{});
 };
 
-/** A sample that speaks of objects by number; their names stand in the metadata of its stream as well. */
+/** A sample that refers to objects by number. The metadata of its stream contain their names as well. */
 template <class T>
 concept NamesObjects = requires(const T& sample) {
     { sample.objects } -> std::convertible_to<const std::vector<std::string>&>;
 };
 
-/** What of a sample contradicts itself, after "a sample"; null: nothing. Types tell it by `diagnostic()`. */
+/** Returns the contradiction in a sample, as the rest of a sentence after "a sample"; null when there is none. Types
+ *  report it by `diagnostic()`. */
 template <class T>
 const char* diagnosticOf(const T& sample) {
     if constexpr (requires { sample.diagnostic(); })

@@ -20,7 +20,7 @@ void SenderClock::follow(Time delay, Time arrival) {
         offset_ = delay;
         doubted_since_.reset();
     } else if (!doubted_since_) {
-        constexpr int64_t share = 256;  // of messages, in which it goes along with a clock that drifts
+        constexpr int64_t share = 256;  // number of messages in which the offset follows a drifting clock
         offset_ = offset_ + Time{excess.microseconds / share};
     }
 }

@@ -9,8 +9,8 @@
 
 namespace insonify::types {
 
-/** A list whose copies share their items. An item that is changed through one list is copied first where another owner
- *  has it as well, so that two lists with the same pointer at an index have the same item there. */
+/** A list whose copies share their items. Before an item is changed through one list, it is copied if another owner has
+ *  it as well. Two lists with the same pointer at an index therefore have the same item. */
 template <class T>
 class SharedList {
     template <class List, class Item>
@@ -62,9 +62,9 @@ public:
     const T& back() const { return *items_.back(); }
     const_iterator begin() const { return {this, 0}; }
     const_iterator end() const { return {this, size()}; }
-    /** The item itself, which outlives the list. */
+    /** Returns an owner of the item, which may outlive the list. */
     const Ptr& shared(size_t index) const { return items_[index]; }
-    /** Whether both lists have the same items, by their addresses. */
+    /** Returns whether both lists have the same items, by their addresses. */
     bool sharesAll(const SharedList& other) const { return items_ == other.items_; }
 
     T& operator[](size_t index) { return own(items_[index]); }

@@ -11,7 +11,7 @@
 
 namespace insonify::types {
 
-/** An object that is not where the geometry put it. */
+/** An object that is moved from its place in the geometry. */
 struct MovedObject {
     uint32_t object = 0;  ///< Index into Geometry::objects [1].
     glm::dmat4 world_from_object{1};
@@ -44,7 +44,7 @@ struct DeformedObject {
     bool operator==(const DeformedObject&) const = default;
 };
 
-/** What gives an echo and is too small to be resolved. */
+/** A target with an echo that is too small to be resolved. */
 struct PointTarget {
     glm::dvec3 position{0};  ///< In the world [m].
     double strength_db = 0;  ///< Target strength [dB re 1 m^2].
@@ -58,17 +58,17 @@ struct Snapshot {
     Time time;
     Pose sonar;  ///< Sonar frame in the world: x ahead, y port, z up.
     double max_extrapolation =
-        0;  ///< How far `sonar` may be carried on by its velocities, to the time of the ping [s].
+        0;  ///< Max time for which the pose `sonar` may be extrapolated by its velocities, to the time of the ping [s].
     GeometryPtr geometry;
-    /** Meshes that later geometries may have: what takes long to make of them may be made before. Null: none known. */
+    /** Meshes that later geometries may have, so that their data can be prepared. Null: none known. */
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
     std::vector<DeformedObject> deformed;  ///< Ascending by object, each at most once.
     std::vector<JointPose> joints;         ///< Of all deformed objects.
     std::vector<MorphPose> morphs;         ///< Of all deformed objects.
     std::vector<PointTarget> targets;
-    std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that this one may hear; none is null.
-    std::shared_ptr<const std::vector<std::string>> target_names;  ///< Of each of `targets`; may be null without any.
+    std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that may reach this sonar; none is null.
+    std::shared_ptr<const std::vector<std::string>> target_names;  ///< Names of `targets`; may be null without targets.
     std::optional<double> water_surface;                           ///< World z of the surface [m].
 };
 using SnapshotPtr = std::shared_ptr<const Snapshot>;

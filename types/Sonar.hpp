@@ -10,14 +10,14 @@ namespace insonify::types {
 
 /** One ping, field for field Rock's base::samples::Sonar.
  *
- *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges
- *  [k, k + 1) * bin_duration * speed_of_sound: bin_duration is one-way time.
+ *  Beam-first: the echo of beam b in bin k is bins[b * bin_count + k]. Bin k covers slant ranges [k, k + 1) *
+ *  bin_duration * speed_of_sound: bin_duration is one-way time.
  *
- *  The functions are those of Rock's type, with its defects mended: see each. */
+ *  The functions are those of Rock's type, with the corrections that are noted at each function. */
 struct Sonar {
     static constexpr const char* type_name = "/base/samples/Sonar";
     static constexpr bool shared = true;   ///< Travels by reference, see Carried.
-    static constexpr bool counted = true;  ///< Runs are limited to so many, and their speed is told in them.
+    static constexpr bool counted = true;  ///< Runs are limited by the number of pings, and their speed is in pings.
 
     Time time;
     std::vector<Time> timestamps;
@@ -30,33 +30,36 @@ struct Sonar {
     uint32_t beam_count = 0;
     std::vector<float> bins;
 
-    /** Whether the lists are as long as the counts say: bins beams * bins, bearings beams, timestamps beams or none. */
+    /** Returns whether the lists match the counts: beams * bins bins, a bearing per beam, a timestamp per beam or
+     *  none. */
     bool wellShaped() const;
-    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const {
         return wellShaped() ? nullptr : "has other numbers of bins or bearings than it says";
     }
-    /** Throws std::logic_error that tells every diagnostic: lists of another length than the counts say; bins without a
-     *  duration or a speed of sound above 0; bearings outside (-pi, pi] (NaN is unknown, and may be). Rock's validate
-     *  tells the first length only, multiplies the counts in 32 bits, and looks at no value. */
+    /** Throws std::logic_error with every diagnostic: lists that do not match the counts; bins without a duration or a
+     *  speed of sound above 0; bearings outside (-pi, pi], except NaN, which means unknown. Rock's validate reports
+     *  only the first length, multiplies the counts in 32 bits, and checks no values. */
     void validate() const;
-    /** Why the bins cannot be linear intensities, null when they can: more or fewer than the counts say, or below 0,
-     *  which decibels are. */
+    /** Returns why the bins cannot be linear intensities; null when they can. They do not match the counts, or are
+     *  below 0, as decibels are. */
     const char* notIntensities() const;
-    /** Takes everything of `other` but its bins, for which it makes room; allocates nothing when it had this shape. */
+    /** Copies everything of `other` except the values of bins, and resizes `bins`. Allocates nothing when this ping had
+     *  the same shape before. */
     void copyHeader(const Sonar& other);
-    /** Bins first, as in Rock. What is new is NaN (a time stamp: null), what was there stays with its beam and bin;
-     *  Rock's resize leaves the values where they lay in memory, in other beams. */
+    /** Resizes; bins are the first argument, as in Rock. New values are NaN (time stamps: null); old values stay with
+     *  their beam and bin. Rock's resize leaves values at their place in memory, which is in other beams. */
     void resize(uint32_t bins_per_beam, uint32_t beams, bool per_beam_timestamps = false);
-    /** Beam k looks at start + k * interval, normalised. Rock adds up the interval and the rounding with it. */
+    /** Sets the bearing of beam k to start + k * interval, normalised. Rock accumulates the interval and its
+     *  rounding. */
     void setRegularBearings(Angle start, Angle interval);
-    /** When the acquisition of a beam began: its own stamp, or `time`. Throws std::out_of_range where Rock reads what
-     *  is not there. */
+    /** Returns the begin of a beam's acquisition: its own stamp, or `time`. Throws std::out_of_range where Rock reads
+     *  out of bounds. */
     Time beamStart(size_t beam) const;
-    /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
+    /** Returns the slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
 
-    /** Of the stamps besides `time`. */
+    /** Calls `visit` for the stamps other than `time`. */
     template <class Visit>
     void forEachStamp(Visit&& visit) {
         for (Time& stamp : timestamps) visit(stamp);
@@ -77,7 +80,7 @@ struct Sonar {
 };
 using SonarPtr = std::shared_ptr<const Sonar>;
 
-// What the bins of pings on a port are, where one must not take the place of the other.
+// Kinds of bins on ports. Ports of different kinds must not be connected.
 inline constexpr const char* reaching_receiver = "intensities that reach a receiver";
 inline constexpr const char* left_receiver = "what a receiver has amplified";
 

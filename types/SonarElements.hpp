@@ -9,10 +9,10 @@
 
 namespace insonify::types {
 
-/** What the elements of a straight array heard of a ping, but of point targets, mirrors and ring-down, as complex
- *  baseband after the pulse's matched filter: the square of its size is intensity relative to the source, its phase is
- *  turned by exp(i 4 pi r / wavelength) along the range. Sample i of element m stands at [m * sample_count + i] of
- *  `in_phase` and `quadrature`. */
+/** The signals of the elements of a straight array for one ping, as complex baseband after the pulse's matched filter.
+ *  They do not contain point targets, mirrors and ring-down. The squared magnitude is the intensity relative to the
+ *  source; the phase rotates by exp(i 4 pi r / wavelength) along the range. Sample i of element m is at index [m *
+ *  sample_count + i] of `in_phase` and `quadrature`. */
 struct SonarElements {
     static constexpr const char* type_name = "/insonify/SonarElements";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
@@ -29,12 +29,12 @@ struct SonarElements {
     std::vector<float> quadrature;
 
     std::vector<size_t> shape() const { return {positions.size(), sample_count}; }
-    /** Slant range of a sample [m]. */
+    /** Returns the slant range of a sample [m]. */
     double range(size_t sample) const { return first_range + static_cast<double>(sample) * sample_spacing; }
-    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const;
 
-    /** The lists of numbers that have a place for each sample, with what arrays hold of them. */
+    /** Calls `visit` for the lists with a number for each sample, with the type of the numbers in files. */
     template <class Self, class Visit>
     static void forEachArray(Self& self, Visit&& visit) {
         visit("in_phase", self.in_phase, std::type_identity<float>{});

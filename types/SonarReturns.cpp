@@ -7,7 +7,7 @@
 namespace insonify::types {
 namespace {
 
-/** Three numbers of a beam. */
+/** The fields of one return of a beam. */
 struct Return {
     float& range;
     float& level;

@@ -10,7 +10,7 @@
 
 namespace insonify::types {
 
-/** Where each beam of a ping is met: its first return and its strongest. NaN where a beam has none. */
+/** The first and the strongest return of each beam of a ping. NaN for a beam without a return. */
 struct SonarReturns {
     static constexpr const char* type_name = "/insonify/SonarReturns";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
@@ -24,17 +24,17 @@ struct SonarReturns {
     std::vector<float> strongest_level;
     std::vector<float> strongest_elevation;
 
-    /** Fills it from a ping and its truth, which has its shape. The first return is the nearest bin that shows an
-     *  object, the strongest the one with the greatest echo, which may be a sidelobe's or the water's: then its
-     *  elevation is NaN. A range is the bin's middle; levels are 10 log10 of the bin. Allocates nothing when it had as
-     *  many beams. */
+    /** Fills the returns from a ping and its truth, which have the same shape. The first return is the nearest bin that
+     *  shows an object. The strongest return is the bin with the max echo; if that is from a sidelobe or the water, its
+     *  elevation is NaN. Ranges are those of the bin's middle; levels are 10 log10 of the bin. Allocates nothing when
+     *  the number of beams has not changed. */
     void take(const Sonar& ping, const SonarTruth& truth);
 
     std::vector<size_t> shape() const { return {bearings.size()}; }
-    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const;
 
-    /** The lists of numbers that have a place for each beam, with what arrays hold of them. */
+    /** Calls `visit` for the lists with a number for each beam, with the type of the numbers in files. */
     template <class Self, class Visit>
     static void forEachArray(Self& self, Visit&& visit) {
         constexpr std::type_identity<float> number;

@@ -6,7 +6,7 @@
 namespace insonify::types {
 namespace {
 
-/** One-way time through a bin, in the whole microseconds that a ping has. */
+/** Returns the one-way time through a bin, in whole microseconds as in a ping. */
 Time binDuration(double sampling_interval) {
     if (!(sampling_interval >= 0 && sampling_interval < 1e6))
         throw std::logic_error("has a sampling interval that is no time");

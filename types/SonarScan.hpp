@@ -1,5 +1,5 @@
 #pragma once
-// The two types in which Rock's older drivers log a sonar. Both are read as a ping: see toSonar.
+// The two types in which Rock's older drivers log a sonar. toSonar() converts both to a ping.
 #include <limits>
 
 #include "types/Sonar.hpp"
@@ -74,12 +74,12 @@ struct SonarScan {
     }
 };
 
-/** As a ping of one beam, 255 becoming 1. Throws std::logic_error for an interval that is no time. */
+/** Converts a beam to a ping of one beam; 255 becomes 1. Throws std::logic_error for an invalid sampling interval. */
 Sonar toSonar(const SonarBeam& beam);
 
-/** As a ping, 255 becoming 1, beams that are not set NaN. Bearings fall from `start_bearing`, as the scan's beams
- *  stand; Rock's conversion lets them rise, and its fan is mirrored. Throws std::logic_error for a picture, for data of
- *  another size than the counts say and for an interval that is no time. */
+/** Converts a scan to a ping; 255 becomes 1, and beams that are not set become NaN. Bearings decrease from
+ *  `start_bearing`, as the beams of the scan do; in Rock's conversion they increase, which mirrors the fan. Throws
+ *  std::logic_error for a picture, for data that do not match the counts, and for an invalid sampling interval. */
 Sonar toSonar(const SonarScan& scan);
 
 }  // namespace insonify::types

@@ -9,7 +9,7 @@
 
 namespace insonify::types {
 
-/** One ping as a driver asks for it. What is NaN, or 0 of a count, stays as it is. */
+/** The settings that a driver requests for a ping. NaN, or 0 for a count, leaves a setting unchanged. */
 struct SonarSettings {
     static constexpr const char* type_name = "/insonify/SonarSettings";
     static constexpr double unset = std::numeric_limits<double>::quiet_NaN();

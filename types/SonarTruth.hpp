@@ -11,11 +11,12 @@
 
 namespace insonify::types {
 
-/** What the bins of a ping show: for each of them what sent the echo back, from which elevation, at which angle; of a
- *  bin most of whose energy came by a mirror what is seen in it, and from where that is heard.
+/** The truth of the bins of a ping: the object that returned the echo of each bin, its elevation, and the grazing
+ *  angle. If most of a bin's energy arrived by a mirror, these are the object seen in the mirror, and the direction of
+ *  arrival.
  *
- *  Beam-first as the ping's own bins: what is told of bin k of beam b stands at [b * bin_count + k]. A bin that has
- *  heard nothing has object -1, share 0, no hits, and NaN for its angles. */
+ *  Beam-first as the ping's bins: the values of bin k of beam b are at [b * bin_count + k]. A bin without an echo has
+ *  object -1, share 0, no hits, and NaN for its angles. */
 struct SonarTruth {
     static constexpr const char* type_name = "/insonify/SonarTruth";
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
@@ -38,17 +39,18 @@ struct SonarTruth {
     std::vector<uint8_t> path;
     std::vector<uint8_t> shadow;
 
-    /** Slant range at which bin k starts [m]; k = bin_count gives the far edge. */
+    /** Returns the slant range at which bin k starts [m]; k = bin_count gives the far edge. */
     double binStart(double k) const { return k * bin_duration.seconds() * static_cast<double>(speed_of_sound); }
     std::vector<size_t> shape() const { return {beam_count, bin_count}; }
-    /** Whether most of a bin's energy came by the water surface or another mirror. */
+    /** Returns whether most of a bin's energy arrived by the water surface or another mirror. */
     bool isByMirror(size_t bin) const { return path[bin] != 0 && path[bin] < through_wall; }
-    /** Takes the grid of a ping, and makes room for as many bins; allocates nothing when it had this shape. */
+    /** Copies the grid of a ping, and resizes the lists to its bins. Allocates nothing when the shape has not
+     *  changed. */
     void takeGrid(const Sonar& ping);
-    /** What is wrong with the lists, after "a sample"; null: nothing. */
+    /** Returns the error of the lists, as the rest of a sentence after "a sample"; null when there is none. */
     const char* diagnostic() const;
 
-    /** The lists of numbers that have a place for each bin, with what arrays hold of them. */
+    /** Calls `visit` for the lists with a number for each bin, with the type of the numbers in files. */
     template <class Self, class Visit>
     static void forEachArray(Self& self, Visit&& visit) {
         visit("elevation", self.elevation, std::type_identity<float>{});
@@ -79,7 +81,7 @@ struct SonarTruth {
                     "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, "
                     "5: rung in a wall"},
               self.path);
-        visit(Field{"shadow", "", "1: nothing heard though nearer than the beam's last echo"}, self.shadow);
+        visit(Field{"shadow", "", "1: no echo, although nearer than the beam's last echo"}, self.shadow);
     }
 };
 using SonarTruthPtr = std::shared_ptr<const SonarTruth>;

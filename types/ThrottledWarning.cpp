@@ -3,7 +3,7 @@
 namespace insonify::types {
 namespace {
 
-constexpr size_t max_reasons = 32;  ///< Runs may last for days.
+constexpr size_t max_reasons = 32;  ///< Limits the memory of runs that last for days.
 
 }  // namespace
 

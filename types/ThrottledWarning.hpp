@@ -8,26 +8,28 @@
 
 namespace insonify::types {
 
-/** Counts what recurs by reason and says when to warn of it, which is seldom. All functions are for any thread. */
+/** Counts recurring events by reason, and limits the warnings about them. All functions are thread-safe. */
 class ThrottledWarning {
 public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds interval{10};
 
-    /** `noun` and `participle` of what is counted: "message", "dropped". */
+    /** `noun` and `participle` name the events: "message", "dropped". */
     ThrottledWarning(std::string noun, std::string participle)
         : noun_(std::move(noun)), participle_(std::move(participle)) {}
 
-    /** `detail` is told with the last, and is no reason of its own: a sender may choose it. */
+    /** `detail` is printed with the last event. It does not count as a separate reason, because a sender may choose
+     *  it. */
     void add(const std::string& reason, const std::string& detail = "", uint64_t count = 1);
     void reset();
 
-    uint64_t count() const;    ///< Over all reasons.
-    std::string last() const;  ///< Reason and detail.
+    uint64_t count() const;    ///< Number of events of all reasons.
+    std::string last() const;  ///< Reason and detail of the last event.
     std::map<std::string, uint64_t> byReason() const;
-    /** "3 messages dropped; the last: ...", at the first and then once an interval while more come; else empty. */
+    /** Returns "3 messages dropped; the last: ..." for the first event, and then at most once per interval if there are
+     *  new events; else empty. */
     std::string takeWarning(Clock::time_point now = Clock::now());
-    /** A line for each reason: "3 messages dropped: /auv/odometry: ...". */
+    /** Returns a line for each reason: "3 messages dropped: /auv/odometry: ...". */
     std::vector<std::string> summary() const;
 
 private:

@@ -7,7 +7,7 @@
 
 namespace insonify::types {
 
-/** A moment in the (simulated) world, or a duration: Rock's base::Time. 0 is Rock's null: "no time". */
+/** A time in the (simulated) world, or a duration: Rock's base::Time. 0 is Rock's null: "no time". */
 struct Time {
     static constexpr const char* type_name = "/base/Time";
     int64_t microseconds = 0;

@@ -13,13 +13,13 @@ struct Pointee<std::shared_ptr<const T>> {
     using type = T;
 };
 
-/** What runs are counted in (`counted`), whichever way it travels. */
+/** Types that count the progress of runs (`counted`), passed by value or by shared pointer. */
 template <class T>
 concept Counted = requires {
     requires Pointee<T>::type::counted;
 };
 
-/** The name of what travels on a port, a shared sample named as what it points to: "/base/samples/Sonar". */
+/** Returns the name of a type on a port; a shared pointer has the name of its sample: "/base/samples/Sonar". */
 template <class T>
 std::string typeName() {
     using Value = typename Pointee<T>::type;

@@ -3,9 +3,9 @@
 #include <bit>
 #include <cstdint>
 
-// A function in versions for processors with vectors of 512, 256 and 128 bits, of which the best is taken. Without
-// contraction (-ffp-contract=off) all give the same bits. Not with sanitizers, whose code would run before they are
-// ready.
+// Compiles a function in versions for vectors of 512, 256 and 128 bits; the best version for the processor runs.
+// Without contraction (-ffp-contract=off) all give the same bits. Not used with sanitizers, because the choice of a
+// version would run before they are initialised.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define INSONIFY_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
@@ -15,7 +15,8 @@
 
 namespace insonify::types {
 
-/** ln(1 + x) for x in [sqrt(1/2) - 1, sqrt(2) - 1], within 1e-7 relative (minimax polynomial of Cephes' logf). */
+/** Returns ln(1 + x) for x in [sqrt(1/2) - 1, sqrt(2) - 1], to a relative error of 1e-7 (minimax polynomial of Cephes'
+ *  logf). */
 inline float log1pSmall(float x) {
     constexpr float coefficients[] = {-1.1514610310e-1f, 1.1676998740e-1f, -1.2420140846e-1f, 1.4249322787e-1f,
                                       -1.6668057665e-1f, 2.0000714765e-1f, -2.4999993993e-1f, 3.3333331174e-1f};
@@ -25,20 +26,20 @@ inline float log1pSmall(float x) {
     return x + (x * square * sum - 0.5f * square);
 }
 
-/** x = (1 + rest) 2^powers, rest in [sqrt(1/2) - 1, sqrt(2) - 1]. */
+/** A number (1 + rest) 2^powers with rest in [sqrt(1/2) - 1, sqrt(2) - 1]. */
 struct PowersOfTwo {
     float rest;
     int32_t powers;
 };
 
-/** Of a positive, finite float of full precision (at least 1.2e-38). */
+/** Splits a positive, finite float of full precision (at least 1.2e-38). */
 inline PowersOfTwo split(float x) {
-    constexpr int32_t half_root = 0x3F3504F3;  // of sqrt(1/2)
+    constexpr int32_t half_root = 0x3F3504F3;  // bits of sqrt(1/2)
     const int32_t bits = std::bit_cast<int32_t>(x) - half_root;
     return {std::bit_cast<float>((bits & 0x007FFFFF) + half_root) - 1.0f, bits >> 23};
 }
 
-/** 10 log10(x) [dB] of a positive, finite float, within 2e-5 dB. */
+/** Returns 10 log10(x) [dB] of a positive, finite float, accurate to 2e-5 dB. */
 inline float decibels(float x) {
     constexpr float per_ln = 4.3429448f, per_power = 3.0102999566f;
     const bool is_small = x < 0x1p-100f;

@@ -8,14 +8,14 @@
 
 namespace insonify::types {
 
-/** Axes of poses. Ours are Rock's: world x north, y west, z up; body x forward, y left, z up. */
+/** Axes of poses. Rock's axes are used internally: world x north, y west, z up; body x forward, y left, z up. */
 enum class WorldFrame {
-    AsIs,  ///< Rock's.
+    AsIs,  ///< Rock's axes.
     Enu,   ///< World x east, y north, z up; body as in Rock (REP 103).
     Ned    ///< World x north, y east, z down; body x forward, y right, z down.
 };
 
-/** From Rock's axes to those of a frame, and back: rotations that only exchange and negate axes. */
+/** Conversions between Rock's axes and those of a frame: rotations that only exchange and negate axes. */
 struct Axes {
     WorldFrame frame;
 
@@ -27,7 +27,7 @@ struct Axes {
         if (frame == WorldFrame::Enu) return {v.y, -v.x, v.z};
         return body(v);
     }
-    /** Both ways. */
+    /** Converts vectors of the body; the conversion is its own inverse. */
     glm::dvec3 body(glm::dvec3 v) const { return frame == WorldFrame::Ned ? glm::dvec3{v.x, -v.y, -v.z} : v; }
     glm::dquat orientationFromRock(glm::dquat q) const { return turned(q, 1); }
     glm::dquat rockFromOrientation(glm::dquat q) const { return turned(q, -1); }

@@ -12,7 +12,7 @@ namespace {
 constexpr double decibels_per_neper = 20 / std::numbers::ln10;
 constexpr double bar_per_atmosphere = 1.01325;
 
-/** f0 f^2 / (f^2 + f0^2): absorption by a relaxation at f0, without its strength; 0 where there is none. */
+/** Returns f0 f^2 / (f^2 + f0^2): absorption by a relaxation at f0, without its strength; 0 for f0 = 0. */
 double relaxation(double f, double f0) { return f0 > 0 ? f0 * f * f / (f * f + f0 * f0) : 0; }
 
 /** Pure-water term of Francois and Garrison [dB/km/kHz^2]. */
@@ -98,7 +98,7 @@ std::string outsideValidity(AbsorptionLaw law, double f, const Water& water) {
                         {"m depth", z, 0, 5000},
                         {"pH", water.ph, 7.9, 8.1}});
     if (law == AbsorptionLaw::Thorp) return outside({{"kHz", f, 0.1, 50}, {"degC", t, 2, 6}, {"m depth", z, 0, 2000}});
-    // Above 500 kHz pure water absorbs, and that term holds in warm and fresh water too.
+    // Above 500 kHz the pure-water term dominates. It is valid in warm and fresh water too.
     const bool pure_water = f > 500;
     return outside({{"kHz", f, 0.2, 1000},
                     {"degC", t, pure_water ? 0.0 : -2.0, pure_water ? 30.0 : 22.0},

@@ -3,8 +3,8 @@
 
 namespace insonify::acoustics {
 
-/** Spectrum level of the noise of the sea [dB re 1 uPa^2/Hz] at `frequency_khz` with wind [m/s] and shipping [0..1]:
- *  turbulence, ships, wind on the surface, and the thermal noise of Mellen, which is most of it above some 150 kHz.
+/** Returns the spectrum level of the noise of the sea [dB re 1 uPa^2/Hz] for a wind speed [m/s] and shipping [0..1]. It
+ *  sums turbulence, ships, wind on the surface, and the thermal noise of Mellen, which dominates above about 150 kHz.
  *  R. Coates, Underwater acoustic systems, 1990, after Wenz 1962. */
 inline double coatesSpectrumDb(double frequency_khz, double wind_m_s, double shipping) {
     const double f = std::log10(frequency_khz);

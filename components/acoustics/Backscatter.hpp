@@ -8,48 +8,48 @@
 
 namespace insonify::acoustics {
 
-/** Lambert's law: mu cos^2(theta), mu = 10^(lambert_db / 10) [m^2 at 1 m for each m^2]. ACOUSTICS.md 3.1. */
+/** Returns mu cos^2(theta) by Lambert's law, mu = 10^(lambert_db / 10) [m^2 at 1 m per m^2]. ACOUSTICS.md 3.1. */
 double lambertSection(double lambert_db, double cos_incidence);
 
-/** What makes the lobe of a surface as wide as it is: rms slopes [1], all of facets that are steeper than the wave. */
+/** The rms slopes [1] that determine the width of a surface's lobe about its normal. */
 struct Slopes {
-    double roughness = 0;                  ///< Of the micro-relief.
-    double mesh = 0;                       ///< From a facet of a mesh to the next.
-    double wavelength = 0, cell_area = 1;  ///< [m], [m^2]: a smooth cell of this area spreads as lambda^2 / (4 pi A).
+    double roughness = 0;                  ///< Slope of the micro-relief.
+    double mesh = 0;                       ///< Slope from a facet of a mesh to the next.
+    double wavelength = 0, cell_area = 1;  ///< [m], [m^2]: a smooth cell of area A spreads as lambda^2 / (4 pi A).
 
-    /** s^2, of all three [1]. */
+    /** Returns s^2, the sum of the three squares [1]. */
     double meanSquare() const;
 };
 
-/** Two terms for objects: Lambert's law, and the lobe of geometric optics about the normal [m^2 at 1 m for each m^2]:
- *  mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
+/** Returns an object's cross section: Lambert's law plus the lobe of geometric optics about the normal [m^2 at 1 m per
+ *  m^2], mu cos^2(theta) + |R|^2 sec^4(theta) / (4 pi s^2) exp(-tan^2(theta) / s^2). ACOUSTICS.md 3.6. */
 double objectSection(double lambert_db, double reflection, double mean_square_slope, double cos_incidence);
 
-/** Returns what a flat rough solid gives back at a grazing angle [rad]: its lobe and what it scatters
- *  [m^2 at 1 m for each m^2]. ACOUSTICS.md 3.11. */
+/** Returns the backscatter of a flat rough solid at a grazing angle [rad]: its lobe plus its diffuse scattering [m^2 at
+ *  1 m per m^2]. ACOUSTICS.md 3.11. */
 double solidSection(const RoughSurface& surface, double grazing);
 
-/** A law of backscatter as what an echo needs of it: sigma_b / cos(theta) over cos(theta), with straight lines between
- *  256 entries; nearer than 0.001 deg to grazing that of 0.001 deg. ACOUSTICS.md 3.8. */
+/** A table of a backscatter law in the form that an echo needs: sigma_b / cos(theta) over cos(theta), 256 entries with
+ *  straight lines between them. Grazing angles below 0.001 deg have the value at 0.001 deg. ACOUSTICS.md 3.8. */
 class BackscatterTable {
 public:
     static constexpr int entries = 256;
 
-    /** Of a cross section over the grazing angle [rad], m^2 at 1 m for each m^2. */
+    /** @param section cross section over the grazing angle [rad], m^2 at 1 m per m^2 */
     explicit BackscatterTable(const std::function<double(double)>& section);
 
-    /** Entry i is for cos(theta) = i / 255; the first for the sine of 0.001 deg. */
+    /** Returns the entries. Entry i is for cos(theta) = i / 255; the first is for the sine of 0.001 deg. */
     const std::array<double, entries>& values() const { return values_; }
 
 private:
     std::array<double, entries> values_;
 };
 
-/** A measured strength: levels [dB] over grazing angles [deg], from a CSV file with header grazing_deg,strength_db.
+/** Reads measured strengths [dB] over grazing angles [deg] from a CSV file with header grazing_deg,strength_db.
  *  @throws types::ConfigError with file, line and column of every diagnostic. */
 Curve readBackscatter(const std::string& file);
-/** Its cross section at a grazing angle [rad]: straight lines in decibels, the nearer end's beyond what was measured
- *  [m^2 at 1 m for each m^2]. */
+/** Returns the measured cross section at a grazing angle [rad], interpolated in decibels [m^2 at 1 m per m^2]. Outside
+ *  the measured angles it is that of the nearer end. */
 double measuredSection(const Curve& measured, double grazing);
 
 }  // namespace insonify::acoustics

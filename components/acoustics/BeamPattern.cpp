@@ -21,13 +21,13 @@ Taper taperOf(const BeamLaw& law, int elements) {
                  elements);
 }
 
-/** Elements of an array of half a wavelength each. */
+/** Returns the number of elements of half a wavelength each. */
 int elementsOf(double aperture) { return std::max(2, static_cast<int>(std::lround(2 * aperture))); }
 
-/** Levels relative to that on the axis, both sides where only one is measured. */
+/** Returns the levels relative to the level on the axis. Mirrors a curve that was measured on one side only. */
 Curve aboutTheAxis(Curve curve, const std::string& file) {
     if (curve.x.front() > 0 || curve.x.back() < 0)
-        throw types::ConfigError(file, "angle_deg", "leaves out 0; the pattern is relative to its axis");
+        throw types::ConfigError(file, "angle_deg", "does not include 0; the pattern is relative to its axis");
     const double axis_db = curve.at(0);
     for (double& level : curve.y) level -= axis_db;
     if (curve.x.front() < 0) return curve;
@@ -41,14 +41,14 @@ Curve aboutTheAxis(Curve curve, const std::string& file) {
     return both;
 }
 
-/** Of one side of a pattern. */
+/** The shape of one side of a pattern, angles in [rad]. */
 struct Side {
     double half_width = pi / 2;
     std::optional<double> first_null;
     double sidelobe = 0;
 };
 
-/** The extreme value of a smooth function between two places, by golden section. */
+/** Returns the place of the minimum of a smooth function between two places, by golden section. */
 double extremeBetween(const std::function<double(double)>& f, double low, double high) {
     const double golden = (std::sqrt(5.0) - 1) / 2;
     for (int i = 0; i < 60; ++i) {
@@ -94,7 +94,7 @@ void BeamLaw::check(types::Diagnostics& diagnostics) const {
     if (given == 0) diagnostics.push_back({"", "has no width; give width_deg, aperture_m or file"});
     if (given > 1) diagnostics.push_back({"", "has several widths; give one of width_deg, aperture_m and file"});
     if (!file.empty() && (weighting || sidelobe_db || nbar))
-        diagnostics.push_back({"file", "stands beside a weighting; give one of the two"});
+        diagnostics.push_back({"file", "is given together with a weighting; give one of the two"});
     if (chosen == Weighting::Gaussian && aperture_m)
         diagnostics.push_back({"aperture_m", "is given for a gaussian, which has no edge; give width_deg"});
     const bool has_depth = chosen == Weighting::Taylor || chosen == Weighting::Dolph;

@@ -8,7 +8,7 @@
 
 namespace insonify::acoustics {
 
-/** How one array hears, or sends, across one of its axes: a weighted aperture, or a measured table. */
+/** The configuration of an array's pattern across one of its axes: a weighted aperture, or a measured table. */
 struct BeamLaw {
     std::optional<Weighting> weighting;
     std::optional<double> width_deg, aperture_m, sidelobe_db;
@@ -27,7 +27,7 @@ struct BeamLaw {
         visit(Field{"sidelobe_db", "dB", "of taylor and dolph: highest sidelobe below the axis, either sign; else -30",
                     -100, 100},
               self.sidelobe_db);
-        visit(Field{"nbar", "1", "of taylor: how many sidelobes are as high; else 4", 2, 100}, self.nbar);
+        visit(Field{"nbar", "1", "of taylor: number of sidelobes of equal height; else 4", 2, 100}, self.nbar);
         visit(Field{"file", "", "instead: CSV file with angle_deg,level_db"}, self.file);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -36,20 +36,20 @@ struct BeamLaw {
 /** A power pattern about its axis, one way, 1 on the axis: ACOUSTICS.md 5.9. */
 class BeamPattern {
 public:
-    /** `wavelength` [m] is asked for by an aperture.
-     *  @throws types::ConfigError where the law's file is none, or there is no wavelength. */
+    /** @param wavelength [m], needed by a law with `aperture_m`
+     *  @throws types::ConfigError when the law's file is invalid, or the wavelength is missing. */
     explicit BeamPattern(const BeamLaw& law, std::optional<double> wavelength = {});
 
-    /** At an angle off the axis [rad]; an aperture hears nothing behind itself. */
+    /** Returns the power at an angle off the axis [rad]. Behind an aperture the power is 0. */
     double power(double angle) const { return power(angle, 0); }
-    /** At an angle of an array that is steered to `axis`, both from its normal [rad]. */
+    /** Returns the power at an angle when the beam is steered to `axis`, both from the array's normal [rad]. */
     double power(double angle, double axis) const;
-    /** Of the field there, of which the power is the square: sidelobes of an aperture change sign from one to the next;
-     *  a measured table tells no sign, so it has none. */
+    /** Returns the amplitude of the field, whose square is the power. Successive sidelobes of an aperture alternate in
+     *  sign; the amplitude of a measured table is never negative. */
     double amplitude(double angle, double axis = 0) const;
-    /** Length of the aperture [wavelengths]; 0 for a measured table. */
+    /** Returns the length of the aperture [wavelengths]; 0 for a measured table. */
     double aperture() const { return aperture_; }
-    /** Its far field, where it is no measured table. */
+    /** Returns the far field of the aperture; meaningless for a measured table. */
     const Taper& taper() const { return taper_; }
 
 private:
@@ -60,16 +60,16 @@ private:
     Curve measured_;  ///< Level over angle [dB, deg], 0 on the axis; empty for an aperture.
 };
 
-/** What a data sheet tells of a pattern. Angles from the axis [rad]. */
+/** The figures of a pattern that data sheets state. Angles are from the axis [rad]. */
 struct CutShape {
     double width_3db = 0;                    ///< Between the two sides.
-    std::optional<double> first_null;        ///< First minimum, of the nearer side.
+    std::optional<double> first_null;        ///< First minimum, on the nearer side.
     std::optional<double> peak_sidelobe_db;  ///< Highest level beyond the first minimum, relative to the axis.
 };
 
-/** Of a power pattern over angles from -pi/2 to pi/2 [rad], 1 at 0. */
+/** Returns the shape of a power pattern over angles from -pi/2 to pi/2 [rad]; the power at 0 must be 1. */
 CutShape shapeOf(const std::function<double(double)>& power);
-/** Its integral over the sine of the angle, from -1 to 1 [1]. */
+/** Returns the integral of a power pattern over the sine of the angle, from -1 to 1 [1]. */
 double integralOverSine(const std::function<double(double)>& power);
 
 }  // namespace insonify::acoustics

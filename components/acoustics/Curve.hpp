@@ -6,16 +6,16 @@
 
 namespace insonify::acoustics {
 
-/** A measured curve: y over ascending x, with straight lines between its points. */
+/** A measured curve: y over ascending x, linearly interpolated. */
 struct Curve {
     std::vector<double> x, y;
 
-    /** That of the nearer end outside. */
+    /** Returns the value at `where`; outside the curve, the value of the nearer end. */
     double at(double where) const;
 };
 
-/** Reads a CSV file of two columns under their names, the first ascending.
- *  @throws types::ConfigError with file, line and column of all that is wrong. */
+/** Reads a CSV file of two named columns, the first ascending.
+ *  @throws types::ConfigError with file, line and column of every diagnostic. */
 Curve readCurve(const std::string& file, const types::CsvColumn& x, const types::CsvColumn& y);
 
 }  // namespace insonify::acoustics

@@ -10,19 +10,20 @@
 namespace insonify::acoustics {
 namespace {
 
-/** Equivalent sand grains of pipes (Moody 1944) over the rms height of the same surfaces: Adams et al. 2012 [1]. */
+/** Ratio of the equivalent sand grain of pipes (Moody 1944) to the rms height of the surface: Adams et al. 2012 [1]. */
 constexpr double sand_over_rms = 3.1;
 constexpr double rmsOf(double sand_grain) { return sand_grain / sand_over_rms; }
 
-/** Correlation length over rms height of surfaces whose length nobody has published: decided here [1]. */
+/** Ratio of correlation length to rms height for surfaces without a published length: decided here [1]. */
 constexpr double length_over_rms = 10;
 
-/** Rms height of a row of round strands over their diameter: that of a half circle about its mean [1]. */
+/** Ratio of rms height to diameter of a row of round strands: that of a half circle about its mean [1]. */
 const double strand_rms = std::sqrt(2.0 / 3 - std::pow(std::numbers::pi / 4, 2)) / 2;
 constexpr double strand_length = 0.25;                    ///< Correlation length over diameter [1].
 constexpr double rope_strand = 0.010, net_twine = 0.002;  ///< Diameters [m].
 
-/** Relief of rock by the spectrum of APL-UW TR 9407, w_2 K^-gamma, of wavelengths up to `longest` [m]. */
+/** Returns the rms height of rock for wavelengths up to `longest` [m], by the spectrum w_2 K^-gamma of APL-UW TR
+ *  9407. */
 double rockRms(double longest) {
     const Seabed rock = seabedNamed("rock").value();
     const double lowest = 2 * std::numbers::pi / (100 * longest), over = rock.roughness_slope - 2;  // [rad/cm], [1]
@@ -31,7 +32,8 @@ double rockRms(double longest) {
 constexpr double lengthOf(double longest) { return longest / (2 * std::numbers::pi); }
 constexpr double longest_of_bed = 1, longest_of_block = 0.1;  ///< [m]
 
-/** Wood's equation 1955: speed of sound of a mixture, by densities [kg/m^3] and compressibilities [1/Pa]. */
+/** Returns the speed of sound [m/s] of a mixture of water and calcite of a density [kg/m^3], by Wood's equation
+ *  (1955). */
 double mixtureSpeed(double density) {
     constexpr double water = 1025, water_speed = 1500, calcite = 2710, calcite_modulus = 70e9;
     const double solid = (density - water) / (calcite - water);

@@ -48,11 +48,11 @@ struct MatterProperties {
     double reflection;   ///< Pressure reflection coefficient against sea water at normal incidence, signed [1].
     double density;      ///< [kg/m^3]
     double sound_speed;  ///< Speed of compressional waves [m/s].
-    double shear_speed;  ///< Speed of shear waves; 0: as a fluid [m/s].
+    double shear_speed;  ///< Speed of shear waves [m/s]; 0: a fluid.
     double loss;         ///< Imaginary over real part of the wave numbers [1].
-    double roughness;    ///< Rms height of the surface's relief; 0: not known, Lambert's law [m].
+    double roughness;    ///< Rms height of the surface's relief [m]; 0: unknown, Lambert's law applies.
     double length;       ///< Correlation length of the relief [m].
-    bool is_wall;        ///< Walls are made of it: a shell may be.
+    bool is_wall;        ///< Walls, and therefore shells, may be made of this matter.
     std::string_view source, roughness_source;  ///< Author and year.
 
     bool hasRoughness() const { return roughness > 0; }

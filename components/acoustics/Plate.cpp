@@ -9,9 +9,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double grazing_cosine = 1e-6;  ///< Nearer to grazing, a wave is taken as one of this angle [1].
+constexpr double grazing_cosine = 1e-6;  ///< Min cosine of incidence; waves nearer to grazing are computed at it [1].
 constexpr double min_loss = 1e-9;        ///< Keeps resonances finite [1].
-constexpr double max_decay = 300;        ///< Beyond exp(-this) nothing passes [Np].
+constexpr double max_decay = 300;        ///< Max attenuation across the plate; exp(-300) is as good as 0 [Np].
 
 /** One kind of wave in the plate. */
 struct Wave {
@@ -19,7 +19,7 @@ struct Wave {
     Complex cot, inverse;  ///< Cotangent and 1 / sine of the phase across the plate [1].
 };
 
-/** @param slowness along the plate [s/m] */
+/** Returns the wave of a speed [m/s] at a frequency [Hz]. `slowness` is along the plate [s/m]. */
 Wave waveIn(const Plate& plate, double speed, double frequency, double slowness) {
     const Complex number = Complex(1, std::max(plate.loss, min_loss)) / speed;  // over the angular frequency [s/m]
     Complex normal = std::sqrt(number * number - slowness * slowness);
@@ -30,16 +30,16 @@ Wave waveIn(const Plate& plate, double speed, double frequency, double slowness)
     return {plate.density / normal, std::cos(phase) / sine, 1.0 / sine};
 }
 
-/** Impedance of a wave in a fluid along the normal [Pa s/m]. */
+/** Returns the impedance of a wave in a fluid along the normal [Pa s/m]. */
 Complex impedanceOf(const Fluid& fluid, double slowness) {
     const Complex normal = std::sqrt(Complex(1 / (fluid.sound_speed * fluid.sound_speed) - slowness * slowness, 0));
     return fluid.density /
            (std::abs(normal) > grazing_cosine / fluid.sound_speed ? normal : grazing_cosine / fluid.sound_speed);
 }
 
-constexpr double min_rest = 1e-3;  ///< Share of all returns below which the rest counts in the last of them [1].
+constexpr double min_rest = 1e-3;  ///< Below this share of all returns, the rest is added to the last return [1].
 
-/** Returns the terms of a series with that sum; `term(k)` is the k-th of them. */
+/** Returns the terms of a series of the given sum; `term(k)` is the k-th term. */
 template <class Term>
 std::vector<double> termsOf(double sum, size_t max_count, const Term& term) {
     std::vector<double> terms;
@@ -61,7 +61,7 @@ PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& 
     const double one = before.density * before.sound_speed, other = behind.density * behind.sound_speed;
     const Complex front = (own - one) / (own + one), back = (other - own) / (other + own);
     const double crossing = std::exp(-4 * std::numbers::pi * frequency * plate.thickness * number.imag());
-    const double again =  // of the energy, each time across and back
+    const double again =  // share of the energy that is left after each time across and back
         std::min(std::norm(front * back) * crossing * crossing, 1 - 1e-9);
     const double first = std::norm(front), in_and_out = std::norm(1.0 - front * front);
     const double second = in_and_out * std::norm(back) * crossing * crossing;
@@ -87,7 +87,7 @@ PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid
         across = of_pressure * across + of_shear * shear.impedance * shear.inverse;
     }
     const Complex one = before.density * before.sound_speed / cosine, other = impedanceOf(behind, slowness);
-    const Complex i(0, 1), behind_plate = other + i * along;  // pressures go as exp(-i omega t)
+    const Complex i(0, 1), behind_plate = other + i * along;  // pressures vary as exp(-i omega t)
     const Complex at_face = i * along + across * across / behind_plate;
     return {(at_face - one) / (at_face + one), 2.0 * i * across * other / (behind_plate * (at_face + one))};
 }

@@ -14,7 +14,7 @@ struct Plate {
     double thickness;        ///< [m]
     double density;          ///< [kg/m^3]
     double sound_speed;      ///< Speed of longitudinal waves [m/s].
-    double shear_speed = 0;  ///< 0: a fluid [m/s].
+    double shear_speed = 0;  ///< Speed of shear waves [m/s]; 0: a fluid.
     double loss = 0;         ///< Imaginary over real part of both wave numbers [1].
 };
 
@@ -30,16 +30,16 @@ struct PlateResponse {
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                             double cos_incidence);
 
-/** Energies of the returns of a pulse that is shorter than the time of sound across a plate and back, which meets it at
- *  normal incidence; over the energy of the pulse, the loss being that of one frequency [1]. Return k is k such times
- *  late. What follows the last return is counted in it. */
+/** Energies of the returns from a plate at normal incidence, relative to the energy of the pulse [1]. The pulse is
+ *  shorter than the time of sound across the plate and back; return k is late by k times that time. The loss is that of
+ *  one frequency. The last return contains all that would follow. */
 struct PlateReturns {
     std::vector<double> reflected;  ///< The sum is the mean of |R|^2 over a resonance's width.
-    std::vector<double> passed;     ///< Out and back through the plate; the sum is the mean of |T T'|^2.
+    std::vector<double> passed;     ///< Passed out and back through the plate; the sum is the mean of |T T'|^2.
 };
 
-/** Returns what resounds in a plate (ACOUSTICS.md 3.10), at most `max_count` returns each, and none that are weaker
- *  together than 30 dB below all of them. */
+/** Returns the reverberation of a plate (ACOUSTICS.md 3.10): at most `max_count` returns in each vector. Stops when the
+ *  remaining returns together are 30 dB weaker than all. */
 PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,
                           size_t max_count);
 

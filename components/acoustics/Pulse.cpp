@@ -7,7 +7,7 @@
 namespace insonify::acoustics {
 namespace {
 
-/** Sidelobes are looked for up to here, and h is integrated up to here [u]; beyond it falls as u^-2 at most. */
+/** End of the search for sidelobes and of the integral of h [u]. Beyond it h falls at least as fast as u^-2. */
 constexpr double far_u = 500;
 constexpr double step_u = 0.01;
 
@@ -36,7 +36,7 @@ double RingDownConfig::mean(double low, double high) const {
 
 void PulseConfig::check(types::Diagnostics& diagnostics) const {
     if (bandwidth_khz && duration_us)
-        diagnostics.push_back({"duration_us", "stands beside bandwidth_khz; give one of the two"});
+        diagnostics.push_back({"duration_us", "is given together with bandwidth_khz; give one of the two"});
     if (chirp_us && !bandwidth_khz)
         diagnostics.push_back({"chirp_us", "is given without bandwidth_khz; a tone is no chirp"});
     if (!bandwidth_khz && !duration_us)

@@ -8,7 +8,7 @@ namespace insonify::acoustics {
 
 enum class PulseWindow { None, Hann, Hamming, Taylor };
 
-/** What a receiver hears of its own transmitter after the pulse: an intensity that falls exponentially. */
+/** The intensity that a receiver gets from its own transmitter after the pulse; it falls exponentially. */
 struct RingDownConfig {
     std::optional<double> level_db, decay_db_per_m;
 
@@ -16,13 +16,14 @@ struct RingDownConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"level_db", "dB", "at range 0, relative to the source at 1 m", -3000, 300}, self.level_db);
-        visit(Field{"decay_db_per_m", "dB/m", "per metre of slant range; 54.6 f / (Q c) of a resonance f of quality Q",
+        visit(Field{"decay_db_per_m", "dB/m", "per metre of slant range; 54.6 f / (Q c) for a resonance f of quality Q",
                     0.01, 1e6},
               self.decay_db_per_m);
     }
     void check(types::Diagnostics& diagnostics) const;
 
-    /** Mean intensity over slant ranges, relative to the source at 1 m [m, 1]. ACOUSTICS.md 5.15. */
+    /** Returns the mean intensity between two slant ranges [m], relative to the source at 1 m [1].
+     *  ACOUSTICS.md 5.15. */
     double mean(double low, double high) const;
 };
 
@@ -41,35 +42,35 @@ struct PulseConfig {
               self.window);
         visit(Field{"duration_us", "us", "instead: of a tone", 0.1, 1e7}, self.duration_us);
         visit(Field{"chirp_us", "us",
-                    "how long a chirp rises through its bandwidth, which shifts what moves; needs motion_in_ping and "
+                    "duration of a chirp, which shifts the range of moving targets; needs motion_in_ping and "
                     "frequency_khz; absent: nothing is shifted",
                     0.1, 1e7},
               self.chirp_us);
-        visit(Field{"ring_down", "", "the transmitter as it is heard in the first bins; absent: not at all"},
-              self.ring_down);
+        visit(Field{"ring_down", "", "the transmitter's ringing in the first bins; absent: none"}, self.ring_down);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What one echo leaves in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 5.10. */
+/** The response h of the pulse in range, two way, as intensity: h(0) = 1, centred on the echo. ACOUSTICS.md 5.10. */
 class Pulse {
 public:
-    /** At a speed of sound [m/s]. */
+    /** @param speed_of_sound [m/s] */
     Pulse(const PulseConfig& config, double speed_of_sound);
 
-    /** h at a distance in slant range from the echo [m]. */
+    /** Returns h at a distance in slant range from the echo [m]. */
     double response(double distance) const;
-    /** Of the field, of which h is the square: sidelobes change sign from one to the next. */
+    /** Returns the amplitude of the field, whose square is h. Successive sidelobes alternate in sign. */
     double amplitude(double distance) const;
-    /** Mean of h between two distances from the echo [m]. */
+    /** Returns the mean of h between two distances from the echo [m]. */
     double mean(double low, double high) const;
-    /** Width of h where it is half [m]. */
+    /** Returns the width of h at half its peak [m]. */
     double resolution() const;
-    /** Integral of h over range [m]: the length of a reverberation cell. */
+    /** Returns the integral of h over range [m]: the length of a reverberation cell. */
     double cellLength() const;
-    /** Highest sidelobe of the matched filter [dB]; a tone has none. */
+    /** Returns the highest sidelobe of the matched filter [dB]; a tone has none. */
     std::optional<double> peakSidelobeDb() const;
-    /** Distance beyond which h stays below a level relative to its peak [m, dB below 0]. */
+    /** Returns the distance [m] beyond which h stays below `floor_db` relative to its peak; the sign is ignored
+     *  [dB]. */
     double extent(double floor_db) const;
 
 private:

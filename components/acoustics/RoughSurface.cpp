@@ -10,8 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double cut_over_wave_number = 1.0 / 3;  ///< Between longer and shorter relief: decided here [1].
-const double lowest_grazing = 0.001 * pi / 180;   ///< Below it, the value there [rad].
+constexpr double cut_over_wave_number = 1.0 / 3;  ///< Divides longer from shorter relief: decided here [1].
+const double lowest_grazing = 0.001 * pi / 180;   ///< Smaller angles have the value of this angle [rad].
 
 }  // namespace
 
@@ -41,7 +41,7 @@ RoughSurface::RoughSurface(const HalfSpace& solid, const Relief& relief, double 
     const double lost = -std::expm1(-4 * k * k * relief.squareHeightAbove(cut_));
     lobe_share_ = 1 - lost;
     max_lambert_ = reflection_ * reflection_ * lost / pi;
-    // The relief that leaves k h small reflects as a plane: of the lobe's energy this share has slopes.
+    // Relief with a small k h reflects as a plane. Only the remaining share of the lobe's energy has slopes.
     square_slope_ = -std::expm1(-4 * k * k * relief.squareHeightBelow(cut_)) * relief.squareSlopeBelow(cut_);
 }
 

@@ -11,7 +11,7 @@ namespace insonify::acoustics {
 namespace {
 
 constexpr double finest_phi = 9, coarsest_phi = -1;
-constexpr double water_speed_km_s = 1.528;  // that the report's loss parameters are for
+constexpr double water_speed_km_s = 1.528;  // speed of sound that the report's loss parameters are for
 
 /** A name of table 2 with its mean grain size. */
 struct GrainRow {
@@ -34,7 +34,7 @@ constexpr GrainRow grains[] = {
     {"silty_clay", 8},         {"clay", 9},
 };
 
-/** A name of table 2 with numbers of its own. */
+/** A name of table 2 that has its own parameters. */
 struct RockRow {
     std::string_view name;
     double speed_ratio, roughness;

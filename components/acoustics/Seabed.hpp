@@ -6,7 +6,7 @@
 
 namespace insonify::acoustics {
 
-/** What the seabed model of APL-UW TR 9407 (1994, section IV) takes: its table 1. Ratios are to the water above. */
+/** The parameters of the seabed model of APL-UW TR 9407 (1994, section IV, table 1). Ratios are to the water above. */
 struct Seabed {
     double density_ratio = 1;       ///< rho, 1 to 3 [1].
     double speed_ratio = 1;         ///< nu, 0.8 to 3 [1].
@@ -16,15 +16,15 @@ struct Seabed {
     double roughness_slope = 3.25;  ///< gamma: how the spectrum falls with the wave number, 2.4 to 3.9 [1].
 };
 
-/** By mean grain size [phi], equations 2 to 10 of the report: -1 (sandy gravel) to 9 (clay); beyond, that of the end.
- */
+/** Returns the seabed of a mean grain size [phi], by equations 2 to 10 of the report. Clamps it to -1 (sandy gravel)
+ *  and 9 (clay). */
 Seabed seabedOfGrainSize(double phi);
-/** What lies outside -1 to 9 phi: "12 phi (-1 to 9)"; empty when nothing does. */
+/** Returns a text such as "12 phi (-1 to 9)" for a grain size outside -1 to 9 phi; empty when it is inside. */
 std::string outsideGrainSizes(double phi);
 
-/** By name, the report's table 2; none for a name that it does not have. */
+/** Returns the seabed of a name of the report's table 2; none for an unknown name. */
 std::optional<Seabed> seabedNamed(std::string_view name);
-/** Mean grain size of a name [phi]; none for rocks, cobble and gravel. */
+/** Returns the mean grain size of a name [phi]; none for rocks, cobble and gravel. */
 std::optional<double> grainSizeNamed(std::string_view name);
 std::vector<std::string> seabedNames();
 

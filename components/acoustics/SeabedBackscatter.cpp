@@ -37,14 +37,15 @@ double closedFormB(double alpha, double a) {
     return std::pow(a, 0.5 - 1 / (2 * alpha)) * std::tgamma(1 / alpha) / (2 * alpha);
 }
 
-/** s: the slopes that the wave finds smooth, equation 42 [1]. */
+/** Returns s, the rms slope of the relief that the wave finds smooth: equation 42 [1]. */
 double slopeOf(double alpha, double roughness, double wave_number) {
     const double square = std::pow(2 * pi * roughness, 1 / alpha) / (2 * (1 - alpha)) *
                           std::pow(wave_number * wave_number / alpha, (1 - alpha) / alpha);
     return std::sqrt(square);
 }
 
-/** What the printed equations 36 to 40 lack against the report's own table 3, 3.6 dB: ACOUSTICS.md 3.5. */
+/** Returns the factor that the printed equations 36 to 40 lack compared with the report's own table 3, 3.6 dB:
+ *  ACOUSTICS.md 3.5. */
 double kirchhoffLevel(double alpha) { return std::pow(2, 2 * (1 - alpha) / alpha); }
 
 }  // namespace
@@ -96,7 +97,7 @@ double SeabedBackscatter::perturbation(double grazing) const {
     return 4 * std::pow(k * sine, 4) * std::norm(y) * spectrum;
 }
 
-/** Share of the seabed that is seen at low grazing angles: equations 43 to 45. */
+/** Returns the share of the seabed that is visible at low grazing angles: equations 43 to 45. */
 double SeabedBackscatter::shadowing(double grazing) const {
     const double t = std::tan(grazing) / slope_;
     if (t > 2) return 1;
@@ -104,7 +105,7 @@ double SeabedBackscatter::shadowing(double grazing) const {
     return -std::expm1(-2 * q) / (2 * q);
 }
 
-/** The mean over slopes of the seabed, by three points: equations 46 to 49. */
+/** Returns the mean over slopes of the seabed, by three points: equations 46 to 49. */
 double SeabedBackscatter::overSlopes(const std::function<double(double)>& section, double grazing) const {
     constexpr double outer = 0.295410, middle = 1.181636, node = 1.224745;
     const auto at = [&](double angle) { return section(std::clamp(angle, 0.0, pi / 2)); };

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/** A ray on its way. In a layer of gradient g [1/s] asinh(tan(elevation)), its rapidity, grows by g in each second, and
- *  cos(elevation) / c stays the same in all of them (Snell). */
+/** A ray that advances through the layers of a profile. In a layer of gradient g [1/s] its rapidity,
+ *  asinh(tan(elevation)), grows by g per second. cos(elevation) / c is the same in all layers (Snell). */
 class Ray {
 public:
     Ray(const SoundProfile& profile, double depth, double elevation)
@@ -36,8 +36,8 @@ public:
     }
 
 private:
-    /** A ray that is trapped about the depth of least speed may cross it again and again; after so many times in one
-     *  step it goes on level [1]. */
+    /** Max crossings of boundaries in one step [1]. A ray that is trapped about the depth of minimal speed may cross it
+     *  again and again; after this number of crossings it proceeds level. */
     static constexpr int max_crossings = 1000;
 
     bool inside() const { return below_ > 0 && below_ < depths_.size(); }
@@ -46,8 +46,7 @@ private:
     }
     bool goesDown() const { return rapidity_ < 0 || (rapidity_ == 0 && gradient() < 0); }
 
-    /** The rapidity, without its sign, with which the ray goes through a depth of that speed; none where it turns
-     *  before. */
+    /** Returns the magnitude of the rapidity with which the ray passes a depth of a speed; -1 when it turns before. */
     double rapidityAt(double speed) const {
         const double cosh = 1 / (slowness_ * speed);
         return cosh >= 1 ? std::acosh(cosh) : -1;
@@ -57,7 +56,7 @@ private:
         leaves_down_ = goesDown();
         const double g = gradient();
         if (g == 0) return timeStraight();
-        // Into faster water it may turn before the boundary; then it leaves by the other one.
+        // In faster water the ray may turn before the boundary; then it leaves the layer by the other boundary.
         const size_t faster = g > 0 ? below_ : below_ - 1, slower = g > 0 ? below_ - 1 : below_;
         const bool into_faster = leaves_down_ == (g > 0);
         const double reached = into_faster ? rapidityAt(speeds_[faster]) : -1;
@@ -93,8 +92,8 @@ private:
 
     const std::vector<double>&depths_, &speeds_;
     double across_ = 0, depth_, rapidity_ = 0, slowness_ = 0;
-    size_t below_;              ///< The first depth below the ray's layer; all of them are above: their number.
-    bool leaves_down_ = false;  ///< By which boundary the ray leaves its layer.
+    size_t below_;              ///< Index of the first depth below the ray's layer; depths_.size() when there is none.
+    bool leaves_down_ = false;  ///< Whether the ray leaves its layer by the lower boundary.
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kg_per_cm2_per_bar = 1.019716;
 
-/** c[0] + c[1] x + c[2] x^2 + ... */
+/** Returns c[0] + c[1] x + c[2] x^2 + ... */
 template <size_t n>
 double polynomial(const double (&c)[n], double x) {
     double sum = 0;
@@ -54,7 +54,7 @@ double power(double x, int n) {
     return product;
 }
 
-/** Validity that a law states; a pressure as the depth that has it [m]. */
+/** The stated validity of a law; a max pressure is given as the depth that has it [m]. */
 struct Range {
     SoundSpeedLaw law;
     double celsius_min, celsius_max, psu_min, psu_max, depth_max;

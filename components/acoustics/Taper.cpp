@@ -10,7 +10,7 @@ using std::numbers::pi;
 
 double sinc(double u) { return u == 0 ? 1 : std::sin(pi * u) / (pi * u); }
 
-/** Off the places where numerator and denominator are both 0: multiples of 1/2. */
+/** Moves u away from places where numerator and denominator are both 0: multiples of 1/2. */
 double besidePoles(double u) {
     constexpr double near = 1e-7;
     const double off = std::remainder(u, 0.5);
@@ -31,7 +31,7 @@ double piston(double u) {
     return x < 1e-6 ? 1 : 2 * std::cyl_bessel_j(1.0, x) / x;
 }
 
-/** Half the power at u = 1/2. */
+/** A Gaussian whose power is half at u = 1/2. */
 double gaussian(double u) { return std::exp2(-2 * u * u); }
 
 /** Chebyshev's polynomial of degree m. */
@@ -73,7 +73,7 @@ double Taper::taylor(double u) const {
     return product;
 }
 
-/** Dolph 1946, of elements that are L / elements apart. */
+/** Dolph 1946, with elements at a spacing of L / elements. */
 double Taper::dolph(double u) const {
     const int degree = elements_ - 1;
     return chebyshev(degree, std::cosh(std::acosh(ratio_) / degree) * std::cos(pi * u / elements_)) / ratio_;

@@ -3,21 +3,22 @@
 
 namespace insonify::acoustics {
 
-/** How strongly the parts of an aperture, or of a band, take part. */
+/** The weighting of the parts of an aperture, or of a band. */
 enum class Weighting { Uniform, Cosine, Hann, Hamming, Taylor, Dolph, Gaussian, Piston };
 
-/** The far field of a weighted aperture, or the matched filter's answer of a weighted band: its Fourier transform over
- *  u, 1 at 0. For a line of length L, u = L / wavelength sin(angle); for a disc L is its diameter; for a band B, u is B
- *  times the delay. ACOUSTICS.md 5.8. */
+/** The far field of a weighted aperture, or the response of the matched filter of a weighted band. It is the Fourier
+ *  transform of the weighting over u, 1 at 0. For a line of length L, u = L / wavelength sin(angle); for a disc L is
+ *  its diameter; for a band B, u is B times the delay. ACOUSTICS.md 5.8. */
 class Taper {
 public:
-    /** `sidelobe_db`: depth of the sidelobes of Taylor and Dolph, either sign [dB]; `nbar`: how many of Taylor's are
-     *  equal; `elements`: of Dolph's array [1]. */
+    /** @param sidelobe_db depth of the sidelobes of Taylor and Dolph, either sign [dB]
+     *  @param nbar number of Taylor's equal sidelobes
+     *  @param elements number of elements of Dolph's array */
     explicit Taper(Weighting weighting, double sidelobe_db = -30, int nbar = 4, int elements = 64);
 
     double amplitude(double u) const;
     double power(double u) const { return amplitude(u) * amplitude(u); }
-    /** Width of the main lobe where its power is half, both sides [u]. */
+    /** Returns the width of the main lobe at half its power, both sides [u]. */
     double halfPowerWidth() const;
 
 private:
@@ -25,7 +26,7 @@ private:
     double dolph(double u) const;
 
     Weighting weighting_;
-    double ratio_;  ///< Of the main lobe's amplitude to the sidelobes' [1].
+    double ratio_;  ///< Amplitude of the main lobe over that of the sidelobes [1].
     int nbar_, elements_;
 };
 

@@ -4,13 +4,14 @@
 
 namespace insonify::acoustics {
 
-/** What a formula was made for, ends included, and what it is asked for; both in `unit`. */
+/** An input of a formula and the range for which the formula was made, ends included; all in `unit`. */
 struct Limit {
     const char* unit;
     double value, min, max;
 };
 
-/** What lies outside, with its range: "1500 kHz (0.2 to 1000), 5 psu (30 to 35)"; empty when nothing does. */
+/** Returns the values outside their ranges, such as "1500 kHz (0.2 to 1000), 5 psu (30 to 35)"; empty when all are
+ *  inside. */
 std::string outside(std::initializer_list<Limit> limits);
 
 }  // namespace insonify::acoustics

@@ -9,7 +9,7 @@ namespace insonify::acoustics {
 /** Formulas for the speed of sound: ACOUSTICS.md 2.1. */
 enum class SoundSpeedLaw { Leroy, Mackenzie, Medwin, Coppens, ChenMillero, DelGrosso };
 
-/** State of the water; the speed of sound and absorption follow from it. */
+/** State of the water, which determines the speed of sound and the absorption. */
 struct Water {
     double temperature_celsius = 10;  ///< ITS-90.
     double salinity_psu = 35;
@@ -17,7 +17,7 @@ struct Water {
     double ph = 8;
     double latitude_deg = 45;
     SoundSpeedLaw sound_speed_law = SoundSpeedLaw::Leroy;
-    std::optional<std::string> profile{};  ///< File of the speed of sound over depth, by which rays are bent.
+    std::optional<std::string> profile{};  ///< File with the speed of sound over depth, which bends the rays.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -29,7 +29,7 @@ struct Water {
         visit(Field{"latitude_deg", "deg", "latitude, for pressure at depth", -90, 90}, self.latitude_deg);
         visit(Field{"sound_speed_law", "", "computes the speed of sound (Leroy, Robinson and Goldsmith 2008)"},
               self.sound_speed_law);
-        visit(Field{"profile", "", "CSV file with depth_m,sound_speed_m_s, by which rays are bent; absent: straight"},
+        visit(Field{"profile", "", "CSV file with depth_m,sound_speed_m_s, which bends the rays; absent: straight"},
               self.profile);
     }
 };

@@ -8,11 +8,12 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double near_pole = 1e-3;  ///< Below it a series has fewer rounding errors than the difference [rad].
+constexpr double near_pole =
+    1e-3;  ///< Below this angle a series has smaller rounding errors than the difference [rad].
 
 double cot(double angle) { return std::cos(angle) / std::sin(angle); }
 
-/** One face's part of Keller's coefficient less that of physical optics, cot(x / n) / (2 n) - cot(x) / 2.
+/** Returns one face's part of Keller's coefficient minus that of physical optics, cot(x / n) / (2 n) - cot(x) / 2.
  *  @param past_normal  angle from the face's normal to the sonar, positive away from the face [rad] */
 double faceFringe(double n, double past_normal) {
     if (std::abs(past_normal) < near_pole) return past_normal * (1 - 1 / (n * n)) / 6;

@@ -3,7 +3,7 @@
 
 namespace insonify::command {
 
-/** What the command line asks for: does it and gives the exit code. */
+/** Executes the command line and returns the exit code. */
 using Action = std::function<int()>;
 
 }  // namespace insonify::command

@@ -12,7 +12,7 @@ namespace insonify::command {
 namespace fs = std::filesystem;
 namespace {
 
-/** out/<deployment>-<UTC time>, with a number where two runs start within a second. */
+/** Returns out/<deployment>-<UTC time>, with a number if two runs start within a second. */
 fs::path freshFolder(const fs::path& deployment) {
     const std::string name =
         fmt::format("{}-{:%Y%m%dT%H%M%SZ}", deployment.stem().string(), fmt::gmtime(std::time(nullptr)));
@@ -21,7 +21,7 @@ fs::path freshFolder(const fs::path& deployment) {
     return folder;
 }
 
-/** The link is a convenience: where it cannot be made there is none. */
+/** Makes the link if possible; a failure is ignored. */
 void linkLatest(const fs::path& folder) {
     std::error_code ignored;
     const fs::path link = folder.parent_path() / "latest";
@@ -38,7 +38,7 @@ OutputFolder::OutputFolder(const std::string& asked, const fs::path& deployment)
     if (error || !fs::is_directory(path_))
         throw types::ConfigError(path_, "--out", fmt::format("is no folder and cannot be made: {}", error.message()));
     if (::access(path_.c_str(), W_OK | X_OK) != 0)
-        throw types::ConfigError(path_, "--out", "cannot be written to; give a folder that can");
+        throw types::ConfigError(path_, "--out", "cannot be written to; give a writable folder");
 }
 
 void OutputFolder::keep() {

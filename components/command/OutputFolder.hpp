@@ -4,17 +4,17 @@
 
 namespace insonify::command {
 
-/** Where a run leaves its files. Unless it is kept, a folder that was made for the run goes with this object. */
+/** The folder of a run's files. Unless keep() is called, a folder made for the run is removed with this object. */
 class OutputFolder {
 public:
-    /** `asked` is `--out`; empty: out/<deployment>-<UTC time> in the current folder.
-     *  Throws types::ConfigError when it cannot be made or written to. */
+    /** `asked` is `--out`; empty: out/<deployment>-<UTC time> in the current folder. Throws types::ConfigError when the
+     *  folder cannot be made or written to. */
     OutputFolder(const std::string& asked, const std::filesystem::path& deployment);
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
     const std::filesystem::path& path() const { return path_; }
-    /** The run has started: the folder stays, and where none was asked for the link out/latest leads to it. */
+    /** Keeps the folder, once the run has started. If `asked` was empty, the link out/latest points to the folder. */
     void keep();
 
 private:

@@ -5,7 +5,7 @@
 
 namespace insonify::command {
 
-/** One line on a terminal, at most ten times a second, wiped at the end; nothing elsewhere. */
+/** One line on a terminal, updated at most ten times a second and wiped at the end; prints nothing elsewhere. */
 class ProgressLine {
 public:
     explicit ProgressLine(bool wanted);
@@ -21,10 +21,10 @@ private:
     double next_s_ = 0.1;
 };
 
-/** What a study is at and for how long, how many of its steps are done, and what time is left. */
+/** Shows the current step of a study, its duration, the number of finished steps, and the remaining time. */
 class StudyProgress {
 public:
-    /** @param total steps; 0: not known */
+    /** @param total steps; 0: unknown */
     explicit StudyProgress(bool wanted, size_t total = 0);
     void operator()(const std::string& at);
     void advance() { ++done_; }  ///< One more step is done.
@@ -36,11 +36,11 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/** ", 12 % done, 34 s left" once `share` of the whole has taken `wall_s` [s]; empty where nothing can be told: no share
- *  is known (0 or less), or all is done. */
+/** Returns ", 12 % done, 34 s left" once `share` of the whole has taken `wall_s` [s]; empty if no share is known (0 or
+ *  less) or all is done. */
 std::string timeLeft(double share, double wall_s);
 
-/** "34 s", "5 min 03 s", "2 h 05 min" */
+/** Returns "34 s", "5 min 03 s", "2 h 05 min". */
 std::string durationText(double seconds);
 
 }  // namespace insonify::command

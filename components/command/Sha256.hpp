@@ -8,11 +8,11 @@
 
 namespace insonify::command {
 
-/** SHA-256 of bytes that come in pieces (FIPS 180-4). */
+/** The SHA-256 of bytes added in pieces (FIPS 180-4). */
 class Sha256 {
 public:
     void add(std::string_view bytes);
-    /** 64 hexadecimal digits, as sha256sum prints them. Nothing may be added after it. */
+    /** Returns 64 hexadecimal digits, as sha256sum prints them. Nothing may be added afterwards. */
     std::string hex();
 
 private:

@@ -18,7 +18,7 @@ std::optional<uint64_t> number(std::string_view digits) {
     return value;
 }
 
-/** Of a text that may be none; what is wrong with it goes to `why`. */
+/** Parses a text that may be invalid; sets `why` to the reason. */
 Shard shardIn(std::string_view text, std::string& why) {
     const size_t slash = text.find('/');
     const auto index = number(text.substr(0, slash));
@@ -54,7 +54,7 @@ std::string Shard::fileText() const {
 }
 
 Shard::Block Shard::block(uint64_t total) const {
-    // As total * index / count, without running over.
+    // Equals total * index / count, without overflow.
     const auto edge = [&](uint64_t i) { return total / count * i + total % count * i / count; };
     return {edge(index), edge(index + 1)};
 }

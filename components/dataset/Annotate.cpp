@@ -11,7 +11,7 @@ namespace {
 
 constexpr int32_t none = types::SonarTruth::no_object;
 
-/** One ping with what it shows. */
+/** Annotates one ping. */
 class Annotator {
 public:
     Annotator(const types::Sonar& ping, const types::SonarTruth& truth, const output::PlainPicture& picture,
@@ -50,13 +50,14 @@ private:
         const auto value = static_cast<double>(ping_.bins[bin]);
         return decibel_ ? std::pow(10, value / 10) : value;
     }
-    /** The instance that a bin shows; none where that is no part of the file's scene, as the floor of a survey. */
+    /** Returns the instance of a bin; none if the bin's object is not part of the scene file, such as the floor of a
+     *  survey. */
     int32_t instanceAt(size_t bin) const {
         const int32_t object = directAt(bin);
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
     bool isGhost(size_t bin) const { return !truth_.path.empty() && truth_.isByMirror(bin); }
-    /** The object that a bin shows directly. */
+    /** Returns the object whose direct echo is in a bin. */
     int32_t directAt(size_t bin) const { return isGhost(bin) ? none : truth_.object[bin]; }
     bool counts(size_t bin) const {
         const int32_t instance = instanceAt(bin);
@@ -82,7 +83,7 @@ private:
         }
     }
 
-    /** Labels the cells of ghosts, each with a number of its own behind those of shadows. */
+    /** Labels the cells of ghosts. Their numbers follow those of shadows. */
     void findGhosts() {
         const uint32_t cells = picture_.cellsPerBeam(), step = picture_.binsPerCell();
         std::vector<uint8_t> are_ghosts;
@@ -99,8 +100,9 @@ private:
             if (groups[at] > 0) object_of_[at] = 2 * first_shadow_ + groups[at] - 1;
     }
 
-    /** Finds for each bin of a beam whose shadow it is. The sound that just passes the object meets what lies behind
-     * the shadow: of all that is nearer, the object's echo has the elevation next to that of the first echo behind. */
+    /** Finds the owner of the shadow in each bin of a beam. Sound that just passes the object reaches the first echo
+     *  behind the shadow. So the owner is the nearer object whose echo has the elevation closest to that of the first
+     *  echo behind. */
     void findShadows(uint32_t beam) {
         const size_t start = size_t{beam} * ping_.bin_count;
         shadow_of_.assign(ping_.bin_count, none);
@@ -112,9 +114,9 @@ private:
         }
     }
 
-    /** The number of the shadow of what hides the bins from `first` to `behind`; none where that has no class or is
-     *  what lies behind them as well, as where a floor is uneven. Of echoes whose elevations differ from that behind by
-     *  no more than one bin's there, the last one hides it: sound passed the others already. */
+    /** Returns the number of the shadow of the object that hides the bins from `first` to `behind`. Returns none if the
+     *  object has no class, or is also what is behind the shadow, as on an uneven floor. If several echoes have
+     *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others. */
     int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
         const auto elevation = [&](uint32_t k) {
             return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
@@ -145,7 +147,7 @@ private:
             object = instanceAt(bin);
         }
     }
-    /** Whether a bin is of what its cell was labelled as. */
+    /** Returns whether a bin shows the label of its cell. */
     bool shows(size_t bin, uint32_t number, int32_t object) const {
         if (object >= 2 * first_shadow_) return isGhost(bin);
         return object >= first_shadow_ ? shadow_of_[number] == object : instanceAt(bin) == object && !isGhost(bin);
@@ -219,10 +221,10 @@ private:
             }
     }
 
-    /** Labels and runs, which go column by column. */
+    /** Writes labels and runs, column by column. */
     void label(Annotated& all, const std::map<int32_t, uint16_t>& number_of) const {
         all.labels.assign(picture_.cells().size(), 0);
-        std::vector<uint32_t> end(all.annotations.size(), 0);  // of the last run, in pixels from the start
+        std::vector<uint32_t> end(all.annotations.size(), 0);  // end of the last run, in pixels from the start
         uint32_t place = 0;
         for (uint32_t x = 0; x < picture_.width(); ++x)
             for (uint32_t y = 0; y < picture_.height(); ++y, ++place) {
@@ -244,16 +246,16 @@ private:
     const types::SonarTruth& truth_;
     const output::PlainPicture& picture_;
     const Instances& instances_;
-    const uint32_t ghost_;        ///< Class of ghosts; 0: they have none.
+    const uint32_t ghost_;        ///< Class of ghosts; 0: none.
     const int32_t first_shadow_;  ///< Number of objects of the truth.
     const AnnotationConfig& config_;
     const bool decibel_;
     const double bin_width_;               ///< [m]
     const std::span<const float> ranges_;  ///< Range of each beam of a range image [m].
-    /** What each cell shows: an instance; from first_shadow_ on the shadow of one; from 2 * first_shadow_ on a ghost.
-     */
+    /** The label of each cell: an instance; from first_shadow_ on the shadow of an instance; from 2 * first_shadow_ on
+     *  a ghost. */
     std::vector<int32_t> object_of_;
-    std::vector<int32_t> shadow_of_;  ///< The same for each bin of a beam.
+    std::vector<int32_t> shadow_of_;  ///< The label of the shadow in each bin of a beam.
     std::map<int32_t, Annotation> found_;
 };
 

@@ -18,7 +18,7 @@ constexpr Part parts[] = {Part::Train, Part::Val, Part::Test};
 
 std::string nameOf(Part part) { return std::string(types::EnumNames<Part>::names[static_cast<size_t>(part)]); }
 
-/** The file of a sample that ends so. */
+/** Returns the picture file of a sample. */
 std::string pictureOf(const Json& record) {
     for (const auto& [name, sum] : record["files"].items())
         if (name.ends_with(".png") && !name.ends_with("_instances.png") && !name.ends_with("_classes.png")) return name;
@@ -126,7 +126,7 @@ void Collection::writeCocoAnnotations(Part part, std::ostream& out) const {
 }
 
 void Collection::writeYolo() {
-    std::string data;  // without a path: the files are beside it
+    std::string data;  // without a path: the files are in the same folder
     for (const Part part : parts) {
         if (countOf(part) == 0) continue;
         const std::string list = nameOf(part) + ".txt";
@@ -141,7 +141,7 @@ void Collection::writeYolo() {
     add("data.yaml", [&](std::ostream& out) { out << data; });
 }
 
-/** A file for each sequence: frame from 1, number of the object from 1, box, 1, class, 1. */
+/** Writes a file per sequence: frame from 1, number of the object from 1, box, 1, class, 1. */
 void Collection::writeTracks() {
     std::map<std::string, std::string> lines;  // by file
     forEach([&](const Json& record) {
@@ -149,7 +149,7 @@ void Collection::writeTracks() {
         std::string& text =
             lines[fmt::format("tracks_{:03}_{:03}.txt", sequence[0].get<int>(), sequence[1].get<int>())];
         for (const Json& each : record["annotations"]) {
-            // A track has one box in a frame.
+            // a track has one box per frame
             if (each["shadow"].get<bool>() || each["object"].get<int>() < 0) continue;
             const Json& box = each["bbox"];
             text += fmt::format("{},{},{},{},{},{},1,{},1\n", record["frame"].get<uint64_t>() + 1,

@@ -8,25 +8,25 @@
 
 namespace insonify::dataset {
 
-/** What a data set says of itself. */
+/** The description of a data set. */
 struct Title {
     std::string deployment, sweep;  ///< Names of files, without folders.
-    std::string version;            ///< Of the program.
+    std::string version;            ///< Version of the program.
     Format format = Format::Coco;
     bool tracks = false;  ///< Whether the poses of a sequence follow each other in time.
 };
 
-/** Makes, once all samples are there, what is of all of them: lists and labels for what learns from them, a page of
- *  statistics, and manifest.json last, which names every file with its SHA-256. All of it is made of the records of the
- *  samples alone, so that it is the same whoever makes it. */
+/** Writes the files that describe all samples, once every sample exists: lists and labels for training, a page of
+ *  statistics, and last manifest.json, which lists every file with its SHA-256. The files are made from the samples'
+ *  records alone, so any process that makes them gets the same bytes. */
 class Collection {
 public:
     Collection(Title title, uint64_t count, const Classes& classes, Store& store)
         : title_(std::move(title)), count_(count), classes_(classes), store_(store) {}
 
-    /** Whether every sample is there; with `closely` each file of each is read as well. */
+    /** Returns whether every sample exists. With `closely` all files of each sample are read as well. */
     bool isWhole(bool closely) const;
-    /** Writes it all. Throws std::runtime_error where a record is gone meanwhile. */
+    /** Writes the files. Throws std::runtime_error if a record was deleted in the meantime. */
     void write();
 
 private:
@@ -44,7 +44,7 @@ private:
     const uint64_t count_;
     const Classes& classes_;
     Store& store_;
-    Json files_ = Json::object();  ///< Those that are of no single sample.
+    Json files_ = Json::object();  ///< Files that do not belong to a single sample.
 };
 
 }  // namespace insonify::dataset

@@ -1,4 +1,4 @@
-// The component library dataset: what the command loads for `insonify dataset`.
+// The component library dataset: the command `insonify dataset`.
 #include "components/dataset/commands/DatasetCommand.hpp"
 #include "components/loader/Interface.hpp"
 

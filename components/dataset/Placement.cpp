@@ -15,12 +15,12 @@ namespace insonify::dataset {
 namespace {
 
 constexpr uint64_t tries = 1000, words_per_try = 4;
-constexpr uint64_t stream = 0x706c6163650000;  ///< Stream of the random words of places; groups and objects are added.
-constexpr uint64_t tilt_words = uint64_t{1} << 40;   ///< Where the words of roll and pitch begin, behind all others.
-constexpr uint64_t scale_words = uint64_t{1} << 41;  ///< Where those of scales begin.
-constexpr double out_of_hearing = 1e5;               ///< How far below its place an object is that is not there [m].
+constexpr uint64_t stream = 0x706c6163650000;        ///< Random words; numbers of groups and objects are added.
+constexpr uint64_t tilt_words = uint64_t{1} << 40;   ///< First word of roll and pitch, after all others.
+constexpr uint64_t scale_words = uint64_t{1} << 41;  ///< First word of scales.
+constexpr double out_of_hearing = 1e5;               ///< Depth below its place of an absent object [m].
 
-/** Radius and lowest point of an object after a turn, without its points. */
+/** Returns radius and lowest point of a turned object, without its points. */
 Placeable turned(const Placeable& object, const glm::dquat& turn) {
     Placeable result;
     result.filed = object.filed, result.low = std::numeric_limits<double>::infinity();

@@ -46,21 +46,21 @@ Json toJson(const Run& run, double bin_width, const types::BeamArc& arc) {
             {"speed_of_sound_m_s", ping.speed_of_sound}};
 }
 
-/** Grey levels that say of which annotation, or class, a pixel is. */
+/** Returns a picture whose grey levels are the numbers of annotations, or of classes. */
 types::Image maskOf(types::Image picture, const Annotated& annotated, bool classes) {
     for (size_t i = 0; i < picture.image.size(); ++i) {
         const uint16_t number = annotated.labels[i];
         const uint32_t level = number == 0 ? 0 : classes ? annotated.annotations[number - 1u].category : number;
         if (level > std::numeric_limits<uint8_t>::max())
             throw std::runtime_error(
-                "a picture shows more than 255 objects or classes, which a mask cannot tell apart; "
+                "a picture shows more than 255 objects or classes, which a mask cannot distinguish; "
                 "give fewer classes");
         picture.image[i] = static_cast<uint8_t>(level);
     }
     return picture;
 }
 
-/** Class, middle and size of each box, as shares of the picture. */
+/** Returns class, centre and size of each box, relative to the picture. */
 std::string yoloOf(const Annotated& annotated, const output::PlainPicture& picture) {
     const double width = picture.width(), height = picture.height();
     std::string text;
@@ -71,7 +71,7 @@ std::string yoloOf(const Annotated& annotated, const output::PlainPicture& pictu
     return text;
 }
 
-/** When each line was, and where the vehicle was then. */
+/** Adds the time of each line and the vehicle's pose at that time. */
 void addLines(log::NpzFile& npz, const std::vector<TimedPose>& run) {
     std::vector<double> times, positions, orientations;
     for (const auto& [time, at] : run) {
@@ -92,8 +92,8 @@ void addTruth(log::NpzFile& npz, const std::string& name, const auto& numbers, c
     npz.end();
 }
 
-/** A range image, rows from the top, each from port to starboard, and the truth of its cells as range_object and so
- * on. */
+/** Adds a range image, rows from the top, each from port to starboard, and the truth of its cells as range_object and
+ *  so on. */
 void addRangeImage(log::NpzFile& npz, const types::DepthMap& image, const types::SonarTruth& truth) {
     const std::vector<size_t> shape{image.vertical_size, image.horizontal_size};
     npz.array("distances", shape, image.distances);
@@ -130,7 +130,7 @@ void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta)
 }
 
 void writeMcap(const fs::path& file, const Heard& heard) {
-    const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description comes to lie beside it
+    const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description is written next to it
     fs::create_directory(bag);
     const auto log = log::createLog(inside);
     const size_t ping = log->addStream<types::Sonar>("sonar.ping");

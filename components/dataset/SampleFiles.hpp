@@ -11,30 +11,30 @@
 
 namespace insonify::dataset {
 
-/** A sample with what a sonar heard of it. */
+/** A sample with its pings and truth. */
 struct Heard {
     const Sample& sample;
     const Run& run;
     const Instances& instances;
     double bin_width;                                      ///< Exact [m].
-    std::string scene;                                     ///< Name of its file.
+    std::string scene;                                     ///< File name of the scene.
     std::vector<std::pair<std::string, Json>> settings{};  ///< "task.property", value.
-    types::DepthMapPtr range_image{};                      ///< By a 3-D sonar, else null.
-    types::SonarTruthPtr range_truth{};                    ///< What its cells show, a bin for each.
+    types::DepthMapPtr range_image{};                      ///< The range image of a 3-D sonar, else null.
+    types::SonarTruthPtr range_truth{};                    ///< The truth of its cells, one bin per cell.
 };
 
 /** Writes the files of samples in one format, and their records. */
 class SampleFiles {
 public:
     SampleFiles(const Sweep& sweep, Format format, const Classes& classes, Store& store);
-    /** Throws std::runtime_error where a file cannot be written. */
+    /** Writes a sample. Throws std::runtime_error if a file cannot be written. */
     void write(const Heard& heard);
 
 private:
-    /** Paints the picture, and finds what it shows. */
+    /** Renders the picture, and finds its annotations. */
     Annotated annotatedOf(const Heard& heard);
     Json recordOf(const Heard& heard, const Annotated& annotated) const;
-    /** Files and their sums. */
+    /** Writes the files. Returns their names and SHA-256 sums. */
     Json writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated, const Json& meta);
     std::string putPicture(const std::string& name, const types::Image& picture);
 
@@ -45,7 +45,7 @@ private:
     output::PlainPicture picture_;
 };
 
-/** Whether a format has a picture for each sample. */
+/** Returns whether a format has a picture per sample. */
 inline bool hasPictures(Format format) { return format != Format::Npz && format != Format::Mcap; }
 
 }  // namespace insonify::dataset

@@ -18,7 +18,7 @@ constexpr uint64_t max_samples = 100'000'000;
 constexpr uint64_t pose_stream = 0x706f7365, setting_stream = 0x73657474696e6700, noise_stream = 0x6e6f697365,
                    motion_stream = 0x6d6f74696f6e00;
 
-/** The coordinates of a pose of a grid. */
+/** Returns the coordinates of a pose of a grid. */
 std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
     std::vector<const Axis*> all;
     PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) { all.push_back(&axis); });
@@ -28,7 +28,7 @@ std::vector<double> gridded(const PoseAxes& axes, uint64_t pose) {
     return values;
 }
 
-/** The coordinates of a pose that is drawn. */
+/** Returns the coordinates of a drawn pose. */
 std::vector<double> drawn(const PoseAxes& axes, uint64_t seed, uint64_t pose) {
     std::vector<double> values;
     PoseAxes::forEach(axes, [&](const char*, const char*, const Axis& axis) {

@@ -10,7 +10,7 @@ namespace insonify::dataset {
 namespace {
 
 constexpr size_t max_examples = 12;
-constexpr size_t max_values = 24;  ///< Values of a setting that is shown; a drawn one may have a value in each sample.
+constexpr size_t max_values = 24;  ///< Max values of a setting that is shown; a drawn setting may have one per sample.
 constexpr int range_step = 5;      ///< [m]
 
 std::string escaped(const std::string& text) {
@@ -20,7 +20,7 @@ std::string escaped(const std::string& text) {
     return safe;
 }
 
-/** A hue of its own for each class. */
+/** Returns a distinct hue per class. */
 std::string colourOf(uint32_t category) { return fmt::format("hsl({},90%,60%)", category * 137 % 360); }
 
 }  // namespace

@@ -9,18 +9,18 @@
 
 namespace insonify::dataset {
 
-/** A page that shows what a data set holds: how many samples and objects of each class, how large they are, how far
- *  away, and examples with their boxes. It needs no network and no script. */
+/** A page with the statistics of a data set: numbers of samples and of objects per class, their sizes and ranges, and
+ *  examples with their boxes. It needs no network and no script. */
 class StatisticsPage {
 public:
     StatisticsPage(std::string title, const Classes& classes) : title_(std::move(title)), classes_(classes) {}
 
-    /** @param picture file, beside the page; empty: there is none */
+    /** @param picture file in the folder of the page; empty: none */
     void add(const Json& record, const std::string& picture);
     std::string text() const;
 
 private:
-    /** Numbers by the name of a bar. */
+    /** Numbers by the label of a bar. */
     using Bars = std::vector<std::pair<std::string, uint64_t>>;
     struct OfClass {
         uint64_t objects = 0, samples = 0, pixels = 0;
@@ -37,7 +37,7 @@ private:
     std::map<std::string, uint64_t> parts_, scenes_;
     std::map<std::string, std::map<std::string, uint64_t>> settings_;  ///< By property.
     std::map<uint32_t, OfClass> of_class_;
-    std::map<int, uint64_t> areas_, ranges_;  ///< By power of two of pixels, by steps of range.
+    std::map<int, uint64_t> areas_, ranges_;  ///< By power of two of pixels; by steps of range.
     std::map<size_t, uint64_t> objects_in_picture_;
     std::vector<std::string> examples_;
 };

@@ -19,14 +19,15 @@ namespace {
 constexpr const char* leftover = ".part_";
 constexpr size_t hash_digits = 12;
 
-/** Of this process and no other, on any machine that shares the folder; the end stays, for it tells the format. */
+/** Returns a temporary name that is unique to this process on any machine that shares the folder. It keeps the
+ *  extension, which determines the format. */
 std::string passingName(const std::string& name) {
     static std::atomic<uint64_t> number{0};
     static const uint64_t process = uint64_t{std::random_device{}()} << 32 | static_cast<uint32_t>(::getpid());
     return fmt::format("{}{:016x}_{}_{}", leftover, process, ++number, name);
 }
 
-/** The number of a sample of whose files this is one; none: it is of no sample. */
+/** Returns the number of the sample that a file belongs to; none if it belongs to no sample. */
 std::optional<uint64_t> indexOf(const std::string& name) {
     const size_t digits = name.find_first_not_of("0123456789");
     if (digits == std::string::npos || digits < 6 || digits > 18 || name[digits] != '_') return std::nullopt;
@@ -81,7 +82,7 @@ std::string Store::put(const std::string& name, const std::function<void(const f
             return sum;
         } catch (...) {
             std::error_code ignored;
-            const bool was_taken = !fs::exists(passing, ignored);  // by who took it for a leftover
+            const bool was_taken = !fs::exists(passing, ignored);  // by a process that took it for a leftover
             fs::remove(passing, ignored);
             if (!was_taken || attempt == max_tries) throw;
         }

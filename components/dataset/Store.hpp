@@ -10,33 +10,35 @@ namespace insonify::dataset {
 
 using command::Json;
 
-/** On one line; text that is no UTF-8 is mended. */
+/** Returns JSON in one line. Replaces invalid UTF-8. */
 std::string textOf(const Json& json);
 
-/** The folder of a data set. Each sample is a few files of one stem, "000042_<hash>", and complete once its record,
- *  "000042_<hash>.json", is there, which names the others with their sums. Files come to their names whole; several
- *  processes may work in one folder. */
+/** The folder of a data set. A sample consists of a few files with one stem, "000042_<hash>". It is complete when its
+ *  record "000042_<hash>.json" exists, which names the other files with their sums. Files are renamed to their final
+ *  names when complete; several processes may work in one folder. */
 class Store {
 public:
-    /** @param digest of all that decides what samples are. Throws types::ConfigError where the folder holds samples of
-     *  another data set. */
+    /** @param digest hash of everything that determines the samples
+     *
+     *  Throws types::ConfigError if the folder contains samples of another data set. */
     Store(std::filesystem::path folder, std::string digest);
 
     const std::filesystem::path& folder() const { return folder_; }
     const std::string& digest() const { return digest_; }
     std::string stemOf(uint64_t index) const;
 
-    /** Has `writer` make a file under another name, gives it this one, and returns its SHA-256. */
+    /** Calls `writer` with a temporary name, renames the file to `name`, and returns its SHA-256. */
     std::string put(const std::string& name, const std::function<void(const std::filesystem::path&)>& writer);
     std::string putText(const std::string& name, const std::string& text);
 
-    /** Completes a sample. */
+    /** Writes the record of a sample, which completes the sample. */
     void putRecord(uint64_t index, Json record);
-    /** Of a sample; none where it is missing or damaged. */
+    /** Returns the record of a sample; none if it is missing or damaged. */
     std::optional<Json> record(uint64_t index) const;
-    /** Whether a sample has its record, and each file that this names is as it was written. */
+    /** Returns whether a sample has its record, and each file named in it is unchanged. */
     bool has(uint64_t index) const;
-    /** Removes what writers that were killed have left, once all samples are there. Writers that live write again. */
+    /** Removes files that killed writers have left. Call it when all samples exist. A live writer whose file was
+     *  removed writes it again. */
     void removeLeftovers() const;
 
 private:

@@ -15,11 +15,11 @@ constexpr double millionths = 1e6;
 
 double inMillionths(double value) { return std::round(value * millionths) / millionths; }
 
-/** "x" must be [least, most], or be absent. */
+/** Checks that "x" is [min, max] or absent. */
 void checkSpan(const char* name, const auto& span, bool needed, types::Diagnostics& diagnostics) {
-    if (span.empty() && needed) diagnostics.push_back({name, "is missing; give [least, most]"});
+    if (span.empty() && needed) diagnostics.push_back({name, "is missing; give [min, max]"});
     if (!span.empty() && (span.size() != 2 || span[1] < span[0]))
-        diagnostics.push_back({name, "must be two numbers, [least, most]"});
+        diagnostics.push_back({name, "must be two numbers, [min, max]"});
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ void Axis::check(types::Diagnostics& diagnostics) const {
     if (ways == 0 && values.empty())
         diagnostics.push_back({"", "is empty; give a number, a list, {from, to, count}, {uniform} or {normal}"});
     if ((from || to || count) && !(from && to && count))
-        diagnostics.push_back({"", "has not all of from, to and count, which steps need"});
+        diagnostics.push_back({"", "needs all of from, to and count for steps"});
     checkSpan("uniform", uniform, false, diagnostics);
     if (!normal.empty() && (normal.size() != 2 || normal[1] < 0))
         diagnostics.push_back({"normal", "must be two numbers, [mean, deviation], the deviation not below 0"});
@@ -67,7 +67,7 @@ uint64_t PoseAxes::gridSize() const {
 void TrajectoryPoses::check(types::Diagnostics& diagnostics) const {
     if (file.empty()) diagnostics.push_back({"", "has no file"});
     if (count.has_value() == period.has_value())
-        diagnostics.push_back({"", "has neither or both of count and period; one says how many poses there are"});
+        diagnostics.push_back({"", "must have one of count and period, which set the number of poses"});
     if (from && to && *to < *from)
         diagnostics.push_back({"to", fmt::format("is {:g} s; must not be before from, {:g} s", *to, *from)});
 }
@@ -85,8 +85,8 @@ void ObjectGroup::check(types::Diagnostics& diagnostics) const {
     for (const auto& [name, span] :
          {std::pair{"roll_deg", &roll_deg}, {"pitch_deg", &pitch_deg}, {"yaw_deg", &yaw_deg}})
         if (any_turn && !span->empty())
-            diagnostics.push_back({name, "is given beside any_turn; only one may set the turn"});
-    if (ground && !z.empty()) diagnostics.push_back({"ground", "is given beside z; one tells the height"});
+            diagnostics.push_back({name, "is given with any_turn; only one may set the turn"});
+    if (ground && !z.empty()) diagnostics.push_back({"ground", "is given with z; only one may set the height"});
 }
 
 Part Split::of(uint64_t seed, uint64_t index) const {
@@ -103,7 +103,8 @@ void Split::check(types::Diagnostics& diagnostics) const {
 }
 
 bool matches(const std::string& pattern, const std::string& name) {
-    // The place behind the last *, and how far of the name it stands for: where the rest fits not, it takes one more.
+    // The position after the last *, and the end of the text that it matched: if the rest does not match, it takes one
+    // more letter.
     size_t p = 0, n = 0, star = std::string::npos, taken = 0;
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {

@@ -1,5 +1,5 @@
 #pragma once
-// What a data set is made of: scenes x poses x settings.
+// The definition of a data set: scenes x poses x settings.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,13 +12,13 @@
 
 namespace insonify::dataset {
 
-/** What a sample is written as. */
+/** The file format of samples. */
 enum class Format { Coco, Yolo, Mask, Npz, Mcap };
 
 /** The parts of a data set. */
 enum class Part { Train, Val, Test };
 
-/** Values of one coordinate: one or several that are listed, steps from one to another, or drawn at random. */
+/** Values of one coordinate: a list of one or several, steps in an interval, or drawn at random. */
 struct Axis {
     std::vector<double> values;
     std::optional<double> from, to;
@@ -26,11 +26,11 @@ struct Axis {
     std::vector<double> uniform, normal;
 
     bool isDrawn() const { return !uniform.empty() || !normal.empty(); }
-    /** Values of a grid, at least one; 0 where nothing is given. */
+    /** Returns the number of values in a grid, at least one; 0 if no value is given. */
     uint64_t stepCount() const;
     double step(uint64_t number) const;
-    /** The value of one pose of many: drawn by a random word, in whole millionths, so that processors that differ in
-     *  the last bit of a logarithm draw the same; or the one that is given. */
+    /** Returns the value of one of many poses: drawn with a random word, or the given value. Drawn values are whole
+     *  millionths, so that processors that differ in the last bit of a logarithm draw the same. */
     double draw(uint64_t random) const;
 
     template <class Self, class V>
@@ -39,17 +39,17 @@ struct Axis {
         visit(Field{"from", "", "first of `count` steps", -1e7, 1e7}, self.from);
         visit(Field{"to", "", "last of `count` steps", -1e7, 1e7}, self.to);
         visit(Field{"count", "1", "steps", 1, 1e6}, self.count);
-        visit(Field{"uniform", "", "drawn from between two values: [lowest, highest]", -1e7, 1e7}, self.uniform);
+        visit(Field{"uniform", "", "drawn uniformly: [min, max]", -1e7, 1e7}, self.uniform);
         visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e7, 1e7}, self.normal);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Poses of the vehicle in the world, coordinate by coordinate; what is not given is 0. */
+/** Poses of the vehicle in the world, by coordinate; an absent coordinate is 0. */
 struct PoseAxes {
     Axis x, y, z, roll_deg, pitch_deg, yaw_deg;
 
-    /** visit(name, unit, axis) for each, in the order in which a grid nests: the last runs fastest. */
+    /** Calls visit(name, unit, axis) for each axis, in the order in which a grid nests: the last varies fastest. */
     template <class Self, class V>
     static void forEach(Self& self, V&& visit) {
         visit("x", "m", self.x);
@@ -59,18 +59,18 @@ struct PoseAxes {
         visit("pitch_deg", "deg", self.pitch_deg);
         visit("yaw_deg", "deg", self.yaw_deg);
     }
-    /** Poses of the grid; 10^12 where there are more. */
+    /** Returns the number of poses of the grid, at most 10^12. */
     uint64_t gridSize() const;
 };
 
-/** Poses of a trajectory at even times. */
+/** Poses of a trajectory at equal intervals of time. */
 struct TrajectoryPoses {
     std::string file;
     std::optional<uint32_t> count;
     std::optional<double> period;
     std::optional<double> from, to;
     std::optional<pose::SeaMotionConfig> motion = {};
-    int line = 0, column = 0;  ///< Where it stands in the sweep.
+    int line = 0, column = 0;  ///< Its place in the sweep.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -85,15 +85,15 @@ struct TrajectoryPoses {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Lines of a side-scan: each sample is a run of pings, which begins at its pose. */
+/** Lines of a side-scan: each sample is a run of pings that begins at the sample's pose. */
 struct LinesConfig {
     uint32_t count = 200;
     double period = 0.1;          ///< [s]
-    std::optional<double> speed;  ///< Straight ahead at the pose's depth; of a trajectory its own [m/s].
+    std::optional<double> speed;  ///< Straight ahead at the pose's depth [m/s]; absent with a trajectory.
     std::optional<pose::SeaMotionConfig> motion = {};
-    int line = 0, column = 0;  ///< Where it stands in the sweep.
+    int line = 0, column = 0;  ///< Its place in the sweep.
 
-    double duration() const { return period * (count - 1); }  ///< From the first to the last [s].
+    double duration() const { return period * (count - 1); }  ///< Time from the first to the last line [s].
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -109,7 +109,7 @@ struct LinesConfig {
 
 enum class Frame { World, Vehicle };
 
-/** Objects of the scene that stand elsewhere in each pose, without touching each other. */
+/** Objects of the scene that are placed anew in each pose, without touching each other. */
 struct ObjectGroup {
     std::vector<std::string> names, avoid;
     std::optional<std::string> ground;
@@ -118,55 +118,56 @@ struct ObjectGroup {
     bool any_turn = false;
     double gap = 0.1;
     std::vector<uint32_t> count;
-    int line = 0, column = 0;  ///< Where it stands in the sweep.
+    int line = 0, column = 0;  ///< Its place in the sweep.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"names", "", "nodes of the scene; a * stands for any letters"}, self.names);
-        visit(Field{"x", "m", "area: [least, most], north in the world, ahead of the vehicle", -1e7, 1e7}, self.x);
-        visit(Field{"y", "m", "area: [least, most], west in the world, to port of the vehicle", -1e7, 1e7}, self.y);
-        visit(Field{"z", "m", "height of the node's origin: [least, most]; absent: as in the file, or on the ground",
-                    -1e5, 1e5},
+        visit(Field{"names", "", "nodes of the scene; a * matches any letters"}, self.names);
+        visit(Field{"x", "m", "area: [min, max], north in the world, ahead of the vehicle", -1e7, 1e7}, self.x);
+        visit(Field{"y", "m", "area: [min, max], west in the world, to port of the vehicle", -1e7, 1e7}, self.y);
+        visit(Field{"z", "m", "height of the node's origin: [min, max]; absent: as in the file, or on the ground", -1e5,
+                    1e5},
               self.z);
-        visit(Field{"ground", "", "instead of z: node on whose highest surface they stand; a * stands for any letters"},
-              self.ground);
-        visit(Field{"yaw_deg", "deg", "turn about the vertical, beside that in the file: [least, most]", -360, 360},
-              self.yaw_deg);
-        visit(Field{"roll_deg", "deg", "before yaw_deg, turn about the world's x axis: [least, most]", -360, 360},
+        visit(
+            Field{"ground", "", "instead of z: node on whose highest surface they are placed; a * matches any letters"},
+            self.ground);
+        visit(
+            Field{"yaw_deg", "deg", "turn about the vertical, in addition to that in the file: [min, max]", -360, 360},
+            self.yaw_deg);
+        visit(Field{"roll_deg", "deg", "before yaw_deg, turn about the world's x axis: [min, max]", -360, 360},
               self.roll_deg);
-        visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [least, most]", -360, 360},
+        visit(Field{"pitch_deg", "deg", "between the two, turn about the y axis: [min, max]", -360, 360},
               self.pitch_deg);
         visit(Field{"any_turn", "", "instead of the three: turned any way, each equally likely"}, self.any_turn);
-        visit(Field{"scale", "1", "how many times as large as in the file: [least, most], another for each", 1e-3, 1e3},
-              self.scale);
+        visit(Field{"scale", "1", "factor of the size in the file: [min, max], drawn for each", 1e-3, 1e3}, self.scale);
         visit(Field{"frame", "", "of the area: world, or vehicle, by its place and heading"}, self.frame);
         visit(Field{"gap", "m", "between upright cylinders about them", 0, 1e4}, self.gap);
-        visit(Field{"avoid", "", "nodes that stay where they are, from whose boxes they keep off"}, self.avoid);
-        visit(Field{"count", "1", "how many of them are there: [least, most]; absent: all", 0, 1e6}, self.count);
+        visit(Field{"avoid", "", "nodes whose boxes they keep clear of"}, self.avoid);
+        visit(Field{"count", "1", "number of them that are present: [min, max]; absent: all", 0, 1e6}, self.count);
     }
     bool tilts() const { return any_turn || !roll_deg.empty() || !pitch_deg.empty(); }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Which share of the samples belongs to which part. */
+/** The share of the samples in each part. */
 struct Split {
     double train = 1, val = 0, test = 0;
 
-    /** Of a sample, by its number alone: the same however many there are. */
+    /** Returns the part of a sample. It depends only on the sample's number, not on the number of samples. */
     Part of(uint64_t seed, uint64_t index) const;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"train", "1", "share of the samples to learn from", 0, 1}, self.train);
-        visit(Field{"val", "1", "to choose by", 0, 1}, self.val);
-        visit(Field{"test", "1", "to judge by", 0, 1}, self.test);
+        visit(Field{"train", "1", "share of the samples for training", 0, 1}, self.train);
+        visit(Field{"val", "1", "for validation", 0, 1}, self.val);
+        visit(Field{"test", "1", "for tests", 0, 1}, self.test);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What is worth an annotation. */
+/** Criteria for annotations. */
 struct AnnotationConfig {
     double min_share = 0.5;
     uint32_t min_level = 1;
@@ -177,17 +178,16 @@ struct AnnotationConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"min_share", "1", "of a bin's energy that is the object's, from which the bin is part of it", 0, 1},
-              self.min_share);
-        visit(Field{"min_level", "1", "grey level of the picture from which a place is seen", 0, 255}, self.min_level);
-        visit(Field{"min_pixels", "1", "of an object, from which it is annotated", 1, 1e6}, self.min_pixels);
+        visit(Field{"min_share", "1", "min share of a bin's energy that comes from its object", 0, 1}, self.min_share);
+        visit(Field{"min_level", "1", "min grey level of an annotated pixel", 0, 255}, self.min_level);
+        visit(Field{"min_pixels", "1", "min pixels of an annotated object", 1, 1e6}, self.min_pixels);
         visit(Field{"shadows", "", "annotates the shadow of each object as well, in a class of its own"}, self.shadows);
-        visit(Field{"ghosts", "", "annotates what came by the water surface or other mirrors, in the class ghost"},
+        visit(Field{"ghosts", "", "annotates echoes by the water surface or other mirrors, in the class ghost"},
               self.ghosts);
     }
 };
 
-/** A value in YAML, and where it stands in the sweep. */
+/** A value in YAML, and its place in the sweep. */
 struct Written {
     std::string yaml;
     int line = 0, column = 0;
@@ -199,35 +199,35 @@ struct Setting {
     std::vector<Written> values;
 };
 
-/** A property of the deployment that each sample draws a value of: from a law, or one of `choice`. */
+/** A property of the deployment whose value each sample draws: from a law, or from `choice`. */
 struct DrawnSetting {
     std::string property;  ///< "task.property.path"
     Axis law;
     std::vector<Written> choice;
-    int line = 0, column = 0;  ///< Where it stands in the sweep.
+    int line = 0, column = 0;  ///< Its place in the sweep.
 
-    /** The value in YAML that a random word gives. */
+    /** Returns the value for a random word, in YAML. */
     std::string draw(uint64_t random) const;
 };
 
-/** One of the scenes: a file, and properties that go with it. */
+/** One of the scenes: a file, and the properties that are set with it. */
 struct SceneChoice {
-    std::string file;                                  ///< Empty: that of the deployment.
-    std::string recipe = {};                           ///< By which the file is made; empty: it is there.
-    uint64_t seed = 1;                                 ///< Of the recipe.
+    std::string file;                                  ///< Empty: the deployment's scene.
+    std::string recipe = {};                           ///< The recipe that makes the file; empty: the file exists.
+    uint64_t seed = 1;                                 ///< Seed of the recipe.
     std::vector<std::pair<std::string, Written>> set;  ///< "task.property.path"
     int line = 0, column = 0;
 };
 
-/** A class of objects, and which names are of it; a * stands for any letters. */
+/** A class of objects, and its names; a * matches any letters. */
 struct ClassRule {
     std::string name;
     std::vector<std::string> patterns;
     int line = 0, column = 0;
 };
 
-/** Every sample is one of `scenes`, with one combination of the values of `settings`, at one pose. What is `drawn` it
- *  has of its own. */
+/** The sweep. A sample has one of the `scenes`, one combination of the values of `settings`, and one pose. It draws its
+ *  own values of `drawn`. */
 struct Sweep {
     std::string file;  ///< As given, for diagnostics.
     std::string text;
@@ -245,11 +245,11 @@ struct Sweep {
     Split split;
     std::vector<ClassRule> classes;
     output::PlainConfig picture;
-    int picture_line = 0, picture_column = 0;  ///< Where its shape stands in the sweep.
+    int picture_line = 0, picture_column = 0;  ///< Place of the picture's shape in the sweep.
     AnnotationConfig annotations;
 };
 
-/** Whether a name is what a pattern says, in which * stands for any letters or none. */
+/** Returns whether a name matches a pattern, in which * stands for any number of letters. */
 bool matches(const std::string& pattern, const std::string& name);
 
 }  // namespace insonify::dataset

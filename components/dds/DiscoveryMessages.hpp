@@ -1,5 +1,5 @@
 #pragma once
-// What ROS 2 nodes tell each other of themselves: rmw_dds_common, field for field. See ros/GeometryMessages.hpp.
+// The messages by which ROS 2 nodes announce themselves: rmw_dds_common, field for field. See ros/GeometryMessages.hpp.
 #include <array>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@ namespace insonify::dds {
 
 using types::Field;
 
-/** 16 bytes from ROS 2 Iron on, 24 in Humble and before. */
+/** Identifier of 16 bytes since ROS 2 Iron, 24 in Humble and before. */
 template <size_t size>
 struct Gid {
     static constexpr const char* type_name = "rmw_dds_common/msg/Gid";

@@ -13,7 +13,7 @@
 namespace insonify::dds {
 namespace {
 
-/** While it lives, what Cyclone logs is kept here and not printed. One at a time. */
+/** Keeps what Cyclone logs instead of printing it. One instance at a time. */
 class LoggedErrors {
 public:
     LoggedErrors() { dds_set_log_sink(&LoggedErrors::keep, this); }
@@ -24,7 +24,7 @@ public:
     }
 
 private:
-    /** On any thread: those of other participants log here as well. */
+    /** Runs on any thread: other participants log here as well. */
     static void keep(void* to, const dds_log_data_t* data) {
         if (!(data->priority & (DDS_LC_ERROR | DDS_LC_WARNING | DDS_LC_FATAL | DDS_LC_CONFIG))) return;
         auto& logged_errors = *static_cast<LoggedErrors*>(to);

@@ -6,7 +6,7 @@
 
 namespace insonify::dds {
 
-/** Something of Cyclone's, deleted with all that belongs to it. */
+/** Owns an entity of Cyclone DDS; deletes it together with its children. */
 class Entity {
 public:
     Entity() = default;
@@ -20,12 +20,13 @@ private:
     int32_t handle_ = 0;
 };
 
-/** A participant of a DDS domain, with the settings of CYCLONEDDS_URI; `user_data` is what it tells of itself. Throws
- *  types::ConfigError with Cyclone's words where the domain cannot be joined: no such network interface, an error in
- *  the settings, no port free. */
+/** Returns a participant of a DDS domain, with the settings of CYCLONEDDS_URI. `user_data` is announced with it. Throws
+ *  types::ConfigError with Cyclone's message if the domain cannot be joined: no such network interface, an error in the
+ *  settings, no free port. */
 Entity joinDomain(uint32_t id, std::string_view user_data);
 
-/** `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError for a ROS_DOMAIN_ID that is no number up to 232. */
+/** Returns `given`, else ROS_DOMAIN_ID, else 0. Throws types::ConfigError if ROS_DOMAIN_ID is not a number up to
+ *  232. */
 uint32_t domainId(std::optional<uint32_t> given);
 
 /** The highest domain for which UDP has ports. */

@@ -12,8 +12,8 @@ struct DeleteQos {
 };
 using Qos = std::unique_ptr<dds_qos_t, DeleteQos>;
 
-/** For a writer or reader as ROS 2 makes it; `type_hash` as "RIHS01_...", or empty. As it
- *  keeps the last samples only, a writer waits for no reader. */
+/** Returns the quality of service of a ROS 2 writer or reader; `type_hash` as "RIHS01_...", or empty. Only the last
+ *  samples are kept, so a writer does not wait for readers. */
 Qos makeQos(const Quality& quality, const std::string& type_hash) {
     Qos qos(dds_create_qos());
     const bool reliable = quality.reliability == Reliability::Reliable;
@@ -64,7 +64,7 @@ Reader::Reader(Node& node, const std::string& dds_topic, const std::string& ros_
 }
 
 Reader::~Reader() {
-    const Entity gone = std::move(entity_);  // before what its listener calls; waits for one that runs
+    const Entity gone = std::move(entity_);  // before the function that its listener calls; waits for a running call
 }
 
 bool Reader::take(Bytes& message, uint64_t& sender) {

@@ -1,5 +1,5 @@
 #pragma once
-// The ends of a topic: who sends its messages, and who takes them.
+// The endpoints of a topic: a writer and a reader.
 #include <functional>
 #include <memory>
 #include <string>
@@ -12,12 +12,14 @@ namespace insonify::dds {
 /** Sends the messages of one topic. */
 class Writer {
 public:
-    /** `ros_type` as "sensor_msgs/msg/Image"; `type_hash` as "RIHS01_...", or empty. The node is to outlive it. Throws
-     *  types::ConfigError. */
+    /** @param ros_type as "sensor_msgs/msg/Image"
+     *  @param type_hash as "RIHS01_...", or empty
+     *  The node must outlive the writer. Throws types::ConfigError. */
     Writer(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
            const Quality& quality);
 
-    /** Waits for no reader. False where the message could not be sent; `failure` tells why. */
+    /** Sends without waiting for readers. Returns false if the message could not be sent; `failure` then has the
+     *  reason. */
     bool write(const Bytes& message);
     const std::string& failure() const { return failure_; }
     bool hasReaders() const;
@@ -28,18 +30,20 @@ private:
     std::string failure_;
 };
 
-/** Takes the messages of one topic. */
+/** Receives the messages of one topic. */
 class Reader {
 public:
-    /** `arrived` is called on a thread of Cyclone's, which it must not hold up; it may be empty. Messages of more than
-     *  `largest` bytes come empty. The node is to outlive this. Throws types::ConfigError. */
+    /** @param arrived may be empty; is called on one of Cyclone's threads and must not block it
+     *  @param largest max message [B]; larger messages arrive empty
+     *  The node must outlive the reader. Throws types::ConfigError. */
     Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
            const Quality& quality, std::function<void()> arrived, size_t largest = any_size);
     ~Reader();
 
-    /** The next message; its memory is used again. False: there is none. `sender` is one number for each writer. */
+    /** Takes the next message into `message`, whose memory is reused. Returns false if there is none. `sender` is a
+     *  number that identifies the writer. */
     bool take(Bytes& message, uint64_t& sender);
-    /** Whether a sender is still there. */
+    /** Returns whether the sender is still present. */
     bool hears(uint64_t sender) const;
     int32_t handle() const { return entity_.handle(); }
 

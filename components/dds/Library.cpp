@@ -1,4 +1,4 @@
-// The component library dds: what a deployment loads that names a type of this namespace.
+// The component library dds: loaded by deployments that name a type of this namespace.
 #include "components/dds/PublisherTask.hpp"
 #include "components/loader/Interface.hpp"
 

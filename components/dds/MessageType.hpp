@@ -8,7 +8,7 @@
 
 namespace insonify::dds {
 
-/** A list with those of another that it does not have. */
+/** Appends the types of `More` that `List` lacks. */
 template <class List, class More>
 struct Joined;
 template <class... Listed>
@@ -30,14 +30,14 @@ struct MessagesOfAll<List, std::tuple<First, Rest...>> {
     using Next = typename Joined<List, typename ros::MessagesOf<First>::type>::type;
     using type = typename MessagesOfAll<Next, std::tuple<Rest...>>::type;
 };
-/** All messages that a sample can be, see ros/Samples.hpp. */
+/** All messages that samples can become, see ros/Samples.hpp. */
 using SentMessages = MessagesOfAll<std::tuple<>, types::SampleTypes>::type;
 inline constexpr size_t message_count = std::tuple_size_v<SentMessages>;
 
-/** What is sent: a place in SentMessages. */
+/** The type of a sent message: an index into SentMessages. */
 enum class MessageType : size_t {};
 
-/** Calls `use(std::type_identity<Message>{})` for the message of that type. */
+/** Calls `use(std::type_identity<Message>{})` with the message of the given type. */
 template <size_t i = 0, class Use>
 decltype(auto) withMessage(MessageType type, Use&& use) {
     if constexpr (i + 1 < message_count)
@@ -55,7 +55,7 @@ constexpr MessageType placeOf() {
 template <class Message>
 inline constexpr MessageType message_type = placeOf<Message>();
 
-/** "nav_msgs/Odometry" of "nav_msgs/msg/Odometry". */
+/** Shortens "nav_msgs/msg/Odometry" to "nav_msgs/Odometry". */
 template <class Message>
 struct ShortName {
     static constexpr std::string_view whole{Message::type_name}, infix{"msg/"};

@@ -41,7 +41,7 @@ std::vector<Gid<size>> gidsOf(const std::vector<Guid>& guids) {
 
 constexpr size_t longest_topic = 255;  ///< With "rt/", as in ROS 2.
 
-/** "/auv" of "/auv/sonar", "/" of "sonar". */
+/** Returns "/auv" for "/auv/sonar", "/" for "sonar". */
 std::string namespaceOf(const std::string& node) {
     const size_t slash = node.rfind('/');
     const std::string words = slash == node.npos ? "" : node.substr(0, slash);
@@ -82,7 +82,7 @@ std::string diagnosticOfNode(const std::string& name) {
            "\"; must be words of letters, digits and _, none beginning with a digit, as sonar or /auv/sonar";
 }
 
-// Without an enclave ROS 2 takes a participant for none of its own.
+// Without an enclave ROS 2 does not recognise a participant as a node.
 Node::Node(uint32_t domain, const std::string& name, size_t gid_size)
     : namespace_(namespaceOf(name)),
       name_(name.substr(name.rfind('/') + 1)),

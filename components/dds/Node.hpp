@@ -10,22 +10,22 @@
 
 namespace insonify::dds {
 
-/** As in ROS 2. A best-effort writer is not heard by reliable readers, which ROS 2 makes by default. */
+/** Reliability of ROS 2. A reliable reader, ROS 2's default, receives nothing from a best-effort writer. */
 enum class Reliability { Reliable, BestEffort };
 
 struct Quality {
     Reliability reliability = Reliability::Reliable;
-    int depth = 5;  ///< Samples that are kept for readers that are behind, or for who takes them.
+    int depth = 5;  ///< Samples kept for slow readers, or until they are taken.
     bool transient_local = false;
 };
 
-/** "rt/auv/sonar" of "/auv/sonar" or "auv/sonar". */
+/** Converts "/auv/sonar" or "auv/sonar" to "rt/auv/sonar". */
 std::string ddsTopic(const std::string& ros_topic);
-/** "sensor_msgs::msg::dds_::Image_" of "sensor_msgs/msg/Image". */
+/** Converts "sensor_msgs/msg/Image" to "sensor_msgs::msg::dds_::Image_". */
 std::string ddsType(std::string_view ros_type);
-/** "nav_msgs/Odometry" of "nav_msgs::msg::dds_::Odometry_"; other names as they are. */
+/** Converts "nav_msgs::msg::dds_::Odometry_" to "nav_msgs/Odometry"; returns other names unchanged. */
 std::string rosType(const std::string& dds_type);
-/** What is wrong with a ROS name of a topic or node, or nothing. */
+/** Returns what is wrong with the ROS name of a topic or node; empty if it is valid. */
 std::string diagnosticOfTopic(const std::string& name);
 std::string diagnosticOfNode(const std::string& name);
 
@@ -37,26 +37,26 @@ struct Published {
 class Writer;
 using Guid = std::array<uint8_t, 16>;
 
-/** A ROS 2 node: a participant of a domain that tells others its name and what it reads and writes. */
+/** A ROS 2 node: a DDS participant that announces its name, readers and writers to the domain. */
 class Node {
 public:
-    /** `name` may have a namespace: "/auv/sonar". `gid_size` is 16, or 24 for Humble and before [B]. Throws
-     * types::ConfigError where the domain cannot be joined.
-     */
+    /** @param name may have a namespace: "/auv/sonar"
+     *  @param gid_size 16, or 24 for Humble and before [B]
+     *  Throws types::ConfigError if the domain cannot be joined. */
     Node(uint32_t domain, const std::string& name, size_t gid_size);
     ~Node();
 
     int32_t participant() const { return participant_.handle(); }
-    /** A topic of that DDS name and type; several may be asked for. The rest is as in makeRawType(). Throws
-     *  types::ConfigError. */
+    /** Returns a topic with the given DDS name and type; may be called several times for the same topic. See
+     *  makeRawType() for `largest`. Throws types::ConfigError. */
     Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest = any_size) const;
 
-    /** The writers that the domain has at this time, without those of this node. Takes a fraction of a millisecond. */
+    /** Returns the domain's present writers, except those of this node. Takes a fraction of a millisecond. */
     std::vector<Published> published();
 
     void addWriter(int32_t writer);
     void addReader(int32_t reader);
-    /** Tells the node and what has been added to it on `ros_discovery_info`. */
+    /** Publishes the node and its added readers and writers on `ros_discovery_info`. */
     void announce();
 
 private:
@@ -67,7 +67,7 @@ private:
     size_t gid_size_;
     Entity participant_;
     std::unique_ptr<Writer> discovery_;
-    Entity publications_;  ///< Reads of writers, once somebody has asked for them.
+    Entity publications_;  ///< Reader of the built-in topic of writers; made by the first published().
     std::vector<Guid> writers_, readers_;
 };
 

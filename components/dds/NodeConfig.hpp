@@ -11,7 +11,7 @@
 
 namespace insonify::dds {
 
-/** How a task stands in the ROS 2 graph. */
+/** The configuration of a task's ROS 2 node. */
 struct NodeConfig {
     std::string node_name;
     std::optional<uint32_t> domain;
@@ -28,8 +28,8 @@ struct NodeConfig {
                     "axes of poses on the wire: ours (x north, y west, z up), x east, y north, z up, or x north, y "
                     "east, z down"},
               self.world_frame);
-        visit(Field{"gid_size", "B", "of identifiers in ros_discovery_info: 16, or 24 for ROS 2 Humble and before", 16,
-                    24},
+        visit(Field{"gid_size", "B", "size of identifiers in ros_discovery_info: 16, or 24 for ROS 2 Humble and before",
+                    16, 24},
               self.gid_size);
     }
     void check(types::Diagnostics& diagnostics) const {
@@ -38,13 +38,14 @@ struct NodeConfig {
         if (const std::string diagnostic = node_name.empty() ? "" : diagnosticOfNode(node_name); !diagnostic.empty())
             diagnostics.push_back({"node_name", diagnostic});
     }
-    /** The node's whole name. @param task that it has where no name is given */
+    /** Returns the node's full name. @param task the task's name, used if `node_name` is empty */
     std::string nameIn(const types::RosNames& names, const std::string& task) const {
         return names.node(node_name.empty() ? task : node_name);
     }
 };
 
-/** Throws types::ConfigError with what is wrong with a configuration once its names are those in the deployment. */
+/** Throws types::ConfigError with the diagnostics of a configuration whose names have been resolved for the
+ *  deployment. */
 template <class Config>
 void refuseWrong(const Config& named) {
     types::Diagnostics diagnostics;

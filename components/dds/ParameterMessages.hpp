@@ -1,5 +1,5 @@
 #pragma once
-// rcl_interfaces: what the services of a node's parameters say, field for field. See ros/GeometryMessages.hpp.
+// rcl_interfaces: the messages of a node's parameter services, field for field. See ros/GeometryMessages.hpp.
 #include <string>
 #include <vector>
 
@@ -77,10 +77,10 @@ struct SetParametersResult {
     }
 };
 
-/** Bounds of a number; `step` 0: any number between them. */
+/** Bounds of a number. `step` 0 allows any number between them. */
 template <class Number, class Step>
 struct ParameterRange {
-    static constexpr const char* type_name = "rcl_interfaces/msg/Range";  // nothing on the wire names it
+    static constexpr const char* type_name = "rcl_interfaces/msg/Range";  // no name on the wire
     static constexpr const char* type_hash = "";
     Number from_value = 0, to_value = 0;
     Step step = 0;
@@ -116,10 +116,10 @@ struct ParameterDescriptor {
     }
 };
 
-/** A request or an answer with one field. */
+/** A request or a response with one field. */
 template <class T>
 struct OneField {
-    static constexpr const char* type_name = "rcl_interfaces/srv/OneField";  // nothing on the wire names it
+    static constexpr const char* type_name = "rcl_interfaces/srv/OneField";  // no name on the wire
     static constexpr const char* type_hash = "";
     T field;
 
@@ -133,7 +133,7 @@ struct ListParametersRequest {
     static constexpr const char* type_name = "rcl_interfaces/srv/ListParameters_Request";
     static constexpr const char* type_hash = "";
     std::vector<std::string> prefixes;
-    uint64_t depth = 0;  ///< Words of a name beyond its prefix; 0: any.
+    uint64_t depth = 0;  ///< Max number of words after the prefix; 0: any.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -17,7 +17,7 @@
 namespace insonify::dds {
 namespace {
 
-constexpr size_t encapsulation = 4, identity = 16;  ///< At the begin of a request and of its answer [B].
+constexpr size_t encapsulation = 4, identity = 16;  ///< At the beginning of a request and of its response [B].
 constexpr size_t max_request = size_t{1} << 20;     ///< [B]
 const Quality of_services{.reliability = Reliability::Reliable, .depth = 10};
 
@@ -41,7 +41,7 @@ ParameterValue valueOf(const types::PropertyValue& property) {
     return value;
 }
 
-/** In YAML. */
+/** Formats a number as YAML. */
 std::string realText(double value) {
     return std::isnan(value) ? ".nan" : std::isinf(value) ? (value > 0 ? ".inf" : "-.inf") : fmt::format("{}", value);
 }
@@ -56,8 +56,8 @@ std::string quotedText(const std::string& text) {
     return result + "\"";
 }
 
-/** A value as a setter takes it. @param is_text the property is one: else texts are YAML. Throws std::runtime_error for
- *  an unknown type. */
+/** Formats a value as a setter accepts it. @param is_text whether the property is a text; else texts are YAML.
+ *  Throws std::runtime_error for an unknown type. */
 std::string yamlOf(const ParameterValue& value, bool is_text) {
     const auto listOf = [](const auto& items, const auto& text) {
         std::vector<std::string> texts;
@@ -83,7 +83,7 @@ std::string yamlOf(const ParameterValue& value, bool is_text) {
 
 using Values = std::vector<std::pair<std::string, types::PropertyValue>>;
 
-/** All that is set, by "task.property", in file order. */
+/** Returns all properties by "task.property", in file order. */
 Values valuesOf(const types::DeploymentControl& deployment) {
     Values values;
     for (const types::TaskStatus& task : deployment.status().tasks)
@@ -97,7 +97,7 @@ ParameterValue valueNamed(const Values& values, const std::string& name) {
     return found == values.end() ? ParameterValue{} : valueOf(found->second);
 }
 
-/** None: there is no such property. */
+/** Returns none if there is no such property. */
 std::optional<types::PropertyInfo> infoOf(const types::DeploymentControl& deployment, const std::string& name) {
     for (const types::TaskInterface& task : deployment.interfaces())
         for (const types::PropertyInfo& info : task.properties)
@@ -129,8 +129,9 @@ SetParametersResult setOne(types::DeploymentControl& deployment, const std::stri
                            const Parameter& parameter) try {
     const size_t dot = parameter.name.find('.');
     const auto info = infoOf(deployment, parameter.name);
-    if (!info) throw std::runtime_error("is no property of a task");
-    if (parameter.name.substr(0, dot) == own) throw std::runtime_error("is of the task that answers");
+    if (!info) throw std::runtime_error("is not a property of any task");
+    if (parameter.name.substr(0, dot) == own)
+        throw std::runtime_error("is a property of the task that serves parameters, which is read-only");
     std::string operation = parameter.name;
     operation[dot + 1] = static_cast<char>(std::toupper(static_cast<unsigned char>(operation[dot + 1])));
     operation.insert(dot + 1, "set");
@@ -150,7 +151,7 @@ ParameterDescriptor descriptorOf(const types::DeploymentControl& deployment, con
     descriptor.description = info->doc + (info->unit.empty() || info->unit == "1" ? "" : " [" + info->unit + "]");
     descriptor.additional_constraints = info->type;
     descriptor.read_only = name.starts_with(own + ".");
-    descriptor.dynamic_typing = true;  // null takes a value out
+    descriptor.dynamic_typing = true;  // null removes a value
     if (!std::isfinite(info->min) || !std::isfinite(info->max)) return descriptor;
     if (descriptor.type == typeNumber(ParameterType::Double))
         descriptor.floating_point_range = {{info->min, info->max, 0}};
@@ -257,7 +258,7 @@ void ParameterServer::work() {
                     reply.insert(reply.begin() + encapsulation, who.begin(), who.end());
                     service->replies.write(reply);
                 } catch (const std::exception&) {
-                    continue;  // no request of this dialect, or one that cannot be answered: who asked waits in vain
+                    continue;  // not a valid request, or no answer possible: the client's wait times out
                 }
     }
 }

@@ -13,16 +13,17 @@
 
 namespace insonify::dds {
 
-/** Answers the services of a ROS 2 node's parameters, which are the properties of a deployment's tasks: "sonar.range".
+/** Serves the properties of a deployment's tasks ("sonar.range") as parameters of a ROS 2 node.
  *
- *  `list_parameters`, `get_parameters`, `get_parameter_types`, `set_parameters` and `describe_parameters`, for clients
- *  with `rmw_cyclonedds_cpp`, whose requests begin with their sender's identity of 16 bytes. Blocks and lists are texts
- *  in YAML. Requests that are none are passed over. Works on a thread of its own, for a property is set on the thread
- *  of its task. */
+ *  Services: `list_parameters`, `get_parameters`, `get_parameter_types`, `set_parameters` and `describe_parameters`,
+ *  for clients with `rmw_cyclonedds_cpp`. Its requests begin with the sender's identity of 16 bytes. Blocks and lists
+ *  are YAML texts. Invalid requests are ignored. Runs on its own thread, because a property is set on the thread of its
+ *  task. */
 class ParameterServer {
 public:
-    /** @param node_name the whole name @param own the task that answers, whose properties cannot be set here. Node and
-     *  deployment outlive this. Throws types::ConfigError. */
+    /** @param node_name the full name
+     *  @param own the task that runs this server; its properties are read-only here
+     *  Node and deployment must outlive the server. Throws types::ConfigError. */
     ParameterServer(Node& node, const std::string& node_name, std::string own, types::DeploymentControl& deployment);
     ~ParameterServer();
     ParameterServer(const ParameterServer&) = delete;

@@ -17,10 +17,10 @@
 
 namespace insonify::dds {
 
-/** How samples become the messages of one topic. */
+/** Options for converting samples to the messages of one topic. */
 struct TopicOptions {
     ros::MessageOptions messages;
-    std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a pose names.
+    std::optional<std::string> world_frame_id, child_frame_id;  ///< Override the frames that a pose names.
     std::string frame_prefix;
 };
 inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix) {
@@ -35,19 +35,19 @@ inline TopicOptions optionsOf(const PublisherConfig& config, const TopicOut& top
     return options;
 }
 
-/** What is given, or what the pose says, or what is usual. */
+/** Sets `frame` to `given`; without it keeps the pose's frame, or uses `usual` if that is empty. */
 inline void nameFrame(std::string& frame, const std::optional<std::string>& given, const char* usual) {
     if (given) frame = *given;
     if (frame.empty()) frame = usual;
 }
 
-/** Whether a T can be a message. */
+/** Whether a T can be converted to a Message. */
 template <class T, class Message>
 concept Fills = requires(const T& sample, const ros::MessageOptions& options, Message& message) {
     ros::toMessage(sample, options, message);
 };
 
-/** Names the frames of a message of the world: a pose, points. */
+/** Names the frames of a message given in the world frame: a pose, points. */
 template <class Message>
 void nameFrames(const TopicOptions& options, Message& message) {
     if constexpr (requires { message.header; }) nameFrame(message.header.frame_id, options.world_frame_id, "map");
@@ -71,7 +71,7 @@ void fill(const T& sample, const TopicOptions& options, Message& message) {
 template <class Sample>
 using Encode = std::function<void(const Sample&, const TopicOptions&, Bytes&)>;
 
-/** None where the message cannot be made of a Sample. */
+/** Returns the encoder; empty if a Sample cannot be converted to the message. */
 template <class Sample>
 Encode<Sample> encoderOf(MessageType type) {
     return withMessage(type, [&]<class Message>(std::type_identity<Message>) -> Encode<Sample> {
@@ -91,7 +91,7 @@ bool canBe(MessageType type) {
     return encoderOf<Sample>(type) != nullptr;
 }
 
-/** Types of messages that a Sample can be, as in YAML: "nav_msgs/Odometry, ...". */
+/** Returns the types of messages that a Sample can become, as in YAML: "nav_msgs/Odometry, ...". */
 template <class Sample>
 std::string messagesOf() {
     std::string all;
@@ -102,7 +102,7 @@ std::string messagesOf() {
     return all;
 }
 
-/** The end of a topic that sends. */
+/** Returns the writer of a topic. */
 inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut& topic) {
     const Quality quality{.reliability = config.reliability, .depth = config.depth};
     return withMessage(topic.type, [&]<class Message>(std::type_identity<Message>) {
@@ -114,9 +114,9 @@ inline Writer writerOf(Node& node, const PublisherConfig& config, const TopicOut
 template <class Sample>
 class Publication {
 public:
-    /** @param frame_prefix of frames but those of the world
-     *  What is not sent is counted in `drops`, which outlives this. Throws types::ConfigError for a message that cannot
-     *  be made of a Sample, and as Writer. */
+    /** @param frame_prefix of all frames except the world's
+     *  Messages that are not sent are counted in `drops`, which must outlive this. Throws types::ConfigError if a
+     *  Sample cannot be converted to the message, and as Writer does. */
     Publication(Node& node, const PublisherConfig& config, const TopicOut& topic, const std::string& frame_prefix,
                 types::ThrottledWarning& drops)
         : topic_(topic.topic),
@@ -129,16 +129,15 @@ public:
         const std::string type(types::EnumNames<MessageType>::names[static_cast<size_t>(topic.type)]);
         throw types::ConfigError(
             "", "topics",
-            type + " cannot be made of what comes on port " + topic.port + "; that can be " + messagesOf<Sample>());
+            type + " cannot be made of the samples of port " + topic.port + "; they can be " + messagesOf<Sample>());
     }
 
-    /** Of the device, where the topic names none of its own [kHz]. */
+    /** Sets the device's frequency [kHz], which is used if the topic does not name one. */
     void takeFrequency(double khz) {
         if (!names_frequency_) options_.messages.frequency_khz = khz;
     }
 
-    /** What to do about a message that was larger than the receive buffers that Linux gives by default; once, else
-     * empty. */
+    /** Returns a remedy once, if a message was larger than Linux's default receive buffers; else an empty text. */
     std::string takeSizeWarning() {
         constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
         if (largest_ <= usual_buffer || std::exchange(size_is_told_, true)) return "";
@@ -152,8 +151,8 @@ public:
             can_shrink ? "take dtype: uint8, or " : "");
     }
 
-    /** Makes no message for a topic that nobody reads. A sample that the message cannot hold (see ros/Samples.hpp) is
-     *  dropped. Whether it was sent. */
+    /** Publishes a sample; returns whether it was sent. Makes no message for a topic without readers. Drops a sample
+     *  that the message cannot represent (see ros/Samples.hpp). */
     bool publish(const Sample& sample) {
         if (!writer_.hasReaders()) return false;
         try {
@@ -175,7 +174,7 @@ private:
     Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
-    size_t largest_ = 0;  ///< Of the messages [B].
+    size_t largest_ = 0;  ///< Max size of a message so far [B].
     bool size_is_told_ = false;
     types::ThrottledWarning& drops_;
 };

@@ -11,14 +11,14 @@
 
 namespace insonify::dds {
 
-/** Options whose frame is the task's. */
+/** Options that use the task's frame. */
 inline ros::SonarOptions withoutFrame() {
     ros::SonarOptions options;
     options.frame_id.clear();
     return options;
 }
 
-/** One port's samples as one topic's messages. */
+/** One topic that is sent with the samples of one port. */
 struct TopicOut {
     std::string port, topic;
     MessageType type = message_type<ros::ProjectedSonarImage>;
@@ -30,14 +30,14 @@ struct TopicOut {
         using types::Field;
         visit(Field{"port", "", "input port that a connection leads to"}, self.port);
         visit(Field{"topic", "", "as in ROS: /auv/sonar"}, self.topic);
-        visit(Field{"type", "", "of ROS's message"}, self.type);
+        visit(Field{"type", "", "type of the ROS message"}, self.type);
         visit(Field{"child_frame_id", "", "the body of an Odometry; absent: what its pose names, or base_link"},
               self.child_frame_id);
         ros::SonarOptions::describe(self.sonar, visit);
     }
 };
 
-/** Where the sonars sit in the body, as a transform that stays. */
+/** Static transforms of the sonars' mounts on the body. */
 struct StaticTransforms {
     std::string topic = "/tf_static";
     std::string frame_id = "base_link";
@@ -45,11 +45,11 @@ struct StaticTransforms {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(types::Field{"topic", "", "as in ROS"}, self.topic);
-        visit(types::Field{"frame_id", "", "of the body that carries the sonars"}, self.frame_id);
+        visit(types::Field{"frame_id", "", "frame of the body that carries the sonars"}, self.frame_id);
     }
 };
 
-/** How the axes of a ping's message lie; none: it has none, or is of a pose. */
+/** Returns the axes of the ping's message; none if it has no axes, or is the message of a pose. */
 inline std::optional<ros::SensorFrame> axesOf(const TopicOut& topic) {
     const auto is = [&]<class Message>(std::type_identity<Message>) { return topic.type == message_type<Message>; };
     if (is(std::type_identity<ros::ProjectedSonarImage>{}) || is(std::type_identity<ros::SonarRanges>{}))
@@ -73,13 +73,15 @@ struct PublisherConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"topics", "", "what is sent; a port may have several"}, self.topics);
-        visit(Field{"frame_id", "", "of pings and pictures; a topic may have its own"}, self.frame_id);
-        visit(Field{"world_frame_id", "", "of poses; a topic may have its own; absent: what they name, or map"},
+        visit(Field{"frame_id", "", "frame of pings and pictures; a topic may have its own"}, self.frame_id);
+        visit(Field{"world_frame_id", "",
+                    "world frame of poses; a topic may have its own; absent: the frame that the poses name, or map"},
               self.world_frame_id);
-        visit(Field{"reliability", "", "best_effort is not heard by readers that ask for reliable ones"},
+        visit(Field{"reliability", "", "readers that request reliable receive nothing from a best_effort writer"},
               self.reliability);
         visit(Field{"tf_static", "",
-                    "tells where the frames of pings sit in the body, by the scene's mount; absent: not"},
+                    "publishes the transforms from the body to the frames of pings, from the scene's mount; absent: "
+                    "not published"},
               self.tf_static);
         visit(Field{"depth", "1", "messages kept for readers that are behind", 1, 1000}, self.depth);
         visit(
@@ -91,7 +93,7 @@ struct PublisherConfig {
     std::string frameOf(const TopicOut& topic) const {
         return topic.sonar.frame_id.empty() ? frame_id : topic.sonar.frame_id;
     }
-    /** Frames that messages with different axes share: no transform fits both. */
+    /** Returns a diagnostic for each frame of messages with different axes, which no single transform fits. */
     std::vector<std::string> sharedFrames() const {
         std::map<std::string, std::array<std::string, 2>> by_frame;  // topics with x ahead, with z ahead
         for (const TopicOut& topic : topics)
@@ -103,10 +105,10 @@ struct PublisherConfig {
         for (const auto& [frame, kinds] : by_frame)
             if (!kinds[0].empty() && !kinds[1].empty())
                 shared.push_back("frame_id " + frame + " has x ahead on " + kinds[0] + " and z ahead on " + kinds[1] +
-                                 ": give one of them another, for transforms");
+                                 ": give one of them another frame_id, for transforms");
         return shared;
     }
-    /** With the names that topics and the node have in a deployment. @param task that sends */
+    /** Resolves the names of topics and the node in a deployment. @param task the name of the sending task */
     PublisherConfig namedBy(const types::RosNames& names, const std::string& task) const {
         PublisherConfig named = *this;
         named.node.node_name = node.nameIn(names, task);

@@ -18,7 +18,7 @@ void tellLatency(framework::TaskContext& task, const auto& sample) {
     if constexpr (requires { sample.time; }) framework::noteLatency(task, sample.time);
 }
 
-/** Why an input's samples cannot be that topic's messages; empty: they can. */
+/** Returns why an input's samples cannot become the topic's messages; empty if they can. */
 template <class Input>
 std::string whyNot(const Input& input, const TopicOut& topic) {
     using Sample = typename Input::Sample;
@@ -27,7 +27,7 @@ std::string whyNot(const Input& input, const TopicOut& topic) {
     return "is " + type + "; " + input.port.typeName() + " can be " + messagesOf<Sample>();
 }
 
-/** Sends a sample as all topics of its input. */
+/** Sends a sample to all topics of its input. */
 template <class Input>
 void send(Input& input, const typename Input::Carried& sample, framework::TaskContext& task,
           types::ThrottledWarning& drops) {
@@ -46,7 +46,7 @@ framework::InputPortBase* PublisherTask::makeInput(const std::string& port, fram
     throw types::ConfigError(
         "", "",
         source.path() + " is " + source.typeName() +
-            ", of which no message is made; pings, poses, points, ranges, pictures, numbers and texts are");
+            ", which has no message; pings, poses, points, ranges, pictures, numbers and texts have");
 }
 
 void PublisherTask::check(types::Diagnostics& diagnostics) const {
@@ -73,13 +73,13 @@ std::vector<std::string> PublisherTask::notices() const {
         if (!space.empty() && topic.topic.starts_with('/') && topic.topic != "/tf" && topic.topic != "/clock")
             outside += (outside.empty() ? "" : ", ") + topic.topic;
     if (!outside.empty())
-        notices.push_back("not in the namespace " + space + ", for the names begin with a slash: " + outside);
+        notices.push_back("not in the namespace " + space + ", because their names begin with a slash: " + outside);
     std::ranges::move(drops_.summary(), std::back_inserter(notices));
     return notices;
 }
 
 bool PublisherTask::configureHook() {
-    cleanupHook();  // what a configure that failed has left
+    cleanupHook();  // remains of a failed configure
     drops_.reset();
     const types::RosNames& names = environment().names;
     const PublisherConfig named = config->namedBy(names, name());
@@ -126,7 +126,7 @@ void PublisherTask::announceMounts(const std::string& topic) {
     node_->addWriter(tf_static_->handle());
     Bytes bytes;
     ros::encode(mounts(), bytes);
-    if (!tf_static_->write(bytes)) throw std::runtime_error("the mounts cannot be told: " + tf_static_->failure());
+    if (!tf_static_->write(bytes)) throw std::runtime_error("the mounts cannot be published: " + tf_static_->failure());
 }
 
 void PublisherTask::takeFrequencies() {
@@ -163,7 +163,7 @@ void PublisherTask::cleanupHook() {
 void registerTasks(framework::Registry& registry) {
     registry.add<PublisherTask>("dds::PublisherTask", "sends pings, poses and pictures as ROS 2 messages");
     registry.add<SubscriberTask>("dds::SubscriberTask", "reads poses that ROS 2 nodes send");
-    registry.add<TransformTask>("dds::TransformTask", "tells where frames of ROS 2's tf lie in the world");
+    registry.add<TransformTask>("dds::TransformTask", "publishes the poses of frames of ROS 2's tf in the world");
 }
 
 }  // namespace insonify::dds

@@ -18,17 +18,20 @@ namespace insonify::dds {
 
 /** Sends samples as ROS 2 messages.
  *
- *  Ports: an input for each connection that names one that `topics` knows, of any type in types/Samples.hpp; their
- *  topics may be of the types that such a sample can be. A topic that nobody reads costs nothing. Poses are turned into
- *  `world_frame`. With `tf_static` the frames of pings are told with the mount of the scene from which they come, to
- *  who comes later as well. The frequency of a ping is its sonar's, unless a topic names another.
+ *  Ports: an input for each connection to a port that `topics` names. Its samples may have any type of
+ *  types/Samples.hpp; `type` must be a message that this sample can become. A topic without readers costs nothing.
+ *  Poses are converted to `world_frame`. With `tf_static`, the frames of pings are published by the mount of their
+ *  scene, for late subscribers too. The frequency of a ping is its sonar's, unless a topic names another.
  *
  *  With `parameter_services` the node has the properties of all tasks as parameters: see ParameterServer.hpp.
  *
- *  Configure joins the domain and announces the node. Sending waits for no reader: one that is more than `depth`
- *  messages behind misses some. What cannot be sent, or what its message cannot hold, is dropped and counted: a warning
- *  tells it at the first and then every ten seconds at most, and a notice tells the sum at the end. Stages: `send`, of
- *  all topics of a sample. Latency is that of a sample's last topic, from its stamp until DDS has it. */
+ *  Configure joins the domain and announces the node. Sending does not wait for readers: a reader that is more than
+ *  `depth` messages behind misses some. A sample that cannot be sent, or does not fit its message, is dropped and
+ *  counted. A warning reports the first drop and then at most one every ten seconds; a notice reports the sum at the
+ *  end.
+ *
+ *  Stages: `send`, all topics of a sample. Latency is from the stamp of a sample until DDS has accepted its last
+ *  topic. */
 class PublisherTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -51,7 +54,7 @@ private:
     bool configureHook() override;
     void updateHook() override;
     void cleanupHook() override;
-    /** Where the frames of all pings sit. */
+    /** Returns the mounts of all frames of pings on the body. */
     ros::TFMessage mounts() const;
     void announceMounts(const std::string& topic);
     void takeFrequencies();
@@ -60,11 +63,11 @@ private:
     std::optional<Node> node_;
     std::optional<Writer> tf_static_;
     std::optional<ParameterServer> parameters_;
-    uint64_t known_changes_ = 0;  ///< Of the tasks' records, when the frequencies were taken.
+    uint64_t known_changes_ = 0;  ///< The count of changes in the tasks' records when the frequencies were read.
     framework::DynamicInputs<types::SampleTypes, Topics> inputs_{this};
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder for deployments. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::dds

@@ -14,28 +14,28 @@
 namespace insonify::dds {
 namespace {
 
-/** One sample on its way, shared by Cyclone's caches. */
+/** A sample in transit, shared by Cyclone's caches. */
 struct Serdata : ddsi_serdata {
     explicit Serdata(size_t most) : bytes(new char[most]), capacity(most) {}
-    std::unique_ptr<char[]> bytes;  ///< Not set to zero beforehand.
+    std::unique_ptr<char[]> bytes;  ///< Uninitialised.
     size_t capacity;
     uint32_t size = 0;
 };
 
-/** What is known of a type beyond Cyclone's part. */
+/** Cyclone's type together with our data. */
 struct RawType : ddsi_sertype {
-    size_t largest = 0;  ///< Message from the network that is taken [B].
+    size_t largest = 0;  ///< Max message accepted from the network [B].
 };
 
 const RawType& own(const ddsi_sertype* type) { return *static_cast<const RawType*>(type); }
 
-/** Samples that are used again, so that a steady stream allocates nothing; for any thread. */
+/** Reuses samples, so that a steady stream allocates nothing. Thread-safe. */
 class Pool {
 public:
-    /** Null without memory: no exception may cross Cyclone, which drops such a sample. */
+    /** Returns null if memory is exhausted: no exception may leave through Cyclone, which drops such a sample. */
     Serdata* take(const ddsi_sertype* type, ddsi_serdata_kind kind, size_t size) noexcept try {
         Serdata* data = find(size);
-        if (!data) data = new Serdata(size + size / 8 + 64);  // the next may be longer by a little
+        if (!data) data = new Serdata(size + size / 8 + 64);  // the next message may be slightly longer
         ddsi_serdata_init(data, type, kind);
         data->size = static_cast<uint32_t>(size);
         return data;
@@ -49,7 +49,8 @@ public:
     }
 
 private:
-    /** One that is large enough, and not by far too large. It has 3 bytes more, as the wire is read by whole words. */
+    /** Returns a sample that is large enough but not much too large. It has 3 extra bytes, because the wire is read in
+     *  whole words. */
     Serdata* find(size_t size) {
         std::lock_guard lock(mutex_);
         const auto fits = [&](const auto& data) {
@@ -139,7 +140,7 @@ ddsi_serdata* refer(const ddsi_serdata* data, size_t offset, size_t size, ddsrt_
     return ddsi_serdata_ref(data);
 }
 
-// Where there is no key, all samples are of one instance, which has no content.
+// Without a key, all samples belong to one instance without content.
 ddsi_serdata* untyped(const ddsi_sertype* type) { return copyOf(type, SDK_KEY, nullptr, 0); }
 
 const ddsi_serdata_ops data_operations = {
@@ -169,7 +170,7 @@ const ddsi_serdata_ops data_operations = {
     .from_iox_buffer = nullptr,
 };
 
-// Samples are the caller's vectors; Cyclone is never asked to lend its own.
+// Samples are the caller's vectors; Cyclone never lends its own.
 const ddsi_sertype_ops type_operations = {
     .version = ddsi_sertype_v0,
     .arg = nullptr,

@@ -7,17 +7,16 @@ struct ddsi_sertype;
 
 namespace insonify::dds {
 
-/** A sample as Cyclone is given it and gives it back: the bytes of one message, encapsulation first. */
+/** A sample for Cyclone DDS: the bytes of one message, beginning with the encapsulation. */
 using Bytes = std::vector<char>;
 
 inline constexpr size_t any_size = std::numeric_limits<size_t>::max();
 
-/** A type of that DDS name whose samples are Bytes, for dds_create_topic_sertype.
+/** Returns a type with the given DDS name whose samples are Bytes, for dds_create_topic_sertype.
  *
- *  It has no key and tells the network nothing of its members, so peers match it by its name alone, as ROS 2 does: a
- *  peer of a newer Cyclone that asks an 0.10 process for the members crashes it. Bytes that come from the network are
- *  handed on as they are, but for messages of more than `largest` bytes, which are empty then; who takes them checks
- *  them. */
+ *  It has no key and does not announce its members, so peers match it by name alone, as in ROS 2. Otherwise a peer of a
+ *  newer Cyclone that asks a process with 0.10 for the members crashes it. Bytes from the network are passed on
+ *  unchecked; the receiver checks them. Messages of more than `largest` bytes are passed on empty. */
 ddsi_sertype* makeRawType(const std::string& type_name, size_t largest = any_size);
 
 }  // namespace insonify::dds

@@ -8,13 +8,13 @@
 
 namespace insonify::dds {
 
-/** What is read. */
+/** The message type of the poses. */
 enum class PoseType { Odometry, PoseStamped };
 
-/** Where a pose has its time from. */
+/** The source of a pose's time. */
 enum class StampFrom { Message, Arrival };
 
-/** One topic's messages as one port's samples. */
+/** One output port with the poses of one topic. */
 struct TopicIn {
     std::string topic, port = "pose";
     PoseType type = PoseType::Odometry;
@@ -25,7 +25,7 @@ struct TopicIn {
         using types::Field;
         visit(Field{"topic", "", "as in ROS: /auv/odometry"}, self.topic);
         visit(Field{"port", "", "output port that connections lead from"}, self.port);
-        visit(Field{"type", "", "of ROS's message"}, self.type);
+        visit(Field{"type", "", "type of the ROS message"}, self.type);
         visit(Field{"stamp", "",
                     "time of a pose: its message's, or that of its arrival, for a sender whose clock is not ours (a "
                     "simulator's, a bag's)"},
@@ -42,13 +42,13 @@ struct SubscriberConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"topics", "", "what is read"}, self.topics);
-        visit(Field{"reliability", "", "reliable hears no best-effort writers"}, self.reliability);
+        visit(Field{"topics", "", "topics that are read"}, self.topics);
+        visit(Field{"reliability", "", "reliable receives nothing from best-effort writers"}, self.reliability);
         visit(Field{"depth", "1", "messages that wait to be taken; 1: only the newest is handed on", 1, 1000},
               self.depth);
         NodeConfig::describe(self.node, visit);
     }
-    /** With the names that topics and the node have in a deployment. @param task that reads */
+    /** Resolves the names of topics and the node in a deployment. @param task the name of the reading task */
     SubscriberConfig namedBy(const types::RosNames& names, const std::string& task) const {
         SubscriberConfig named = *this;
         named.node.node_name = node.nameIn(names, task);

@@ -6,8 +6,8 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int max_at_once = 1000;           ///< Messages of a topic in one cycle: then others have their turn.
-constexpr types::Time patience{3'000'000};  ///< For the first pose of a topic, before its absence is reported.
+constexpr int max_at_once = 1000;           ///< Messages of a topic in one cycle; then the other topics follow.
+constexpr types::Time patience{3'000'000};  ///< Time for the first pose of a topic before its absence is reported.
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::vector<std::string> SubscriberTask::notices() const {
 bool SubscriberTask::configureHook() {
     drops_.reset();
     odd_.reset();
-    outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // of a configure that failed
+    outputs_.forEach([](auto& output) { output.kept.subscription.reset(); });  // remains of a failed configure
     const SubscriberConfig named = config->namedBy(environment().names, name());
     refuseWrong(named);
     node_.emplace(domainId(named.node.domain), named.node.node_name, static_cast<size_t>(named.node.gid_size));

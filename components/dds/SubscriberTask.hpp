@@ -19,18 +19,18 @@ struct Topic {
 
 /** Reads poses that ROS 2 nodes send; for `schedule: realtime`.
  *
- *  Ports: an output for each of `topics`: body in the world, Rock's axes (x north, y west, z up), whatever
- *  `world_frame` they come in. A message that arrives wakes the task; with a period, it takes what has come by then.
- *  With `depth: 1` the newest wins, else all are handed on in order as long as the task keeps up.
+ *  Ports: an output for each of `topics`: body in the world, in Rock's axes (x north, y west, z up), converted from
+ *  `world_frame`. A message that arrives wakes the task; with a period, each cycle takes the messages that have
+ *  arrived. With `depth: 1` only the newest is passed on, else all in order as long as the task keeps up.
  *
- *  A message that is none, a pose that is not finite or a stamp that goes back is dropped and counted: a warning tells
- *  it at the first and then every ten seconds at most, and a notice tells the sum at the end. A topic without a pose
- *  for three seconds after the start is reported once, with what the domain has in its place. Refused in lockstep,
- *  whose time does not wait for messages. */
+ *  A message that cannot be decoded, a pose that is not finite or a stamp that goes back is dropped and counted. A
+ *  warning reports the first drop and then at most one every ten seconds; a notice reports the sum at the end. A topic
+ *  without a pose for three seconds after the start is reported once, together with similar topics of the domain.
+ *  Refused in lockstep, whose time does not wait for messages. */
 class SubscriberTask final : public pose::ListenerTask<SubscriberConfig, &SubscriberConfig::topics, Topic> {
 public:
     using ListenerTask::ListenerTask;
-    ~SubscriberTask() override;  // the subscriptions end before their node
+    ~SubscriberTask() override;  // ends the subscriptions before their node
 
     std::vector<std::string> notices() const override;
     double wakeAfter() const override { return 1; }

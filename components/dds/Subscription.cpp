@@ -15,20 +15,20 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int min_depth = 64;         ///< So that nonsense does not push a good message out before either is looked at.
-constexpr int max_drops = 64;         ///< In one take: who sends nonsense without end holds up nobody.
-constexpr size_t largest = 64 << 10;  ///< Of a message: 712 bytes and two names [B].
-constexpr types::Time max_ahead{1'000'000};    ///< Of the clock, for a stamp; a sonar refuses snapshots beyond it, too.
-constexpr types::Time max_silence{1'000'000};  ///< After which a sender's clock may have been set back.
+constexpr int min_depth = 64;         ///< So that invalid messages do not displace a valid message before it is read.
+constexpr int max_drops = 64;         ///< In one take(): a sender of invalid messages blocks nobody.
+constexpr size_t largest = 64 << 10;  ///< A message's 712 bytes and two names, rounded up [B].
+constexpr types::Time max_ahead{1'000'000};    ///< Max stamp ahead of the clock; a sonar refuses later snapshots too.
+constexpr types::Time max_silence{1'000'000};  ///< After it, a sender's clock may have been set back.
 
 const char* typeOf(PoseType type) {
     return type == PoseType::Odometry ? ros::Odometry::type_name : ros::PoseStamped::type_name;
 }
 
-/** "odometry" of "rt/auv/odometry". */
+/** Returns "odometry" for "rt/auv/odometry". */
 std::string_view lastWord(std::string_view topic) { return topic.substr(topic.rfind('/') + 1); }
 
-/** At most five topics like the one that is read: of its type, or with its last word. */
+/** Returns at most five similar topics: of the same type, or with the same last word. */
 std::string similarTopics(const std::vector<Published>& all, const std::string& topic, const std::string& type) {
     constexpr size_t max_named = 5;
     constexpr std::string_view prefix = "rt";
@@ -80,10 +80,10 @@ void Subscription::decode(types::Pose& pose) {
 
 std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose) {
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
-    if (pose.time - now > max_ahead) return "the stamp lies more than a second ahead of the clock";
+    if (pose.time - now > max_ahead) return "the stamp is more than a second ahead of the clock";
     if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
     const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
-    return sender_lives ? "the stamp lies before that of the pose before" : "";
+    return sender_lives ? "the stamp is before that of the previous pose" : "";
 }
 
 std::string Subscription::absence(Node& node) const {
@@ -117,7 +117,7 @@ bool Subscription::take(types::Time now, types::Pose& pose) {
             if (stamped_on_arrival_ || read_.time == types::Time{}) read_.time = now;
             diagnostic = diagnosticOf(now, read_);
         } catch (const ros::CdrError& error) {
-            diagnostic = bytes_.empty() ? "empty, or larger than any message of its type" : "no message of its type";
+            diagnostic = bytes_.empty() ? "empty, or larger than any message of its type" : "not a message of its type";
             detail = std::string(": ") + error.what();
         }
         if (diagnostic.empty()) {

@@ -11,32 +11,36 @@
 
 namespace insonify::dds {
 
-/** The poses of one topic, those that can be used. */
+/** Decodes and checks the poses of one topic. */
 class Subscription {
 public:
-    /** `arrived` as in Reader. Messages that are dropped are counted in `drops`, poses whose quaternion is not near
-     * unit length in `odd`; both outlive this. */
+    /** @param arrived as in Reader
+     *  @param drops counts the messages that are dropped
+     *  @param odd counts the poses whose quaternion is not near unit length
+     *  Both counters must outlive this. */
     Subscription(Node& node, const SubscriberConfig& config, const TopicIn& topic, types::ThrottledWarning& drops,
                  types::ThrottledWarning& odd, std::function<void()> arrived);
 
-    /** The next good pose, in Rock's axes, its orientation of unit length; stamped `now` where the message has no
-     *  stamp, or by the topic's choice. False, and `pose` as it was: there is none, or 64 before it had to be dropped:
-     *  then more() tells. Dropped are: bytes that are no such message or are more than any is (64 KiB), poses that are
-     *  not finite or without an orientation, and stamps more than a second ahead of `now` or before that of the pose
-     *  before, until its sender is gone or nothing good came for a second: a bag that is played in a loop and a
-     *  simulator that was reset begin anew. */
+    /** Takes the next valid pose, in Rock's axes, with an orientation of unit length. The time is `now` if the message
+     *  has no stamp, or if the topic is configured so.
+     *
+     *  Returns false and leaves `pose` unchanged if there is none, or after 64 drops; more() then returns true. Bytes
+     *  that cannot be decoded or exceed 64 KiB are dropped, and poses that are not finite or without an orientation.
+     *  Stamps are dropped if they are more than a second ahead of `now` or before that of the previous pose. Earlier
+     *  stamps are accepted once the sender is gone or no valid pose arrived for a second: a looped bag and a reset
+     *  simulator begin anew. */
     bool take(types::Time now, types::Pose& pose);
 
-    /** Why no pose comes, by what the domain's discovery knows: no writer, one of another type or quality, or silent
-     * ones. */
+    /** Returns why no pose arrives, from the domain's discovery: no writer, a writer of another type or quality, or
+     *  writers that send nothing valid. */
     std::string absence(Node& node) const;
 
-    /** Whether take() gave up before it had looked at all. */
+    /** Returns whether take() stopped before it had looked at all messages. */
     bool more() const { return more_; }
 
 private:
     void decode(types::Pose& pose);
-    /** Empty for a pose that can be used. */
+    /** Returns an empty text for a valid pose. */
     std::string diagnosticOf(types::Time now, const types::Pose& pose);
 
     std::string topic_;
@@ -48,7 +52,7 @@ private:
     types::Pose read_;
     ros::Odometry odometry_;
     ros::PoseStamped stamped_;
-    ros::Time stamp_;  ///< Of the message that was read last, with its nanoseconds.
+    ros::Time stamp_;  ///< Stamp of the last message, with its nanoseconds.
     uint64_t sender_ = 0, newest_sender_ = 0;
     types::Time newest_, newest_came_;
     bool stamped_on_arrival_, more_ = false;

@@ -8,7 +8,7 @@
 
 namespace insonify::dds {
 
-/** One frame's place as one port's poses. */
+/** One output port with the poses of one frame. */
 struct FrameOut {
     std::string port = "pose";
     std::string frame_id = "base_link";
@@ -17,7 +17,7 @@ struct FrameOut {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"port", "", "output port that connections lead from"}, self.port);
-        visit(Field{"frame_id", "", "of the body"}, self.frame_id);
+        visit(Field{"frame_id", "", "frame of the body"}, self.frame_id);
     }
 };
 
@@ -29,24 +29,25 @@ struct TransformConfig {
     StampFrom stamp = StampFrom::Message;
     Reliability reliability = Reliability::BestEffort;
 
-    TransformConfig();  // not in line: g++ 12 takes its texts for uninitialized
+    TransformConfig();  // not inline: g++ 12 warns that its texts are uninitialized
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"frames", "", "of which poses are told"}, self.frames);
-        visit(Field{"world_frame_id", "", "the frame that they are told in; its axes are those of world_frame"},
+        visit(Field{"frames", "", "frames whose poses are published"}, self.frames);
+        visit(Field{"world_frame_id", "", "reference frame of the poses; its axes are those of world_frame"},
               self.world_frame_id);
-        visit(Field{"topic", "", "of what moves"}, self.topic);
-        visit(Field{"static_topic", "", "of what does not"}, self.static_topic);
+        visit(Field{"topic", "", "topic of moving transforms"}, self.topic);
+        visit(Field{"static_topic", "", "topic of static transforms"}, self.static_topic);
         visit(Field{"stamp", "",
                     "time of a transform: its message's, or that of its arrival, for a sender whose clock is not ours "
                     "(a simulator's, a bag's)"},
               self.stamp);
-        visit(Field{"reliability", "", "of what moves; reliable hears no best-effort writers"}, self.reliability);
+        visit(Field{"reliability", "", "of moving transforms; reliable receives nothing from best-effort writers"},
+              self.reliability);
         NodeConfig::describe(self.node, visit);
     }
-    /** With the names that topics, frames and the node have in a deployment. @param task that reads */
+    /** Resolves the names of topics, frames and the node in a deployment. @param task the name of the reading task */
     TransformConfig namedBy(const types::RosNames& names, const std::string& task) const;
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -7,10 +7,10 @@
 namespace insonify::dds {
 namespace {
 
-constexpr int max_transforms_at_once = 1000;      ///< Messages of a topic in one cycle: then others have their turn.
-constexpr int depth = 1000;                       ///< Messages of all senders that wait to be taken.
+constexpr int max_transforms_at_once = 1000;      ///< Messages of a topic in one cycle; then the other topic follows.
+constexpr int depth = 1000;                       ///< Queued messages of all senders.
 constexpr size_t largest = size_t{1} << 20;       ///< Size of a message [B].
-constexpr types::Time chain_patience{2'000'000};  ///< With a chain that is not whole.
+constexpr types::Time chain_patience{2'000'000};  ///< Before an incomplete chain is reported.
 constexpr types::Time static_period{100'000};
 
 std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, const Quality& quality,
@@ -21,7 +21,7 @@ std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, co
     return made;
 }
 
-/** In our axes. */
+/** Converts a pose to Rock's axes. */
 types::Pose poseOf(const ros::TransformTree::Placed& placed, const std::string& frame_id,
                    const TransformConfig& config) {
     ros::PoseStamped message;
@@ -74,7 +74,7 @@ bool TransformTask::configureHook() {
     drops_.reset();
     gaps_.reset();
     tree_ = {};
-    moving_.reset();  // of a configure that failed
+    moving_.reset();  // remains of a failed configure
     fixed_.reset();
     const TransformConfig named = config->namedBy(environment().names, name());
     refuseWrong(named);
@@ -109,8 +109,8 @@ void TransformTask::take(Reader& reader, bool is_static) {
             ros::decode(std::span<const char>(bytes_), message_);
             for (const ros::TransformStamped& transform : message_.transforms) add(transform, is_static);
         } catch (const ros::CdrError& error) {
-            drops_.add(bytes_.empty() ? "a message that is empty, or larger than any of its type"
-                                      : "a message that is none of its type",
+            drops_.add(bytes_.empty() ? "a message is empty or larger than any message of its type"
+                                      : "a message is not of its type",
                        std::string(": ") + error.what());
         }
     if (taken == max_transforms_at_once) arrived_.raise();

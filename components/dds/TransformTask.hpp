@@ -14,30 +14,30 @@
 
 namespace insonify::dds {
 
-/** What an output of TransformTask tells of. */
+/** The state of an output of TransformTask. */
 template <class Sample>
 struct Told {
     std::string frame_id;
-    types::Time time, written;           ///< Of the last pose: its chain's, and by the clock.
-    uint64_t life = 0;                   ///< Of the tree, then.
-    std::optional<types::Time> lacking;  ///< Since when there is none.
+    types::Time time, written;           ///< Time of the last pose: its chain's, and the clock's.
+    uint64_t life = 0;                   ///< TransformTree::lives() at the last pose.
+    std::optional<types::Time> lacking;  ///< Since when there is no pose.
 };
 
-/** Tells where frames of ROS 2's tf lie in the world; for `schedule: realtime`.
+/** Publishes the poses of frames of ROS 2's tf in the world; for `schedule: realtime`.
  *
- *  Ports: an output for each of `frames`: body in the world, Rock's axes (x north, y west, z up). There is a pose for
- *  the newest time at which the whole chain of transforms between the frame and `world_frame_id` is known, each time
- *  that messages were taken; of a chain that is static, ten a second, stamped now. Velocities are unknown.
+ *  Ports: an output for each of `frames`: body in the world, Rock's axes (x north, y west, z up). Each time that
+ *  messages arrive, the pose is that of the newest time at which all transforms between the frame and `world_frame_id`
+ *  are known. A chain of static transforms gives ten poses a second, stamped now. Velocities are unknown.
  *
- *  What is refused of the messages is counted: a warning tells it at the first and then every ten seconds at most, a
- *  notice the sum at the end. A chain that leads nowhere, goes in a circle or is cut is told so once that has gone on
- * for two seconds. Refused in lockstep, whose time does not wait for messages. */
+ *  Refused transforms are counted. A warning reports the first and then at most one every ten seconds; a notice reports
+ *  the sum at the end. A chain that leads nowhere, is circular or is interrupted is reported once, after two seconds.
+ *  Refused in lockstep, whose time does not wait for messages. */
 class TransformTask final : public pose::ListenerTask<TransformConfig, &TransformConfig::frames, Told> {
 public:
     using ListenerTask::ListenerTask;
 
     std::vector<std::string> notices() const override;
-    /** For chains that are static. */
+    /** Wakes up for static chains. */
     double wakeAfter() const override { return 0.1; }
 
 private:

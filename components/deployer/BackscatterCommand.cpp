@@ -24,7 +24,7 @@ namespace {
 
 constexpr double mackenzie_db = -27;      // ACOUSTICS.md 3.2
 constexpr double water_density = 1025;    ///< [kg/m^3]
-constexpr double min_strength_db = -300;  ///< That is printed of what scatters nothing.
+constexpr double min_strength_db = -300;  ///< Printed for zero backscatter.
 
 struct BackscatterOptions {
     std::string sediment, material;
@@ -34,13 +34,13 @@ struct BackscatterOptions {
     bool json = false;
 };
 
-/** What scatters: its name, law and numbers, and sigma_b over the grazing angle [rad]. */
+/** A scatterer: its name, law and parameters, and sigma_b over the grazing angle [rad]. */
 struct Scatterer {
     std::string name, law;
     Json parameters;
     std::function<double(double)> section;
-    std::vector<std::string> outside = {};            ///< What lies outside of the law's validity.
-    std::function<double(double)> diffuse = {};       ///< Its section without the lobe, where it has one.
+    std::vector<std::string> outside = {};            ///< Parameters outside of the law's validity.
+    std::function<double(double)> diffuse = {};       ///< The diffuse part without the lobe, if there is a lobe.
     std::map<std::string, std::string> sources = {};  ///< Author and year of the parameters.
 };
 
@@ -123,7 +123,7 @@ Json parametersOf(const acoustics::MatterProperties& matter) {
             {"correlation_length_um", 1e6 * matter.length}};
 }
 
-/** A rough solid, or Lambert's law where the relief is not known. */
+/** Returns a rough solid, or Lambert's law where the relief is unknown. */
 Scatterer ofMaterial(const BackscatterOptions& options) {
     const auto& names = types::EnumNames<acoustics::Matter>::names;
     const std::string& name = options.material;
@@ -153,7 +153,7 @@ Scatterer scattererOf(const BackscatterOptions& options) {
     return ofMaterial(options);
 }
 
-/** 10 log10 of sigma_b; below 0.001 deg that of 0.001 deg, so that Lambert's law is no level of nothing. */
+/** Returns 10 log10 of sigma_b. Below 0.001 deg it is the value at 0.001 deg, so that Lambert's law stays finite. */
 double strengthDb(const std::function<double(double)>& section, double grazing_deg) {
     const double strength = section(std::max(grazing_deg, 0.001) * std::numbers::pi / 180);
     return std::max(min_strength_db, 10 * std::log10(strength));

@@ -18,7 +18,7 @@ namespace {
 
 using types::degrees, types::radians;
 
-/** Two-way levels along one axis, and what a data sheet tells of them. */
+/** Two-way levels along one axis, and their data-sheet figures. */
 struct Cut {
     std::vector<double> angle_deg, level_db;
     acoustics::CutShape shape;
@@ -30,7 +30,7 @@ struct Cut {
     }
 };
 
-/** Of a beam or an aperture that is a box. */
+/** Returns the cut of a beam or an aperture with a box pattern. */
 Cut boxOf(double low, double high) {
     Cut cut;
     cut.add(low, 1);
@@ -39,7 +39,7 @@ Cut boxOf(double low, double high) {
     return cut;
 }
 
-/** Of the beam that looks most nearly ahead, at the azimuth cells, as they are weighed. */
+/** Returns the azimuth cut of the beam nearest to straight ahead, at the azimuth cells, as the cells are weighted. */
 Cut azimuthCut(const sonar::RenderPlan& plan) {
     const auto nearer = [](const sonar::Beam& a, const sonar::Beam& b) {
         return std::abs(a.centre) < std::abs(b.centre);
@@ -56,7 +56,7 @@ Cut azimuthCut(const sonar::RenderPlan& plan) {
     return cut;
 }
 
-/** By which the rows of samples are weighed. */
+/** Returns the weights of the rows of samples. */
 Cut elevationCut(const sonar::RenderPlan& plan) {
     const double half = radians(plan.sampled.beam_height_deg) / 2;
     if (!plan.directivity || !plan.directivity->hasElevation()) return boxOf(-half, half);

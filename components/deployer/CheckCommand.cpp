@@ -57,7 +57,7 @@ std::string activityText(const framework::ActivitySettings& activity) {
     return activity.periodic() ? fmt::format("every {} s", activity.period) : "on new samples";
 }
 
-/** Each task with what leaves it, writers before readers. */
+/** Prints each task with its outgoing connections, writers before readers. */
 void printGraph(framework::Deployment& deployment) {
     const framework::DeploymentSpec& spec = deployment.spec();
     fmt::print("{}: valid, {}, {} tasks, {} connections\n", spec.file, spec.lockstep ? "lockstep" : "realtime",

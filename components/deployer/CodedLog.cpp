@@ -17,7 +17,7 @@ bool areCodes(const types::Sonar& ping) {
     return std::ranges::all_of(ping.bins, [](float bin) { return bin >= 0 && bin <= 65535 && std::floor(bin) == bin; });
 }
 
-/** Pings of a stream; none where one of them is not of codes. */
+/** Returns the pings of a stream; none where a ping has bins that are not codes. */
 std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
     std::vector<types::Sonar> pings;
     for (const log::SampleRef& at : log.samples()) {
@@ -28,7 +28,7 @@ std::vector<types::Sonar> codesOf(log::Reader& log, size_t stream) {
     return pings;
 }
 
-/** The code of the receiver that writes a stream, as the log's own deployment has it. */
+/** Reads the code of the receiver that writes a stream from the log's own deployment. */
 void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded) {
     const std::string text = log.metadatum("insonify_deployment");
     if (text.empty()) return;
@@ -39,12 +39,12 @@ void takeLaw(const log::Reader& log, const std::string& stream, CodedLog& coded)
             dynamic_cast<const receiver::ReceiverTask*>(deployment.task(framework::splitPort(stream).first));
         if (!receiver || !receiver->config->code) return;
         coded.code = *receiver->config->code;
-        coded.law_known = text.find("law:") != std::string::npos;  // what an import does not know it does not write
-    } catch (const types::ConfigError&) {  // of a deployment whose files or libraries are elsewhere
+        coded.law_known = text.find("law:") != std::string::npos;  // an import omits what it does not know
+    } catch (const types::ConfigError&) {                          // the deployment's files or libraries are elsewhere
     }
 }
 
-/** Where the sonar was at each ping, as far as the log has it. */
+/** Reads the sonar's place at each ping, as far as the log has it. */
 void takePlaces(log::Reader& log, const log::Stream& pings, CodedLog& coded) {
     const LoggedTrack track(log, posesOfSonar(log), mountOf(meaningOf(log, pings)));
     const LoggedAltitudes altitudes(log);

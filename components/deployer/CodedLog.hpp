@@ -9,19 +9,19 @@
 
 namespace insonify::deployer {
 
-/** The pings of a log that a receiver gave out as codes, imported or recorded from a run. */
+/** The pings of a log, imported or recorded from a run, whose receiver output codes. */
 struct CodedLog {
     std::vector<types::Sonar> pings;
-    std::vector<types::Pose> sonars = {};  ///< The sonar at each ping; not usable: unknown.
+    std::vector<types::Pose> sonars = {};  ///< Poses of the sonar at the pings; an unusable pose is unknown.
     std::vector<double> altitudes = {};    ///< Above the bottom at each ping [m]; 0: unknown.
-    receiver::CodeConfig code = {};        ///< As far as the log states it.
-    bool law_known = false;                ///< Whether the log states the law of the codes.
+    receiver::CodeConfig code = {};        ///< As far as the log records it.
+    bool law_known = false;                ///< Whether the log records the law of the codes.
     double frequency_khz = 0;              ///< 0: unknown.
 };
 
-/** Reads the first stream of a log whose bins are all whole numbers from 0 to 65535, as codes are, with the poses and
- *  altitudes at its pings (LoggedTrack.hpp); none: the file is no log by its name. Throws types::ConfigError for a log
- * that cannot be read or has no such stream. */
+/** Reads the first stream of a log whose bins are all codes, that is whole numbers from 0 to 65535, with the poses and
+ *  altitudes at its pings (LoggedTrack.hpp). Returns none if the file name is not that of a log. Throws
+ *  types::ConfigError for a log that cannot be read or has no such stream. */
 std::optional<CodedLog> codedLog(const std::filesystem::path& file);
 
 }  // namespace insonify::deployer

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int done = 0, failed = 1, bad_input = 2;
 
-/** Names of the commands, or of the options, that may stand after `command`. */
+/** Names of the commands, or of the options, that may follow `command`. */
 std::vector<std::string> namesAfter(const CLI::App& command, bool of_options) {
     std::vector<std::string> names;
     for (const CLI::App* each : command.get_subcommands([](const CLI::App*) { return true; }))
@@ -29,7 +29,8 @@ std::vector<std::string> namesAfter(const CLI::App& command, bool of_options) {
     return names;
 }
 
-/** "did you mean run?" for the first word that is no command or option where one is wanted; empty when none is near. */
+/** Returns "did you mean run?" for the first word that should be a command or option but is not; empty: no similar
+ *  name. */
 std::string meantWord(const CLI::App& app, int argc, char** argv) {
     const CLI::App* command = &app;
     for (int i = 1; i < argc; ++i) {
@@ -48,7 +49,7 @@ std::string meantWord(const CLI::App& app, int argc, char** argv) {
 int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {  // also how --help and --version end, with code 0
+    } catch (const CLI::ParseError& error) {  // --help and --version also end here, with code 0
         if (app.exit(error, std::cout, std::cerr) == 0) return done;
         if (const std::string near = meantWord(app, argc, argv); !near.empty()) fmt::print(stderr, "{}\n", near);
         return bad_input;
@@ -56,13 +57,13 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     return action();
 }
 
-/** Component libraries with commands: that of their name, and another one. */
+/** Component libraries with commands: the library named like its command, and one with another name. */
 struct LibraryCommands {
     const char *library, *other;
 };
 constexpr LibraryCommands commands_of_libraries[] = {{"dataset", nullptr}, {"device", nullptr}, {"study", "fit"}};
 
-/** Answers with what to install, whatever stands after the command. */
+/** Adds a command that prints what to install, for any arguments. */
 void addAbsent(CLI::App& app, Action& action, const std::string& name, const std::string& library) {
     CLI::App* command =
         app.add_subcommand(name, std::string(loader::findComponent(library)->gives) + " (not installed)");
@@ -72,8 +73,9 @@ void addAbsent(CLI::App& app, Action& action, const std::string& name, const std
     });
 }
 
-/** Adds the commands of libraries, for a first word that is none of the core's: of all, since help, completion and the
- *  answer to a wrong word name them. One that cannot be loaded is a notice, and an error for its own command alone. */
+/** Adds the commands of libraries, for a first word that is not a command of the core. Adds those of all libraries,
+ *  because help, completion and suggestions list them. A library that cannot be loaded is a notice, and an error only
+ *  for its own command. */
 void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) {
     for (const auto& [name, other] : commands_of_libraries) {
         if (!loader::isPresent(name)) {
@@ -90,7 +92,7 @@ void addLibraryCommands(CLI::App& app, Action& action, const std::string& word) 
     }
 }
 
-/** Whether a command line needs none but the core's commands. */
+/** Whether the core's commands suffice for a command line. */
 bool isOfCore(const CLI::App& app, const std::string& word) {
     static constexpr std::string_view of_all[] = {"completion", "man"};
     return word == "--version" ||
@@ -111,13 +113,13 @@ int guarded(CLI::App& app, Action& action, int argc, char** argv) {
     }
 }
 
-/** Results that could not be written are no results. */
+/** Results that could not be written are an error. */
 bool flushed() { return std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout); }
 
 }  // namespace
 
 int runCommandLine(int argc, char** argv) {
-    CLI::App app{"What an imaging sonar would hear, from a 3-D scene, in real time", "insonify"};
+    CLI::App app{"Simulates imaging sonars in real time, from a 3-D scene", "insonify"};
     app.set_version_flag("--version", INSONIFY_VERSION);
     app.require_subcommand(1);
     Action action;

@@ -7,13 +7,13 @@
 
 namespace insonify::deployer {
 
-/** The `insonify` command. Results go to stdout, diagnostics to stderr; nothing is thrown.
- *  Exit code: 0 done; 1 failed while running; 2 wrong usage, file or configuration. */
+/** Runs the `insonify` command. Results are printed to stdout, diagnostics to stderr; nothing is thrown. Exit code: 0
+ *  done; 1 failed while running; 2 wrong usage, file or configuration. */
 int runCommandLine(int argc, char** argv);
 
 using command::Action;
 
-// Each adds one command with its options to `app`; parsing that command sets `action`.
+// Each function adds one command with its options to `app`; parsing that command sets `action`.
 void addRunCommand(CLI::App& app, Action& action);
 void addCheckCommand(CLI::App& app, Action& action);
 void addPlanCommand(CLI::App& app, Action& action);

@@ -1,4 +1,4 @@
-// insonify completion bash|zsh, and insonify man: both from the commands as they are.
+// insonify completion bash|zsh, and insonify man: both generated from the present commands.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -25,7 +25,7 @@ std::vector<std::string> flags(const CLI::App& app) {
     return names;
 }
 
-/** Words that may follow a command besides files. */
+/** Words other than files that may follow a command. */
 std::vector<std::string> wordsAfter(const std::string& command) {
     std::vector<std::string> words;
     if (command == " describe") {
@@ -39,7 +39,7 @@ std::vector<std::string> wordsAfter(const std::string& command) {
     return words;
 }
 
-/** One case of the script for a command, and those of its subcommands. `path`: "", " log", " log info". */
+/** Returns the script's case for a command, and those of its subcommands. `path`: "", " log", " log info". */
 std::string cases(const CLI::App& app, const std::string& path) {
     std::vector<std::string> words = subcommands(app);
     const bool asks_for_one_more = app.get_require_subcommand_min() > 0;
@@ -51,8 +51,8 @@ std::string cases(const CLI::App& app, const std::string& path) {
     return text;
 }
 
-/** The command so far is the words that are subcommands. Zsh runs the script as well, where `path` is a variable of the
- *  shell and offsets need a dollar. */
+/** The command so far consists of the words that are subcommands. Zsh runs the script as well; there `path` is a
+ *  variable of the shell and offsets need a dollar. */
 std::string bashCompletion(const CLI::App& app) {
     return R"(_insonify() {
     local i word command="" words="" files="" current="${COMP_WORDS[COMP_CWORD]}" typed
@@ -129,7 +129,7 @@ int printMan(const CLI::App& app) {
     for (const std::string& name : subcommands(app)) printManCommand(*app.get_subcommand(name), name);
     fmt::print(
         ".SH EXIT STATUS\n0: done. 1: failed while running. 2: wrong usage, file or configuration.\n"
-        ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device that draws: a number, software or auto.\n"
+        ".SH ENVIRONMENT\n.TP\n.B INSONIFY_EGL_DEVICE\nThe device for rasterisation: a number, software or auto.\n"
         ".TP\n.B INSONIFY_MODEL_PATH, GAZEBO_MODEL_PATH, SDF_PATH, GZ_SIM_RESOURCE_PATH, "
         "IGN_GAZEBO_RESOURCE_PATH\nFolders in which the models of a world are looked "
         "for.\n");

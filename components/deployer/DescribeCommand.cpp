@@ -22,7 +22,7 @@ namespace {
 using framework::PropertyInfo;
 using framework::TaskState;
 
-/** Numbers and switches as such, the rest as text, nothing for what is absent unless given. */
+/** Numbers, booleans and lists unchanged, other values as text; null without a default. */
 Json defaultOf(const PropertyInfo& property) {
     if (property.default_value.empty()) return nullptr;
     const Json value = Json::parse(property.default_value, nullptr, false);
@@ -42,7 +42,7 @@ Json portJson(const framework::PortBase& port, const char* direction) {
     return {{"name", port.name()}, {"direction", direction}, {"type", port.typeName()}, {"doc", port.doc()}};
 }
 
-/** One line a state of the life cycle that every task shares. */
+/** Returns one line for each state of the life cycle, which all tasks share. */
 std::vector<std::string> states() {
     std::vector<std::string> names;
     for (TaskState state : {TaskState::PreOperational, TaskState::Stopped, TaskState::Running, TaskState::RunTimeError,

@@ -63,7 +63,7 @@ private:
 
     log::Reader& log_;
     const log::Stream& stream_;
-    const bool logged_;  ///< They are pictures already.
+    const bool logged_;  ///< The stream's samples are pictures already.
     std::optional<output::FanImage> fan_;
     types::Sonar ping_;
     types::Image picture_;
@@ -78,7 +78,7 @@ bool isSideScan(const types::Sonar& ping) {
     return ping.beam_count == 2 && to(1) == 1 && to(-1) == 1;
 }
 
-/** The first ping of a stream; without beams where it has none. */
+/** Returns the first ping of a stream; without beams if the stream has none. */
 types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
     types::Sonar ping;
     if (log::holdsPings(stream) && stream.count > 0)
@@ -86,10 +86,11 @@ types::Sonar firstPing(log::Reader& log, const log::Stream& stream) {
     return ping;
 }
 
-/** Lines of a side-scan as waterfalls: a picture when one is full, when the settings change, and of the last lines. */
+/** Writes the lines of a side-scan as waterfalls: a picture whenever one is full or the settings change, and of the
+ *  last lines. */
 class Waterfalls {
 public:
-    /** @param altitudes of the lines, which are then along the ground; null: they are in slant range */
+    /** @param altitudes of the lines, which are then shown along the ground; null: in slant range */
     Waterfalls(const output::DisplayConfig& display, const LoggedAltitudes* altitudes, fs::path path)
         : image_(configOf(display, altitudes != nullptr)), altitudes_(altitudes), path_(std::move(path)) {}
 
@@ -111,7 +112,7 @@ private:
         if (along_ground) config.ground_range.emplace();
         return config;
     }
-    /** Adds the last line, whose picture is written when `ends`. */
+    /** Adds the last line, and writes the picture when `ends`. */
     void put(bool ends) {
         if (altitudes_) image_.setAltitude(altitudes_->nearestTo(last_.time));
         if (!ends) return image_.skip(last_);
@@ -125,7 +126,7 @@ private:
     const LoggedAltitudes* const altitudes_;
     fs::path path_;
     types::Sonar last_;
-    int lines_ = 0;  ///< Lines of this picture, with the last.
+    int lines_ = 0;  ///< Lines of this picture, including the last one.
     types::Image picture_;
     std::vector<fs::path> files_;
 };
@@ -169,7 +170,7 @@ namespace {
 
 // -- XTF --------------------------------------------------------------------------------------------------------------
 
-/** The stream of poses that is asked for, or the only one; null: there is none. */
+/** Returns the requested stream of poses, or the only one; null: there is none. */
 const log::Stream* posesOf(log::Reader& log, const std::string& asked) {
     if (!asked.empty()) {
         const log::Stream& poses = log.streams()[log.indexOf(asked)];
@@ -203,7 +204,7 @@ void exportXtf(log::Reader& log, const std::string& stream, const std::string& p
     const output::XtfFormat format{codes ? output::XtfSamples::Uint16 : output::XtfSamples::Float32,
                                    frequencyOf(meaning), to.filename().string()};
     const log::Stream* const placed = posesOf(log, poses);
-    if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no places\n", log.path().string());
+    if (!placed) fmt::print(stderr, "notice: {} holds no poses: the lines have no positions\n", log.path().string());
     const LoggedTrack track(log, placed, mountOf(meaning));
     const LoggedAltitudes altitudes(log);
     types::Sonar ping = firstPing(log, pings);

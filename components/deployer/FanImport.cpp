@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using framework::DeploymentSpec;
 using output::FanFile, output::FanFrame;
 
-/** What the file states of its tasks, for the metadata of a log without a deployment. */
+/** Returns what the file states of its tasks, for the metadata of a log without a deployment. */
 std::string fanTextOf(const FanFile& file) {
     const std::string law =
         file.dynamicRange() ? fmt::format(", law: log, dynamic_range_db: {}", *file.dynamicRange()) : "";
@@ -30,7 +30,7 @@ std::string fanTextOf(const FanFile& file) {
         FanFile::code_bits, law);
 }
 
-/** Properties with which the deployment's pings have the shape and the law of this one. */
+/** Returns properties that give the deployment's pings the shape and the law of this ping. */
 std::vector<std::string> fanPropertiesOf(const FanTasks& tasks, const FanFile& file, const FanFrame& frame) {
     const types::Sonar& ping = frame.ping;
     std::vector<std::string> all = tasks.propertiesOf(ping, ping.binStart(ping.bin_count),
@@ -46,7 +46,7 @@ std::vector<std::string> fanPropertiesOf(const FanTasks& tasks, const FanFile& f
     return all;
 }
 
-/** Writes the pings of a recording and where they were made. */
+/** Writes the pings of a recording and the poses at which they were made. */
 class FanLog {
 public:
     FanLog(RecordedLog& log, const FanTasks& tasks, FanFile& file, const FanFrame& first)
@@ -85,7 +85,7 @@ private:
     const FanTasks& tasks_;
     FanFile& file_;
     const types::Time begin_;
-    const bool has_poses_;  ///< The recording has them.
+    const bool has_poses_;  ///< The recording has poses.
 };
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace insonify::deployer {
 
-/** See importRecording: a recording of an ARIS or a Gemini. Throws types::ConfigError for a file without a ping. */
+/** Imports a recording of an ARIS or a Gemini, see importRecording. Throws types::ConfigError for a file without a
+ *  ping. */
 Imported importFan(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
                    const std::filesystem::path& to);
 

@@ -44,7 +44,7 @@ std::vector<std::string> FanTasks::propertiesOf(const types::Sonar& ping, double
     if (speed_of_sound > 0) set("speed_of_sound", speed_of_sound);
     if (frequency_khz > 0) set("frequency_khz", frequency_khz);
     set("bearings_deg", bearings);
-    if (!has_beam_width)  // as wide as they are apart
+    if (!has_beam_width)  // as wide as their spacing
         set("beam_width_deg", types::degrees(types::BeamArc(ping).width));
     return all;
 }

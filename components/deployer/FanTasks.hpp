@@ -9,26 +9,28 @@
 
 namespace insonify::deployer {
 
-/** The tasks of a deployment in whose place a forward-looking sonar was recorded; without a deployment their names. */
+/** The tasks of a deployment that correspond to a recorded forward-looking sonar; without a deployment, default
+ *  names. */
 struct FanTasks {
     std::string sonar = "sonar", receiver = "receiver";
-    double largest_code = 0;  ///< Of the receiver.
+    double largest_code = 0;  ///< The receiver's max code.
     bool has_beam_width = false;
-    std::vector<std::pair<std::string, pose::Trajectory>> trajectories{};  ///< By the streams of their poses.
+    std::vector<std::pair<std::string, pose::Trajectory>> trajectories{};  ///< By the stream of their poses.
 
-    /** Throws types::ConfigError for a deployment without a forward-looking sonar whose receiver gives out codes. */
+    /** Throws types::ConfigError for a deployment without a forward-looking sonar whose receiver outputs codes. */
     static FanTasks of(const framework::DeploymentSpec& spec);
-    /** Properties with which the sonar's pings have the shape of this one, as `--set` takes them.
-     *  @param range the end of the last bin [m] @param speed_of_sound [m/s], 0: unknown @param frequency_khz 0: unknown
-     */
+    /** Returns properties, as `--set` takes them, that give the sonar's pings the shape of this ping.
+     *  @param range the end of the last bin [m]
+     *  @param speed_of_sound [m/s], 0: unknown
+     *  @param frequency_khz 0: unknown */
     std::vector<std::string> propertiesOf(const types::Sonar& ping, double range, double speed_of_sound,
                                           double frequency_khz) const;
 };
 
-/** Throws types::ConfigError for a deployment without trajectories, for a recording that has no poses. */
+/** Throws types::ConfigError when the recording has no poses and the deployment has no trajectories. */
 void refuseWithoutTrajectory(const FanTasks& tasks, const std::string& deployment);
 
-/** The ping with codes by the receiver's largest in place of the device's. */
+/** Returns the ping with its codes multiplied by `factor`: from the device's max code to the receiver's. */
 types::Sonar withCodesTimes(double factor, types::Sonar ping);
 
 }  // namespace insonify::deployer

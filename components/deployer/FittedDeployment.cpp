@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/** The task of a type upstream of another; throws types::ConfigError where there is none. */
+/** Returns the task of a type upstream of another; throws types::ConfigError where there is none. */
 template <class Task>
 const Task& upstreamTask(const framework::Deployment& deployment, const std::string& of, const char* type) {
     for (const std::string& name : upstreamOf({of}, deployment))
@@ -28,7 +28,7 @@ const Task& upstreamTask(const framework::Deployment& deployment, const std::str
                              std::string("has no ") + type + " before it, which a fit needs");
 }
 
-/** Writes YAML by lines: blocks down to the properties of tasks, values behind them in one line with their comments. */
+/** Writes YAML line by line: blocks down to the properties of tasks, then values in one line with their comments. */
 class CommentedYaml {
 public:
     CommentedYaml(std::map<std::string, std::string> comments, fs::path from, fs::path to)
@@ -60,7 +60,7 @@ private:
             out_ << " " << flow(value) << "\n";
         }
     }
-    /** Tasks and their properties are blocks; so is what has comments below it. */
+    /** Whether to write a block: tasks and their properties, and everything with comments below it. */
     bool hasComments(const std::string& here, int depth) const {
         if (depth < 3) return true;
         const auto below = comments_.lower_bound(here + ".");
@@ -79,7 +79,7 @@ private:
                 line += c;
         return text.find('"') == std::string::npos ? line : text;
     }
-    /** The value with names of files that are there named from the new folder. */
+    /** Returns the value with the names of existing files relative to the new folder. */
     YAML::Node located(const YAML::Node& value) const {
         if (value.IsMap()) {
             YAML::Node copy(YAML::NodeType::Map);
@@ -103,7 +103,7 @@ private:
     std::ostringstream out_;
 };
 
-/** Puts a value into a block, making the blocks above it. */
+/** Sets a value in a block, making the blocks above it. */
 void put(YAML::Node block, const std::string& path, const YAML::Node& value) {
     const auto [name, below] = framework::splitPort(path);
     if (!below.empty()) {

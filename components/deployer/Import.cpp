@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using framework::DeploymentSpec;
 using output::SideScanLine;
 
-/** What has to be known of a side-scan's recording before its first ping is written. */
+/** Facts about a side-scan's recording that are needed before its first ping is written. */
 struct SideScanCodes {
     bool whole = true;  ///< All samples are whole numbers of at most 16 bits.
     float largest = 0;
@@ -46,7 +46,7 @@ SideScanCodes codesIn(const fs::path& recording) {
     return codes;
 }
 
-/** What the file states of its tasks, for the metadata of a log without a deployment. */
+/** Returns what the file states of its tasks, for the metadata of a log without a deployment. */
 std::string sideScanText(const SideScanCodes& codes) {
     return fmt::format(
         "# A side-scan as its recording states it.\n"

@@ -9,25 +9,25 @@
 
 namespace insonify::deployer {
 
-/** What became of a recording. */
+/** The result of importing a recording. */
 struct Imported {
     size_t pings = 0;
-    std::string stream;                     ///< The pings'.
-    std::vector<std::string> properties{};  ///< That the recording states of its first ping, as `--set` takes them.
-    size_t changes = 0;                     ///< How often they changed after it.
-    std::vector<std::string> notices{};     ///< What was passed over or is unknown.
+    std::string stream;                     ///< The stream of pings.
+    std::vector<std::string> properties{};  ///< For the first ping, as the recording states them, for `--set`.
+    size_t changes = 0;                     ///< How often the properties changed after the first ping.
+    std::vector<std::string> notices{};     ///< What was skipped or is unknown.
 };
 
-/** Makes a log of the recording of a device, which its content identifies: an XTF or JSF file of a side-scan, an .aris
- *  file, a Gemini's .glf file, or an Oculus'. The log has every ping, and next to it properties.0.log has the settings
- * of sonar and receiver, as they were at each ping. So it is exported, replayed, rendered again and scored like our
- * own.
+/** Makes a log of a device's recording, whose content identifies it: an XTF or JSF file of a side-scan, an .aris file,
+ *  a Gemini's .glf file, or an Oculus recording. The log has every ping, and can be exported and replayed like a
+ *  recorded run.
  *
- *  With a deployment, pings are those of its receiver that gives out codes, and poses go by its names. Without, tasks
- *  are called sonar, receiver and vehicle. A side-scan's file has its own poses and altitudes, and an ARIS' may have
- * them; a Gemini's and an Oculus' have none, and get those of the deployment's trajectories. A capture, which has no
- * times, starts at 1 s.
- *  @throws types::ConfigError for what is no recording, and for a deployment that lacks such tasks */
+ *  With a deployment, the pings become those of its receiver that outputs codes, and poses use its names. Next to the
+ *  log, properties.0.log has the settings of sonar and receiver at each ping, so that the log can be rendered again and
+ *  scored. Without a deployment, the tasks are called sonar, receiver and vehicle. A side-scan's file has its own poses
+ * and altitudes, an .aris file may have poses and altitudes. Gemini and Oculus recordings have none, and get those of
+ * the deployment's trajectories. A network capture without times starts at 1 s.
+ *  @throws types::ConfigError if the file is not a recording, or the deployment lacks these tasks */
 Imported importRecording(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
                          const std::filesystem::path& to);
 

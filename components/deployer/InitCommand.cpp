@@ -18,13 +18,13 @@ struct NewFile {
     std::string_view bytes;
 };
 
-/** A diagnostic for each file that is there already: nothing is overwritten. */
+/** Throws a diagnostic for each file that exists already: nothing is overwritten. */
 void refuseOverwriting(const std::vector<NewFile>& files) {
     types::Diagnostics diagnostics;
     for (const NewFile& file : files)
         if (fs::symlink_status(file.path).type() != fs::file_type::not_found)
             diagnostics.push_back(
-                {"", "is there already; init overwrites nothing, name another folder", file.path.string()});
+                {"", "exists already; init overwrites nothing, name another folder", file.path.string()});
     if (!diagnostics.empty()) throw types::ConfigError(std::move(diagnostics));
 }
 

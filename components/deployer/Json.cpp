@@ -36,7 +36,7 @@ Json toJson(const YAML::Node& node) {
     const bool is_quoted = node.Tag() == "!";
     const Json value = is_quoted ? Json() : Json::parse(node.Scalar(), nullptr, false);
     if (value.is_number() || value.is_boolean()) return value;
-    double number = 0;  // as YAML has it: .5, +3
+    double number = 0;  // as in YAML: .5, +3
     const bool is_number = !is_quoted && YAML::convert<double>::decode(node, number) && std::isfinite(number);
     return is_number ? Json(number) : Json(node.Scalar());
 }
@@ -45,7 +45,7 @@ std::string qualityText(const types::Plan& plan) {
     const std::string error =
         plan.predicted_error >= 0 ? fmt::format(", predicted error {:.2g}", plan.predicted_error) : "";
     const std::string device = plan.device.empty() ? "" : fmt::format(", on {}", plan.device);
-    return fmt::format("quality: {} rows, {} columns per beam, {} slabs{}{}", plan.rows, plan.columns_per_beam,
+    return fmt::format("quality: {} rows, {} columns per beam, {} frusta{}{}", plan.rows, plan.columns_per_beam,
                        plan.slabs, error, device);
 }
 

@@ -15,14 +15,14 @@ using command::text;
 using command::write;
 
 Json toJson(const types::Diagnostic& diagnostic);
-/** Numbers, truth values, texts, lists and blocks of YAML as such; null for what is not there. */
+/** Converts numbers, booleans, texts, lists and blocks of YAML; an undefined node becomes null. */
 Json toJson(const YAML::Node& node);
 Json toJson(const std::vector<types::Omission>& omitted);
-/** One line on the samples that a sonar takes. */
+/** Returns one line on the sonar's samples per ping. */
 std::string qualityText(const types::Plan& plan);
 
-/** `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`; an error
- *  that is not predicted is null. */
+/** Returns `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`;
+ *  an error without a prediction is null. */
 Json toJson(const types::Plan& plan);
 
 }  // namespace insonify::deployer

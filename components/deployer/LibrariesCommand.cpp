@@ -1,4 +1,4 @@
-// insonify libraries: which component libraries are here, or what a deployment lacks
+// insonify libraries: the available component libraries, or those that a deployment lacks
 #include <fmt/core.h>
 
 #include <memory>
@@ -13,7 +13,7 @@
 namespace insonify::deployer {
 namespace {
 
-/** Adds the libraries that properties need: for the file that a text names, or for a block. */
+/** Adds the libraries that properties need: for a file named in a text, or for a block. */
 void addNeeded(const YAML::Node& node, std::set<std::string>& names) {
     if (node.IsSequence())
         for (const auto& element : node) addNeeded(element, names);
@@ -46,7 +46,7 @@ int listLacking(const std::string& deployment) {
     return 0;
 }
 
-/** Those of Insonify, there or not, and those of users. */
+/** Lists the libraries of Insonify, installed or not, and those of users. */
 int list(bool json) {
     Json all = Json::array();
     std::set<std::string> names;
@@ -63,7 +63,7 @@ int list(bool json) {
         const char* const state = !loader::isPresent(name) ? "absent" : wrong.empty() ? "here" : "broken";
         all.push_back({{"name", name},
                        {"state", state},
-                       {"gives", known ? known->gives : "components of yours"},
+                       {"gives", known ? known->gives : "your own components"},
                        {"wrong", wrong}});
         if (!json)
             fmt::print("{:10} {:8} {}\n", name, state, wrong.empty() ? all.back()["gives"].get<std::string>() : wrong);
@@ -81,7 +81,7 @@ void addLibrariesCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "libraries", "Lists the component libraries; or those that a deployment needs and are not here");
+        "libraries", "Lists the component libraries; or those that a deployment needs and that are missing");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment");
     command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] {

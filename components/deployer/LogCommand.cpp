@@ -44,15 +44,15 @@ void printTable(const log::Reader& log) {
                    log::readable(s.last), s.rate());
 }
 
-/** A log, and a notice where it cannot be read to its end. */
+/** Opens a log, and prints a notice where it cannot be read to its end. */
 std::unique_ptr<log::Reader> opened(const std::string& file) {
     auto log = log::openLog(file);
     if (!log->complete()) fmt::print(stderr, "notice: {}: {}\n", file, log->diagnostic());
     return log;
 }
 
-/** What each stream carries: the deployment, the seed and the plan, which the streams of a run share, and what its
- *  numbers mean. */
+/** Returns the metadata of each stream: the deployment, the seed and the plan, which the streams of a run share, and
+ *  the meaning of the stream's numbers. */
 Json metadataJson(const log::Reader& log) {
     Json all = Json::object();
     for (const log::Stream& stream : log.streams())
@@ -61,7 +61,7 @@ Json metadataJson(const log::Reader& log) {
 }
 
 void printMetadata(const log::Reader& log) {
-    std::set<std::pair<std::string, std::string>> told;  // once for all streams that have the same
+    std::set<std::pair<std::string, std::string>> told;  // once for all streams with the same metadata
     for (const log::Stream& stream : log.streams()) {
         fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
         for (const auto& [key, value] : stream.metadata)
@@ -83,7 +83,7 @@ int logInfo(const std::string& file, bool json, bool metadata) {
     return 0;
 }
 
-/** Makes the folder of a file that is to be written. */
+/** Makes the folder of an output file. */
 void makeFolderOf(const fs::path& to) {
     if (!to.has_parent_path()) return;
     std::error_code failed;
@@ -92,7 +92,7 @@ void makeFolderOf(const fs::path& to) {
         throw types::ConfigError(to.parent_path(), "--to", "is no folder and cannot be made: " + failed.message());
 }
 
-/** Pings as text are some ten times as large as they are in the log, and slow to read. */
+/** Pings as text are about ten times as large as in the log, and slow to read. */
 void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
     constexpr double line = 40, told_from = 1e8;  // [B]
     const size_t index = log.indexOf(stream);
@@ -107,7 +107,7 @@ void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
                    to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
 }
 
-/** The files that were written. */
+/** Returns the written files. */
 std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const std::string& poses, const fs::path& to,
                                bool along_ground) {
     const log::Stream& exported = log.streams()[log.indexOf(name)];
@@ -162,10 +162,10 @@ int logExport(const Options& options) {
     return 0;
 }
 
-/** "10:20", either number may be missing: the numbers from 10 on, without 20. */
+/** Parses "10:20": the numbers from 10 on, without 20; either number may be missing. */
 void readRange(const std::string& text, log::Selection& selection) {
     const auto fail = [&] {
-        throw types::ConfigError("", "--samples", "is " + text + "; it may be FIRST:LAST, either may be left out");
+        throw types::ConfigError("", "--samples", "is " + text + "; it may be FIRST:LAST, either may be omitted");
     };
     const size_t colon = text.find(':');
     if (colon == text.npos) fail();
@@ -177,7 +177,7 @@ void readRange(const std::string& text, log::Selection& selection) {
     number(std::string_view(text).substr(colon + 1), selection.last);
 }
 
-/** First and last stamp of the files of a log; none: they hold no sample. */
+/** Returns the first and last stamp of the files of a log; none: the files have no sample. */
 std::optional<std::pair<types::Time, types::Time>> spanOf(const std::vector<std::string>& files) {
     std::optional<std::pair<types::Time, types::Time>> span;
     for (const std::string& file : files) {
@@ -213,17 +213,16 @@ int copyTo(const std::string& to, const std::vector<fs::path>& files, const log:
     return 0;
 }
 
-/** A copy without a sample is an error, which leaves no file. */
+/** Throws for a copy without a sample, which leaves no file. */
 void refuseNothing(const Options& options) {
     if (!log::openLog(options.to)->samples().empty()) return;
     fs::remove(options.to);
     fs::remove(fs::path(options.to).replace_extension(".idx"));
     const auto span = spanOf(options.files);
-    throw types::ConfigError(
-        options.files.front(), "",
-        span ? fmt::format("none of its samples is in the part that is asked for; they go from {} to {}",
-                           log::readable(span->first), log::readable(span->second))
-             : "holds no sample");
+    throw types::ConfigError(options.files.front(), "",
+                             span ? fmt::format("none of its samples is in the requested part; they are from {} to {}",
+                                                log::readable(span->first), log::readable(span->second))
+                                  : "holds no sample");
 }
 
 int logCut(const Options& options) {
@@ -273,7 +272,7 @@ int logCheck(const Options& options) {
     return 0;
 }
 
-/** How messages of an MCAP file look, by the names of the logger's properties. */
+/** Adds the options for the messages of an MCAP file, named as the logger's properties. */
 template <class E>
 void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
     std::map<std::string, E> names;
@@ -287,7 +286,7 @@ void addMcapOptions(CLI::App& command, log::McapConfig& config) {
     addEnum(command, "--world-frame", "of poses in an MCAP file (default: enu)", config.world_frame);
 }
 
-/** A subcommand of `log` that does `work`. */
+/** Adds a subcommand of `log` that does `work`. */
 template <class Work>
 CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& options, const char* name,
               const char* help, Work work) {
@@ -300,7 +299,7 @@ CLI::App* add(CLI::App& log, Action& action, const std::shared_ptr<Options>& opt
 
 void addLogCommand(CLI::App& app, Action& action) {
     const auto options = std::make_shared<Options>();
-    CLI::App* log = app.add_subcommand("log", "Looks into a log, cuts and mends it")->require_subcommand(1);
+    CLI::App* log = app.add_subcommand("log", "Inspects, cuts and repairs logs")->require_subcommand(1);
 
     CLI::App* info = add(*log, action, options, "info", "Streams, types, counts, time span and rate",
                          [](const Options& asked) { return logInfo(asked.file, asked.json, asked.metadata); });
@@ -339,14 +338,14 @@ void addLogCommand(CLI::App& app, Action& action) {
         ->add_option("FILE", options->file,
                      "FILE.xtf, FILE.jsf, FILE.aris, FILE.glf, FILE.oculus, or messages of an Oculus as captured")
         ->required();
-    import->add_option(
-        "DEPLOYMENT", options->deployment,
-        "whose receiver's pings they become; one without poses gets those of its trajectories; none: the "
-        "log has what the file has");
+    import->add_option("DEPLOYMENT", options->deployment,
+                       "whose receiver's pings they become; a recording without poses gets its trajectories; none: the "
+                       "log has only the file's data");
     import->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
-    CLI::App* repair = add(*log, action, options, "repair",
-                           "Copies what is whole of a damaged log into a new one, and tells what was lost", logRepair);
+    CLI::App* repair =
+        add(*log, action, options, "repair",
+            "Copies the intact parts of a damaged log into a new log, and reports what was lost", logRepair);
     repair->add_option("--to", options->to, "the new log, NAME.0.log or NAME.0.mcap")->required();
 
     CLI::App* check =

@@ -11,34 +11,34 @@
 
 namespace insonify::deployer {
 
-/** Heights above the bottom over time: the only stream of ranges of a log. */
+/** Altitudes above the bottom over time, from the only stream of ranges of a log. */
 class LoggedAltitudes {
 public:
     explicit LoggedAltitudes(log::Reader& log);
 
     bool areKnown() const { return !all_.empty(); }
-    /** At this time, the last before, or before all of them the first; not finite: unknown. */
+    /** Returns the altitude at this time or the last before; before the first, the first. Not finite: unknown. */
     double nearestTo(types::Time time) const;
-    /** At this time or the last before; 0: unknown. */
+    /** Returns the altitude at this time or the last before; 0: unknown. */
     double at(types::Time time) const;
 
 private:
     std::map<types::Time, double> all_;
 };
 
-/** The only stream of poses of a log, or the only one that a sonar writes; null: there is none, or several. */
+/** Returns the only stream of poses of a log, or the only one that a sonar writes. Null: there is none, or several. */
 const log::Stream* posesOfSonar(const log::Reader& log);
 
-/** The mount in the meaning of a stream of pings (StreamMeaning.hpp). */
+/** Returns the mount in the metadata of a stream of pings (StreamMeaning.hpp). */
 types::Mount mountOf(const Json& meaning);
 
-/** The sonar in the world over time. */
+/** The sonar's pose in the world over time. */
 class LoggedTrack {
 public:
-    /** @param poses of the sonar, or of its vehicle, which the mount takes to the sonar; null: none is known */
+    /** @param poses of the sonar, or of its vehicle, which the mount transforms to the sonar; null: unknown */
     LoggedTrack(log::Reader& log, const log::Stream* poses, const types::Mount& mount);
 
-    /** At this time or the last before; none is known before the first. */
+    /** Returns the pose at this time or the last before; unknown before the first. */
     types::Pose at(types::Time time) const;
 
 private:

@@ -34,7 +34,7 @@ std::set<std::string> upstreamOfSonars(const Deployment& deployment) {
     return upstreamOf(std::move(names), deployment);
 }
 
-/** Reads what a port gives out, for who is no task of the deployment. */
+/** Reads the samples of a port from outside of the deployment. */
 struct PingReader : framework::TaskContext {
     using TaskContext::TaskContext;
     framework::InputPort<types::SonarPtr> ping{this, "ping", "the newest"};
@@ -70,7 +70,7 @@ std::vector<std::string> pinnedRays(const DeploymentSpec& spec) {
 receiver::ReceiverTask& codingReceiverOf(const Deployment& deployment, const std::string& file) {
     if (auto* found = codingReceiver(deployment)) return *found;
     throw types::ConfigError(file, "tasks",
-                             "has no receiver that gives out codes, as instruments do: give one output: code");
+                             "has no receiver that outputs codes, as instruments do: set output: code for one");
 }
 
 std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& deployment) {
@@ -84,7 +84,7 @@ std::set<std::string> upstreamOf(std::set<std::string> names, const Deployment& 
 
 DeploymentSpec restrictedTo(DeploymentSpec spec, const std::set<std::string>& kept) {
     const auto keeps = [&](const std::string& port) { return kept.contains(framework::splitPort(port).first); };
-    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    std::vector<framework::TaskSpec> tasks;  // a new list: assigning a YAML node would change its other references
     for (const auto& task : spec.tasks)
         if (kept.contains(task.name)) tasks.push_back(task);
     std::vector<framework::ConnectionSpec> connections;
@@ -143,7 +143,7 @@ PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count, const
     PingsAt found{.pings = {}, .code = receiver.config->code.value_or(receiver::CodeConfig{})};
     for (types::SonarPtr received; reader.ping.readNew(received);) found.pings.push_back(*received);
     if (found.pings.empty())
-        throw types::ConfigError(file, "tasks." + receiver.name(), "gave out no ping: nothing to study");
+        throw types::ConfigError(file, "tasks." + receiver.name(), "wrote no ping: nothing to study");
     return found;
 }
 

@@ -13,42 +13,43 @@
 
 namespace insonify::deployer {
 
-/** The deployment down to its sonars, in lockstep so that it takes no longer than it must. */
+/** Returns the deployment reduced to its sonars and their inputs, in lockstep, so that it runs at full speed. */
 framework::DeploymentSpec pipelineOf(framework::DeploymentSpec spec, framework::Registry& registry);
 
-/** The deployment with these tasks alone, in lockstep. */
+/** Returns the deployment with only these tasks, in lockstep. */
 framework::DeploymentSpec restrictedTo(framework::DeploymentSpec spec, const std::set<std::string>& kept);
 
-/** Tasks of the deployment that write pings or read them. */
+/** Returns the tasks of the deployment that write or read pings. */
 std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework::Registry& registry);
 
-/** These tasks and all from which they hear, directly or not. */
+/** Returns these tasks and all tasks that their inputs come from, directly or not. */
 std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
 
 /** Returns assignments (`--set`) that make pings independent of whether a machine has a graphics card: sonars that
- *  would choose between rays and pictures cast rays. A `visibility` that is written stays. Sonars that need pictures
- *  (`published`, `deposit: gpu`) draw on every machine. */
+ *  would choose between ray tracing and rasterisation trace rays. A `visibility` other than `auto` stays. Sonars that
+ *  need rasterisation (`published`, `deposit: gpu`) rasterise on every machine. */
 std::vector<std::string> pinnedRays(const framework::DeploymentSpec& spec);
 
-/** The first receiver that gives out codes. Throws types::ConfigError where there is none. */
+/** Returns the first receiver that outputs codes. Throws types::ConfigError where there is none. */
 receiver::ReceiverTask& codingReceiverOf(const framework::Deployment& deployment, const std::string& file);
 
-/** A sonar as it is configured, of the quality that it has chosen, and what it renders in one ping. */
+/** A configured sonar, with the quality that it has chosen, and its input of one ping. */
 struct SonarAt {
     sonar::SonarConfig config;
     types::Snapshot snapshot;
 };
-/** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
+/** Returns the first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is
+ *  none. */
 SonarAt sonarAt(const std::string& file, uint64_t ping);
 
-/** Pings that a receiver gave out as codes, and by what law. */
+/** Pings that a receiver output as codes, and the law of the codes. */
 struct PingsAt {
     std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
 };
-/** At most `count` pings from number `ping` on, as the first receiver that gives out codes has them. Throws
- *  types::ConfigError where there is none. @param settings properties that differ from the file's, as `--set` takes
- *  them */
+/** Returns at most `count` pings from number `ping` on, from the first receiver that outputs codes. Throws
+ *  types::ConfigError where there is no such receiver.
+ *  @param settings properties that differ from the file's, as `--set` takes them */
 PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count,
                      const std::vector<std::string>& settings = {});
 

@@ -26,12 +26,12 @@ void printPlan(const std::string& task, const types::Plan& plan) {
     for (const std::string& feature : plan.features) fmt::print("  compiled: {}\n", feature);
     for (const std::string& pass : plan.passes) fmt::print("  run: {}\n", pass);
     for (const types::Omission& omission : plan.omitted)
-        fmt::print("  left out: {}: {}\n", omission.name, omission.reason);
+        fmt::print("  omitted: {}: {}\n", omission.name, omission.reason);
     for (const std::string& notice : plan.notices) fmt::print("  notice: {}\n", notice);
 }
 
-/** Stands for those who read what a sonar's bins show: they have no part in the run, and what is computed depends on
- *  them. */
+/** A substitute for the readers of a sonar's truth: they are not part of the run, but what the sonar computes depends
+ *  on them. */
 struct TruthReader : framework::TaskContext {
     using TaskContext::TaskContext;
     framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "the newest"};
@@ -51,7 +51,7 @@ void connectAsIn(const Deployment& whole, sonar::PingTask& sonar, TruthReader& r
 
 using Plans = std::vector<std::pair<std::string, const types::Plan*>>;
 
-/** One sonar: its plan; several: plans by task. */
+/** Prints the plan of the only sonar, or the plans by task. */
 void printJson(const Plans& plans) {
     if (plans.size() == 1) return print(toJson(*plans.front().second));
     Json all = Json::object();
@@ -91,7 +91,7 @@ void addPlanCommand(CLI::App& app, Action& action) {
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("plan", "Tells what is compiled and run, what is left out, and why");
+    CLI::App* command = app.add_subcommand("plan", "Prints what is compiled and run, what is omitted, and why");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_flag("--json", options->json, "for machines");
     command->callback([options, &action] {

@@ -15,8 +15,9 @@
 
 namespace insonify::deployer {
 
-/** The names of the sonar of a deployment whose pings were recorded, and of the receiver that hears it: the first that
- *  gives out codes. Throws types::ConfigError where there is no such receiver, or it hears no Sonar. */
+/** Returns the names of the deployment's sonar whose pings were recorded, and of its receiver: the first receiver that
+ *  outputs codes. Throws types::ConfigError where there is no such receiver, or none of its inputs come from a
+ *  Sonar. */
 template <class Sonar>
 std::pair<std::string, std::string> recordedTasksOf(const framework::Deployment& deployment, const char* sonar_type) {
     const std::string& file = deployment.spec().file;
@@ -24,20 +25,20 @@ std::pair<std::string, std::string> recordedTasksOf(const framework::Deployment&
     for (const std::string& name : upstreamOf({receiver}, deployment))
         if (dynamic_cast<const Sonar*>(deployment.task(name))) return {name, receiver};
     throw types::ConfigError(file, "tasks." + receiver,
-                             std::string("hears no ") + sonar_type + ", whose pings are recorded");
+                             std::string("has no input from a ") + sonar_type + ", whose pings are recorded");
 }
 
-/** The log that becomes of a recording. With a deployment properties.0.log is next to it, as the logger of a run writes
- *  it; without one nothing is known of its tasks but what the recording states. */
+/** The log made from a recording. With a deployment, properties.0.log is next to it, as the logger of a run writes it.
+ *  Without one, only what the recording states is known of the tasks. */
 class RecordedLog {
 public:
-    /** @param text a deployment for the metadata, where none is given */
+    /** @param text a deployment for the metadata, if `spec` is none */
     RecordedLog(const std::filesystem::path& recording, std::optional<framework::DeploymentSpec> spec,
                 const std::string& text, std::filesystem::path to);
 
-    /** Sets properties that hold from the ping at `from` on, as `--set` takes them; before the first sample. Those that
-     *  change are written anew. Throws types::ConfigError for what the tasks do not take, and where a file cannot be
-     *  made. */
+    /** Sets properties, as `--set` takes them, that apply from the ping at `from` on; before the first sample. Changed
+     *  properties are written again. Throws types::ConfigError for properties that the tasks refuse, and where a file
+     *  cannot be made. */
     void set(const std::vector<std::string>& properties, types::Time from);
     /** Adds a sample to "task.port". @param more metadata of the stream */
     template <class T>
@@ -50,7 +51,7 @@ public:
 
     /** Properties of the first ping. */
     const std::vector<std::string>& properties() const { return first_; }
-    /** How often they changed after it. */
+    /** How often the properties changed after the first ping. */
     size_t changes() const { return changes_; }
 
 private:
@@ -63,7 +64,7 @@ private:
     framework::Registry registry_ = coreTasks();
     std::unique_ptr<log::Writer> log_;
     std::optional<logger::PropertyLog> properties_;
-    log::Metadata run_;  ///< All streams have these.
+    log::Metadata run_;  ///< Shared by all streams.
     std::map<std::string, size_t> streams_;
     std::vector<std::string> first_, last_;
     size_t changes_ = 0;

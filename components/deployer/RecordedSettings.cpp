@@ -30,10 +30,10 @@ namespace {
 using framework::Deployment;
 using framework::splitPort;
 
-/** What a log tells of the quality of a sonar. */
+/** A log's record of the quality of a sonar. */
 struct Recorded {
     int rows = 0, columns_per_beam = 0;
-    bool chosen = false;  ///< Not given; with neither, the placeholder before the first ping that hears anything.
+    bool chosen = false;  ///< False: given, or the placeholder before the first ping with an echo.
 };
 
 std::optional<Recorded> recordedQuality(const log::Reader& log, const std::string& sonar) {
@@ -48,7 +48,7 @@ std::optional<Recorded> recordedQuality(const log::Reader& log, const std::strin
                                plan["predicted_error"].as<double>(-1) >= 0};
         } catch (const YAML::Exception& error) {
             throw types::ConfigError(log.path(), stream.name,
-                                     std::string("its insonify_plan is none: ") + error.what());
+                                     std::string("its insonify_plan is invalid: ") + error.what());
         }
     }
     return quality;
@@ -61,10 +61,10 @@ std::string textOf(const types::PropertyValue& value) {
     return is_block ? *text : Json(*text).dump();
 }
 
-/** What takes a property out, for a setter and `--set`. */
+/** Removes a property, for a setter and `--set`. */
 const std::string absent = "null";
 
-/** The values that a property had, as setters take them, and when the logger came to know of each. */
+/** The values of a property, as setters take them, and the time at which the logger received each. */
 using Values = std::vector<std::pair<types::Time, std::string>>;
 
 Values valuesOf(log::Reader& log, const log::Stream& stream) {
@@ -82,7 +82,7 @@ Values valuesOf(log::Reader& log, const log::Stream& stream) {
     return values;
 }
 
-/** Adds when the property was taken out, see logger::PropertyLog. */
+/** Adds the time at which the property was removed, see logger::PropertyLog. */
 void addAbsence(log::Reader& log, const std::string& property, Values& values) {
     const log::Stream* const presence = log.find(property + ".present");
     if (!presence || !presence->holds<bool>()) return;
@@ -92,7 +92,7 @@ void addAbsence(log::Reader& log, const std::string& property, Values& values) {
     std::ranges::stable_sort(values, {}, &Values::value_type::first);
 }
 
-/** When the logger first heard of each task. */
+/** Returns the time of the logger's first record of each task. */
 std::map<std::string, types::Time> firstRecords(const log::Reader& properties) {
     std::map<std::string, types::Time> first;
     for (const log::SampleRef& at : properties.samples())
@@ -100,13 +100,13 @@ std::map<std::string, types::Time> firstRecords(const log::Reader& properties) {
     return first;
 }
 
-/** The properties of a log of properties that belong to `tasks`, by "task.property". */
+/** Returns the properties in a property log that belong to `tasks`, by "task.property". */
 std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::string>& tasks) {
     std::map<std::string, Values> histories;
     const auto first = firstRecords(log);
     for (const log::Stream& stream : log.streams()) {
         const auto [task, property] = splitPort(stream.name);
-        const bool is_alias = stream.metadata.contains("insonify_alias_of");  // what it leads to is there as well
+        const bool is_alias = stream.metadata.contains("insonify_alias_of");  // the log has its target as well
         if (!tasks.contains(task) || is_alias || property.find('.') != std::string::npos) continue;
         Values values = valuesOf(log, stream);
         if (values.empty()) continue;
@@ -117,7 +117,7 @@ std::map<std::string, Values> historiesOf(log::Reader& log, const std::set<std::
     return histories;
 }
 
-/** Pings of a stream, by which a moment of the logger becomes one of the world. */
+/** The pings of a stream, which convert a time of the logger to a time of the world. */
 struct Pings {
     std::string driver;
     std::vector<log::SampleRef> samples;
@@ -126,14 +126,14 @@ struct Pings {
         : driver(poseStreamOf(log, writer)) {
         log.forEachRef(stream, [&](const log::SampleRef& at) { samples.push_back(at); });
     }
-    /** Stamp of the first ping that came with or after what the logger learnt then; none came. */
+    /** Returns the stamp of the first ping that the logger received at or after this time; none: there is none. */
     std::optional<types::Time> firstFrom(types::Time received) const {
         const auto first = std::ranges::lower_bound(samples, received, {}, &log::SampleRef::received);
         return first == samples.end() ? std::nullopt : std::optional(first->time);
     }
 };
 
-/** What became of a property, for pings after `start`. */
+/** Returns the history of a property, for pings after `start`. */
 RecordedProperty historyOf(const std::string& property, const Values& values, const Pings& pings, types::Time start) {
     RecordedProperty found{
         splitPort(property).first, splitPort(property).second, values.front().second, pings.driver, {}};
@@ -148,7 +148,7 @@ RecordedProperty historyOf(const std::string& property, const Values& values, co
     return found;
 }
 
-/** Properties of the tasks as they are, as setters take them, by "task.property". */
+/** Returns the tasks' present properties, as setters take them, by "task.property". */
 std::map<std::string, std::string> propertiesOf(Deployment& deployment, const std::set<std::string>& tasks) {
     std::map<std::string, std::string> all;
     for (const types::TaskRecord& task : deployment.environment().records())
@@ -157,7 +157,7 @@ std::map<std::string, std::string> propertiesOf(Deployment& deployment, const st
     return all;
 }
 
-/** The properties of the tasks that may be absent, as "task.property". */
+/** Returns the tasks' properties that may be absent, as "task.property". */
 std::set<std::string> optionalsOf(const Deployment& deployment, const std::set<std::string>& tasks) {
     std::set<std::string> optionals;
     for (const auto& task : deployment.tasks())
@@ -174,9 +174,9 @@ bool names(const std::vector<std::string>& set, const std::string& property) {
     });
 }
 
-/** Collects what differs. */
+/** Collects the differences. */
 struct Settings : RecordedSettings {
-    std::set<std::string> settled;  ///< "task.property" to which nothing is to be added.
+    std::set<std::string> settled;  ///< "task.property" that needs no further assignment.
 
     void addQualities(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
         for (const auto& task : deployment.tasks()) {
@@ -199,9 +199,9 @@ struct Settings : RecordedSettings {
         const auto file = propertyLogOf(log);
         if (!file) {
             if (!log.metadatum("insonify_deployment").empty())
-                notice =
-                    log.path().string() +
-                    " has no properties.0.log of its run beside it: what was set by --set or while it ran is not known";
+                notice = log.path().string() +
+                         " has no properties.0.log of its run next to it: what was set by --set or during the run is "
+                         "not known";
             addFormerSeeds(deployment, log, tasks);
             return;
         }
@@ -221,7 +221,7 @@ struct Settings : RecordedSettings {
         }
         takeOut(deployment, present, histories);
     }
-    /** Logs without a version are from before each task had a seed of its own: one that was not given was 1. */
+    /** Logs without a version were written before each task had its own seed: the default was 1. */
     void addFormerSeeds(const Deployment& deployment, const log::Reader& log, const std::set<std::string>& tasks) {
         if (!log.metadatum("insonify_version").empty() || recordedSeed(log).value_or(1) != 0) return;
         for (const std::string& property : optionalsOf(deployment, tasks)) {
@@ -230,7 +230,7 @@ struct Settings : RecordedSettings {
             if (name == "seed" && !is_written && !settled.contains(property)) assignments.push_back(property + "=1");
         }
     }
-    /** Takes out what the deployment has and the log never had, of tasks that the log knows. */
+    /** Removes properties that the deployment has and the log never had, for tasks that the log knows. */
     void takeOut(const Deployment& deployment, const std::map<std::string, std::string>& present,
                  const std::map<std::string, Values>& histories) {
         std::set<std::string> known;
@@ -241,7 +241,7 @@ struct Settings : RecordedSettings {
     }
 };
 
-/** Of each task from which pings of the log come, those of the first stream that it has to do with. */
+/** Returns the pings of the first stream that depends on a task, for each task that contributes to the log's pings. */
 std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework::DeploymentSpec& spec,
                                          const Deployment& deployment) {
     std::map<std::string, Pings> pings;

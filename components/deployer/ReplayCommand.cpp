@@ -33,7 +33,7 @@ void notice(const Asked& options, const std::string& text) {
     if (!options.quiet && !text.empty()) fmt::print(stderr, "notice: {}\n", text);
 }
 
-/** The log's own settings, below those of the user; gives what changed while it was recorded. */
+/** Applies the log's own settings, below the user's; returns the changes during the recording. */
 std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& options) {
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
@@ -49,14 +49,14 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& option
     return std::move(recorded.changed);
 }
 
-/** Which tasks do not run, since others would hear them. */
+/** Reports the tasks that do not run because they communicate outside. */
 void tellLeftOut(const framework::DeploymentSpec& spec, const Asked& options) {
     if (options.replay.outside) return;
     for (const std::string& task : outsideTasks(spec))
-        notice(options, task + " is left out, since it talks to others; --outside lets it run");
+        notice(options, task + " is omitted, because it communicates outside the deployment; --outside runs it");
 }
 
-/** Scores the log against what was rendered again, and tells. Gives the exit code. */
+/** Scores the log against the new rendering and prints the score. Returns the exit code. */
 int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
               const std::filesystem::path& folder) {
     const auto again = log::openLog(folder / rerendered_file);
@@ -75,7 +75,7 @@ int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t 
     return 1;
 }
 
-/** Waits for a line on stdin; at the end of stdin no longer. */
+/** Waits for a line on stdin; returns at the end of stdin. */
 std::string nextLine(const std::atomic<bool>& stop) {
     std::string line;
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -87,7 +87,7 @@ std::string nextLine(const std::atomic<bool>& stop) {
     return line;
 }
 
-/** Waits for a line that lets the next instant come, `seek S` that from another place; one that is refused does not. */
+/** Waits for a line that starts the next instant; `seek S` first moves to another time. A refused line is ignored. */
 void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& stop) {
     const std::string seek = "seek ";
     for (std::string line = nextLine(stop); line.starts_with(seek); line = nextLine(stop)) try {
@@ -98,7 +98,7 @@ void waitForStep(framework::Deployment& deployment, const std::atomic<bool>& sto
         }
 }
 
-/** What is done between two instants: properties follow the log, and `--step` waits. */
+/** Work between two instants: properties follow the log, and `--step` waits. */
 void followLog(Asked& options, std::vector<RecordedProperty> changed) {
     const auto live = std::make_shared<LiveSettings>(std::move(changed));
     std::function<void(framework::Deployment&, const framework::Progress&)> step;
@@ -150,19 +150,21 @@ void addReplayCommand(CLI::App& app, Action& action) {
     command->add_option("LOG", options->replay.log, "a pocolog or MCAP file")->required();
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file")->required();
     auto* pace = command->add_option("--pace", options->limits.pace,
-                                     "log seconds per second of the wall clock (default: as fast as it goes)");
+                                     "log seconds per second of the wall clock (default: as fast as possible)");
     pace->type_name("P")->check(refuseUnlessPositive);
     command->add_option("--from", options->from, "start: seconds after the log's first stamp, or a date in UTC")
         ->type_name("TIME");
-    auto* loop = command->add_flag("--loop", options->replay.loop, "on and on, until --pings, --duration or SIGINT");
+    auto* loop =
+        command->add_flag("--loop", options->replay.loop, "repeats the log until --pings, --duration or SIGINT");
     command
         ->add_flag("--step", options->step,
-                   "one instant of the log for each line on stdin; a line `seek S` goes to S seconds of the log")
+                   "one instant of the log for each line on stdin; a line `seek S` jumps to S seconds of the log")
         ->excludes(pace);
-    auto* rerender = command->add_flag("--rerender", options->replay.rerender,
-                                       "the log's poses drive the sonars, which render anew");
-    command->add_flag("--outside", options->replay.outside,
-                      "runs the tasks that talk to others (DDS, viewer, devices), too; else they are left out");
+    auto* rerender =
+        command->add_flag("--rerender", options->replay.rerender, "renders the pings again, at the log's poses");
+    command->add_flag(
+        "--outside", options->replay.outside,
+        "also runs the tasks that communicate outside (DDS, viewer, devices); by default they are omitted");
     auto* score = command->add_flag("--score", options->score, "compares what is rendered with the log's pings");
     score->needs(rerender)->excludes(loop);
     command->add_option("--worst", options->worst, "pings in the table and in pictures (default: 10)")

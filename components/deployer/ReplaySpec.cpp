@@ -17,13 +17,13 @@ using framework::DeploymentSpec;
 using framework::splitPort;
 using framework::TaskSpec;
 
-/** Whether what a port has written is in the stream, not the values of a property. */
+/** Whether a stream has the samples of a port, not the values of a property. */
 bool isOfPort(const log::Stream& stream) {
     const auto type = stream.metadata.find("rock_stream_type");
     return type == stream.metadata.end() || type->second == "port";
 }
 
-/** Tasks of the deployment that have a stream in the log, by whichever of their names. */
+/** Returns the tasks of the deployment that have a stream in the log, under any of their names. */
 std::set<std::string> loggedTasks(const log::Reader& log, const DeploymentSpec& spec) {
     std::set<std::string> names;
     for (const log::Stream& stream : log.streams())
@@ -39,13 +39,13 @@ std::set<std::string> replacedTasks(const log::Reader& log, const DeploymentSpec
         for (const std::string& task : pingTasks(spec, registry)) names.erase(task);
     }
     if (names.empty())
-        throw types::ConfigError(log.path(), "",
-                                 std::string("none of its streams is of a task of ") + spec.file +
-                                     (rerender ? " that comes before its sonars" : ""));
+        throw types::ConfigError(
+            log.path(), "",
+            std::string("none of its streams is of a task of ") + spec.file + (rerender ? " before its sonars" : ""));
     return names;
 }
 
-/** Tasks of the deployment in whose place the log's poses of each ping drive a sonar. */
+/** Connects each sonar to the log's poses of its pings. */
 void drivePings(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
     for (TaskSpec& task : spec.tasks) {
         const std::string stream = poseStreamOf(log, task.name);
@@ -59,7 +59,7 @@ void drivePings(DeploymentSpec& spec, const log::Reader& log, const std::string&
     }
 }
 
-/** `name`, or the like of it that no task has. */
+/** Returns `name`, with "_" added until no task has it. */
 std::string freeName(const DeploymentSpec& spec, std::string name) {
     while (spec.task(name)) name += "_";
     return name;
@@ -76,14 +76,14 @@ TaskSpec replayTask(const std::string& name, const ReplayOptions& options) {
     return task;
 }
 
-/** The stream in which a log has a port, under its alias or its own name; empty: it has none. */
+/** Returns the stream of a port in a log, under its alias or its own name; empty: there is none. */
 std::string streamOf(const log::Reader& log, const DeploymentSpec& spec, const std::string& port) {
     const std::string alias = spec.aliasOf(port);
     return !alias.empty() && log.find(alias) ? alias : log.find(port) ? port : "";
 }
 
-/** Connections of logged ports lead from the replay; those that a replaced task would have read, or written without
- *  a stream in the log, are left out. */
+/** Returns the connections, with logged ports replaced by those of the replay. Omits connections to replaced tasks, and
+ *  from replaced tasks' ports that have no stream in the log. */
 std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::Reader& log,
                                         const std::set<std::string>& replaced, const std::string& replay) {
     std::vector<ConnectionSpec> connections;
@@ -97,8 +97,8 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
     return connections;
 }
 
-/** Adds the tasks between others that hear nobody any more: those who wrote to them are replaced, and the log has not
- *  what they wrote. */
+/** Adds tasks between others that get no input any more: their writers are replaced, and the log lacks the writers'
+ *  samples. */
 void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::string>& replaced) {
     const auto hears = [&](const ConnectionSpec& connection) {
         return !replaced.contains(splitPort(connection.from).first) || !streamOf(log, spec, connection.from).empty();
@@ -120,7 +120,8 @@ void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::s
     }
 }
 
-/** Pictures and files of a side-scan that read no altimeter get the altitudes of a recording that was imported. */
+/** Gives the altitudes of an imported recording to tasks for pictures and files of a side-scan that read no
+ *  altimeter. */
 void connectAltitudes(DeploymentSpec& spec, const log::Reader& log, const std::string& replay) {
     const auto isRecorded = [](const log::Stream& stream) {
         return stream.holds<types::Range>() && !stream.metadatum("insonify_recording").empty();
@@ -140,13 +141,13 @@ void connectAltitudes(DeploymentSpec& spec, const log::Reader& log, const std::s
     }
 }
 
-/** A head does not tell where it stood when a log's middle was recorded. */
+/** Throws for scanning sonars, because a log does not record the head's bearing at `from`. */
 void refuseScansFrom(const DeploymentSpec& spec, double from) {
     for (const TaskSpec& task : spec.tasks)
         if (from > 0 && task.type == "sonar::ScanningSonarTask")
             throw types::ConfigError(spec.file, task.path(),
                                      "is a scanning sonar, whose head starts at its left limit: rendered again with "
-                                     "--from it would look elsewhere than in the log; leave --from out");
+                                     "--from it would look in other directions than in the log; omit --from");
 }
 
 }  // namespace
@@ -157,7 +158,7 @@ DeploymentSpec replaying(DeploymentSpec spec, const log::Reader& log, const Repl
     if (!options.outside) replaced.merge(outsideTasks(spec));
     if (!options.rerender) addDeaf(spec, log, replaced);
     const std::string name = freeName(spec, "replay");
-    // New lists are made, since assigning a YAML node changes what other nodes see.
+    // New lists, because assigning a YAML node would change its other references.
     std::vector<TaskSpec> tasks{replayTask(name, options)};
     for (const TaskSpec& task : spec.tasks)
         if (!replaced.contains(task.name)) tasks.push_back(task);

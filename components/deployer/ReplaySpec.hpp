@@ -8,32 +8,32 @@
 
 namespace insonify::deployer {
 
-/** How a log is played. */
+/** How a log is replayed. */
 struct ReplayOptions {
     std::string log;        ///< File.
     double from = 0;        ///< After its first stamp [s].
-    bool loop = false;      ///< On and on.
-    bool rerender = false;  ///< Its poses drive the sonars, which sound again; otherwise its pings are played.
-    bool outside = false;   ///< With the tasks that talk to others than their deployment.
+    bool loop = false;      ///< Repeats without end.
+    bool rerender = false;  ///< Renders the log's pings again from its poses; otherwise plays the log's pings.
+    bool outside = false;   ///< With the tasks that communicate outside the deployment.
 };
 
-/** Tasks that talk to others than their deployment. */
+/** Returns the tasks that communicate outside the deployment. */
 std::set<std::string> outsideTasks(const framework::DeploymentSpec& spec);
 
-/** The stream that drives a sonar whose pings are rendered again: where each of them was rendered; empty: the log has
- *  no such stream. */
+/** Returns the stream of poses that triggers a sonar when its pings are rendered again: the pose of each recorded ping.
+ *  Empty: the log has no such stream. */
 std::string poseStreamOf(const log::Reader& log, const std::string& sonar);
 
-/** The deployment, in lockstep on the log's time, with the log in the place of the tasks that it has streams of; where
- *  it is rendered again, only of those that have nothing to do with pings, and each sonar pings where the log says that
- *  it did, if it does. Throws types::ConfigError when that leaves nothing to play. */
+/** Returns the deployment in lockstep on the log's time, with the log in place of the tasks that it has streams of.
+ *  When rendering again, it replaces only tasks that neither write nor read pings, and each sonar pings at the log's
+ *  poses of its pings, if the log has them. Throws types::ConfigError when that leaves nothing to play. */
 framework::DeploymentSpec replaying(framework::DeploymentSpec spec, const log::Reader& log,
                                     const ReplayOptions& options);
 
-/** The task that writes what is in a stream, whose name may be an alias. */
+/** Returns the task that writes a stream, whose name may be an alias. */
 std::string writerOf(const framework::DeploymentSpec& spec, const std::string& stream);
 
-/** Streams of pings in the log that a task of the deployment writes. */
+/** Returns the log's streams of pings that a task of the deployment writes. */
 std::vector<std::string> pingStreams(const log::Reader& log, const framework::DeploymentSpec& spec);
 
 /** Adds a logger that writes these ports, or aliases of ports, to a file. */

@@ -16,7 +16,7 @@ constexpr const char *section_start = "--ros-args", *parameters_key = "ros__para
 
 [[noreturn]] void refuseRosArgument(const std::string& what) { throw types::ConfigError("", section_start, what); }
 
-/** `NODE:NAME:=VALUE`; an empty node stands for all. */
+/** `NODE:NAME:=VALUE`; an empty node means all nodes. */
 struct RosAssignment {
     std::string node, name, value;
 };
@@ -36,7 +36,7 @@ RosAssignment readRosAssignment(const std::string& flag, const std::string& word
     return read;
 }
 
-/** A task that is a node of ROS, and its whole name. */
+/** A task that is a node of ROS, and its full name. */
 struct RosNode {
     std::string task, name;
     std::string lastWord() const { return name.substr(name.rfind('/') + 1); }
@@ -60,7 +60,7 @@ std::string rosNodeNames(const std::vector<RosNode>& nodes) {
     return names.empty() ? "the deployment has no node" : fmt::format("nodes: {}", fmt::join(names, ", "));
 }
 
-// Whether a name of a parameter file fits a node: "/auv1/sonar", "/**" for any, "/auv1/*" for one word.
+// Whether a name in a parameter file matches a node: "/auv1/sonar", "/**" for any, "/auv1/*" for one word.
 bool fitsNode(const std::string& pattern, const std::string& name) {
     std::string expression;
     for (size_t at = pattern.starts_with('/'); at <= pattern.size();) {
@@ -73,7 +73,7 @@ bool fitsNode(const std::string& pattern, const std::string& name) {
     return std::regex_match(name, std::regex(expression));
 }
 
-/** Arguments of one command line, sorted by what they are. */
+/** The arguments of one command line, sorted by kind. */
 class RosArguments {
 public:
     explicit RosArguments(framework::DeploymentSpec& spec) : spec_(spec) {}
@@ -205,7 +205,7 @@ private:
 
     framework::DeploymentSpec& spec_;
     std::vector<RosAssignment> remaps_;
-    std::vector<std::pair<bool, std::string>> parameters_;  ///< In order: whether it is no file, and what it says.
+    std::vector<std::pair<bool, std::string>> parameters_;  ///< In order: whether it is an assignment, and the text.
 };
 
 }  // namespace

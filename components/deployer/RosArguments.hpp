@@ -6,15 +6,17 @@
 
 namespace insonify::deployer {
 
-/** A command line in which each word between `--ros-args` and `--`, or the end, is an option `--ros-args=WORD`. */
+/** Returns a command line in which each word between `--ros-args` and `--`, or the end, is an option
+ *  `--ros-args=WORD`. */
 std::vector<std::string> withRosWords(const std::vector<std::string>& words);
 
-/** Lays what follows `--ros-args` over a deployment, as ROS 2 has it: `-r FROM:=TO` (`--remap`) for topics,
+/** Applies the words after `--ros-args` to a deployment, by the rules of ROS 2: `-r FROM:=TO` (`--remap`) for topics,
  *  `-r __ns:=/auv2`, `-r __node:=x`, `-p TASK.PROPERTY:=VALUE` (`--param`), `--params-file FILE` with the block
- *  `ros__parameters` of each node whose name or wildcard fits one of the deployment's. `NODE:` before a name confines
- *  it to one node. Of several values the last holds; `use_sim_time` is passed over.
+ *  `ros__parameters` of each node whose name or wildcard matches a node of the deployment. `NODE:` before a name
+ *  restricts it to one node. Of several values the last applies; `use_sim_time` is ignored.
  *
- *  Diagnostics go to the spec's. Throws types::ConfigError for what is no such argument or no parameter file. */
+ *  Diagnostics are added to the spec's. Throws types::ConfigError for an argument that is not one of these, or an
+ *  unreadable parameter file. */
 void applyRosArguments(const std::vector<std::string>& words, framework::DeploymentSpec& spec);
 
 }  // namespace insonify::deployer

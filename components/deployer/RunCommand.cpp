@@ -54,7 +54,7 @@ void RunOptions::addTo(CLI::App& command) {
         ->check(refuseUnlessWhole);
     command
         .add_option("--ros-args", ros,
-                    "as of ROS 2, up to -- or the end: -r FROM:=TO, -r __ns:=/auv2, -r __node:=x, "
+                    "arguments of ROS 2, up to -- or the end: -r FROM:=TO, -r __ns:=/auv2, -r __node:=x, "
                     "-p TASK.PROPERTY:=VALUE, --params-file FILE")
         ->type_name("...")
         ->allow_extra_args(false);
@@ -73,7 +73,7 @@ namespace {
 
 using command::OutputFolder;
 
-/** How long a run in lockstep will be by its trajectories, where nothing else ends it; 0: not known [s]. */
+/** Returns the duration of a lockstep run by its trajectories, where no limit ends it; 0: unknown [s]. */
 double trajectoryLength(const framework::Deployment& deployment) {
     double longest = 0;
     for (const auto& task : deployment.tasks())
@@ -82,7 +82,7 @@ double trajectoryLength(const framework::Deployment& deployment) {
     return deployment.spec().lockstep ? longest : 0;
 }
 
-/** Tells on a terminal how far a run is, of how much, and what time is left. */
+/** Shows a run's progress on a terminal: done, total and remaining time. */
 class RunProgress {
 public:
     RunProgress(const framework::Deployment& deployment, const RunOptions& options)
@@ -116,7 +116,7 @@ void printNotices(const framework::TaskContext& task, const std::vector<std::str
     for (const std::string& notice : notices) fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
 }
 
-/** Looks, but makes no file yet. */
+/** Checks without making a file. */
 void refuseUnwritable(const std::filesystem::path& summary_file) {
     namespace fs = std::filesystem;
     const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
@@ -141,7 +141,7 @@ Notices noticesOf(const framework::Deployment& deployment) {
     return all;
 }
 
-/** Notices that have come up while it ran, and the summary. */
+/** Prints new notices since `told`, and the summary. */
 void tell(const framework::Deployment& deployment, const Notices& told, const Summary& summary) {
     for (size_t i = 0; i < told.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
@@ -150,7 +150,7 @@ void tell(const framework::Deployment& deployment, const Notices& told, const Su
     fmt::print("{}", summary.text());
 }
 
-/** Split at its commas, those within brackets left alone. */
+/** Splits at commas outside of brackets. */
 std::vector<std::string> argumentsIn(const std::string& text) {
     std::vector<std::string> arguments(1);
     int depth = 0;

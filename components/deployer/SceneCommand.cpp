@@ -48,7 +48,7 @@ void eachFace(const types::Geometry& geometry, const types::Object& object, cons
             visit(Face{cluster.material, glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k)) / 2.0});
 }
 
-/** How much surface there is of each material, and how much of it faces along each axis. */
+/** The surface area of each material, and how much of the surface faces along each axis. */
 struct Surfaces {
     std::vector<size_t> triangles;
     std::vector<double> areas;  ///< [m2]
@@ -109,7 +109,7 @@ bool isGltf(const std::string& file) {
     return extension == ".gltf" || extension == ".glb";
 }
 
-/** A sea floor that was written with z up stands as a wall across y once it has been turned from y-up. */
+/** Whether a scene written with z up was turned as if y were up: its sea floor is then a wall across y. */
 bool liesOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
     const double all = facing.x + facing.y + facing.z;
     const glm::dvec3 size = extent.size();
@@ -123,7 +123,7 @@ Json warningsOf(const std::string& file, const types::Extent& extent, const Surf
         warnings.push_back(fmt::format(
             "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} "
             "m "
-            "wide in y. glTF is y-up; a file written with z up comes out like this: export it with +Y up, or turn its "
+            "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or turn its "
             "root node by -90 degrees about x",
             100 * facing.y / (facing.x + facing.y + facing.z), extent.size().z, extent.size().y));
     if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)
@@ -143,7 +143,7 @@ std::string axesOf(const std::string& file) {
                         : "SDF, z up: x, y, z of the file are those of the world";
 }
 
-/** Animations of a scene: [{name, duration_s, channels}]. */
+/** Returns the animations of a scene: [{name, duration_s, channels}]. */
 Json animationsOf(const scene::Scene& scene) {
     Json all = Json::array();
     if (!scene.animations) return all;
@@ -153,13 +153,12 @@ Json animationsOf(const scene::Scene& scene) {
     return all;
 }
 
-/** A scene file as a sonar will meet it, in the world's axes: {file, axes, bounds: {min, max, size, centre} [m] or
+/** Returns a scene file in the world's axes, as a sonar uses it: {file, axes, bounds: {min, max, size, centre} [m] or
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
  *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles,
- * area_m2}], objects:
- *  [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move], animations: [{name,
- * duration_s, channels}], deforming: objects with a skin or morph targets, not_understood: [], warnings: []}. Throws
- * types::ConfigError for a file that cannot be read. */
+ *  area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move],
+ *  animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets, not_understood: [],
+ *  warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
     const scene::Scene scene = scene::readScene(file);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);
@@ -195,7 +194,7 @@ void printExtent(const Json& bounds) {
                text(bounds["size"]));
 }
 
-/** What a material's law is, and where it comes from, where numbers do not say it. */
+/** Returns a material's law and its source, where the numbers do not show them. */
 std::string lawText(const Json& material) {
     if (material["source"] == "default") return "; no acoustics in the file: medium sand";
     std::string text;
@@ -249,7 +248,7 @@ void printScene(const Json& scene) {
     for (const Json& material : scene["materials"]) printMaterial(material);
     printObjects(scene["objects"]);
     printAnimations(scene);
-    for (const Json& line : scene["not_understood"]) fmt::print("left out or mended: {}\n", line.get<std::string>());
+    for (const Json& line : scene["not_understood"]) fmt::print("omitted or repaired: {}\n", line.get<std::string>());
     for (const Json& line : scene["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
 }
 
@@ -274,7 +273,7 @@ struct MakeOptions {
     bool list = false, json = false, quiet = false;
 };
 
-/** What is wrong with options together; empty when nothing is. */
+/** Returns what is wrong with the combination of options; empty: nothing. */
 std::string refusalOf(const MakeOptions& options) {
     if (options.list) return options.recipe.empty() ? "" : "--list needs no RECIPE";
     if (options.recipe.empty() == options.thing.empty()) return "give a RECIPE, or a --thing, or --list";
@@ -307,7 +306,7 @@ void addMakeCommand(CLI::App& scene, Action& action) {
     const auto options = std::make_shared<MakeOptions>();
     CLI::App* command = scene.add_subcommand("make", "Makes a sea floor with things on it, by a recipe and a seed");
     command->add_option("RECIPE", options->recipe, "a YAML file with floor and things");
-    command->add_option("--seed", options->seed, "of all that the recipe leaves to chance (1)")
+    command->add_option("--seed", options->seed, "seed of the recipe's random choices (1)")
         ->type_name("N")
         ->check(refuseUnlessWhole);
     command->add_option("--out", options->out, "the scene to write, a .glb file");

@@ -3,8 +3,8 @@
 
 namespace insonify::deployer {
 
-/** Prints what is in a scene, as `insonify scene` does; the exit code. Throws types::ConfigError for a file that cannot
- *  be read. */
+/** Prints the contents of a scene, as `insonify scene` does, and returns the exit code. Throws types::ConfigError for a
+ *  file that cannot be read. */
 int showScene(const std::string& file, bool json);
 
 /** Whether a name is that of a scene: .gltf, .glb, .world, .sdf or .urdf. */

@@ -19,7 +19,7 @@ using framework::PropertyInfo;
 /** A number, a dot and units, as Quantity reads them: "20.deg", "3.m.s^-1", "-1.5.m.round". */
 constexpr const char* quantity_pattern = R"(^[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?\.[A-Za-z].*$)";
 
-/** Below which of Rock's keys a number of this unit may stand: {rad: 0.3}; null where there is none. */
+/** Returns Rock's key for a number of this unit: {rad: 0.3}; null where there is none. */
 const char* rockKey(const std::string& unit) {
     const auto is = framework::unitOf(unit);
     for (const auto& [key, of] : {std::pair("rad", "rad"), std::pair("kelvin", "K"), std::pair("microseconds", "s")})
@@ -53,7 +53,7 @@ Json enumSchema(const std::string& names) {
     return schema;
 }
 
-/** Of a type by its name, without the fields of blocks. */
+/** Returns the schema of a type by its name, without the fields of blocks. */
 Json schemaOf(const PropertyInfo& info, std::string type) {
     const auto within = [&](const char* of) {
         const std::string prefix = of;
@@ -66,14 +66,14 @@ Json schemaOf(const PropertyInfo& info, std::string type) {
     if (type == "double") return numberSchema(info, "number");
     if (type.starts_with("integer")) return numberSchema(info, "integer");
     if (type == "bool") return {{"type", "boolean"}};
-    if (type == "text") return {{"type", {"string", "number", "boolean"}}};  // YAML may take a plain one for those
+    if (type == "text") return {{"type", {"string", "number", "boolean"}}};  // YAML may read it as a number or boolean
     if (type == "[x, y, z]")
         return {{"type", "array"}, {"items", numberSchema(info, "number")}, {"minItems", 3}, {"maxItems", 3}};
     if (type == "block") return {{"type", {"object", "null"}}};
     return enumSchema(type);
 }
 
-/** With documentation and default, for editors to show. */
+/** Adds documentation and default, for editors. */
 Json documented(const PropertyInfo& info) {
     Json schema = schemaOf(info, info.type);
     const bool has_unit = !info.unit.empty() && info.unit != "1";
@@ -85,7 +85,7 @@ Json documented(const PropertyInfo& info) {
     return schema;
 }
 
-/** Where the fields of a block by this dotted path go: "layers[].mean" is below items, "materials.<name>.mean" below
+/** Returns the schema of the block at a dotted path: "layers[].mean" is below items, "materials.<name>.mean" below
  *  additionalProperties. */
 Json& blockAt(Json& root, const std::string& path) {
     Json* block = &root;
@@ -101,7 +101,7 @@ Json& blockAt(Json& root, const std::string& path) {
     return *block;
 }
 
-/** One block stands for a list of one, in all lists of blocks within a schema. */
+/** Allows a single block for a list of one, in all lists of blocks within a schema. */
 void allowOneForAList(Json& schema) {
     for (auto& [name, property] : schema["properties"].items()) {
         if (property.contains("properties")) allowOneForAList(property);
@@ -112,7 +112,7 @@ void allowOneForAList(Json& schema) {
     }
 }
 
-/** A block of these fields; what is not among them is refused. */
+/** Returns the schema of a block that refuses all other fields. */
 Json blockSchema(const std::vector<PropertyInfo>& fields) {
     Json root = {{"type", {"object", "null"}}, {"additionalProperties", false}, {"properties", Json::object()}};
     for (const PropertyInfo& field : fields) {
@@ -133,7 +133,7 @@ std::vector<PropertyInfo> propertiesOf(const framework::Registry::Entry& entry) 
     return all;
 }
 
-/** For a task of that type whose properties have no other names. */
+/** Returns the rule for a task of that type whose properties have no other names. */
 Json propertiesRule(const std::string& type) {
     Json renamed = Json::array();
     for (const char* key : {"aliases", "copies", "switches"}) renamed.push_back({{"required", {key}}});
@@ -157,10 +157,10 @@ Json typeNames(const framework::Registry& registry) {
     return {{"properties", {{"type", {{"oneOf", named}}}}}};
 }
 
-/** The JSON schema (draft 2020-12) of deployments with these tasks, made from what they describe of themselves: keys,
- *  types, bounds, defaults, names of enums and documentation, which ends in the unit. Numbers may be texts with a unit,
- *  "20.deg". Where a task has aliases, copies or switches, its properties may have other names; where a deployment has
- *  libraries, other types. What depends on several keys together is checked by `insonify check` alone. */
+/** Returns the JSON schema (draft 2020-12) of deployments with these tasks, from the tasks' descriptions: keys, types,
+ *  bounds, defaults, names of enums and documentation, which ends in the unit. Numbers may be texts with a unit,
+ *  "20.deg". With aliases, copies or switches a task's properties may have other names; with libraries a deployment may
+ *  have other types. Only `insonify check` reports errors that depend on several keys. */
 Json deploymentSchema(const framework::Registry& registry) {
     const framework::DeploymentKeys keys = framework::deploymentKeys();
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
@@ -179,7 +179,7 @@ Json deploymentSchema(const framework::Registry& registry) {
     for (const char* end : {"from", "to"})
         connections["items"]["properties"][end].update({{"type", "string"}, {"pattern", R"(^[^.]+\..+$)"}});
     connections["items"]["required"] = {"from", "to"};
-    // Libraries may bring other types.
+    // Libraries may add types.
     schema["if"] = {{"not", {{"required", {"libraries"}}}}};
     schema["then"] = {{"properties", {{"tasks", {{"additionalProperties", typeNames(registry)}}}}}};
     schema["$defs"]["task"] = taskSchema(registry, keys.task);

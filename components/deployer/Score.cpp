@@ -31,7 +31,7 @@ bool sameShape(const types::Sonar& a, const types::Sonar& b) {
            std::ranges::equal(a.bearings, b.bearings, near);
 }
 
-/** Bins as energies. */
+/** Converts bins to energies. */
 std::vector<float> energies(const types::Sonar& ping, output::BinScale scale) {
     std::vector<float> result = ping.bins;
     for (float& bin : result) {
@@ -41,7 +41,7 @@ std::vector<float> energies(const types::Sonar& ping, output::BinScale scale) {
     return result;
 }
 
-/** Samples of a stream by their time; of several of one time the first. */
+/** Returns the samples of a stream by time; of equal times the first. */
 std::map<types::Time, log::SampleRef> byTime(const log::Reader& log, const std::string& stream) {
     std::map<types::Time, log::SampleRef> samples;
     const size_t index = log.indexOf(stream);
@@ -97,7 +97,7 @@ StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::strin
 
 namespace {
 
-/** What is told of each ping: a name for machines, a heading of the table. */
+/** A column: the name for machines, and the heading of the table. */
 struct Column {
     const char* key;
     const char* heading;
@@ -124,7 +124,7 @@ void addSummary(std::string& text, const StreamScore& score) {
     text += "\n";
 }
 
-/** Draws the pings of one log as they come. */
+/** Displays the pings of one log one by one. */
 class Screen {
 public:
     Screen(log::Reader& log, const types::Sonar& first, const output::DisplayConfig& display) : log_(log) {
@@ -146,7 +146,7 @@ private:
     types::Image picture_;
 };
 
-/** Writes those of a stream; `first` is the number of the first picture. */
+/** Writes the pictures of one stream; `first` is the number of the first picture. */
 void writePictures(log::Reader& recorded, log::Reader& rendered, const StreamScore& score, size_t worst, size_t first,
                    const std::filesystem::path& folder) {
     types::Sonar ping;

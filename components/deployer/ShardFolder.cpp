@@ -23,7 +23,7 @@ using command::Json;
 
 constexpr const char* manifest_name = "manifest.json";
 
-/** None: it is not there, or is no JSON. */
+/** Returns the manifest; none: there is no file, or it is not a manifest in JSON. */
 std::optional<Json> manifestIn(const fs::path& folder) {
     std::ifstream file(folder / manifest_name);
     Json manifest = Json::parse(file, nullptr, false);
@@ -31,7 +31,7 @@ std::optional<Json> manifestIn(const fs::path& folder) {
     return manifest;
 }
 
-/** Files of a folder, by their names within it, in the order of these. */
+/** Returns the files of a folder, by their sorted names within it. */
 std::vector<fs::path> filesIn(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -46,7 +46,7 @@ Json entryOf(const fs::path& folder, const fs::path& file) {
             {"sha256", command::sha256OfFile(folder / file)}};
 }
 
-/** What of a folder is not as its manifest says; empty: nothing. */
+/** Returns the first difference of a folder from its manifest; empty: none. */
 std::string damageOf(const fs::path& folder, const Json& manifest) try {
     for (const Json& entry : manifest["files"]) {
         const fs::path file = entry.value("file", "");
@@ -65,7 +65,7 @@ std::string damageOf(const fs::path& folder, const Json& manifest) try {
     return std::string("its manifest.json is broken: ") + error.what();
 }
 
-/** The first key whose values differ, with both; empty: none. */
+/** Returns the first key whose values differ, with both values; empty: none. */
 std::string differenceOf(const Json& there, const Json& asked) {
     for (const auto& [key, value] : asked.items()) {
         const Json& before = there.contains(key) ? there[key] : Json();
@@ -74,7 +74,7 @@ std::string differenceOf(const Json& there, const Json& asked) {
     return {};
 }
 
-/** "shard_03_of_16" -> "16"; empty: it is another file. */
+/** "shard_03_of_16" -> "16"; empty: not a shard. */
 std::string countOf(const fs::path& folder) {
     const std::string name = folder.filename().string();
     const size_t of = name.rfind("_of_");
@@ -128,7 +128,7 @@ std::optional<Json> ShardFolder::done() const {
     const auto manifest = manifestIn(path_);
     const std::string damage = manifest ? damageOf(path_, *manifest) : "its manifest.json is missing or broken";
     if (damage.empty()) return manifest;
-    fmt::print(stderr, "notice: {}: {}; the shard is made anew\n", path_.string(), damage);
+    fmt::print(stderr, "notice: {}: {}; the shard is made again\n", path_.string(), damage);
     fs::remove_all(path_);
     return std::nullopt;
 }
@@ -138,14 +138,14 @@ void ShardFolder::removeLeft() const {
     for (const auto& entry : fs::directory_iterator(shared_)) {
         if (!entry.path().filename().string().starts_with(beginning)) continue;
         const Lock lock(entry.path(), false);
-        if (!lock.holds()) continue;  // somebody is at it
+        if (!lock.holds()) continue;  // another process uses it
         std::error_code ignored;
         fs::remove_all(entry.path(), ignored);
     }
 }
 
 const fs::path& ShardFolder::begin() {
-    const Lock together(shared_, true);  // nobody takes a folder that is not locked yet for one that was left
+    const Lock together(shared_, true);  // no other process must mistake the unlocked new folder for a leftover
     removeLeft();
     std::string name = shared_ / ("." + path_.filename().string() + ".XXXXXX");
     if (!mkdtemp(name.data())) throw types::ConfigError(shared_, "--out", "cannot be written to");
@@ -162,7 +162,7 @@ Json ShardFolder::finish(const Json& more) {
     for (const fs::path& file : filesIn(part_)) manifest["files"].push_back(entryOf(part_, file));
     command::write(manifest, part_ / manifest_name);
     const Lock together(shared_, true);
-    refuseOthers();  // that came to be done meanwhile
+    refuseOthers();  // shards that were finished meanwhile
     std::error_code failed;
     fs::rename(part_, path_, failed);
     if (!failed) {

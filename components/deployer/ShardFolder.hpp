@@ -8,41 +8,41 @@
 
 namespace insonify::deployer {
 
-/** Where a shard of a run leaves its files: `shard_03_of_16` in a folder that all shards share, on any machine.
+/** The folder of a shard's files: `shard_03_of_16` in a folder that all shards share, on any machine.
  *
- *  They are written to a hidden folder beside it that nobody else has, with `manifest.json`, the size and SHA-256 of
- *  each, as the last; then it gets its name. So that what bears the name is whole, whatever happens to who makes it,
- *  and of two who make the same shard one comes first and the other leaves nothing. What the killed have left is
- *  removed by the next who makes that shard. */
+ *  The files are written to a hidden temporary folder next to it. `manifest.json`, with the size and SHA-256 of each
+ *  file, is written last; then the temporary folder is renamed. A folder with the final name is therefore complete,
+ *  even after a crash. If two processes make the same shard, the first one is kept and the other leaves nothing. The
+ *  next process that makes a shard removes what killed processes left of it. */
 class ShardFolder {
 public:
-    /** @param run what the files follow from: the same in all shards of a folder.
-     *  Throws types::ConfigError where the folder cannot be made, or holds shards of another run or of another count.
-     */
+    /** @param run the inputs that determine the files: the same in all shards of a folder.
+     *  Throws types::ConfigError where the folder cannot be made, or holds shards of another run or of another
+     *  count. */
     ShardFolder(const std::filesystem::path& shared, const command::Shard& shard, command::Json run);
     ~ShardFolder();
     ShardFolder(const ShardFolder&) = delete;
     ShardFolder& operator=(const ShardFolder&) = delete;
 
-    const std::filesystem::path& path() const { return path_; }  ///< Once it is done.
-    /** The manifest of a shard that is done; none: it is not, or is not as its manifest says, which has been told on
-     *  stderr and is removed. Reads all files. */
+    const std::filesystem::path& path() const { return path_; }  ///< Exists once the shard is done.
+    /** Returns the manifest of a finished shard. None: the shard is not done, or differs from its manifest; then it is
+     *  reported on stderr and removed. Reads all files. */
     std::optional<command::Json> done() const;
-    /** An empty folder to write to, which goes unless finish() is called. */
+    /** Returns an empty folder to write to; it is removed unless finish() is called. */
     const std::filesystem::path& begin();
-    /** Writes the manifest, with `more` in it, and gives the folder its name. The manifest of who came first where
-     *  another has done the shard meanwhile. */
+    /** Writes the manifest, including `more`, and gives the folder its final name. Returns the existing manifest if
+     *  another process has finished the shard first. */
     command::Json finish(const command::Json& more);
 
 private:
-    /** Of a folder, until it goes or its process ends. */
+    /** A lock on a folder, until it is destroyed or its process ends. */
     class Lock {
     public:
         Lock(const std::filesystem::path& folder, bool waits);
         ~Lock();
         Lock(const Lock&) = delete;
         Lock& operator=(const Lock&) = delete;
-        bool holds() const { return holds_; }  ///< False: another has it, or the file system knows no locks.
+        bool holds() const { return holds_; }  ///< False: another process holds it, or the file system has no locks.
 
     private:
         int folder_;

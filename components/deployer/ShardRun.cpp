@@ -22,7 +22,7 @@ using command::Json;
 using framework::Deployment;
 using framework::DeploymentSpec;
 
-/** What a run's files follow from, beside the files that the deployment names. */
+/** Returns the inputs that determine a run's files, in addition to the files that the deployment names. */
 Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
     return {{"insonify", INSONIFY_VERSION},
             {"deployment", std::filesystem::path(spec.file).filename().string()},
@@ -33,23 +33,23 @@ Json runOf(const RunOptions& options, const DeploymentSpec& spec) {
             {"duration_s", options.limits.duration_s}};
 }
 
-/** Why a task cannot be cut, empty: it can. */
+/** Returns why a task cannot be cut; empty: it can. */
 std::string whyWhole(const framework::TaskContext& task, const std::string& type) {
     const auto* const divisible = dynamic_cast<const framework::Divisible*>(&task);
     if (!divisible)
         return fmt::format(
-            "is a {}, of which a shard cannot know what the pings before would have done to it; leave it out, and "
-            "give it the joined log (insonify log cut, insonify replay)",
+            "is a {}, whose state depends on earlier pings, which a shard does not know; omit it, and "
+            "run it on the joined log (insonify log cut, insonify replay)",
             type);
     const auto isRead = [](const auto* port) { return port->connected(); };
     if (task.activity().settings().periodic() && std::ranges::any_of(task.inputs(), isRead))
-        return "has a period and reads from others, and so may take what came before the shard; leave the period out";
+        return "has a period and reads from other tasks, and so may use samples from before the shard; omit the period";
     return divisible->indivisible();
 }
 
 bool stopped(const framework::RunResult& result) { return result.failed() || stopOnSignals(); }
 
-/** How many pings the whole run has: all but the rendering. */
+/** Returns the number of pings of the whole run, by a run without rendering. */
 uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, const std::filesystem::path& folder) {
     framework::Registry registry = coreTasks();
     Deployment deployment(spec, registry, folder, options.seed.value_or(0));
@@ -63,7 +63,7 @@ uint64_t rehearsedPings(const DeploymentSpec& spec, const RunOptions& options, c
     return result.rehearsed;
 }
 
-/** The pings of a run that its shard makes; the last has all that comes after its last ping, too. */
+/** Returns the range of a run's pings that its shard makes; the last shard includes all that follows the last ping. */
 framework::RunLimits::Shard pingsOf(const command::Shard& shard, uint64_t pings, const std::string& file) {
     if (pings < shard.count)
         throw types::ConfigError(
@@ -76,8 +76,8 @@ framework::RunLimits::Shard pingsOf(const command::Shard& shard, uint64_t pings,
     return made;
 }
 
-/** The index beside a pocolog file has the time at which that was written, the only thing that differs from machine to
- *  machine; whoever needs one makes it. */
+/** The index next to a pocolog file has the time at which the log file was written, the only difference between
+ *  machines. It is made on demand. */
 void removeIndices(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> indices;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -104,7 +104,7 @@ void refuseIndivisible(const Deployment& deployment) {
         diagnostics.push_back({path, why + " (--shard)"});
         diagnostics.back().file = spec.file;
     };
-    if (!spec.lockstep) refuse("schedule", "is realtime, whose pings depend on the clock of the wall; lockstep");
+    if (!spec.lockstep) refuse("schedule", "is realtime, whose pings depend on the wall clock; must be lockstep");
     for (const auto& task : deployment.tasks())
         if (const std::string why = whyWhole(*task, spec.task(task->name())->type); !why.empty())
             refuse("tasks." + task->name(), why);
@@ -117,7 +117,7 @@ int runShard(RunOptions options) {
     for (const std::string& assignment : pinnedRays(spec)) spec.set(assignment);
     ShardFolder folder(options.out, *options.shard, runOf(options, spec));
     if (const auto manifest = folder.done()) {
-        tell(options, *manifest, folder.path(), "were there already, in");
+        tell(options, *manifest, folder.path(), "existed already, in");
         return 0;
     }
     options.out = folder.begin().string();

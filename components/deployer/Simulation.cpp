@@ -37,7 +37,7 @@ bool isScenePose(const DeploymentSpec& spec, const framework::ConnectionSpec& co
 
 bool carriesPings(const framework::PortBase& port) { return port.typeName() == types::Sonar::type_name; }
 
-/** Outputs of pings that no other task of the deployment takes. */
+/** Returns the outputs of pings that no other task of the deployment reads. */
 std::vector<framework::OutputPortBase*> lastPings(const framework::Deployment& deployment) {
     std::vector<framework::OutputPortBase*> last;
     for (const auto& task : deployment.tasks()) {
@@ -51,7 +51,7 @@ std::vector<framework::OutputPortBase*> lastPings(const framework::Deployment& d
     return last;
 }
 
-/** The sonar whose pings come to a task; null: there is none that tells what they show. */
+/** Returns the truth port of the sonar whose pings a task gets; null: no such sonar writes truth. */
 framework::OutputPortBase* truthBehind(const framework::Deployment& deployment, framework::TaskContext* task) {
     for (size_t steps = 0; task && steps < deployment.tasks().size(); ++steps) {
         if (framework::OutputPortBase* truth = task->output("truth")) return truth;
@@ -79,7 +79,7 @@ void throwAny(const std::vector<std::string>& failures) {
     if (!failures.empty()) throw std::runtime_error(failures.front());
 }
 
-/** Without those tasks, and what leads to them or from them. */
+/** Returns the deployment without those tasks and their connections. */
 DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& left_out) {
     std::set<std::string> kept;
     for (const std::string& name : spec.taskNames())
@@ -124,7 +124,7 @@ void Simulation::replacePoses(DeploymentSpec& spec) {
     if (poses_.empty())
         throw types::ConfigError(spec.file, "connections",
                                  "none leads to the pose of a scene; there is nothing to step");
-    std::vector<framework::TaskSpec> tasks;  // made anew: assigning a YAML node changes what other nodes see
+    std::vector<framework::TaskSpec> tasks;  // a new list: assigning a YAML node would change its other references
     for (const framework::TaskSpec& task : spec.tasks) {
         if (!replaced.contains(task.name)) {
             tasks.push_back(task);
@@ -151,7 +151,7 @@ void Simulation::addObjects(DeploymentSpec& spec, const std::vector<std::string>
             const std::string input = scene + "." + node + ".pose";
             for (const framework::ConnectionSpec& other : spec.connections)
                 if (other.to == input)
-                    throw types::ConfigError(spec.file, other.path, "moves " + node + ", which is to be placed");
+                    throw types::ConfigError(spec.file, other.path, "moves " + node + ", which the caller places");
             framework::ConnectionSpec& connection = spec.connections.emplace_back();
             connection.from = objectPort(node);
             connection.to = input;
@@ -173,7 +173,7 @@ void Simulation::connectReaders(bool truth) {
         framework::OutputPortBase* const told = truthBehind(*deployment_, &port->owner());
         if (!told)
             throw types::ConfigError(deployment_->spec().file, port->path(),
-                                     "comes from no sonar that tells its truth");
+                                     "is not from a sonar that writes its truth");
         told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
         reader.sonar = dynamic_cast<const sonar::AimedTask*>(&told->owner());
         if (framework::OutputPortBase* const image = told->owner().output("range_image")) {
@@ -205,9 +205,10 @@ types::Time Simulation::timeOfStep(double seconds) const {
     const bool others_go_on = std::ranges::any_of(
         deployment_->tasks(), [](const auto& task) { return task->activity().settings().periodic(); });
     if (others_go_on && ahead > longest_step)
-        throw std::runtime_error(fmt::format(
-            "the step is {:g} s after the one before or the start, in which tasks with a period go on; at most {:g} s",
-            ahead, longest_step));
+        throw std::runtime_error(
+            fmt::format("the step is {:g} s after the one before or the start, in which tasks with a period continue; "
+                        "at most {:g} s",
+                        ahead, longest_step));
     return now;
 }
 
@@ -245,7 +246,7 @@ void Simulation::throwErrors() const {
 }
 
 void Simulation::reset(std::optional<uint64_t> seed) {
-    if (seed == 0) throw std::invalid_argument("a seed of 0 stands for the deployment's own; make a simulation of it");
+    if (seed == 0) throw std::invalid_argument("a seed of 0 means the deployment's own; make a new simulation for it");
     const std::unique_lock use(in_use_, std::try_to_lock);
     if (!use) throw std::runtime_error(busy);
     throwAny(deployment_->stop());

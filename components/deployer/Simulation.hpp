@@ -15,51 +15,52 @@
 
 namespace insonify::deployer {
 
-/** What a simulation is made of. */
+/** Options of a simulation. */
 struct SimulationOptions {
-    uint64_t seed = 0;                   ///< As of `insonify run --seed`; 0: the deployment's own.
-    std::vector<std::string> overrides;  ///< "task.property=value", as of `insonify run --set`.
-    bool truth = false;                  ///< Whether pings come with what they show.
-    int threads = 0;                     ///< Of each sonar; 0: as many as the machine has cores [1].
-    std::optional<double> period;        ///< Between two steps; none: that of the poses it replaces, or 0.1 [s].
+    uint64_t seed = 0;                   ///< As `insonify run --seed`; 0: the deployment's own.
+    std::vector<std::string> overrides;  ///< "task.property=value", as `insonify run --set`.
+    bool truth = false;                  ///< Whether pings include their truth.
+    int threads = 0;                     ///< Of each sonar; 0: the number of the machine's cores [1].
+    std::optional<double> period;        ///< Between two steps; none: that of the replaced poses, or 0.1 [s].
     std::vector<std::string>
         objects;  ///< Nodes of the scene that the caller places as well, see Simulation::objectPort.
 };
 
-/** One ping that a step has made. */
+/** One ping of a step. */
 struct SteppedPing {
     types::SonarPtr ping;
-    types::SonarTruthPtr truth;        ///< Null where it was not asked for.
-    types::DepthMapPtr range_image;    ///< With the truth, by a 3-D sonar; null by any other.
-    types::SonarTruthPtr range_truth;  ///< What each cell of it shows, a bin for each.
-    double bin_width = 0;              ///< Exact, where the ping's `bin_duration` is rounded; 0 without the truth [m].
+    types::SonarTruthPtr truth;        ///< Null if truth is off.
+    types::DepthMapPtr range_image;    ///< With truth, from a 3-D sonar; null from other sonars.
+    types::SonarTruthPtr range_truth;  ///< The truth of each cell of the range image, one bin per cell.
+    double bin_width = 0;              ///< Exact, where `bin_duration` of the ping is rounded; 0 without truth [m].
 };
 
-/** A deployment that goes on by one pose at a time, given by who calls.
+/** A deployment that advances one step per pose that the caller gives.
  *
- *  Of the deployment there are the tasks that lead to pings, in lockstep. Those that tell a scene's `pose` are replaced
- * by the caller; those that move objects stay and go by simulated time. It gives the pings of the last task of each
- * chain that takes them: a receiver's, where there is one. Errors of the deployment are types::ConfigError, those of a
- * step std::runtime_error, as is its use by two threads at a time. */
+ *  It has the deployment's tasks that contribute to pings, in lockstep. The caller replaces the tasks that write a
+ *  scene's `pose`; tasks that move objects stay and follow simulated time. Results are the pings of the last task of
+ *  each chain that takes pings: a receiver's, where there is one. Errors of the deployment are types::ConfigError.
+ *  Errors of a step, and use by two threads at a time, are std::runtime_error. */
 class Simulation {
 public:
     Simulation(const std::string& deployment, SimulationOptions options);
 
-    /** Ports whose poses are to be given, "task.port". */
+    /** The ports whose poses the caller gives, "task.port". */
     const std::vector<std::string>& poses() const { return poses_; }
-    /** The one of them that places a node of SimulationOptions::objects in every scene. */
+    /** Returns the port, one of poses(), that places a node of SimulationOptions::objects in every scene. */
     static std::string objectPort(const std::string& node);
-    /** Ports whose pings come back, "task.port". */
+    /** The ports whose pings step() returns, "task.port". */
     std::vector<std::string> pings() const;
-    /** Whether the sonar behind these pings, one of pings(), has range images. */
+    /** Whether the sonar of these pings, by their index in pings(), has range images. */
     bool hasRangeImages(size_t ping) const { return readers_[ping]->range_image.connected(); }
     double period() const { return period_; }  ///< [s]
-    double time() const { return time_; }      ///< Of the next step where nothing else is said [s].
+    double time() const { return time_; }      ///< Default time of the next step [s].
 
-    /** Gives each scene its pose at a time, later than that of the step before [s]; one ping for each of pings(), with
-     *  null where it made none. */
+    /** Gives each scene its pose at a time later than that of the step before [s]. Returns one entry for each of
+     *  pings(), with a null ping where the step made none. */
     std::vector<SteppedPing> step(std::map<std::string, types::Pose> at, std::optional<double> time);
-    /** Back to the start, as if it had just been made with this seed, not 0; none: the same. The scene stays loaded. */
+    /** Returns to the state right after construction, with this seed, not 0; none: the same seed. The scene stays
+     *  loaded. */
     void reset(std::optional<uint64_t> seed);
 
 private:
@@ -67,10 +68,10 @@ private:
     /** Throws for a node that a connection of the deployment moves. */
     void addObjects(framework::DeploymentSpec& spec, const std::vector<std::string>& nodes);
     void connectReaders(bool truth);
-    /** Throws for one that cannot follow the step before, or only after hours of work of other tasks. */
+    /** Throws for a time that is not after the step before, or that needs hours of work of other tasks. */
     types::Time timeOfStep(double seconds) const;
     void start();
-    /** Throws what a task says that is in error. */
+    /** Throws the message of a task in error. */
     void throwErrors() const;
 
     framework::Registry registry_;
@@ -82,7 +83,7 @@ private:
     double start_time_ = 0;
     double time_ = 0;
     std::mutex in_use_;
-    std::optional<types::Time> last_;  ///< Of the step before.
+    std::optional<types::Time> last_;  ///< Time of the step before.
     std::set<std::string> own_seeds_;  ///< Tasks whose seed has been given by name.
 };
 

@@ -12,27 +12,27 @@
 
 namespace insonify::deployer {
 
-/** Several simulations of one deployment, which share its scene and step side by side, each on one thread of those that
- *  the machine has. Their pings are those of single simulations, bit for bit. Used by one thread at a time. */
+/** Several simulations of one deployment that share its scene and step in parallel, on the machine's cores. Their pings
+ *  are those of single simulations, bit for bit. Used by one thread at a time. */
 class SimulationBatch {
 public:
     /** Simulation i has the seed seedOf(options.seed, i). Throws as Simulation does, and std::invalid_argument for a
-     * count of 0. */
+     *  count of 0. */
     SimulationBatch(const std::string& deployment, const SimulationOptions& options, size_t count);
 
     size_t size() const { return simulations_.size(); }
     const Simulation& front() const { return *simulations_.front(); }
-    /** The seed of the simulation of that number: the first has the batch's own, each other one another. */
+    /** Returns the seed of a simulation: the batch's own for the first, different seeds for the others. */
     static uint64_t seedOf(uint64_t seed, size_t number);
 
-    /** Steps each simulation to its own next time, with its own poses. Throws std::runtime_error with the number of the
-     *  first that fails, when all others have stepped. */
+    /** Steps each simulation to its own next time, with its own poses. When some fail, steps all others and throws
+     *  std::runtime_error with the number of the first that failed. */
     std::vector<std::vector<SteppedPing>> step(std::vector<std::map<std::string, types::Pose>> at);
-    /** Begins these simulations anew, each with a seed, not 0; none: the same. */
+    /** Resets these simulations, each with a seed, not 0; none: the same seed. */
     void reset(std::span<const size_t> which, std::span<const std::optional<uint64_t>> seeds);
 
 private:
-    /** Calls `work(i)` for numbers below `count`, on all threads. */
+    /** Calls `work(i)` for the numbers below `count`, on all threads. */
     template <class Work>
     void forEach(size_t count, const Work& work);
 

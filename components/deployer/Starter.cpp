@@ -7,7 +7,7 @@
 
 #include "components/acoustics/Absorption.hpp"
 
-// The files travel in the command itself, so that an installed one needs no path to them.
+// The files are embedded in the command, so that an installed command needs no path to them.
 #define INSONIFY_EMBED(symbol, file)                                                                     \
     __asm__(".pushsection .rodata\n.balign 16\n" #symbol "_begin:\n.incbin \"" INSONIFY_STARTER "/" file \
             "\"\n" #symbol "_end:\n.byte 0\n.popsection\n");                                             \
@@ -26,14 +26,14 @@ namespace {
 
 std::string_view between(const char* begin, const char* end) { return {begin, static_cast<size_t>(end - begin)}; }
 
-/** What is to be filled in for a sonar of its kind. */
+/** Returns the template for a sonar of its kind. */
 std::string_view templateFor(const SonarPreset& preset) {
     if (preset.isGrid()) return between(insonify_starter_grid_begin, insonify_starter_grid_end);
     if (preset.isFan()) return between(insonify_starter_fan_begin, insonify_starter_fan_end);
     return between(insonify_starter_scanning_begin, insonify_starter_scanning_end);
 }
 
-/** Comments behind values begin in one column, where there is room. */
+/** Aligns comments behind values in one column, where they fit. */
 std::string aligned(const std::string& text) {
     constexpr size_t column = 44;
     std::string all, line;
@@ -54,7 +54,7 @@ std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
     return "{law: francois_garrison}";
 }
 
-/** A chirp, or a tone, that resolves what the maker says at a sound speed of 1496 m/s: ACOUSTICS.md 5.10. */
+/** Returns a chirp or a tone with the maker's resolution at a sound speed of 1496 m/s: ACOUSTICS.md 5.10. */
 std::string pulseBlock(const SonarPreset& preset) {
     constexpr double speed_of_sound = 1496, chirp_width = 0.886;
     const double seconds = 2 * preset.range_resolution / speed_of_sound;

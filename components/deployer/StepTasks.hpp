@@ -1,5 +1,5 @@
 #pragma once
-// The two ends of a deployment that goes on step by step.
+// The two ends of a deployment that advances step by step.
 #include <map>
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@
 
 namespace insonify::deployer {
 
-/** Tells poses that a caller gives, at their time. Its outputs are those that connections name. */
+/** Writes the poses that a caller gives, at their time. Its outputs are those that connections name. */
 class PoseFeed final : public framework::TaskContext, public framework::ClockSource {
 public:
     using TaskContext::TaskContext;
@@ -29,7 +29,7 @@ public:
     }
     std::optional<types::Time> nextTime() const override { return due_; }
 
-    /** Of the next cycle, by the name of the port. */
+    /** Sets the pose of a port for the next cycle. */
     void give(const std::string& port, types::Pose pose) {
         due_ = pose.time;
         given_[port] = std::move(pose);
@@ -57,7 +57,7 @@ private:
     std::map<std::string, types::Pose> given_;
 };
 
-/** Takes pings out of a deployment. */
+/** Receives pings from a deployment. */
 struct PingReader : framework::TaskContext {
     explicit PingReader(std::string source) : TaskContext(std::move(source)) {}
     framework::InputPort<types::SonarPtr> ping{this, "ping", "of the last step"};
@@ -66,7 +66,7 @@ struct PingReader : framework::TaskContext {
                                                          framework::Need::Optional};
     framework::InputPort<types::SonarTruthPtr> range_truth{this, "range_truth", "what that shows",
                                                            framework::Need::Optional};
-    const sonar::AimedTask* sonar = nullptr;  ///< The source of the truth; null where that is no task of ours.
+    const sonar::AimedTask* sonar = nullptr;  ///< The source of the truth; null for tasks of other libraries.
 };
 
 }  // namespace insonify::deployer

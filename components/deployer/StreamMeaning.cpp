@@ -17,7 +17,7 @@ using framework::TaskSpec;
 
 constexpr const char* quaternion_order = "w, x, y, z";
 
-/** The nearest task of a type from which another one hears, itself included; null when there is none. */
+/** Returns the nearest task of these types upstream of a task, or the task itself; null when there is none. */
 const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, const std::set<std::string>& types) {
     std::vector<std::string> waiting{from};
     for (size_t i = 0; i < waiting.size(); ++i) {
@@ -32,7 +32,7 @@ const TaskSpec* upstream(const DeploymentSpec& spec, const std::string& from, co
     return nullptr;
 }
 
-/** A property as written, by its path. */
+/** Returns a property as written, by its path. */
 Json property(const TaskSpec* task, std::initializer_list<const char*> path) {
     if (!task) return nullptr;
     YAML::Node node = task->properties;
@@ -54,7 +54,7 @@ std::string binsOf(const std::string& model, const std::string& output, bool amp
     return "whole numbers by `code`, of: " + intensity;
 }
 
-/** The sonar's, else that of its absorption [kHz]; null where neither is given. */
+/** Returns the sonar's frequency, else that of its absorption [kHz]; null where neither is given. */
 Json frequencyOf(const TaskSpec* sonar) {
     const Json frequency = property(sonar, {"frequency_khz"});
     return frequency.is_null() ? property(sonar, {"absorption", "frequency_khz"}) : frequency;
@@ -81,7 +81,7 @@ Json pingMeaning(const DeploymentSpec& spec, const std::string& task) {
             {"absorption", property(sonar, {"absorption"})},
             {"range_m", "slant range of the middle of each bin, [pings, bins]"},
             {"bin_duration",
-             "one-way travel time through one bin [s], as Rock has it: bin k covers slant ranges "
+             "one-way travel time through one bin [s], as Rock defines it: bin k covers slant ranges "
              "[k, k + 1) * bin_duration * speed_of_sound"},
             {"frame", "sonar: x ahead, y to port, z up; bearings from ahead, positive to port [rad]"},
             {"mount", property(scene, {"mount"})},
@@ -97,7 +97,7 @@ void addRecorded(const log::Stream& stream, Json& meaning) {
         meaning["code"]["bits"] = bits;
     const std::string recording = stream.metadatum("insonify_recording");
     if (recording.empty()) return;
-    meaning["bins"] = "samples of " + recording + ", as its device gave them out";
+    meaning["bins"] = "samples of " + recording + ", as its device output them";
     meaning["model"] = meaning["reference"] = nullptr;
     if (meaning["output"] != "code") meaning["output"] = "samples";
 }
@@ -108,7 +108,7 @@ Json poseMeaning() {
             {"quaternion_order", quaternion_order}};
 }
 
-/** Of a sample's fields, what they are: as types tell it. */
+/** Returns the meaning of a sample's fields, from the type's description. */
 template <class T>
 Json fieldsOf() {
     Json fields = Json::object();
@@ -123,11 +123,11 @@ Json fieldsOf() {
 
 Json cloudMeaning() {
     return {{"points", "in the world, x north, y west, z up [m]"},
-            {"intensity", "of the strongest bin of each return, as the sonar's bins are"}};
+            {"intensity", "value of the strongest bin of each return, in the units of the sonar's bins"}};
 }
 
-/** The deployment that wrote the log, which its first stream carries; an empty one where it is not known or cannot be
- *  read. */
+/** Returns the deployment that wrote the log, from the metadata of its first stream; empty where it is unknown or
+ *  unreadable. */
 DeploymentSpec deploymentOf(const log::Reader& log) try {
     return DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
 } catch (const types::ConfigError&) {

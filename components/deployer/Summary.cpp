@@ -106,7 +106,7 @@ std::string Summary::text() const {
     text += "lost samples\n";
     for (const auto& [connection, count] : losses) text += fmt::format("  {:6}  {}\n", count, connection);
     text += passedOverText();
-    if (!omitted.empty()) text += "left out\n";
+    if (!omitted.empty()) text += "omitted\n";
     for (const types::Omission& omission : omitted) text += fmt::format("  {}: {}\n", omission.name, omission.reason);
     return text;
 }
@@ -115,7 +115,7 @@ std::string Summary::passedOverText() const {
     std::string text;
     for (const auto& [connection, count] : passed_over)
         if (count > 0) text += fmt::format("  {:6}  {}\n", count, connection);
-    return text.empty() ? text : "passed over for newer samples\n" + text;
+    return text.empty() ? text : "skipped for newer samples\n" + text;
 }
 
 std::string Summary::realtimeText() const {

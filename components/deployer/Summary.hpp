@@ -8,7 +8,7 @@
 
 namespace insonify::deployer {
 
-/** How a run went: what `--summary` writes and what is printed at the end. Taken before tasks are cleaned up. */
+/** The result of a run, for `--summary` and for the text at the end. Taken before tasks are cleaned up. */
 struct Summary {
     struct Times {
         uint64_t cycles = 0;
@@ -17,9 +17,9 @@ struct Summary {
     struct Task {
         std::string name, state;
         Times update;                         ///< Of updateHook.
-        std::map<std::string, Times> stages;  ///< Parts of it, by name.
-        Times jitter;                         ///< In realtime: of the begin of periodic cycles.
-        Times latency;                        ///< In realtime: from a sample's stamp to its being written.
+        std::map<std::string, Times> stages;  ///< Stages of updateHook, by name.
+        Times jitter;                         ///< In realtime: delay of the begin of periodic cycles.
+        Times latency;                        ///< In realtime: from a sample's stamp to its writing.
         uint64_t overruns = 0, late = 0, errors = 0, hangs = 0;  ///< As in framework::Timing.
     };
     uint64_t pings = 0;
@@ -27,10 +27,10 @@ struct Summary {
     bool realtime = false;
     std::vector<Task> tasks;                      ///< In file order.
     std::map<std::string, uint64_t> losses;       ///< By "from>to" [samples].
-    std::map<std::string, uint64_t> passed_over;  ///< For newer ones that came meanwhile, by "from>to" [samples].
-    std::vector<types::Omission> omitted;         ///< Of all sonars, each once.
+    std::map<std::string, uint64_t> passed_over;  ///< Skipped for newer samples, by "from>to" [samples].
+    std::vector<types::Omission> omitted;         ///< Of all sonars, without repeats.
     std::map<std::string, types::Plan> plans;     ///< Of each sonar that has sent a ping, by task.
-    std::vector<std::string> warnings;            ///< In realtime, as of framework::Deployment::onWarning.
+    std::vector<std::string> warnings;            ///< In realtime, as from framework::Deployment::onWarning.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);
     Json json() const;

@@ -3,10 +3,11 @@
 
 namespace insonify::deployer {
 
-/** The types of the core; those of component libraries are loaded when they are named. */
+/** Returns the task types of the core; types of component libraries are loaded when a deployment names them. */
 framework::Registry coreTasks();
 
-/** Those of all component libraries that are here as well. One that cannot be loaded is a notice on stderr. */
+/** Returns also the types of all available component libraries. A library that cannot be loaded is a notice on
+ *  stderr. */
 framework::Registry allTasks();
 
 }  // namespace insonify::deployer

@@ -26,7 +26,7 @@ void require(const char* option, double value, double min, double max) {
         throw types::ConfigError("", option, fmt::format("is {:g}; must be from {:g} to {:g}", value, min, max));
 }
 
-/** Where every formula has a meaning: wider than any of them is valid. */
+/** Checks the range in which every formula has a meaning; each is valid in a smaller range. */
 void check(const WaterOptions& options) {
     require("--temperature-celsius", options.water.temperature_celsius, -100, 400);
     require("--salinity-psu", options.water.salinity_psu, 0, 400);

@@ -4,11 +4,11 @@
 
 namespace {
 
-/** Mesa's software renderer takes megabytes for each ping and gives them back: kept in the process, they need not be
- *  handed out and cleared by the kernel again. */
+/** Mesa's software renderer allocates and frees megabytes for each ping. Kept in the process, this memory need not be
+ *  mapped and cleared by the kernel again. */
 void keepFreedMemory() {
 #ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that glibc takes [bytes]
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the max that glibc accepts [bytes]
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
 }

@@ -10,14 +10,15 @@
 
 namespace insonify::device {
 
-/** The pings that were asked of a sonar and have not come, the newest last, each with what is kept for its answer. */
+/** The pings that were requested from a sonar and have not arrived, the newest last, each with data kept for its
+ *  answer. */
 template <class Kept = std::monostate>
 class AskedPings {
 public:
-    /** @param max_waiting that a sonar which is slow may answer still; where there are more, the oldest is given up */
+    /** @param max_waiting max number of unanswered requests, for a slow sonar; the oldest is given up beyond it */
     explicit AskedPings(size_t max_waiting = 1) : max_waiting_(max_waiting) {}
 
-    /** @param sound_is_back when its last echo has come, at the latest */
+    /** @param sound_is_back latest time of the ping's last echo */
     void add(types::Time now, types::Time sound_is_back, Kept kept = {}) {
         if (asked_.size() >= max_waiting_) asked_.erase(asked_.begin());
         asked_.push_back({now, sound_is_back, std::move(kept)});
@@ -26,10 +27,10 @@ public:
 
     bool empty() const { return asked_.empty(); }
     size_t size() const { return asked_.size(); }
-    /** Whether a ping of this time answers one of them. */
+    /** Whether a ping of this time answers a request. */
     bool awaits(types::Time ping) const { return !asked_.empty() && ping >= asked_.front().time; }
-    /** What was kept for a ping of this time: it answers the newest that was asked for by then, and the older ones
-     *  never come. None: nobody has asked for it. */
+    /** Returns the data kept for a ping of this time. The ping answers the newest request made by then; older requests
+     *  are never answered. None: there is no such request. */
     std::optional<Kept> take(types::Time ping) {
         if (!awaits(ping)) return std::nullopt;
         const auto later = std::ranges::find_if(asked_, [&](const Asked& each) { return each.time > ping; });
@@ -37,7 +38,8 @@ public:
         asked_.erase(asked_.begin(), later);
         return kept;
     }
-    /** When the newest is late, where there is one. @param patience with the sonar, beyond the way of sound [s] */
+    /** Returns when the newest request is late, if there is one. @param patience with the sonar, in addition to the
+     *  travel time of sound [s] */
     types::Time deadline(double patience = 2) const {
         return asked_.back().sound_is_back + types::Time::fromSeconds(patience);
     }

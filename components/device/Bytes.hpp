@@ -1,5 +1,5 @@
 #pragma once
-// Bytes of the wire: numbers, little endian as the processors that this runs on, and addresses.
+// Bytes on the wire: numbers, little endian like the supported processors, and addresses.
 #include <array>
 #include <charconv>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace insonify::device {
 
 using Bytes = std::vector<uint8_t>;
 
-/** The number at a place that the caller knows to be there. */
+/** Returns the number at a place, which must be within the bytes. */
 template <class T>
 T read(std::span<const uint8_t> bytes, size_t at) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -25,21 +25,21 @@ T read(std::span<const uint8_t> bytes, size_t at) {
     return value;
 }
 
-/** Writes a number over bytes that are there. */
+/** Overwrites bytes with a number. */
 template <class T>
 void write(Bytes& bytes, size_t at, T value) {
     static_assert(std::is_trivially_copyable_v<T>);
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-/** Writes a number behind the last byte. Not inlined, because g++ 12 then warns falsely of numbers in a row. */
+/** Appends a number. Not inlined, because g++ 12 then warns falsely about consecutive numbers. */
 template <class T>
 [[gnu::noinline]] void append(Bytes& bytes, T value) {
     bytes.resize(bytes.size() + sizeof value);
     write(bytes, bytes.size() - sizeof value, value);
 }
 
-/** Reads numbers that the caller knows to be there, one after the other. */
+/** Reads numbers one after the other; they must be within the bytes. */
 class NumberReader {
 public:
     explicit NumberReader(std::span<const uint8_t> bytes, size_t at = 0) : bytes_(bytes), at_(at) {}
@@ -53,7 +53,7 @@ private:
     size_t at_;
 };
 
-/** Writes numbers behind the last byte, one after the other. */
+/** Appends numbers one after the other. */
 struct NumberWriter {
     template <class... T>
     void operator()(const T&... values) {
@@ -64,7 +64,7 @@ struct NumberWriter {
 
 using Ipv4 = std::array<uint8_t, 4>;
 
-/** Of "192.168.2.3"; none for anything else. */
+/** Returns the address in a text such as "192.168.2.3"; none for anything else. */
 inline std::optional<Ipv4> ipv4(std::string_view text) {
     Ipv4 bytes{};
     const char* at = text.data();

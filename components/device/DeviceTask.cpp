@@ -17,7 +17,7 @@ namespace insonify::device {
 void DeviceTask::check(types::Diagnostics& diagnostics) const {
     if (environment().lockstep)
         diagnostics.push_back(
-            {"", "a driver keeps the wall clock's time, for which lockstep does not wait; set schedule: realtime"});
+            {"", "a driver uses the wall clock, which lockstep does not follow; set schedule: realtime"});
 }
 
 std::vector<std::string> DeviceTask::notices() const {
@@ -27,7 +27,7 @@ std::vector<std::string> DeviceTask::notices() const {
     if (const uint64_t lost = network_->dropped(); lost > 0)
         all.push_back(std::to_string(lost) + " messages dropped: replaced by newer ones, or no route to the receiver");
     if (const uint64_t failed = network_->failures(); failed > 0)
-        all.push_back(std::to_string(failed) + " failures of the network's thread, which went on");
+        all.push_back(std::to_string(failed) + " failures of the network's thread, which continued");
     for (std::string& line : displaced_.summary()) all.push_back(std::move(line));
     return all;
 }
@@ -67,12 +67,11 @@ void DeviceTask::warnOfDisplaced() {
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<OculusTask>("device::OculusTask", "stands in for a Blueprint Subsea Oculus, a forward-looking sonar");
-    registry.add<Ping360Task>("device::Ping360Task", "stands in for a Blue Robotics Ping360, a scanning sonar");
-    registry.add<Ping1dTask>("device::Ping1dTask", "stands in for a Blue Robotics Ping1D, an echo sounder");
-    registry.add<MicronTask>("device::MicronTask",
-                             "stands in for a Tritech Micron, by SeaNet over TCP or a serial line");
-    registry.add<Sonar3dTask>("device::Sonar3dTask", "stands in for a Water Linked Sonar 3D-15, by HTTP and UDP");
+    registry.add<OculusTask>("device::OculusTask", "replaces a Blueprint Subsea Oculus, a forward-looking sonar");
+    registry.add<Ping360Task>("device::Ping360Task", "replaces a Blue Robotics Ping360, a scanning sonar");
+    registry.add<Ping1dTask>("device::Ping1dTask", "replaces a Blue Robotics Ping1D, an echo sounder");
+    registry.add<MicronTask>("device::MicronTask", "replaces a Tritech Micron, by SeaNet over TCP or a serial line");
+    registry.add<Sonar3dTask>("device::Sonar3dTask", "replaces a Water Linked Sonar 3D-15, by HTTP and UDP");
 }
 
 }  // namespace insonify::device

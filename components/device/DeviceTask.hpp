@@ -17,26 +17,27 @@
 
 namespace insonify::device {
 
-/** Where a device listens, as a property of its task. */
+/** The property of a device task for its listening address. */
 inline constexpr types::Field listen_address{"address", "",
                                              "numeric address to listen on; 0.0.0.0: every network of this machine"};
 
-/** What the tasks share that stand in for an instrument: its ends on the network, and the port by which they ask a
- *  sonar for pings, each as the driver wants it.
+/** The common part of the tasks that replace an instrument: its ends on the network, and the port that requests pings
+ *  from a sonar with the driver's settings.
  *
- *  Each cycle hands over what clients have sent, then the pings, then the time; a cycle runs when one of these has
+ *  Each cycle processes the clients' bytes, then the pings, then the time. A cycle runs when one of these has news.
+ *  Drivers use the wall clock, so the schedule is realtime.
  *  something new. What talks to a driver keeps the wall clock's time, so the schedule is realtime. */
 class DeviceTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
-    framework::OutputPort<types::SonarSettings> settings{this, "settings", "one ping as the driver asks for it"};
+    framework::OutputPort<types::SonarSettings> settings{this, "settings", "one ping with the driver's settings"};
 
     bool reachesOutside() const override { return true; }
-    /** A first cycle, and one for what came before it ran. */
+    /** For a first cycle, and one for events before it. */
     double wakeAfter() const override { return 0.1; }
     void check(types::Diagnostics& diagnostics) const override;
-    /** Where clients find it, and what was not sent. */
+    /** Returns the addresses for clients, and the messages not sent. */
     std::vector<std::string> notices() const override;
     /** For tests with port 0. */
     uint16_t portOf(End end) const { return network_->portOf(end); }
@@ -48,9 +49,9 @@ protected:
     virtual void opened(Client /*client*/) {}
     virtual void received(Client client, std::span<const uint8_t> bytes) = 0;
     virtual void closed(Client /*client*/) {}
-    /** Takes what has come at the task's own input ports. */
+    /** Reads the task's own input ports. */
     virtual void takePings() = 0;
-    /** Does what is due; when it wants its next cycle at the latest, none: when something comes. */
+    /** Does the due work. Returns the latest time of the next cycle; none: when something arrives. */
     virtual std::optional<types::Time> tick(types::Time now) = 0;
 
     bool configureHook() override;
@@ -62,11 +63,11 @@ private:
     void warnOfDisplaced();
 
     types::ThrottledWarning displaced_{"connection", "closed"};
-    framework::Event happened_{this};  ///< On the network; outlives it.
+    framework::Event happened_{this};  ///< Raised by the network; outlives it.
     std::unique_ptr<Network> network_;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::device

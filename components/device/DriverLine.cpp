@@ -34,11 +34,11 @@ Addresses addressesOf(const std::string& host, uint16_t port, int type) {
 
 bool isReady(int file, short events, DriverLine::Duration patience) {
     pollfd ready{file, events, 0};
-    const auto wait = std::max<DriverLine::Duration::rep>(0, patience.count());  // poll waits for ever below 0
+    const auto wait = std::max<DriverLine::Duration::rep>(0, patience.count());  // poll waits forever below 0
     return poll(&ready, 1, static_cast<int>(wait)) == 1;
 }
 
-/** Bytes as they are, at 115200 baud. */
+/** Unprocessed bytes, at 115200 baud. */
 void makeRaw(int file) {
     termios line{};
     if (tcgetattr(file, &line) != 0) fail(errno);

@@ -9,12 +9,12 @@
 
 namespace insonify::device {
 
-/** A line that cannot be had, or has broken: why, in words. */
+/** The reason why a line cannot be opened, or has broken. */
 struct LineError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/** A driver's end of a line to a device. Nothing takes longer than it is given. */
+/** A driver's end of a line to a device. No call takes longer than its time limit. */
 class DriverLine {
 public:
     using Duration = std::chrono::milliseconds;
@@ -23,7 +23,7 @@ public:
     static DriverLine udp(const std::string& host, uint16_t port);
     static DriverLine tcp(const std::string& host, uint16_t port, Duration patience);
     static DriverLine serial(const std::filesystem::path& file);
-    /** What is broadcast to a UDP port of this machine. */
+    /** Receives broadcasts to a UDP port of this machine. */
     static DriverLine broadcasts(uint16_t port);
 
     DriverLine(DriverLine&& other) noexcept;
@@ -34,9 +34,10 @@ public:
 
     /** Throws LineError. */
     void send(std::span<const uint8_t> bytes) const;
-    /** What comes next, at most 64 KiB; empty: nothing has come. Throws LineError where the line is closed. */
+    /** Returns the next bytes, at most 64 KiB; empty: nothing has arrived. Throws LineError where the line is
+     *  closed. */
     Bytes receive(Duration patience) const;
-    /** A datagram of anybody, and who has sent it; no bytes: nothing has come. */
+    /** A datagram of any sender, with the sender's address; no bytes: nothing has arrived. */
     struct Datagram {
         Bytes bytes;
         Ipv4 from{};
@@ -48,9 +49,9 @@ private:
     int file_;
 };
 
-/** Whether this machine knows such a host. */
+/** Whether this machine can resolve the host. */
 bool isKnownHost(const std::string& host);
-/** The IPv4 addresses of a host; none where it is not known. */
+/** Returns the IPv4 addresses of a host; none for an unknown host. */
 std::vector<Ipv4> ipv4Of(const std::string& host);
 
 }  // namespace insonify::device

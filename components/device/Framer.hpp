@@ -6,8 +6,8 @@
 
 namespace insonify::device {
 
-/** Finds the frames of a protocol in bytes as they come, whatever lies between them. What begins like a frame and is
- *  none is passed over by a byte, so that a frame within it is found. */
+/** Finds the frames of a protocol in a stream of bytes, with anything between them. At a false beginning it advances by
+ *  one byte, so that a frame within is found. */
 class Framer {
 public:
     virtual ~Framer() = default;
@@ -17,20 +17,20 @@ public:
         erased_ += std::exchange(begin_, 0);
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     }
-    size_t skipped() const { return skipped_; }                ///< Bytes that were of no frame.
-    size_t waiting() const { return bytes_.size() - begin_; }  ///< Bytes that are kept until more come.
-    uint64_t position() const { return erased_ + begin_; }     ///< Of these, from the beginning of the stream [B].
+    size_t skipped() const { return skipped_; }                ///< Bytes outside of frames.
+    size_t waiting() const { return bytes_.size() - begin_; }  ///< Bytes that are kept until more arrive.
+    uint64_t position() const { return erased_ + begin_; }     ///< Their place in the stream [B].
 
 protected:
-    /** Where a frame is cut off: wait for the rest of it, or look for a whole one behind its beginning, so that a stray
-     *  beginning holds up nobody. */
+    /** What to do with an incomplete frame: wait for its rest, or search for a complete frame behind its beginning, so
+     *  that a false beginning delays nothing. */
     enum class CutOff { Waits, IsPassedOver };
     explicit Framer(CutOff cut_off) : cut_off_(cut_off) {}
 
-    /** Size of the frame that begins with these bytes; 0: none does. Where it is more than they are, it is the least
-     *  that what begins here may have [B]. */
+    /** Returns the size of the frame at the beginning of the bytes; 0: there is none. If the frame is incomplete,
+     *  returns the min size that it may have [B]. */
     virtual size_t sizeOf(std::span<const uint8_t> bytes) const = 0;
-    /** The next whole frame, until bytes are added; empty: there is none yet. */
+    /** Returns the next complete frame, valid until bytes are added; empty: there is none yet. */
     std::span<const uint8_t> nextFrame() {
         std::optional<size_t> cut_off;
         for (size_t at = begin_; at < bytes_.size(); ++at) {
@@ -55,9 +55,9 @@ protected:
 private:
     CutOff cut_off_;
     Bytes bytes_;
-    size_t begin_ = 0;  ///< What is before has been read.
+    size_t begin_ = 0;  ///< Earlier bytes have been read.
     size_t skipped_ = 0;
-    uint64_t erased_ = 0;  ///< Bytes that are no longer kept.
+    uint64_t erased_ = 0;  ///< Bytes that have been removed.
 };
 
 }  // namespace insonify::device

@@ -44,7 +44,7 @@ bool take(std::string_view& text, char c) {
     return is_there;
 }
 
-/** Takes a number off the front of a text, in the C locale whatever the host's is. */
+/** Parses a number at the front of a text, in the C locale, not the host's. */
 template <class Number>
 bool take(std::string_view& text, Number& number, size_t max_characters) {
     const char* const end = text.data() + std::min(max_characters, text.size());

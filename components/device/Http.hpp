@@ -1,5 +1,5 @@
 #pragma once
-// HTTP/1.1 on bytes, and moments in its bodies, as far as a device's API needs them.
+// HTTP/1.1 on bytes, and times in its bodies, as far as a device's API needs them.
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,7 +12,7 @@ namespace insonify::device {
 
 struct HttpRequest {
     std::string method;  ///< GET, POST, ...
-    std::string path;    ///< Without what follows a question mark.
+    std::string path;    ///< Without the query after a question mark.
     std::string body;
     bool keep_alive = true;
 };
@@ -22,12 +22,12 @@ struct HttpReply {
     std::string body;  ///< JSON, or nothing.
 };
 
-/** The bytes of a reply; `keep_alive`: whether the connection goes on. */
+/** Returns the bytes of a reply; `keep_alive`: whether the connection stays open. */
 Bytes httpBytes(const HttpReply& reply, bool keep_alive);
-/** Those of a request, as a client sends it. */
+/** Returns the bytes of a client's request. */
 Bytes httpBytes(const HttpRequest& request, const std::string& host);
 
-/** Takes requests out of the bytes of one connection, as they come. */
+/** Reads requests from the bytes of one connection. */
 class HttpReader {
 public:
     static constexpr size_t max_body = size_t{64} << 10;  ///< [bytes]
@@ -38,9 +38,9 @@ public:
     HttpReader& operator=(HttpReader&&) noexcept;
 
     void add(std::span<const uint8_t> bytes);
-    /** The next whole request. */
+    /** Returns the next complete request. */
     std::optional<HttpRequest> next();
-    /** What to answer to bytes that are no request, after which the connection ends; none: all was good so far. */
+    /** Returns the reply to bytes that are not a request, after which the connection ends; none: no error so far. */
     const std::optional<HttpReply>& refusal() const { return refusal_; }
 
 private:
@@ -52,12 +52,12 @@ private:
     std::optional<HttpReply> refusal_;
 };
 
-/** `{"error": text}` with this status. */
+/** Returns `{"error": text}` with this status. */
 HttpReply httpError(int status, const std::string& text);
 
-/** A moment as ISO 8601 writes it in UTC: 2026-11-23T03:10:05.250000Z. */
+/** Returns a time in ISO 8601, in UTC: 2026-11-23T03:10:05.250000Z. */
 std::string isoText(types::Time time);
-/** With a zone, Z or +01:00, and any digits of a second; none where it is no such text. */
+/** Parses a time with a zone, Z or +01:00, and any number of digits of a second; none for other texts. */
 std::optional<types::Time> isoTime(const std::string& text);
 
 }  // namespace insonify::device

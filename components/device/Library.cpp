@@ -1,5 +1,4 @@
-// The component library device: what a deployment loads that names a type of this namespace, `insonify device`, and the
-// import and export of recordings.
+// The component library device: its task types, `insonify device`, and the import and export of recordings.
 #include "components/device/DeviceTask.hpp"
 #include "components/device/commands/DeviceCommand.hpp"
 #include "components/device/commands/OculusLog.hpp"

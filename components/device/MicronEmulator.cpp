@@ -14,7 +14,7 @@ namespace {
 constexpr double alive_period = 1;        // [s]
 constexpr double motor_unit = 10e-6;      // of motor_delay [s]
 constexpr double interval_unit = 640e-9;  // of ad_interval [s]
-constexpr double clock_hz = 32e6;         // of which transmit frequencies are a share
+constexpr double clock_hz = 32e6;         // unit of transmit frequencies
 constexpr double full_gain = 210, usual_gain = 84, full_gain_db = 80;
 constexpr double largest_code = 65535;
 constexpr uint16_t max_bins = 1500, max_interval = 1500;
@@ -24,7 +24,7 @@ int wrapped(int angle) { return (angle % seanet_turn + seanet_turn) % seanet_tur
 
 types::Time seconds(double value) { return types::Time::fromSeconds(value); }
 
-/** Why a head does not take a command; null: it does. */
+/** Returns why a head refuses a command; null: it accepts. */
 const char* refusal(const SeaNetHeadCommand& command) {
     if (command.bins == 0 || command.bins > max_bins) return "must have 1 to 1500 bins";
     if (command.ad_interval == 0 || command.ad_interval > max_interval) return "must have an ad_interval of 1 to 1500";
@@ -90,7 +90,7 @@ void MicronEmulator::configure(Client client, const SeaNetMessage& message, type
     const char* why = command ? refusal(*command) : "is too short";
     line_.reset();
     if (why) {
-        outlet_.warn(fmt::format("a head command was not taken: it {}", why));
+        outlet_.warn(fmt::format("a head command was refused: it {}", why));
         if (state_ == State::Ready) state_ = State::Unconfigured;
     } else {
         command_ = *command;
@@ -136,7 +136,7 @@ void MicronEmulator::askForPing(types::Time now) {
 }
 
 Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
-    const auto level = [&](size_t bin) {  // of 255 for 80 dB
+    const auto level = [&](size_t bin) {  // in 255ths of 80 dB
         const double code = bin < ping.bins.size() ? static_cast<double>(ping.bins[bin]) : 0;
         return std::isfinite(code) ? 255 * std::clamp(code / largest_code, 0.0, 1.0) : 0;
     };
@@ -221,7 +221,7 @@ std::optional<types::Time> MicronEmulator::tick(types::Time now) {
     if (line_ && line_->asked.empty() && !line_->data && now >= line_->ready) askForPing(now);
     if (line_ && line_->data && now >= line_->whole) finishLine();
     if (line_ && line_->asked.isLate(now)) {
-        if (!warned_) outlet_.warn("no ping came that was asked for; its scan line waits for another");
+        if (!warned_) outlet_.warn("a requested ping did not arrive; its scan line waits for another");
         warned_ = true;
         askForPing(now);
     }

@@ -18,7 +18,7 @@ struct MicronConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port; 0: any that is free, told in a notice", 0, 65535}, self.port);
+        visit(Field{"port", "1", "TCP port; 0: a free port, named in a notice", 0, 65535}, self.port);
         visit(Field{"serial", "",
                     "the file that drivers open as a serial line, relative to the run's output folder; "
                     "empty: none"},
@@ -27,9 +27,9 @@ struct MicronConfig {
     }
 };
 
-/** Stands in for a Tritech Micron, or a SeaKing: drivers that speak SeaNet over TCP or a serial line. See
- *  MicronEmulator for what it does. The sonar is a sonar::ScanningSonarTask; `ping` takes codes of 16 bits on a
- *  scale of 80 dB, of which the scan lines are made. */
+/** Replaces a Tritech Micron or a SeaKing, for drivers that speak SeaNet over TCP or a serial line. MicronEmulator has
+ *  the device's behaviour. The sonar is a sonar::ScanningSonarTask. Scan lines are made from the pings of `ping`, in
+ *  codes of 16 bits on a scale of 80 dB. */
 class MicronTask final : public DeviceTask {
 public:
     using DeviceTask::DeviceTask;

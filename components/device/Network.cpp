@@ -40,19 +40,19 @@ typename Protocol::endpoint endpointOf(const std::string& address, uint16_t port
     return {parsed, port};
 }
 
-/** Opens and binds; `what` is said before the port where it cannot be had. */
+/** Opens and binds; errors begin with `what` before the port. */
 template <class Socket, class Endpoint>
 void bindTo(Socket& socket, const Endpoint& endpoint) {
     error_code error;
     socket.open(endpoint.protocol(), error);
-    if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // two that take the same datagrams would not be told
+    if constexpr (std::is_same_v<Endpoint, Tcp::endpoint>)  // not UDP: two processes could share a port
         if (!error) socket.set_option(asio::socket_base::reuse_address(true), error);
     if (!error) socket.bind(endpoint, error);
     if (error) throw NetworkError("port", "is " + textOf(endpoint) + ", where it cannot listen: " + error.message());
     fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
 }
 
-/** Ends a connection whose other side is gone without a word, after half a minute. */
+/** Ends a connection after half a minute without contact. */
 void keepAlive(int socket) {
     const auto set = [&](int level, int option, int value) { setsockopt(socket, level, option, &value, sizeof value); };
     set(IPPROTO_TCP, TCP_KEEPIDLE, 10);  // [s]
@@ -63,7 +63,7 @@ void keepAlive(int socket) {
 
 }  // namespace
 
-/** Its events and counters are for any thread, the rest for the network's. */
+/** Its events and counters may be used on any thread, the rest on the network's. */
 class Network::Core {
 public:
     explicit Core(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
@@ -72,7 +72,7 @@ public:
         thread_.join();
     }
 
-    /** What is done at an end, on the network's thread. */
+    /** The operations of an end, on the network's thread. */
     class EndBase {
     public:
         virtual ~EndBase() = default;
@@ -84,7 +84,7 @@ public:
         std::string name;
     };
 
-    /** False: too much waits, read no more for now. */
+    /** False: too much waits, stop reading for now. */
     bool tell(NetworkEvent event) {
         bool room = false;
         {
@@ -114,7 +114,7 @@ public:
             });
         return taken;
     }
-    /** Runs `work` on the network's thread, and waits for it. */
+    /** Runs `work` on the network's thread, and waits until it ends. */
     template <class Work>
     void call(Work&& work) {
         std::packaged_task<void()> task(std::forward<Work>(work));
@@ -156,7 +156,7 @@ public:
     uint64_t heard = 0;  ///< Messages from connections so far, for the network's thread.
 
 private:
-    /** Serves until the end: a failure in one place, as for want of memory, is counted, and ends go on. */
+    /** Serves until the end. A failure in one place, such as out of memory, is counted, and the other ends continue. */
     void run() {
         while (true) try {
                 io.run();
@@ -190,9 +190,9 @@ namespace {
 template <class Stream>
 class Session : public std::enable_shared_from_this<Session<Stream>> {
 public:
-    /** Of a stream that ends where too much waits: called once, at its end. */
+    /** For a stream that ends when too much waits: called once, at its end. */
     struct Ended : std::function<void()> {};
-    /** Of a stream that cannot end, and loses the oldest of what is too much: empties what it holds itself. */
+    /** For a stream that cannot end and drops its oldest bytes: empties the stream's own buffer. */
     struct Drain : std::function<void()> {};
 
     Session(Network::Core& core, Stream stream, Client client, Ended ended)
@@ -232,9 +232,9 @@ public:
         closing_ = true;
         write();
     }
-    /** The number of its last message, of all; 0: it has sent none. */
+    /** The number of its last message among those of all sessions; 0: it has sent none. */
     uint64_t heard() const { return heard_; }
-    /** Ends it at once, with what waits for it. */
+    /** Ends it at once and drops its waiting messages. */
     void end() {
         if (closed_ || !ended_) return;
         shut();
@@ -269,7 +269,7 @@ private:
             self->write();
         });
     }
-    /** The oldest, until so many bytes find room. */
+    /** Drops the oldest, until the given number of bytes fits. */
     void forgetFor(size_t count) {
         drain_();
         while (!replies_.empty() && waiting_ + count > Network::max_line) {
@@ -286,7 +286,7 @@ private:
     Drain drain_;
     std::array<uint8_t, 65536> buffer_{};
     std::deque<Bytes> replies_;
-    std::optional<Bytes> newest_;  ///< Of what is streamed.
+    std::optional<Bytes> newest_;  ///< Of the streamed messages.
     Bytes sending_;
     size_t waiting_ = 0;  ///< In `replies_` [bytes].
     uint64_t heard_ = 0;
@@ -329,7 +329,7 @@ private:
         const auto found = sessions_.find(client);
         return found == sessions_.end() ? nullptr : found->second;
     }
-    /** Waits for the next client, unless it does so, or too much waits for the task. */
+    /** Waits for the next client, unless it waits already or too much waits for the task. */
     void accept() {
         if (accepting_ || !core_.hasRoom()) return;
         accepting_ = true;
@@ -339,7 +339,7 @@ private:
             if (!error) open(std::move(socket));
             if (!error) return accept();
             accepting_ = true;
-            retry_.expires_after(std::chrono::milliseconds(100));  // as when the process has no more files
+            retry_.expires_after(std::chrono::milliseconds(100));  // for example when the process has no more files
             retry_.async_wait([this](error_code cancelled) {
                 accepting_ = false;
                 if (!cancelled) accept();
@@ -363,7 +363,7 @@ private:
         session->read();
     }
 
-    /** Makes room for a newer client: who has been silent longest goes. */
+    /** Disconnects the client silent for longest, for a newer client. */
     void displace() {
         const auto silent =
             std::ranges::min_element(sessions_, {}, [](const auto& each) { return each.second->heard(); })->second;
@@ -380,7 +380,7 @@ private:
     uint64_t next_ = 1;
 };
 
-/** Datagrams; a client is an address that one has come from. */
+/** Datagrams; a client is a sender's address. */
 class UdpEnd final : public Network::Core::EndBase {
 public:
     UdpEnd(Network::Core& core, End end, const Udp::endpoint& at) : core_(core), end_(end), socket_(core.io) {
@@ -409,7 +409,7 @@ public:
 private:
     struct Known {
         Udp::endpoint endpoint;
-        uint64_t heard = 0;  ///< The number of its last datagram, of all.
+        uint64_t heard = 0;  ///< The number of its last datagram, among those of all.
     };
 
     void read() {
@@ -472,8 +472,8 @@ Terminal openTerminal() {
     return made;
 }
 
-/** One client for ever, since a line does not tell who is at its other side. Holding the slave side open keeps the line
- *  up while no driver has it. */
+/** A single permanent client, since a line does not show who is at its other side. An open slave side keeps the line up
+ *  while no driver has opened it. */
 class SerialEnd final : public Network::Core::EndBase {
 public:
     SerialEnd(Network::Core& core, End end, std::filesystem::path link)
@@ -506,7 +506,8 @@ public:
 private:
     using Line = Session<asio::posix::stream_descriptor>;
 
-    /** By reading: a flush leaves what has not reached the slave side yet, and does not call for it. */
+    /** Reads instead of flushing: a flush leaves the bytes that have not reached the slave side yet, and does not
+     *  request them. */
     void drain() const {
         std::array<uint8_t, 4096> past{};
         while (::read(terminal_.slave, past.data(), past.size()) > 0) {

@@ -15,79 +15,82 @@
 
 namespace insonify::device {
 
-/** A place where clients come: of its Network, in the order in which they were opened. */
+/** An end that clients connect to: its index in the Network, in the order of opening. */
 using End = size_t;
 
-/** One who talks to the device: a TCP connection, the address of a datagram, or whoever holds the serial line. */
+/** A peer of the device: a TCP connection, the address of a datagram, or the user of the serial line. */
 struct Client {
     End end = 0;
-    uint64_t number = 0;  ///< Of its end; never used again.
+    uint64_t number = 0;  ///< Unique at its end; never used again.
     auto operator<=>(const Client&) const = default;
 };
 
-/** What has happened at an end. */
+/** An event at an end. */
 struct NetworkEvent {
     enum class Kind { Opened, Received, Closed };
     Kind kind;
     Client client;
-    Bytes bytes;       ///< Received: of a stream whatever has come, of datagrams a whole one.
-    std::string peer;  ///< Opened: its address.
+    Bytes bytes;       ///< Received: the available bytes of a stream, or one whole datagram.
+    std::string peer;  ///< Opened: the client's address.
 };
 
-/** An end that cannot be opened: why, to be said after the property that names it. */
+/** The reason why an end cannot be opened, to be printed after the property that names the end. */
 struct NetworkError : std::runtime_error {
     NetworkError(std::string of, const std::string& why) : std::runtime_error(why), property(std::move(of)) {}
     std::string property;  ///< address, port or serial.
 };
 
-/** Moves bytes between clients and one task, on a thread of its own, so that no client holds up the task.
+/** Moves bytes between clients and one task on its own thread, so that no client delays the task.
  *
- *  Everything is bounded: a client that sends faster than the task takes is not read meanwhile (datagrams are lost),
- * and one that does not read what must arrive is closed. All functions are for one thread, that of the task. */
+ *  All buffers are bounded. A client that sends faster than the task reads is not read meanwhile (datagrams are lost).
+ *  A client that does not read its replies is disconnected. All functions are called on one thread, that of the
+ *  task. */
 class Network {
 public:
-    static constexpr size_t max_clients = 64;        ///< Of an end; for one more, the longest silent goes.
-    static constexpr size_t max_received = 1 << 20;  ///< With their events, before clients are read no more [bytes].
-    static constexpr size_t max_replies = size_t{8} << 20;  ///< That wait for one client, before it is closed [bytes].
-    static constexpr size_t max_line = 4096;  ///< Replies that wait for a serial line, before the oldest go [bytes].
+    static constexpr size_t max_clients = 64;        ///< Of an end; one more replaces the one silent for longest.
+    static constexpr size_t max_received = 1 << 20;  ///< With their events; beyond, clients are not read [bytes].
+    static constexpr size_t max_replies = size_t{8} << 20;  ///< Waiting for one client; beyond, it is closed [bytes].
+    static constexpr size_t max_line = 4096;  ///< Waiting for a serial line; beyond, the oldest are dropped [bytes].
 
-    /** Reply: arrives, in order. Stream: of these only the newest waits, behind all replies. */
+    /** Reply: delivered, in order. Stream: only the newest waits, behind all replies. */
     enum class Kind { Reply, Stream };
 
-    /** `wake` is called on another thread when something has happened, and when wakeAt() is due. */
+    /** Calls `wake` on another thread when there is an event, and when wakeAt() is due. */
     explicit Network(std::function<void()> wake);
     ~Network();
     Network(const Network&) = delete;
     Network& operator=(const Network&) = delete;
 
-    // Each throws NetworkError. Port 0 is any that is free.
+    // Each throws NetworkError. Port 0 selects a free port.
     End listenTcp(const std::string& address, uint16_t port);
     End listenUdp(const std::string& address, uint16_t port);
-    /** A pseudo terminal in place of a serial line; `link` leads to the side that drivers open, and goes with the end.
+    /** Opens a pseudo terminal in place of a serial line; `link` points to the side that drivers open, and is removed
+     *  with the end.
      *
-     *  A line does not tell whether a driver has it open, so what nobody reads is kept as if one were slow: `max_line`
-     *  here, beside what the terminal itself holds (about 16 KiB). Where more comes, the oldest of both is lost, which
-     *  may cut a packet; a driver that opens the line reads that little of the past before the newest. */
+     *  A line does not show whether a driver has opened it. Unread bytes are therefore kept as for a slow driver:
+     *  `max_line` here, in addition to the terminal's own buffer (about 16 KiB). Beyond that, the oldest bytes of both
+     *  are lost, which may cut a packet. A driver that opens the line reads these few old bytes before the newest. */
     End openSerial(const std::filesystem::path& link);
-    uint16_t portOf(End end) const;  ///< 0: it has none.
-    /** Every end, as "TCP 127.0.0.1:52100" or "serial line /tmp/sonar". */
+    uint16_t portOf(End end) const;  ///< 0: the end has no port.
+    /** Returns every end, as "TCP 127.0.0.1:52100" or "serial line /tmp/sonar". */
     std::vector<std::string> names() const;
 
-    /** What has happened since the last call, in order. */
+    /** Returns the events since the last call, in order. */
     std::vector<NetworkEvent> take();
-    /** To a client that is gone: nothing. */
+    /** Sends bytes to a client; does nothing if the client is gone. */
     void send(Client client, Bytes bytes, Kind kind = Kind::Reply);
-    /** One datagram, to a broadcast or multicast group as well; lost where there is no way. Throws NetworkError where
-     * the address is none. */
+    /** Sends one datagram, also to a broadcast or multicast group; it is lost without a route. Throws NetworkError if
+     *  the address is invalid. */
     void sendTo(const std::string& address, uint16_t port, Bytes bytes);
-    /** Once all replies have been sent. There will be a Closed event. */
+    /** Closes a connection once all replies have been sent. A Closed event follows. */
     void close(Client client);
     void wakeAt(std::chrono::steady_clock::time_point when);
-    /** Messages that were not sent: newer ones took their place, or there was no way [1]. */
+    /** Messages dropped: replaced by newer ones, or no route to the receiver [1]. */
     uint64_t dropped() const;
-    /** Connections that were closed for newer ones, max_clients being there [1]. */
+    /** Connections closed for newer ones at max_clients [1]. */
     uint64_t displaced() const;
-    /** Failures on the network's thread, after each of which it has gone on: no memory, an exception of `wake` [1]. */
+    /** Failures on the network's thread, each followed by normal operation: out of memory, an exception of `wake`
+     *  [1]. */
     uint64_t failures() const;
 
     class Core;

@@ -13,7 +13,7 @@ const Time second{1'000'000}, dummy_period{100'000};
 
 Time periodOf(const OculusFire& fire) { return Time::fromSeconds(1 / fire.rateHz()); }
 
-/** In high frequency the device has a gain of 40 % at least, and 0 to 100 % of a driver go over the rest. */
+/** In high frequency the device's gain is at least 40 %; a driver's 0 to 100 % are mapped to the rest. */
 double usedGain(const OculusFire& fire) { return fire.mode == 2 ? 40 + 0.6 * fire.gain_percent : fire.gain_percent; }
 
 }  // namespace
@@ -52,7 +52,7 @@ void OculusEmulator::closed(ClientId client) {
 }
 
 void OculusEmulator::take(std::span<const uint8_t> message) {
-    if (oculusUserConfig(message)) return;  // the network settings that it keeps are not changed
+    if (oculusUserConfig(message)) return;  // the network settings are not changed
     const auto asked = oculusFire(message);
     const auto settings = asked ? possible(*asked) : std::nullopt;
     if (settings)
@@ -121,7 +121,7 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
     if (isDue(now)) {
         due.ask = settingsOf(fire_, now);
         asked_.add(now, now + Time::fromSeconds(2 * due.ask->range / 1300), {*due.ask, fire_});
-        const Time planned = last_ping_ + periodOf(fire_);  // the rate holds though a cycle comes late
+        const Time planned = last_ping_ + periodOf(fire_);  // keeps the rate even if a cycle is late
         last_ping_ = now - planned < periodOf(fire_) ? planned : now;
     }
     due.next = std::min(due.next, asked_.empty() ? last_ping_ + periodOf(fire_) : now + second);

@@ -19,7 +19,7 @@
 
 namespace insonify::device {
 
-/** What each can do is in the maker's data sheets. */
+/** Their capabilities are from the maker's data sheets. */
 enum class OculusModel { M370s, M750d, M1200d, M3000d };
 
 /** One of the two frequencies of a model. */
@@ -35,15 +35,16 @@ struct OculusCapabilities {
     OculusMode low;
     std::optional<OculusMode> high;
 
-    /** Of the mode of a fire message: 2 is high, where there is one, and everything else is low. */
+    /** Returns the mode of a fire message: 2 is the high frequency, if the model has one; all other numbers are the low
+     *  frequency. */
     const OculusMode& mode(uint8_t number) const { return number == 2 && high ? *high : low; }
 };
 
 const OculusCapabilities& capabilitiesOf(OculusModel model);
-/** The model of a part number; none: not one of these. */
+/** Returns the model of a part number; none: unknown. */
 std::optional<OculusModel> oculusModelOf(uint16_t part);
 
-/** What an Oculus is, beyond what drivers set. */
+/** Properties of an Oculus that drivers do not set. */
 struct OculusConfig {
     OculusModel model = OculusModel::M750d;
     int serial_number = 7700;
@@ -61,9 +62,8 @@ struct OculusConfig {
         visit(Field{"serial_number", "1", "of the device, in its status and pings", 1, 65535}, self.serial_number);
         visit(Field{"bin_count", "1", "of a beam; fewer where bins would be finer than the model's", 1, 65535},
               self.bin_count);
-        visit(
-            Field{"code_bits", "1", "of the receiver's codes, which go as amplitude: its output code, law sqrt", 8, 16},
-            self.code_bits);
+        visit(Field{"code_bits", "1", "of the receiver's codes of amplitude: its output code, law sqrt", 8, 16},
+              self.code_bits);
         visit(Field{"gain_min_db", "dB", "of the receiver at a gain of 0 %", -200, 200}, self.gain_min_db);
         visit(Field{"gain_max_db", "dB", "of the receiver at a gain of 100 %", -200, 200}, self.gain_max_db);
         visit(Field{"temperature_celsius", "degC", "of the water, as the device reports it", -5, 60},
@@ -74,39 +74,41 @@ struct OculusConfig {
     }
 };
 
-/** A Blueprint Subsea Oculus as drivers know it: bytes of clients, pings and the time go in, bytes and what is to be
- *  asked of the sonar come out. It has one state for all of its clients: the last fire message counts. Without a
- *  client, and until a fire message has come, it stands by. */
+/** A Blueprint Subsea Oculus as drivers know it. Inputs are bytes of clients, pings and the time; outputs are bytes and
+ *  requests to the sonar. All clients share one state: the last fire message applies. Without a client, and before the
+ *  first fire message, it is in standby. */
 class OculusEmulator {
 public:
     using ClientId = uint64_t;
 
-    /** What is due. */
+    /** The due work. */
     struct Due {
-        std::optional<types::SonarSettings> ask;  ///< A ping.
+        std::optional<types::SonarSettings> ask;  ///< A request for a ping.
         Bytes dummy;                              ///< To all clients, in standby.
-        Bytes status;                             ///< A datagram to whoever listens.
+        Bytes status;                             ///< A datagram to all listeners.
         types::Time next;                         ///< When something is due again.
     };
 
-    /** @param started when it was switched on */
+    /** @param started when the device was switched on */
     OculusEmulator(const OculusConfig& config, types::Time started);
 
     void opened(ClientId client) { clients_[client] = OculusFramer(largest_message); }
     void received(ClientId client, std::span<const uint8_t> bytes);
     void closed(ClientId client);
 
-    /** What is due now. There is one ping under way; one that does not come for two seconds and the way of its sound is
-     *  asked for anew, then for four, and so on. It is still sent when it comes. */
+    /** Returns the due work. One ping is in progress at a time. A ping that does not arrive within two seconds and the
+     *  travel time of its sound is requested again, the next after four seconds, and so on. A late ping is still sent
+     *  when it arrives. */
     Due tick(types::Time now);
-    /** The message of a ping, for all clients; empty for one that nobody waits for. Its bins are a receiver's codes. */
+    /** Returns the message of a ping, for all clients; empty if no request waits for it. The ping's bins are a
+     *  receiver's codes. */
     Bytes ping(const types::Sonar& codes);
 
-    /** The settings of the next ping, as they were understood. */
+    /** The settings of the next ping, as interpreted. */
     const OculusFire& fire() const { return fire_; }
     bool standsBy() const { return clients_.empty() || fire_.isStandby(); }
-    uint64_t lost() const { return lost_; }        ///< Pings that did not come in time.
-    uint64_t refused() const { return refused_; }  ///< Messages of clients that were no settings.
+    uint64_t lost() const { return lost_; }        ///< Pings that did not arrive in time.
+    uint64_t refused() const { return refused_; }  ///< Client messages that were not valid settings.
 
 private:
     static constexpr size_t largest_message = 4096;
@@ -117,7 +119,7 @@ private:
     };
 
     void take(std::span<const uint8_t> message);
-    /** Settings as the device can have them; none: they are no numbers. */
+    /** Returns the settings clamped to the device's limits; none: they are not numbers. */
     std::optional<OculusFire> possible(OculusFire fire) const;
     double rangeOf(const OculusFire& fire) const;
     types::SonarSettings settingsOf(const OculusFire& fire, types::Time now) const;
@@ -132,11 +134,11 @@ private:
     types::Time started_;
     std::map<ClientId, OculusFramer> clients_;
     OculusFire fire_;
-    AskedPings<Asked> asked_{4};  ///< More than one: those before the newest have not come in time.
+    AskedPings<Asked> asked_{4};  ///< With more than one, all but the newest have not arrived in time.
     types::Time last_ping_, last_dummy_, last_status_;
-    double own_speed_ = types::SonarSettings::unset;  ///< Of sound, of the sonar where no driver sets it [m/s].
+    double own_speed_ = types::SonarSettings::unset;  ///< Of the sonar, if no driver sets a speed of sound [m/s].
     uint32_t number_ = 0;
-    std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Others than the task's thread may look at them.
+    std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Other threads than the task's may read them.
 };
 
 }  // namespace insonify::device

@@ -49,7 +49,7 @@ void visitUserConfig(Config& config, Visit& visit) {
     visit(config.address, config.mask, config.dhcp);
 }
 
-/** Why a ping whose fixed part is there cannot be one; empty: it can. */
+/** Returns why a ping with a complete fixed part is invalid; empty: it is valid. */
 std::string numbersDiagnostic(const OculusResult& ping, size_t size) {
     if (ping.codeBytes() > 4) return fmt::format("has codes of {} bytes; there are 1 to 4", ping.codeBytes());
     if (ping.beam_count == 0 || ping.bin_count == 0)
@@ -79,7 +79,7 @@ std::string resultDiagnostic(std::span<const uint8_t> message, OculusResult& pin
     return numbersDiagnostic(ping, message.size());
 }
 
-/** Of the whole message that this is the header of; 0: none has such a header. */
+/** Returns the size of the whole message of this header; 0: no message has this header. */
 size_t messageSize(const OculusHeader& header) {
     constexpr size_t max_other_payload = 4096;
     const size_t payload = header.payload_size;
@@ -136,7 +136,7 @@ std::optional<OculusFire> oculusFire(std::span<const uint8_t> message) {
     const auto header = oculusHeader(message);
     if (!header || !header->is(OculusId::Fire) || message.size() < OculusFire::size_v1) return std::nullopt;
     Bytes whole(message.begin(), message.end());
-    whole.resize(std::max(whole.size(), OculusFire::size_v2));  // what version 2 has left out is 0
+    whole.resize(std::max(whole.size(), OculusFire::size_v2));  // fields missing in version 2 are 0
     OculusFire fire{.header = *header};
     NumberReader take(whole);
     visitFire(fire, take);

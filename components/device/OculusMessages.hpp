@@ -1,6 +1,6 @@
 #pragma once
-// What goes over the wire to and from a Blueprint Subsea Oculus: every message as a struct that keeps all of its
-// fields, read and written by one list of them. Packed, little endian.
+// Messages to and from a Blueprint Subsea Oculus. Each message is a struct with all its fields, read and written by one
+// list of the fields. Packed, little endian.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -13,12 +13,12 @@
 namespace insonify::device {
 
 inline constexpr uint16_t oculus_mark = 0x4F53;
-/** Of the clock in pings of version 1, by a recording at ten pings a second. */
+/** The clock in pings of version 1, from a recording at ten pings per second. */
 inline constexpr double oculus_ticks_per_second = 625e6;
 
-/** What a message is, by its header. */
+/** The kind of a message, in its header. */
 enum class OculusId : uint16_t {
-    Status = 0x01,  ///< Over UDP, where listeners go by the size alone.
+    Status = 0x01,  ///< Over UDP, where listeners check only the size.
     Fire = 0x15,
     FullResult = 0x22,
     PingResult = 0x23,
@@ -37,7 +37,7 @@ struct OculusHeader {
     bool is(OculusId other) const { return id == static_cast<uint16_t>(other); }
 };
 
-/** The settings of all pings from now on. Of version 2 where the header says so; every other version is 1. */
+/** The settings of all following pings. Version 2 if the header says so; every other version is 1. */
 struct OculusFire {
     static constexpr size_t size_v1 = 53, size_v2 = 89;
     // Bits of `flags`, and of `extended_flags`.
@@ -49,12 +49,12 @@ struct OculusFire {
     OculusHeader header{.id = static_cast<uint16_t>(OculusId::Fire)};
     uint8_t mode = 1;              ///< 1: low frequency, 2: high.
     uint8_t rate = 0;              ///< 0: 10 Hz, 1: 15, 2: 40, 3: 5, 4: 2, 5: standby.
-    uint8_t network_speed = 0xFF;  ///< [Mbit/s]; 0 and 255: as fast as it goes.
-    uint8_t gamma = 0xFF;          ///< Of the codes, in 255ths; 0 is 1.0 as well.
+    uint8_t network_speed = 0xFF;  ///< [Mbit/s]; 0 and 255: unlimited.
+    uint8_t gamma = 0xFF;          ///< Of the codes, in 255ths; 0 also means 1.0.
     uint8_t flags = range_in_metres | simple_result;
-    double range = 10;          ///< [m] or, without range_in_metres, [%] of the largest.
+    double range = 10;          ///< [m] or, without range_in_metres, [%] of the max range.
     double gain_percent = 50;   ///< [%]
-    double speed_of_sound = 0;  ///< 0: as the device finds it [m/s].
+    double speed_of_sound = 0;  ///< 0: the device's own [m/s].
     double salinity = 35;       ///< [psu]
     uint32_t extended_flags = 0;
     std::array<uint32_t, 8> reserved{};
@@ -63,15 +63,15 @@ struct OculusFire {
     size_t size() const { return isVersion2() ? size_v2 : size_v1; }
     bool isStandby() const { return rate == standby; }
     bool sendsRowGains() const { return (flags & row_gains) != 0; }
-    /** Bytes of a code that it asks for: 1, 2 or 4. */
+    /** Returns the requested bytes per code: 1, 2 or 4. */
     size_t codeBytes() const;
-    /** Largest rate of pings that it asks for [Hz]; 10 where the number is none that is known, 0 in standby. */
+    /** Returns the requested max rate of pings [Hz]; 10 for an unknown number, 0 in standby. */
     double rateHz() const;
-    /** Power that amplitudes are taken to [1]. */
+    /** Exponent of the amplitudes [1]. */
     double gammaExponent() const { return gamma == 0 ? 1 : gamma / 255.0; }
 };
 
-/** One ping, a "simple ping result". `fire` holds the header of this message and the settings of the ping. */
+/** One ping, a "simple ping result". `fire` has the header of this message and the settings of the ping. */
 struct OculusResult {
     static constexpr size_t size_v1 = 122, size_v2 = 202;  ///< Up to the bearings [B].
 
@@ -81,10 +81,10 @@ struct OculusResult {
     double temperature_celsius = 0;
     double pressure_bar = 0;
     double heading_deg = 0, pitch_deg = 0, roll_deg = 0;  ///< Version 2.
-    double speed_of_sound = 0;                            ///< As the device took it [m/s].
+    double speed_of_sound = 0;                            ///< Used by the device [m/s].
     uint32_t start_ticks = 0;                             ///< Version 1: of the device's clock, which wraps.
     double start_s = 0;                                   ///< Version 2: since the device was switched on [s].
-    uint8_t code_size = 0;                                ///< Bytes of a code less one.
+    uint8_t code_size = 0;                                ///< Bytes per code minus one.
     double range_resolution = 0;                          ///< Slant range of a bin [m].
     uint16_t bin_count = 0, beam_count = 0;
     std::array<uint32_t, 4> spare{};  ///< Version 2.
@@ -92,7 +92,7 @@ struct OculusResult {
     uint32_t image_size = 0;          ///< [B]
     uint32_t message_size = 0;        ///< [B]
     std::vector<int16_t> bearings;    ///< [0.01 deg], positive to starboard.
-    Bytes before_image;               ///< What stands between bearings and image.
+    Bytes before_image;               ///< Bytes between bearings and image.
     Bytes image;  ///< A row for each bin, nearest first: its gain, if sent, and a code for each beam.
     Bytes after_image;
 
@@ -100,11 +100,11 @@ struct OculusResult {
     size_t gainBytes() const { return fire.sendsRowGains() ? 4 : 0; }
     size_t rowBytes() const { return gainBytes() + beam_count * codeBytes(); }
     size_t fixedSize() const { return fire.isVersion2() ? size_v2 : size_v1; }
-    /** Sets every size and place by what bearings and image hold; leaves nothing between them. */
+    /** Sets every size and offset from the bearings and the image, without bytes between them. */
     void settle();
 };
 
-/** Sent each second to whoever listens on UDP port 52102. */
+/** Sent each second to UDP port 52102. */
 struct OculusStatus {
     static constexpr size_t size = 142;
     static constexpr uint32_t running = 3;  ///< Bits 0 to 2 of `status`: the main program runs.
@@ -121,7 +121,7 @@ struct OculusStatus {
     double pressure_bar = 0;
 };
 
-/** The network settings that a device keeps. */
+/** The network settings of a device. */
 struct OculusUserConfig {
     static constexpr size_t size = 28;
     OculusHeader header{.id = static_cast<uint16_t>(OculusId::UserConfig), .payload_size = size - OculusHeader::size};
@@ -129,21 +129,21 @@ struct OculusUserConfig {
     uint32_t dhcp = 0;
 };
 
-/** None where these bytes do not begin with a header. */
+/** None unless the bytes begin with a header. */
 std::optional<OculusHeader> oculusHeader(std::span<const uint8_t> bytes);
 
-/** A fire message from its beginning on. Payload size 0 is taken for that of its version, and what is longer than that
- *  of its version for no part of it; of version 2 but only as long as version 1, it has no extended flags. None: too
+/** Reads a fire message at the beginning of the bytes. Payload size 0 means the size of its version; bytes beyond the
+ *  size of its version are ignored. A version 2 message only as long as version 1 has no extended flags. None: too
  *  short, or another message. */
 std::optional<OculusFire> oculusFire(std::span<const uint8_t> message);
-/** With the payload size that belongs to its version. */
+/** With the payload size of its version. */
 Bytes bytesOf(OculusFire fire);
 
-/** A ping, every byte of it. None where it contradicts itself: bytes that are missing, an image of another size than
- *  bins and beams make, numbers that cannot be.
- *  @param diagnostic where not null takes the reason, after "the ping" */
+/** Reads a ping with every byte. None if the ping contradicts itself: missing bytes, an image whose size does not match
+ *  bins and beams, impossible numbers.
+ *  @param diagnostic receives the reason, after "the ping", unless null */
 std::optional<OculusResult> oculusResult(std::span<const uint8_t> message, std::string* diagnostic = nullptr);
-/** What oculusResult has read, byte for byte. */
+/** Writes what oculusResult has read, byte for byte. */
 Bytes bytesOf(const OculusResult& result);
 
 /** None unless these are 142 bytes of an Oculus. */
@@ -153,22 +153,21 @@ Bytes bytesOf(const OculusStatus& status);
 std::optional<OculusUserConfig> oculusUserConfig(std::span<const uint8_t> message);
 Bytes bytesOf(const OculusUserConfig& config);
 
-/** A header alone: sent in standby in the place of pings. */
+/** A header alone, sent in standby instead of pings. */
 Bytes oculusDummy(uint16_t source, uint16_t part);
-/** A line of text for whoever reads the device's log. */
+/** A line of text for the device's log. */
 Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text);
 
-/** Cuts a stream of bytes into messages. Goes on with the next header after what is none, and after one of an unknown
- *  kind or of a size that no message of its kind has: so that a line that was damaged costs the messages that it
- * damaged. */
+/** Splits a stream of bytes into messages. After bytes that are not a message, a message of an unknown kind or one of
+ *  an impossible size, it continues at the next header. A damaged line thus costs only the damaged messages. */
 class OculusFramer final : public Framer {
 public:
-    /** @param largest payload of a message; a header that tells a larger one is none [B] */
+    /** @param largest max payload of a message; a header with a larger payload is not accepted [B] */
     explicit OculusFramer(size_t largest = size_t{1} << 28) : Framer(CutOff::Waits), largest_(largest) {}
 
-    /** The next whole message; empty: there is none yet. */
+    /** Returns the next complete message; empty: there is none yet. */
     Bytes next();
-    /** At the end of a stream: gives up the header whose message is not whole, so that next() goes on behind it. False:
+    /** Skips the header of an incomplete message at the end of a stream, so that next() continues behind it. False:
      *  there is none. */
     bool giveUp();
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t max_diagnostics = 100;
 
-/** Rows of all beams, one for each bin, into beams. */
+/** Transposes rows of all beams, one for each bin, to beams. */
 void takeImage(const OculusResult& result, OculusPing& ping) {
     ping.codes.resize(size_t{result.beam_count} * result.bin_count);
     const size_t width = result.codeBytes(), gain = result.gainBytes();
@@ -33,8 +33,8 @@ void takeImage(const OculusResult& result, OculusPing& ping) {
     }
 }
 
-/** The beams from starboard to port, at bearings that 16 bits hold in hundredths of a degree: an arc that goes too far
- *  beyond 180 degrees begins astern instead. */
+/** Orders the beams from starboard to port, at bearings in hundredths of a degree within 16 bits. An arc too far beyond
+ *  180 degrees begins astern instead. */
 types::BeamArc wireArc(const types::Sonar& codes) {
     types::BeamArc arc(codes);
     if (arc.beams.empty() || types::degrees(arc.bearings.back()) < 327) return arc;
@@ -145,7 +145,7 @@ void OculusEncoder::bend(double gamma) {
 }
 
 uint32_t OculusEncoder::indexOf(float code) const {
-    if (!(code > 0)) return 0;  // what is not known as well
+    if (!(code > 0)) return 0;  // also unknown values
     return code < static_cast<float>(largest_in_) ? static_cast<uint32_t>(code + 0.5f) : largest_in_;
 }
 

@@ -25,7 +25,7 @@ void visitItem(Item& item, Size&& payload_size, Visit&& visit) {
           payload_size, item.unused_c);
 }
 
-constexpr size_t mark_size = 8;  ///< Of mark and size.
+constexpr size_t mark_size = 8;  ///< Of the mark and the size.
 
 Bytes marked(uint32_t mark, size_t size) {
     NumberWriter writer;
@@ -145,7 +145,7 @@ void OculusRecorder::put(const Bytes& bytes) {
     if (!file_) throw std::runtime_error(path_.string() + ": the recording can no longer be written");
 }
 
-/** The messages of either kind of file, with their times where the file has any. */
+/** The messages of either kind of file, with the file's times if it has any. */
 struct OculusPings::Source {
     struct Message {
         Bytes bytes;  ///< Empty at the end.
@@ -162,7 +162,7 @@ struct OculusPings::Source {
 
     Message next() { return recording ? nextOfRecording() : Message{nextOfCapture(), std::nullopt}; }
 
-    /** Items of other types, and those that are damaged, are passed over. */
+    /** Skips damaged items and those of other types. */
     Message nextOfRecording() {
         while (auto item = recording->next()) {
             if (item->type != OculusItem::sonar) continue;
@@ -185,9 +185,9 @@ struct OculusPings::Source {
         }
     }
 
-    /** When a ping was sent, since the first one, by the device's own clock [s]. */
+    /** Returns the time of a ping since the first one, by the device's clock [s]. */
     double clockOf(const OculusResult& ping) {
-        const auto ticks = static_cast<uint32_t>(ping.start_ticks - start_ticks);  // the clock wraps, and so does this
+        const auto ticks = static_cast<uint32_t>(ping.start_ticks - start_ticks);  // wraps like the clock
         const double step = ping.fire.isVersion2() ? ping.start_s - start_s : ticks / oculus_ticks_per_second;
         if (known && step >= 0 && step < 1e6) elapsed += step;
         known = true;
@@ -199,7 +199,7 @@ struct OculusPings::Source {
     std::optional<OculusRecording> recording;
     std::ifstream capture;
     OculusFramer framer;
-    std::string damage;  ///< Of a capture, what was passed over first; empty: nothing.
+    std::string damage;  ///< First skipped part of a capture; empty: none.
     bool known = false;
     double elapsed = 0, start_s = 0;
     uint32_t start_ticks = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Recordings of an Oculus: files of the maker's viewer (*.oculus), and what was captured from the network.
+// Recordings of an Oculus: files of the maker's viewer (*.oculus), and captures from the network.
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -13,17 +13,17 @@
 
 namespace insonify::device {
 
-/** How a *.oculus file begins, without its mark and size. */
+/** The beginning of a *.oculus file, without its mark and size. */
 struct OculusFileHeader {
     static constexpr size_t size = 48;
     std::array<char, 16> source{'O', 'c', 'u', 'l', 'u', 's'};
     uint16_t version = 1, encryption = 0;
     uint32_t unused = 0;
     int64_t key = 0;
-    double time = 0;  ///< Of its making, since the epoch [s].
+    double time = 0;  ///< Creation time since the epoch [s].
 };
 
-/** One record of such a file. */
+/** One record of a *.oculus file. */
 struct OculusItem {
     static constexpr size_t header_size = 40;
     static constexpr uint16_t sonar = 10;  ///< As `type`: a message of the device.
@@ -32,30 +32,30 @@ struct OculusItem {
     uint32_t unused_a = 0;
     double time = 0;  ///< Since the epoch [s].
     uint16_t compression = 0, unused_b = 0;
-    uint32_t original_size = 0;  ///< Of the payload, before compression [B].
+    uint32_t original_size = 0;  ///< Of the uncompressed payload [B].
     uint32_t unused_c = 0;
-    Bytes payload;  ///< As it stands in the file.
+    Bytes payload;  ///< As in the file.
 
-    /** The payload, unpacked; none where it is damaged. */
+    /** Returns the uncompressed payload; none where it is damaged. */
     std::optional<Bytes> content() const;
 };
 
-/** Reads a *.oculus file, item by item. Looks for the next item behind what is none. */
+/** Reads a *.oculus file item by item; skips damaged parts to the next item. */
 class OculusRecording {
 public:
-    /** Whether a file begins as one. */
+    /** Whether a file begins like a *.oculus file. */
     static bool isOne(const std::filesystem::path& file);
-    /** Throws types::ConfigError for a file that cannot be read or does not begin as one. */
+    /** Throws types::ConfigError for a file that cannot be read or does not begin like a *.oculus file. */
     explicit OculusRecording(const std::filesystem::path& file);
 
     const OculusFileHeader& header() const { return header_; }
-    /** The next item; none: the file is at its end. */
+    /** Returns the next item; none: end of the file. */
     std::optional<OculusItem> next();
-    /** What was passed over first, and where; empty: nothing. */
+    /** The first skipped part, and its place; empty: none. */
     const std::string& diagnostic() const { return diagnostic_; }
 
 private:
-    /** Up to so many bytes from where the file is read. */
+    /** Reads at most `size` bytes from the current position. */
     Bytes take(size_t size);
     void passOver();
 
@@ -71,9 +71,9 @@ public:
     /** Throws types::ConfigError where the file cannot be made. */
     OculusRecorder(const std::filesystem::path& file, const OculusFileHeader& header);
 
-    /** Adds an item as it is. Throws std::runtime_error where the system takes no more. */
+    /** Adds an item unchanged. Throws std::runtime_error when the system cannot write it. */
     void write(const OculusItem& item);
-    /** Adds a message of the device, at seconds since the epoch. */
+    /** Adds a message of the device, at a time since the epoch [s]. */
     void write(double time, std::span<const uint8_t> message);
 
 private:
@@ -83,14 +83,14 @@ private:
     std::ofstream file_;
 };
 
-/** A ping of a recording, and when it was sent [s]: since the epoch in a *.oculus file, since the first ping by the
- *  device's own clock in a capture, which has no other. */
+/** A ping of a recording with its time [s]: since the epoch in a *.oculus file; since the first ping, by the device's
+ *  clock, in a capture, which has no other clock. */
 struct RecordedPing {
     double time = 0;
     OculusResult ping;
 };
 
-/** The pings of a recording, one after the other: of a *.oculus file, or of messages as they came from the network. */
+/** Reads the pings of a recording one by one: of a *.oculus file, or of messages captured from the network. */
 class OculusPings {
 public:
     /** Throws types::ConfigError for a file that cannot be read. */
@@ -98,13 +98,13 @@ public:
     ~OculusPings();
 
     std::optional<RecordedPing> next();
-    /** The first ping that contradicts itself, or what of the file was passed over; empty: none. */
+    /** The first ping that contradicts itself, or the first skipped part of the file; empty: none. */
     const std::string& diagnostic() const { return diagnostic_; }
 
 private:
     struct Source;
     std::unique_ptr<Source> source_;
-    size_t number_ = 0;  ///< Of the ping that was looked at last, from 1.
+    size_t number_ = 0;  ///< Of the last ping that was read, from 1.
     std::string diagnostic_;
 };
 

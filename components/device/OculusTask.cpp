@@ -23,9 +23,9 @@ void OculusTask::check(types::Diagnostics& diagnostics) const {
 std::vector<std::string> OculusTask::notices() const {
     std::vector<std::string> all = DeviceTask::notices();
     if (emulator_ && emulator_->lost() > 0)
-        all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not come in time");
+        all.push_back(std::to_string(emulator_->lost()) + " pings of the sonar did not arrive in time");
     if (emulator_ && emulator_->refused() > 0)
-        all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were no settings");
+        all.push_back(std::to_string(emulator_->refused()) + " messages of drivers were not valid settings");
     return all;
 }
 

@@ -24,35 +24,35 @@ struct OculusTaskConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port; drivers expect 52100; 0: any that is free, told in a notice", 0, 65535},
+        visit(Field{"port", "1", "TCP port; drivers expect 52100; 0: a free port, named in a notice", 0, 65535},
               self.port);
         visit(Field{"status_address", "",
-                    "where the status goes each second; a network's broadcast address, as "
+                    "destination of the status each second; a network's broadcast address, as "
                     "192.168.2.255; 127.255.255.255: this machine"},
               self.status_address);
         visit(Field{"status_port", "1", "UDP port of the status; drivers expect 52102", 1, 65535}, self.status_port);
         visit(Field{"record", "",
-                    "file (.oculus) of the maker's viewer that gets the pings that are sent, relative to the output "
+                    "file (.oculus) of the maker's viewer for the pings that are sent, relative to the output "
                     "folder; absent: none"},
               self.record);
         OculusConfig::describe(self.device, visit);
     }
 };
 
-/** Stands in for a Blueprint Subsea Oculus. Drivers find it by its status, connect over TCP, and get pings with the
- *  settings that they fire with: see OculusEmulator. `ping` takes what a receiver gives out as codes that go as
- *  amplitude (output code, law sqrt, code_bits bits); a client that does not read gets fewer of them. */
+/** Replaces a Blueprint Subsea Oculus. Drivers find it by its status, connect over TCP, and get pings with the settings
+ *  of their fire messages: see OculusEmulator. `ping` takes a receiver's codes of amplitude (output code, law sqrt,
+ *  code_bits bits). A client that reads slowly gets fewer pings. */
 class OculusTask final : public DeviceTask {
 public:
     using DeviceTask::DeviceTask;
 
     framework::Properties<OculusTaskConfig> config{this};
-    framework::InputPort<types::SonarPtr> ping{this, "ping", "codes of a receiver, which go as amplitude",
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "codes of a receiver, of amplitude",
                                                framework::Need::Required, types::left_receiver};
 
     void check(types::Diagnostics& diagnostics) const override;
     std::vector<std::string> notices() const override;
-    /** Where it listens, 0 before it is configured. */
+    /** The listening port; 0 before it is configured. */
     uint16_t port() const { return portOf(0); }
 
 private:
@@ -65,7 +65,7 @@ private:
     void openRecord();
     void sendStatus(const Bytes& status, Network& network) const;
     void sendToAll(const Bytes& message);
-    /** Warns where bins are no codes. */
+    /** Warns when bins are not codes. */
     void judge(const types::Sonar& codes);
 
     std::optional<OculusEmulator> emulator_;

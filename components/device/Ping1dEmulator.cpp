@@ -13,7 +13,7 @@ namespace {
 constexpr double gains[] = {0.6, 1.8, 5.5, 12.9, 30.2, 66.1, 144};  ///< Of amplitude.
 constexpr uint8_t max_gain = std::size(gains) - 1;
 constexpr uint32_t shortest_scan = 1000;                                ///< [mm]
-constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // of a board that is simulated alone
+constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // of the simulated board
 constexpr size_t max_waiting = 64;
 constexpr double overhead = 0.005;  ///< Between the last echo and the answer [s].
 
@@ -86,7 +86,8 @@ void Ping1dEmulator::setRange(PingClient client, const Ping1dSetRange& asked) {
 
 void Ping1dEmulator::startStream(PingClient client, uint16_t message) {
     if (!isMeasurement(message))
-        return refuse(client, Ping1dContinuousStart::message, fmt::format("message {} is not sent on and on", message));
+        return refuse(client, Ping1dContinuousStart::message,
+                      fmt::format("message {} is not sent continuously", message));
     if (streams_.size() >= max_waiting)
         return refuse(client, Ping1dContinuousStart::message, "too many streams run already");
     const Wanted wanted{client, message};
@@ -206,7 +207,7 @@ void Ping1dEmulator::tell(const Wanted& wanted, bool stream) {
 
 void Ping1dEmulator::refuseWaiting() {
     for (const Wanted& wanted : std::exchange(waiting_, {}))
-        refuse(wanted.client, wanted.message, "no echoes have come");
+        refuse(wanted.client, wanted.message, "no echoes have arrived");
 }
 
 void Ping1dEmulator::proceed(types::Time now) {
@@ -218,7 +219,7 @@ void Ping1dEmulator::proceed(types::Time now) {
         refuseWaiting();
     }
     if (turn_.underWay()) return;
-    if (enabled_ == 0)  // the last that was heard
+    if (enabled_ == 0)  // the last ping
         for (const Wanted& wanted : std::exchange(waiting_, {})) tell(wanted, false);
     if (wantsPing(now)) listen(now);
 }

@@ -5,7 +5,7 @@
 
 namespace insonify::device {
 
-/** What of a Ping1D is not set over the wire. */
+/** Properties of a Ping1D that are not set over the wire. */
 struct Ping1dConfig {
     double max_range = 100;
     int profile_samples = 200;
@@ -18,25 +18,25 @@ struct Ping1dConfig {
     }
 };
 
-/** The strongest return of a ping: in which bin it begins to be as strong as it gets, and how far it stands out. */
+/** The strongest return of a ping: its first bin near its maximum, and its confidence. */
 struct Ping1dReturn {
     size_t bin = 0;
     uint16_t confidence = 0;  ///< [%]; 0: there is none.
 };
 
-/** The first run of codes that reach half of the largest, at its maximum. Confidence is what the mean code lacks of the
- *  largest. */
+/** Finds the maximum of the first run of codes that reach half of the max. Confidence is the difference of the max and
+ *  the mean code, as a part of the max. */
 Ping1dReturn ping1dReturn(std::span<const float> codes);
 
-/** A Blue Robotics Ping1D: an echo sounder that tells the distance to what it finds, and the profile of its echoes.
+/** A Blue Robotics Ping1D: an echo sounder that sends the distance of its target and the profile of its echoes.
  *
- *  A ping is made for each request of a measurement, and on and on while one is to be sent continuously, as often as
- * the interval and the sound allow. Distances come by the speed of sound that was set, as on the device: where the
- * water's is another, they are wrong in that ratio. In automatic mode the scan reaches twice as far as what was found,
- * and the gain keeps the strongest echo between a quarter and all of the scale. */
+ *  It makes a ping for each request of a measurement, or continuously while a stream is requested, as often as the
+ *  interval and the travel time of sound allow. Distances use the speed of sound that was set, as on the device; they
+ *  are wrong by the ratio to the water's. In automatic mode the scan extends to twice the distance found, and the gain
+ *  keeps the strongest echo between a quarter and all of the scale. */
 class Ping1dEmulator final : public PingDevice {
 public:
-    /** @param most the largest code of the receiver that the pings come from */
+    /** @param most the max code of the receiver that the pings come from */
     explicit Ping1dEmulator(const Ping1dConfig& config, double most = 65535);
 
     std::optional<types::Time> wakeAt() const override;
@@ -72,12 +72,12 @@ private:
     Ping1dConfig config_;
     double most_;
     uint32_t start_ = 0, length_;          ///< [mm]
-    uint32_t speed_of_sound_ = 1'500'000;  ///< That was set [mm/s].
+    uint32_t speed_of_sound_ = 1'500'000;  ///< As set [mm/s].
     uint8_t mode_auto_ = 1, enabled_ = 1, gain_ = 3;
     uint16_t interval_ = 100;  ///< [ms]
     Ping1dProfile last_;
     std::vector<Wanted> waiting_, streams_;
-    types::Time next_;  ///< Of a stream's pings.
+    types::Time next_;  ///< Of the stream.
 };
 
 }  // namespace insonify::device

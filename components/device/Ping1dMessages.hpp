@@ -4,7 +4,7 @@
 
 namespace insonify::device {
 
-/** A message with one number: `Id` on the wire. */
+/** A message with one number; `Id` is the message's number on the wire. */
 template <uint16_t Id, std::integral T>
 struct Ping1dValue {
     static constexpr uint16_t message = Id;
@@ -32,10 +32,10 @@ using Ping1dTransmitDuration = Ping1dValue<1208, uint16_t>;      ///< [us]
 using Ping1dProcessorTemperature = Ping1dValue<1213, uint16_t>;  ///< [0.01 degC]
 using Ping1dPcbTemperature = Ping1dValue<1214, uint16_t>;        ///< [0.01 degC]
 using Ping1dPingEnable = Ping1dValue<1215, uint8_t>;
-using Ping1dContinuousStart = Ping1dValue<1400, uint16_t>;  ///< The message that is sent on and on.
+using Ping1dContinuousStart = Ping1dValue<1400, uint16_t>;  ///< The message that is sent continuously.
 using Ping1dContinuousStop = Ping1dValue<1401, uint16_t>;
 
-/** Where echoes are looked for; message 1001 sets it, 1204 tells it. */
+/** The scanned interval; message 1001 sets it, 1204 reports it. */
 template <uint16_t Id>
 struct Ping1dScan {
     static constexpr uint16_t message = Id;
@@ -82,12 +82,12 @@ struct Ping1dDistanceSimple {
     }
 };
 
-/** What a ping found, and how it was made. */
+/** The result of a ping, and its settings. */
 struct Ping1dMeasurement {
     uint32_t distance = 0;           ///< [mm]
     uint16_t confidence = 0;         ///< [%]
     uint16_t transmit_duration = 0;  ///< [us]
-    uint32_t ping_number = 0;        ///< Since it began.
+    uint32_t ping_number = 0;        ///< Since power-on.
     uint32_t start = 0, length = 0;  ///< Of the scan [mm].
     uint32_t gain = 0;
 

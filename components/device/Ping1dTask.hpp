@@ -16,8 +16,8 @@ struct Ping1dTaskConfig {
     }
 };
 
-/** Stands in for a Blue Robotics Ping1D: its drivers, viewers and autopilots, over UDP, TCP or a serial line. See
- *  Ping1dEmulator for what it does. `settings` leads to a sonar::AltimeterTask, and to its receiver for the gain. */
+/** Replaces a Blue Robotics Ping1D for drivers, viewers and autopilots, over UDP, TCP or a serial line. Ping1dEmulator
+ *  has the device's behaviour. Connect `settings` to a sonar::AltimeterTask, and for the gain to its receiver. */
 class Ping1dTask final : public PingDeviceTask {
 public:
     using PingDeviceTask::PingDeviceTask;

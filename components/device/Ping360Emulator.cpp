@@ -13,11 +13,11 @@ constexpr int turn = 400;  ///< [gradian]
 constexpr size_t max_commands = 16;
 constexpr double boot_seconds = 5;
 
-/** What the device begins with. */
+/** The device's initial state. */
 Ping360DeviceData atBoot() { return {1, 0, {0, 32, 80, 740, 1024}, {}}; }
 
 std::string whyNot(uint8_t mode, const Ping360Acoustics& a) {
-    return diagnosticOf({{"mode", mode, 0, 1},  // drivers send 0 as well
+    return diagnosticOf({{"mode", mode, 0, 1},  // drivers also send 0
                          {"gain_setting", a.gain, 0, 2},
                          {"transmit_duration", a.transmit_duration, 1, 1000},
                          {"sample_period", a.sample_period, 80, 40000},
@@ -40,7 +40,7 @@ std::string whyNot(const Ping360AutoTransmit& asked) {
                          {"delay", asked.sector.delay_ms, 0, 100}});
 }
 
-/** The shorter way round between two angles. */
+/** Returns the shorter difference of two angles. */
 int wayBetween(int a, int b) {
     const int way = std::abs(a - b) % turn;
     return std::min(way, turn - way);
@@ -203,7 +203,7 @@ void Ping360Emulator::fail(types::Time now) {
     if (scanning_) return;
     const Command failed = commands_.front();
     commands_.pop_front();
-    if (failed.client) refuse(*failed.client, Ping360Transducer::message, "no echoes have come");
+    if (failed.client) refuse(*failed.client, Ping360Transducer::message, "no echoes have arrived");
 }
 
 bool Ping360Emulator::step(types::Time now) {

@@ -8,8 +8,8 @@
 
 namespace insonify::device {
 
-/** What of a Ping360 is not set over the wire. Its maker's figures, a full turn in 9 s at 2 m and in 35 s at 50 m, are
- *  met by the defaults. */
+/** Properties of a Ping360 that are not set over the wire. The defaults meet the maker's figures: a full turn in 9 s at
+ *  2 m and in 35 s at 50 m. */
 struct Ping360Config {
     double seconds_per_gradian = 0.006;
     double overhead = 0.0138;
@@ -19,34 +19,33 @@ struct Ping360Config {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"seconds_per_gradian", "s", "that the head turns through a gradian, of 400 to a turn", 0, 1},
+        visit(Field{"seconds_per_gradian", "s", "time of the head per gradian; a turn has 400", 0, 1},
               self.seconds_per_gradian);
         visit(Field{"overhead", "s", "between the last echo and the answer", 0, 10}, self.overhead);
-        visit(Field{"ahead", "gradian", "angle of the head that is ahead; the maker's viewer draws 200 there", 0, 399},
+        visit(Field{"ahead", "gradian", "angle of the head that is ahead; the maker's viewer shows 200 there", 0, 399},
               self.ahead);
         visit(Field{"gain_db", "dB", "of the receiver at gain settings 0, 1 and 2"}, self.gain_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A Blue Robotics Ping360: a scanning sonar whose every ping is asked for, or that scans a sector on and on.
+/** A Blue Robotics Ping360: a scanning sonar that pings on request, or scans a sector continuously.
  *
- *  One command is done after the other. A command turns the head the shorter way, listens, and is answered when head,
- *  sound and device have taken their time; what is out of bounds is refused at once. An automatic scan goes from start
- *  to stop clockwise, seen from above; back the same way where the sector is at most half a turn, else it begins anew.
- */
+ *  Commands are executed one after the other. A command turns the head the shorter way, pings, and is answered after
+ *  the times of head, sound and device. Values out of bounds are refused at once. An automatic scan runs from start to
+ *  stop clockwise, seen from above. It then reverses if the sector is at most half a turn, else it starts again. */
 class Ping360Emulator final : public PingDevice {
 public:
-    /** @param most the largest code of the receiver that the pings come from */
+    /** @param most the max code of the receiver that the pings come from */
     explicit Ping360Emulator(const Ping360Config& config, double most = 65535);
 
     std::optional<types::Time> wakeAt() const override;
-    uint16_t angle() const { return state_.angle; }  ///< That the head is at, or turns to [gradian].
+    uint16_t angle() const { return state_.angle; }  ///< Present or next angle of the head [gradian].
     bool scans() const { return scan_.has_value(); }
 
 private:
     struct Command {
-        std::optional<PingClient> client;  ///< None: it is gone.
+        std::optional<PingClient> client;  ///< None: the client is gone.
         Ping360Transducer asked;
     };
     /** An automatic scan. */
@@ -75,24 +74,24 @@ private:
     bool step(types::Time now);
     void finish(types::Time now, Bytes data);
     void fail(types::Time now);
-    double listens() const;  ///< To one ping [s].
+    double listens() const;  ///< Listening time of one ping [s].
 
     Ping360Config config_;
     double most_;
     Ping360DeviceData state_;
     Phase phase_ = Phase::Idle;
-    types::Time ready_;             ///< When the head is there, or the next ping of a scan may begin.
-    std::deque<Command> commands_;  ///< The first is at hand unless a scan's ping is.
+    types::Time ready_;             ///< When the head has arrived, or the next ping of a scan may begin.
+    std::deque<Command> commands_;  ///< The first is in progress unless a scan's ping is.
     std::optional<Scan> scan_;
     uint32_t scans_ = 0;         ///< So far.
-    bool scanning_ = false;      ///< A scan's ping is at hand,
-    uint32_t scan_at_hand_ = 0;  ///< of this one.
+    bool scanning_ = false;      ///< A ping of a scan is in progress,
+    uint32_t scan_at_hand_ = 0;  ///< of this scan.
 };
 
-/** The answer to "Discovery" on UDP 30303. @param mac 6 bytes; ip 4 */
+/** Returns the answer to "Discovery" on UDP 30303. @param mac 6 bytes; ip 4 */
 std::string ping360Discovery(std::span<const uint8_t, 6> mac, std::span<const uint8_t, 4> ip);
 
-/** Bearing at which a head that is at an angle looks, positive to port. @param ahead angle that is ahead [gradian] */
+/** Returns the bearing of a head angle, positive to port. @param ahead the angle that is ahead [gradian] */
 types::Angle ping360Bearing(double angle, double ahead);
 
 }  // namespace insonify::device

@@ -4,7 +4,7 @@
 
 namespace insonify::device {
 
-/** What its echoes depend on. */
+/** The settings of echoes. */
 struct Ping360Acoustics {
     uint8_t gain = 0;                ///< 0 low, 1 normal, 2 high.
     uint16_t transmit_duration = 0;  ///< [us]
@@ -19,7 +19,7 @@ struct Ping360Acoustics {
 struct Ping360Sector {
     uint16_t start = 0, stop = 0;  ///< [gradian]
     uint8_t steps = 1;             ///< Between two pings [gradian].
-    uint8_t delay_ms = 0;          ///< Between two pings, besides what they take.
+    uint8_t delay_ms = 0;          ///< Between two pings, in addition to their duration.
 
     friend bool operator==(const Ping360Sector&, const Ping360Sector&) = default;
 };
@@ -34,13 +34,13 @@ struct Ping360SetDeviceId {
     }
 };
 
-/** The sonar's state, and what it heard. */
+/** The sonar's state, and its echoes. */
 struct Ping360DeviceData {
     static constexpr uint16_t message = 2300;
     uint8_t mode = 1;
     uint16_t angle = 0;  ///< [gradian]
     Ping360Acoustics acoustics;
-    Bytes data;  ///< Nearest first; empty: nothing was sent.
+    Bytes data;  ///< Nearest first; empty: no ping was sent.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -78,7 +78,7 @@ struct Ping360Reset {
     }
 };
 
-/** Turns the head, and pings there. */
+/** Turns the head and pings there. */
 struct Ping360Transducer {
     static constexpr uint16_t message = 2601;
     uint8_t mode = 1;
@@ -94,7 +94,7 @@ struct Ping360Transducer {
     }
 };
 
-/** Scans a sector on and on. */
+/** Scans a sector continuously. */
 struct Ping360AutoTransmit {
     static constexpr uint16_t message = 2602;
     uint8_t mode = 1;

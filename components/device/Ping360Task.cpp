@@ -9,7 +9,7 @@
 namespace insonify::device {
 namespace {
 
-/** Of "02-00-00-00-03-60"; none where it is no such text. */
+/** Parses "02-00-00-00-03-60"; none for other texts. */
 std::optional<std::array<uint8_t, 6>> macOf(const std::string& text) {
     std::array<uint8_t, 6> parts{};
     const char* at = text.c_str();

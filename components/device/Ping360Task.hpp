@@ -7,7 +7,7 @@
 
 namespace insonify::device {
 
-/** How finders on the network learn of the device. */
+/** How programs on the network find the device. */
 struct Ping360Discovery {
     int port = 30303;
     std::string ip = "127.0.0.1";
@@ -16,10 +16,9 @@ struct Ping360Discovery {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"port", "1", "UDP port on which \"Discovery\" is answered; 0: any that is free", 0, 65535},
-              self.port);
-        visit(Field{"ip", "", "address that is told, as drivers are to call it; viewers pass over 127.0.0.1"}, self.ip);
-        visit(Field{"mac", "", "hardware address that is told"}, self.mac);
+        visit(Field{"port", "1", "UDP port on which \"Discovery\" is answered; 0: a free port", 0, 65535}, self.port);
+        visit(Field{"ip", "", "address in the answer, for drivers; viewers ignore 127.0.0.1"}, self.ip);
+        visit(Field{"mac", "", "hardware address in the answer"}, self.mac);
     }
     void check(types::Diagnostics& diagnostics) const;
     std::string answer() const;
@@ -33,18 +32,19 @@ struct Ping360TaskConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         PingEnds::describe(self.ends, visit);
-        visit(types::Field{"discovery", "", "finders learn of the device; absent: only drivers that know its address"},
+        visit(types::Field{"discovery", "",
+                           "answers programs that search for the device; absent: drivers must know its address"},
               self.discovery);
         Ping360Config::describe(self.device, visit);
     }
     void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
 };
 
-/** Stands in for a Blue Robotics Ping360: its drivers and viewers, over UDP, TCP or a serial line. See Ping360Emulator
- *  for what it does.
+/** Replaces a Blue Robotics Ping360 for drivers and viewers, over UDP, TCP or a serial line. Ping360Emulator has the
+ *  device's behaviour.
  *
- *  `settings` leads to a sonar::ScanningSonarTask, and to its receiver for the gain; the ends are those of
- *  PingDeviceTask, and then that of discovery. */
+ *  Connect `settings` to a sonar::ScanningSonarTask, and for the gain to its receiver. The ends are those of
+ *  PingDeviceTask, followed by the end of discovery. */
 class Ping360Task final : public PingDeviceTask {
 public:
     using PingDeviceTask::PingDeviceTask;

@@ -24,7 +24,7 @@ std::string diagnosticOf(std::initializer_list<PingBound> bounds) {
 Bytes bytesOfCodes(std::span<const float> codes, double most) {
     Bytes bytes(codes.size());
     std::ranges::transform(codes, bytes.begin(), [&](float code) {
-        const double part = code > 0 ? code / most : 0;  // of NaN 0
+        const double part = code > 0 ? code / most : 0;  // 0 for NaN
         return static_cast<uint8_t>(std::lround(255 * std::min(1.0, part)));
     });
     return bytes;
@@ -104,7 +104,7 @@ void PingDevice::handle(PingClient client, const PingFrame& frame, types::Time n
     constexpr uint8_t all = 0, broadcast = 255;
     if (now < deaf_until_) return;
     if (frame.destination != all && frame.destination != broadcast && frame.destination != id_) return;
-    if (frame.message >= PingAck::message && frame.message <= PingText::message) return;  // an answer is not answered
+    if (frame.message >= PingAck::message && frame.message <= PingText::message) return;  // answers are not answered
     if (frame.message == PingGeneralRequest::message)
         with<PingGeneralRequest>(client, frame, [&](const auto& m) { handleRequest(client, m.requested, now); });
     else if (frame.message == PingSetDeviceId::message)
@@ -120,7 +120,7 @@ bool PingDevice::answerAny(PingClient client, uint16_t requested, types::Time no
 }
 
 void PingDevice::handleRequest(PingClient client, uint16_t requested, types::Time now) {
-    if (!answerAny(client, requested, now)) refuse(client, requested, "there is no such message to be asked for");
+    if (!answerAny(client, requested, now)) refuse(client, requested, "there is no such message to request");
 }
 
 void PingDevice::add(PingOutgoing out) {
@@ -140,8 +140,7 @@ void PingDevice::setId(PingClient client, uint16_t message, uint8_t id, uint8_t 
 
 void PingDevice::warnOfSilence() {
     if (std::exchange(silent_, true)) return;
-    warnings_.emplace_back(
-        "no ping has come for what the driver asked for; is `settings` connected to a sonar that runs?");
+    warnings_.emplace_back("no ping has arrived for the driver's request; is `settings` connected to a running sonar?");
 }
 
 }  // namespace insonify::device

@@ -12,38 +12,38 @@
 
 namespace insonify::device {
 
-/** Who is connected, by a number that whoever moves the bytes gives. */
+/** A connected client, by a number from the owner of the connections. */
 using PingClient = uint64_t;
 
-/** What is to be sent. */
+/** Bytes to send to a client. */
 struct PingOutgoing {
     PingClient client = 0;
     Bytes bytes;
-    bool stream = false;  ///< One of many of which the newest counts; false: an answer.
+    bool stream = false;  ///< True: of a stream, only the newest matters; false: an answer.
 };
 
-/** A value that a client sets, and what the device takes. */
+/** A value that a client sets, and the device's bounds. */
 struct PingBound {
     const char* name;
     uint32_t value, min, max;
 };
 
-/** What is wrong with the first value that is out of bounds: "angle is 400; must be 0 to 399"; empty: nothing. */
+/** Returns a diagnostic of the first value out of bounds: "angle is 400; must be 0 to 399"; empty: none. */
 std::string diagnosticOf(std::initializer_list<PingBound> bounds);
 
-/** A ping's codes as those of 8 bits. @param most the largest code of the receiver */
+/** Converts a ping's codes to 8 bits. @param most the max code of the receiver */
 Bytes bytesOfCodes(std::span<const float> codes, double most);
 
-/** A ping that is asked of a simulated sonar and waited for: one at a time.
+/** One ping at a time that is requested from a simulated sonar.
  *
- *  Devices count echoes by time. What range that is, the sonar's own speed of sound tells, which its pings carry: one
- *  that shows another than the ping was asked by is asked for again. */
+ *  Devices count echoes by time. The range follows from the sonar's speed of sound, which its pings contain. If a ping
+ *  has another speed of sound than the request assumed, the ping is requested again. */
 class PingTurn {
 public:
-    /** Asks for a ping that listens for `listens` [s] and is answered no sooner than `after` from now [s].
-     *  @param wanted all but time and range */
+    /** Requests a ping that listens for `listens` [s] and is answered no sooner than `after` from now [s]. @param
+     *  wanted all settings except time and range */
     void ask(types::SonarSettings wanted, double listens, double after, types::Time now);
-    /** Takes a ping that answers what was asked; else false. */
+    /** Takes a ping that answers the request; false for other pings. */
     bool take(const types::SonarPtr& ping, types::Time now);
     void drop() {
         asked_.clear();
@@ -51,16 +51,16 @@ public:
     }
 
     bool underWay() const { return ping_ || !asked_.empty(); }
-    /** The ping, once it has come and is due; then nothing is under way. */
+    /** Returns the ping once it has arrived and is due; this ends the request. */
     types::SonarPtr due(types::Time now);
-    /** Whether no ping came in good time; then nothing is under way. */
+    /** Whether no ping has arrived in time; this ends the request. */
     bool failed(types::Time now);
-    /** When one of these can be true next; while under way. */
+    /** The next time at which due() or failed() can succeed, during a request. */
     types::Time next() const { return ping_ ? due_ : asked_.deadline(); }
-    /** What the sonar is to be asked, once. */
+    /** Returns the request to send to the sonar, once. */
     std::optional<types::SonarSettings> takeAsked() { return std::exchange(unsent_, {}); }
     double speedOfSound() const { return speed_of_sound_; }  ///< Of the water [m/s].
-    /** Why the last ping was not taken, once; empty: all were. */
+    /** Returns why the last ping was refused, once; empty: none was refused. */
     std::string takeWarning() { return std::exchange(warning_, {}); }
 
 private:
@@ -70,29 +70,29 @@ private:
     AskedPings<> asked_;
     std::optional<types::SonarSettings> unsent_;
     double listens_ = 0, speed_of_sound_ = 1500;
-    bool again_ = false;  ///< Asked a second time.
+    bool again_ = false;  ///< Requested a second time.
     types::Time due_;
     types::SonarPtr ping_;
     std::string warning_;
 };
 
-/** What devices of the ping protocol do alike: they find frames, answer general requests, acknowledge and refuse. A
- *  message that the device tells, sent to it without payload, asks for it as well, as older drivers do.
+/** The common part of devices of the ping protocol: finding frames, answering general requests, acknowledging and
+ *  refusing. A client that sends a message of the device without payload requests that message, as older drivers do.
  *
- *  Bytes go in by client, bytes come out by client, and pings are asked for; it has no sockets and no clock. */
+ *  Inputs and outputs are bytes by client, pings and requests for pings; there are no sockets and no clock. */
 class PingDevice {
 public:
     virtual ~PingDevice() = default;
 
-    /** Bytes of a client. @param datagram they are whole frames; false: a piece of a line */
+    /** Takes bytes of a client. @param datagram true: whole frames; false: a part of a stream */
     void receive(PingClient client, std::span<const uint8_t> bytes, bool datagram, types::Time now);
-    /** A client is gone: nothing is sent to it any more, and what it waited for is dropped. */
+    /** Forgets a client: nothing is sent to it any more, and its requests are dropped. */
     void close(PingClient client);
-    /** A ping of the simulated sonar, in codes. */
+    /** Takes a ping of the simulated sonar, in codes. */
     void hear(const types::SonarPtr& ping, types::Time now);
-    /** Lets time pass. */
+    /** Does the due work. */
     void tick(types::Time now) { proceed(now); }
-    /** When tick is needed next; none: not before something comes. */
+    /** Returns when tick is needed next; none: not before an input. */
     virtual std::optional<types::Time> wakeAt() const = 0;
 
     std::vector<PingOutgoing> takeOutgoing() { return std::exchange(outgoing_, {}); }
@@ -104,9 +104,9 @@ protected:
     PingDevice(const PingDeviceInformation& information, const PingProtocolVersion& version, uint8_t id)
         : id_(id), information_(information), version_(version) {}
 
-    /** Does what a message asks for. */
+    /** Executes a message. */
     virtual void command(PingClient client, const PingFrame& frame, types::Time now) = 0;
-    /** Answers a request for a message that is the device's own; false: there is none. */
+    /** Answers a request for one of the device's own messages; false: there is no such message. */
     virtual bool answer(PingClient client, uint16_t requested, types::Time now) = 0;
     virtual void forget(PingClient client) = 0;
     virtual void proceed(types::Time now) = 0;
@@ -119,9 +119,9 @@ protected:
     void refuse(PingClient client, uint16_t message, std::string why) {
         send(client, PingNack{message, std::move(why)});
     }
-    /** Gives the device another id. */
+    /** Sets the device's id. */
     void setId(PingClient client, uint16_t message, uint8_t id, uint8_t min);
-    /** Reads the message that a frame holds and hands it on; one that is too short is refused. */
+    /** Reads the message of a frame and passes it to `use`; refuses a message that is too short. */
     template <class Message, class Use>
     void with(PingClient client, const PingFrame& frame, Use&& use) {
         if (const auto message = pingMessage<Message>(frame))
@@ -129,11 +129,11 @@ protected:
         else
             refuse(client, frame.message, "the payload is too short");
     }
-    /** Tells of pings that do not come, until one does. */
+    /** Warns once of missing pings, until a ping arrives. */
     void warnOfSilence();
     void noteHeard() { silent_ = false; }
     const PingDeviceInformation& information() const { return information_; }
-    /** Until then nothing is heard of what clients say. */
+    /** Ignores clients' messages until then. */
     void setDeaf(types::Time until) { deaf_until_ = until; }
 
     PingTurn turn_;
@@ -141,7 +141,7 @@ protected:
 private:
     void handle(PingClient client, const PingFrame& frame, types::Time now);
     void handleRequest(PingClient client, uint16_t requested, types::Time now);
-    /** What is streamed to a client at once is one piece, which the next displaces whole. */
+    /** Bytes streamed to a client at once are one piece, which the next one replaces whole. */
     void add(PingOutgoing out);
     bool answerAny(PingClient client, uint16_t requested, types::Time now);
 

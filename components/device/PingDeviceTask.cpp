@@ -30,7 +30,7 @@ std::optional<types::Time> PingDeviceTask::tick(types::Time now) {
 void PingDeviceTask::send(Client client, PingOutgoing out) {
     const auto kind = out.stream ? Network::Kind::Stream : Network::Kind::Reply;
     if (client.end != udp) return network().send(client, std::move(out.bytes), kind);
-    for (const PingFrame& frame : pingFrames(out.bytes, UINT16_MAX))  // a datagram holds one
+    for (const PingFrame& frame : pingFrames(out.bytes, UINT16_MAX))  // one frame per datagram
         network().send(client, frame.bytes(), kind);
 }
 

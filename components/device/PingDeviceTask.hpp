@@ -8,7 +8,7 @@
 
 namespace insonify::device {
 
-/** Where drivers of the ping protocol find a device. */
+/** The addresses of a device for drivers of the ping protocol. */
 struct PingEnds {
     std::string address = "127.0.0.1";
     int port;
@@ -20,7 +20,7 @@ struct PingEnds {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "of UDP, and of TCP; 0: any that are free, told in a notice", 0, 65535}, self.port);
+        visit(Field{"port", "1", "of UDP, and of TCP; 0: free ports, named in a notice", 0, 65535}, self.port);
         visit(Field{"serial", "",
                     "a serial line as well: the file that drivers open, made when the task is configured, relative to "
                     "the run's output folder; empty: none"},
@@ -28,16 +28,16 @@ struct PingEnds {
     }
 };
 
-/** Moves bytes between drivers and a device of the ping protocol, and pings from the sonar that it asks.
+/** Moves bytes between drivers and a device of the ping protocol, and pings from the sonar to the device.
  *
- *  Ends: UDP, TCP, and a serial line where one is named, in this order. */
+ *  Ends: UDP, TCP, and a serial line if one is named, in this order. */
 class PingDeviceTask : public DeviceTask {
 public:
     using DeviceTask::DeviceTask;
 
     static constexpr End udp = 0, tcp = 1;
     framework::InputPort<types::SonarPtr> ping{this, "ping",
-                                               "one beam in codes of 16 bits, of the sonar that `settings` leads to",
+                                               "one beam in codes of 16 bits, of the sonar connected to `settings`",
                                                framework::Need::Required, types::left_receiver};
 
 protected:

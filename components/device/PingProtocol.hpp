@@ -8,27 +8,27 @@
 namespace insonify::device {
 
 /** One frame of Blue Robotics' ping protocol, little endian: 'B', 'R', u16 length of the payload, u16 message, u8
- * source, u8 destination, payload, u16 sum of all bytes before. */
+ *  source, u8 destination, payload, u16 sum of all bytes before. */
 struct PingFrame {
     uint16_t message = 0;
-    uint8_t source = 0;       ///< Device that it comes from; 0: a program.
-    uint8_t destination = 0;  ///< Device that it is for; 0: whichever hears it.
+    uint8_t source = 0;       ///< Sending device; 0: a program.
+    uint8_t destination = 0;  ///< Receiving device; 0: any.
     Bytes payload;            ///< At most 65,535 bytes.
 
     Bytes bytes() const;
     friend bool operator==(const PingFrame&, const PingFrame&) = default;
 };
 
-/** Finds frames in what a line brings, whatever lies between them.
+/** Finds frames in the bytes of a line, with anything between them.
  *
- *  A frame that is not whole yet is waited for, unless a whole one follows within its bytes: a stray beginning holds up
- *  nobody. */
+ *  An incomplete frame is waited for, unless a complete frame follows within its bytes: a false beginning delays
+ *  nothing. */
 class PingFrameReader final : public Framer {
 public:
-    /** @param max_payload a longer one is none: to a device at most tens of bytes go, from it 1,220 [bytes] */
+    /** @param max_payload a longer payload is not accepted: at most tens of bytes to a device, 1,220 from it [bytes] */
     explicit PingFrameReader(size_t max_payload) : Framer(CutOff::IsPassedOver), max_payload_(max_payload) {}
 
-    /** The next frame, if there is one. */
+    /** Returns the next frame, if there is one. */
     std::optional<PingFrame> next();
 
 private:
@@ -37,7 +37,7 @@ private:
     size_t max_payload_;
 };
 
-/** Every frame of one datagram. */
+/** Returns every frame of one datagram. */
 std::vector<PingFrame> pingFrames(std::span<const uint8_t> datagram, size_t max_payload);
 
 /** Writes the fields of a message into a payload, in order. */
@@ -55,12 +55,12 @@ private:
         append(payload_, value);
     }
     void put(const std::string& text);
-    void put(const Bytes& data);  ///< Its u16 length before it.
+    void put(const Bytes& data);  ///< Preceded by its u16 length.
 
     Bytes& payload_;
 };
 
-/** Reads the fields of a message from a payload, in order; what is not there stays as it was. */
+/** Reads the fields of a message from a payload, in order; missing fields keep their values. */
 class PingPayloadReader {
 public:
     explicit PingPayloadReader(std::span<const uint8_t> payload) : payload_(payload) {}
@@ -68,7 +68,7 @@ public:
     void operator()(Fields&... fields) {
         (take(fields), ...);
     }
-    /** Whether all was there. */
+    /** Whether no field was missing. */
     bool complete() const { return complete_; }
 
 private:
@@ -78,8 +78,8 @@ private:
         value = read<T>(payload_, at_);
         at_ += sizeof value;
     }
-    void take(std::string& text);  ///< All that is left.
-    void take(Bytes& data);        ///< Its u16 length before it.
+    void take(std::string& text);  ///< The rest of the payload.
+    void take(Bytes& data);        ///< Preceded by its u16 length.
     bool has(size_t size);
 
     std::span<const uint8_t> payload_;
@@ -87,7 +87,7 @@ private:
     bool complete_ = true;
 };
 
-/** A message as a frame's bytes. */
+/** Returns the bytes of a message's frame. */
 template <class Message>
 Bytes pingBytes(const Message& message, uint8_t source = 0, uint8_t destination = 0) {
     PingFrame frame{Message::message, source, destination, {}};
@@ -96,8 +96,8 @@ Bytes pingBytes(const Message& message, uint8_t source = 0, uint8_t destination 
     return frame.bytes();
 }
 
-/** The message of a frame; none where it is another one, or short of a field. Bytes after the last field are passed
- *  over. */
+/** Returns the message of a frame; none for another message or a missing field. Bytes after the last field are
+ *  ignored. */
 template <class Message>
 std::optional<Message> pingMessage(const PingFrame& frame) {
     Message message;
@@ -107,8 +107,8 @@ std::optional<Message> pingMessage(const PingFrame& frame) {
     return message;
 }
 
-// Messages that every device has. Each lists its fields in the order of the wire, once for both directions: pingBytes
-// writes it, pingMessage reads it.
+// Messages of every device. Each lists its fields in the order of the wire, once for both directions: pingBytes writes
+// them, pingMessage reads them.
 
 struct PingAck {
     static constexpr uint16_t message = 1;
@@ -145,7 +145,7 @@ enum class PingDeviceType : uint8_t { Unknown = 0, Ping1d = 1, Ping360 = 2 };
 
 struct PingDeviceInformation {
     static constexpr uint16_t message = 4;
-    uint8_t type = 0;  ///< PingDeviceType, or one that came later.
+    uint8_t type = 0;  ///< PingDeviceType, or a later type.
     uint8_t revision = 0, major = 0, minor = 0, patch = 0, reserved = 0;
 
     template <class Self, class V>
@@ -164,7 +164,7 @@ struct PingProtocolVersion {
     }
 };
 
-/** Asks for a message. */
+/** Requests a message. */
 struct PingGeneralRequest {
     static constexpr uint16_t message = 6;
     uint16_t requested = 0;

@@ -33,7 +33,7 @@ std::string nameOf(uint8_t ping_device) {
     }
 }
 
-/** "M750d", as its maker writes it. */
+/** Returns "M750d", as its maker writes it. */
 std::string oculusName(uint16_t part) {
     const auto model = oculusModelOf(part);
     if (!model) return fmt::format("of part {}", part);
@@ -66,7 +66,7 @@ void addPing(std::vector<Probe>& all) {
                    "nothing answers at 115200 baud: another baud rate, another program that holds the line, crossed "
                    "wires, or a device of another kind"});
     all.push_back({"discovery of a Ping360", Probe::Line::Udp, 30303, bytesOf("Discovery"), ping360DiscoveryIn,
-                   "finders do not see it; a stand-in answers only with `discovery` in its properties"});
+                   "finders do not see it; a simulated device answers only with `discovery` in its properties"});
 }
 
 void addOculus(std::vector<Probe>& all) {
@@ -76,7 +76,7 @@ void addOculus(std::vector<Probe>& all) {
          52102,
          {},
          oculusIn,
-         "no status is broadcast: drivers that find an Oculus by it wait for ever; broadcasts cross no router, "
+         "no status is broadcast: drivers that find an Oculus by it wait forever; broadcasts cross no router, "
          "and a firewall must let UDP 52102 in"});
     all.push_back({"Oculus",
                    Probe::Line::Tcp,
@@ -88,7 +88,8 @@ void addOculus(std::vector<Probe>& all) {
 
 void addSeaNet(std::vector<Probe>& all) {
     const char* const silence =
-        "no version comes: a driver that waits for mtAlive or mtVersionData waits for ever; the sonar's node is not 2, "
+        "no version arrives: a driver that waits for mtAlive or mtVersionData waits forever; the sonar's node is not "
+        "2, "
         "or "
         "it is no Micron";
     all.push_back({"SeaNet (Micron)", Probe::Line::Tcp, 4001, seaNetRequest(SeaNetType::SendVersion).packet(), seaNetIn,
@@ -99,7 +100,7 @@ void addSeaNet(std::vector<Probe>& all) {
 
 void addSonar3d(std::vector<Probe>& all) {
     const std::string question = "GET /api/v1/integration/about HTTP/1.1\r\nHost: sonar\r\nConnection: close\r\n\r\n";
-    for (const uint16_t port : {80, 8080, 8015})  // the maker's, and that of deploy/hil_3d15.yml
+    for (const uint16_t port : {80, 8080, 8015})  // the maker's, and the port of deploy/hil_3d15.yml
         all.push_back({"HTTP (Sonar 3D-15)", Probe::Line::Tcp, port, bytesOf(question), sonar3dIn,
                        "what answers is no Sonar 3D-15, or firmware before 1.7.1"});
 }
@@ -131,7 +132,7 @@ std::string nameOf(const Probe& probe, const ProbeAddress& address) {
     return "";
 }
 
-/** Sends the question and reads until the device has told what it is. */
+/** Sends the question and reads until the device has identified itself. */
 std::optional<std::string> converse(const Probe& probe, const DriverLine& line, std::chrono::milliseconds patience) {
     if (!probe.question.empty()) line.send(probe.question);
     Bytes heard;
@@ -144,14 +145,14 @@ std::optional<std::string> converse(const Probe& probe, const DriverLine& line, 
     return {};
 }
 
-/** Whether a datagram is of a device at one of these addresses. */
+/** Whether a datagram is from a device at one of these addresses. */
 bool isOf(const DriverLine::Datagram& datagram, const std::vector<Ipv4>& addresses) {
     const auto has = [&](const Ipv4& address) { return std::ranges::find(addresses, address) != addresses.end(); };
     const auto status = oculusStatus(datagram.bytes);
     return has(datagram.from) || (status && has(status->address));
 }
 
-/** Listens until the device at this host has told what it is; others are passed over. */
+/** Listens until the device at this host has identified itself; ignores other devices. */
 std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, const std::string& host,
                                     std::chrono::milliseconds patience) {
     const std::vector<Ipv4> addresses = ipv4Of(host == "::1" ? "127.0.0.1" : host);
@@ -169,7 +170,7 @@ bool canAsk(const Probe& probe, const ProbeAddress& address) {
     return (probe.line == Probe::Line::Serial) == !address.serial.empty();
 }
 
-/** One question for each line, where a port is given. */
+/** Returns one probe per line, where a port is given. */
 std::vector<Probe> questionsFor(const ProbeAddress& address) {
     std::vector<Probe> asked;
     for (Probe& probe : allProbes()) {
@@ -300,7 +301,7 @@ ProbeOutcome ask(const Probe& probe, const ProbeAddress& address, std::chrono::m
 
 std::vector<ProbeOutcome> probe(const ProbeAddress& address, std::chrono::milliseconds patience) {
     std::vector<ProbeOutcome> outcomes;
-    std::set<std::string> answered;  // lines; one that has said what it is is asked nothing more
+    std::set<std::string> answered;  // lines whose device has identified itself; they get no further probes
     for (const Probe& question : questionsFor(address)) {
         if (answered.contains(nameOf(question, address))) continue;
         outcomes.push_back(ask(question, address, patience));

@@ -1,5 +1,5 @@
 #pragma once
-// Protocol Buffers on the wire, as far as devices here use them.
+// The wire format of Protocol Buffers, as far as devices here use it.
 #include <optional>
 #include <string_view>
 
@@ -7,7 +7,7 @@
 
 namespace insonify::device {
 
-/** Appends the fields of a message. Numbers that are 0 are left out, as proto3 has it. */
+/** Appends the fields of a message. Numbers that are 0 are omitted, as in proto3. */
 class ProtobufWriter {
 public:
     void number(uint32_t field, uint64_t value);
@@ -30,26 +30,26 @@ struct ProtobufField {
 
     uint32_t number = 0;
     Kind kind = Kind::Number;
-    uint64_t value = 0;              ///< Of a number, or the bits of what has a fixed width.
+    uint64_t value = 0;              ///< A number, or the bits of a fixed-width value.
     std::span<const uint8_t> bytes;  ///< Of text, bytes, a message or packed numbers.
 
-    /** That of a float; 0 of anything else. */
+    /** Returns the value of a float; 0 for other fields. */
     float real() const;
     std::string_view text() const;
 };
 
-/** Takes the fields out of a message, one after the other. */
+/** Reads the fields of a message one after the other. */
 class ProtobufReader {
 public:
     explicit ProtobufReader(std::span<const uint8_t> message) : rest_(message) {}
     /** None at the end of the message, and where it is broken. */
     std::optional<ProtobufField> next();
-    /** Of packed numbers; none at their end, and where they are broken. */
+    /** Reads a packed number; none at their end, and where they are broken. */
     std::optional<uint64_t> varint();
     bool isBroken() const { return broken_; }
 
 private:
-    /** So many bytes from here, if they are there. */
+    /** Reads `count` bytes, if they are present. */
     std::optional<std::span<const uint8_t>> take(uint64_t count);
     std::optional<ProtobufField> payloadOf(ProtobufField field, uint32_t wire_type);
 

@@ -17,12 +17,12 @@ namespace insonify::device {
 namespace {
 
 constexpr size_t packet_header_size = 8, crc_size = 4, max_complaints = 100;
-constexpr size_t max_image_bytes = size_t{1} << 22;  // once it is no longer compressed [bytes]
+constexpr size_t max_image_bytes = size_t{1} << 22;  // uncompressed [bytes]
 constexpr std::string_view magic1 = "RIP1", magic2 = "RIP2", type_url = "type.googleapis.com/",
                            package = "waterlinked.sonar.protocol.", range_image = "RangeImage",
                            strength_image = "BitmapImageGreyscale8";
 
-/** Numbers of a message's fields; both kinds have the same in different places. */
+/** Numbers of a message's fields; both kinds have the same fields in different places. */
 struct Fields {
     uint32_t type, width, height, field_of_view, vertical_opening, scale, pixels;
 };
@@ -75,7 +75,7 @@ Bytes packet(std::string_view name, const Bytes& message, RipVersion version) {
     return bytes;
 }
 
-/** A message that contradicts itself; its words continue "the packet at byte 7 ". */
+/** A message that contradicts itself; its text continues "the packet at byte 7 ". */
 struct BadPacket : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -118,7 +118,7 @@ void readPixels(const ProtobufField& field, std::vector<uint32_t>& pixels) {
         if (value > UINT16_MAX) throw BadPacket(fmt::format("has a pixel of {}; they have 16 bits", value));
         pixels.push_back(static_cast<uint32_t>(value));
     };
-    if (field.kind != ProtobufField::Kind::Text) return add(field.value);  // one by one, which is as good
+    if (field.kind != ProtobufField::Kind::Text) return add(field.value);  // one at a time works as well
     ProtobufReader reader(field.bytes);
     while (const auto value = reader.varint()) add(*value);
     if (reader.isBroken()) throw BadPacket("has pixels that are cut off");
@@ -126,9 +126,9 @@ void readPixels(const ProtobufField& field, std::vector<uint32_t>& pixels) {
 
 void check(const RipImage& image, size_t pixels) {
     if (uint64_t{image.width} * image.height != pixels)
-        throw BadPacket(fmt::format("has {} pixels where {} x {} are told", pixels, image.width, image.height));
+        throw BadPacket(fmt::format("has {} pixels, but its header has {} x {}", pixels, image.width, image.height));
     for (const float value : {image.speed_of_sound, image.range, image.field_of_view_deg, image.vertical_opening_deg})
-        if (!std::isfinite(value) || value < 0) throw BadPacket(fmt::format("tells {:g}", value));
+        if (!std::isfinite(value) || value < 0) throw BadPacket(fmt::format("has a value of {:g}", value));
 }
 
 RangePixels rangeImageIn(std::span<const uint8_t> bytes) {
@@ -175,7 +175,7 @@ RipMessage messageIn(std::span<const uint8_t> any) {
     return OtherRipMessage{name};
 }
 
-/** What a packet carries, no longer compressed. */
+/** Returns the uncompressed contents of a packet. */
 std::string payloadOf(std::span<const uint8_t> packet) {
     const auto* begin = reinterpret_cast<const char*>(packet.data()) + packet_header_size;
     const size_t size = packet.size() - packet_header_size - crc_size;
@@ -205,13 +205,13 @@ bool beginsPacket(std::span<const uint8_t> bytes) {
            (std::memcmp(bytes.data(), magic1.data(), 4) == 0 || std::memcmp(bytes.data(), magic2.data(), 4) == 0);
 }
 
-/** The length of the packet that begins here. */
+/** Returns the length of the packet at the beginning of the bytes. */
 size_t lengthOf(std::span<const uint8_t> bytes) {
     if (bytes.size() < packet_header_size) throw BadPacket(fmt::format("is cut off after {} bytes", bytes.size()));
     const size_t length = read<uint32_t>(bytes, 4);
     if (length < packet_header_size + crc_size || length > max_rip_packet)
-        throw BadPacket(fmt::format("says that it has {} bytes; may have {} to {}", length, packet_header_size + crc_size,
-                                    max_rip_packet));
+        throw BadPacket(fmt::format("has a length of {} bytes; may have {} to {}", length,
+                                    packet_header_size + crc_size, max_rip_packet));
     return length;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a Water Linked Sonar 3D-15 sends by UDP, and what its log files hold: the Range Image Protocol.
+// UDP messages and log files of a Water Linked Sonar 3D-15: the Range Image Protocol.
 #include <span>
 #include <string>
 #include <variant>
@@ -10,8 +10,8 @@
 
 namespace insonify::device {
 
-/** What images of either kind tell of their ping. Rows run from the lowest elevation up, each from port to starboard;
- *  the outermost pixels look along the edges of the field of view. */
+/** The fields that both kinds of images have. Rows are ordered from the lowest elevation up, pixels from port to
+ *  starboard; the outermost pixels look along the edges of the field of view. */
 struct RipImage {
     types::Time time;
     uint32_t sequence = 0;           ///< Number of the ping.
@@ -26,34 +26,33 @@ struct RipImage {
 
 /** A message `RangeImage`: distances. */
 struct RangePixels : RipImage {
-    float pixel_scale = 0;         ///< Slant range of a pixel that is 1 [m].
-    std::vector<uint32_t> pixels;  ///< 16 bits; 0: nothing heard.
+    float pixel_scale = 0;         ///< Slant range of pixel value 1 [m].
+    std::vector<uint32_t> pixels;  ///< 16 bits; 0: no echo.
 };
 
-/** A message `BitmapImageGreyscale8`: strengths of what was heard, 100 log10(S / 30), where S has 15 bits. */
+/** A message `BitmapImageGreyscale8`: strengths of the echoes, 100 log10(S / 30), where S has 15 bits. */
 struct StrengthPixels : RipImage {
     uint32_t type = 0;  ///< 0: strengths; 1: a shaded picture of the distances.
-    Bytes pixels;       ///< 0: nothing heard.
+    Bytes pixels;       ///< 0: no echo.
 };
 
-/** One of which only the name is known. */
+/** A message of which only the name is known. */
 struct OtherRipMessage {
     std::string type;
 };
 
 using RipMessage = std::variant<RangePixels, StrengthPixels, OtherRipMessage>;
 
-enum class RipVersion { Rip1, Rip2 };     ///< As it is, or compressed by snappy.
-constexpr size_t max_rip_packet = 65507;  ///< What a datagram holds [bytes].
+enum class RipVersion { Rip1, Rip2 };     ///< Uncompressed, or compressed by snappy.
+constexpr size_t max_rip_packet = 65507;  ///< Max size of a datagram's payload [bytes].
 
-/** One packet. May be longer than a datagram where an image has more than some 16,000 pixels. */
+/** Returns one packet. It may exceed a datagram if the image has more than about 16,000 pixels. */
 Bytes ripPacket(const RangePixels& image, RipVersion version = RipVersion::Rip2);
 Bytes ripPacket(const StrengthPixels& image, RipVersion version = RipVersion::Rip2);
 
-/** Every message in these bytes, in order: a datagram, or packets with anything between them, as in log files. What
- *  begins as a packet and contradicts itself (a length that is not there, a checksum or a number of pixels that is
- *  wrong) is none.
- *  @param diagnostics where not null takes one line for each of these, up to 100 */
+/** Returns every message in these bytes, in order. The bytes are a datagram, or packets with anything between them, as
+ *  in log files. Packets that contradict themselves (missing bytes, a wrong checksum or number of pixels) are skipped.
+ *  @param diagnostics receives one line for each skipped packet, up to 100, unless null */
 std::vector<RipMessage> ripMessages(std::span<const uint8_t> bytes, std::vector<std::string>* diagnostics = nullptr);
 
 }  // namespace insonify::device

@@ -12,7 +12,7 @@ constexpr uint8_t start = '@', end = 0x0A, sequence_end = 0x80;
 constexpr size_t frame_size = 14;    // of a packet without a payload [bytes]
 constexpr size_t outside = 6;        // bytes that the length does not count
 constexpr size_t payload_at = 13;    // in a packet
-constexpr size_t max_packet = 4096;  // as drivers have it
+constexpr size_t max_packet = 4096;  // as in drivers
 
 /** Places in payloads [bytes]. */
 namespace command_at {
@@ -43,7 +43,7 @@ SeaNetMessage answer(SeaNetType type, size_t size) {
     return {type, seanet_imaging_sonar, seanet_computer, Bytes(size)};
 }
 
-/** The number that four hexadecimal digits are; none where they are no digits. */
+/** Parses four hexadecimal digits; none for other characters. */
 std::optional<size_t> hexadecimal(std::span<const uint8_t, 4> digits) {
     size_t value = 0;
     const auto* first = reinterpret_cast<const char*>(digits.data());

@@ -1,5 +1,5 @@
 #pragma once
-// SeaNet, what Tritech's sonars and their drivers say to each other over a serial line or TCP.
+// SeaNet, the protocol of Tritech's sonars and their drivers over a serial line or TCP.
 #include <optional>
 #include <span>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace insonify::device {
 
-/** Kinds of messages; those that are not named here are passed on as they are. */
+/** Kinds of messages; other kinds are passed on unchanged. */
 enum class SeaNetType : uint8_t {
     VersionData = 1,
     HeadData = 2,
@@ -45,25 +45,25 @@ struct SeaNetControl {
                               second_channel = 128;
 };
 
-/** What a head is told to do, from the beginning of the payload as in mtHeadCommand. */
+/** A head command, from the beginning of the payload as in mtHeadCommand. */
 struct SeaNetHeadCommand {
     uint16_t control = 0;
-    uint8_t head_type = seanet_imaging_sonar;  ///< Drivers of a Micron DST name 0x11, and want it back in scan lines.
-    uint32_t transmit[2] = {0, 0};             ///< Of either channel: frequency * 2^32 / 32 MHz; 0: the head's own.
+    uint8_t head_type = seanet_imaging_sonar;  ///< Drivers of a Micron DST send 0x11, and expect it in scan lines.
+    uint32_t transmit[2] = {0, 0};             ///< Of each channel: frequency * 2^32 / 32 MHz; 0: the head's own.
     uint16_t range_decimetres = 0;
     uint16_t left = 0, right = 0;     ///< Limits of the sector.
-    uint8_t ad_span = 0, ad_low = 0;  ///< Of 255 for 80 dB: what 4 bits show.
-    uint8_t gain = 0;                 ///< Of 210.
-    uint8_t motor_delay = 0;          ///< For 1/16 gradian [10 us].
+    uint8_t ad_span = 0, ad_low = 0;  ///< In 255ths of 80 dB: the interval that 4 bits show.
+    uint8_t gain = 0;                 ///< In 210ths.
+    uint8_t motor_delay = 0;          ///< Per 1/16 gradian [10 us].
     uint8_t step = 0;                 ///< [1/16 gradian]
-    uint16_t ad_interval = 0;         ///< Of a bin, there and back [640 ns].
+    uint16_t ad_interval = 0;         ///< Two-way travel time of a bin [640 ns].
     uint16_t bins = 0;
 
     bool has(uint16_t bit) const { return (control & bit) != 0; }
     SeaNetMessage message() const;
-    /** None where it is shorter than what is told here. */
+    /** None if the message is shorter than these fields. */
     static std::optional<SeaNetHeadCommand> in(const SeaNetMessage& message);
-    /** True for the head command of one byte that turns a scanning head round at once. */
+    /** Whether this is the head command of one byte that reverses a scanning head at once. */
     static bool isReversal(const SeaNetMessage& message);
 };
 
@@ -71,12 +71,12 @@ struct SeaNetHeadCommand {
 struct SeaNetHeadData {
     uint8_t status = 0;         ///< Bit 1: the motor has failed.
     uint8_t sweep = 0;          ///< 0: scanning; 1: at the left limit; 2: at the right one.
-    SeaNetHeadCommand command;  ///< By which it was made.
+    SeaNetHeadCommand command;  ///< The command of the line.
     uint16_t bearing = seanet_ahead;
-    Bytes data;  ///< A byte for each bin, or for two where the command asks for 4 bits: the nearer in the lower ones.
+    Bytes data;  ///< One byte per bin, or per two bins at 4 bits: the nearer bin in the lower bits.
 
     SeaNetMessage message() const;
-    /** None where bytes and what they tell of themselves disagree. */
+    /** None if the bytes contradict their own counts. */
     static std::optional<SeaNetHeadData> in(const SeaNetMessage& message);
 };
 
@@ -84,7 +84,7 @@ struct SeaNetHeadData {
 struct SeaNetAlive {
     bool recentring = false, centred = false, motor_on = false, scanning = false, unconfigured = true,
          configured = false;
-    uint32_t milliseconds = 0;  ///< Since it was switched on.
+    uint32_t milliseconds = 0;  ///< Since power-on.
     uint16_t bearing = seanet_ahead;
 
     SeaNetMessage message() const;
@@ -101,20 +101,19 @@ struct SeaNetVersion {
     static std::optional<SeaNetVersion> in(const SeaNetMessage& message);
 };
 
-/** mtBBUserData, of which a driver reads one thing. */
+/** mtBBUserData, of which drivers read one field. */
 struct SeaNetUserData {
-    bool full_duplex = true;  ///< May send while it listens.
+    bool full_duplex = true;  ///< May send while it receives.
 
     SeaNetMessage message() const;
     static std::optional<SeaNetUserData> in(const SeaNetMessage& message);
 };
 
-/** A request that has no payload; mtSendData carries the time of day. */
+/** A request without payload; mtSendData has the time of day. */
 SeaNetMessage seaNetRequest(SeaNetType type);
 
-/** Finds packets in bytes as they come. What lies between them, and what begins like one and is none (two lengths that
- *  differ, no line feed where it ends), is passed over; so is one that is cut off, once a whole one has come behind it.
- */
+/** Finds packets in a stream of bytes. Bytes between packets and false beginnings (two lengths that differ, no line
+ *  feed at the end) are skipped. An incomplete packet is skipped once a complete one has arrived behind it. */
 class SeaNetReader final : public Framer {
 public:
     SeaNetReader() : Framer(CutOff::IsPassedOver) {}

@@ -18,12 +18,12 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr double low_opening_deg = 90, high_opening_deg = 40, columns = 256;  // between the outermost columns
-constexpr double millimetre = 1e-3;  // of a pixel's unit, as far as 16 bits reach
+constexpr double millimetre = 1e-3;  // unit of a pixel, within the limit of 16 bits
 constexpr double strongest_pixel = 255;
 constexpr double slowest = 1000, fastest = 2000;  // [m/s]
 constexpr const char* prefix = "/api/v1/integration/";
 
-/** A request that the device does not take, and why. */
+/** A request that the device refuses, and why. */
 struct Refused {
     int status;
     std::string why;
@@ -51,7 +51,7 @@ bool truthIn(const Json& json) {
     return json.get<bool>();
 }
 
-/** Whether a text is the first of two; throws unless it is one of them. */
+/** Returns whether a text is the first of two; throws unless it is one of them. */
 bool isFirst(const Json& json, const char* first, const char* second) {
     const std::string text = textIn(json, "the body");
     if (text != first && text != second)
@@ -80,7 +80,7 @@ double degreesBetween(const std::vector<double>& angles) {
 
 }  // namespace
 
-/** One path of the API: what GET gives and what POST takes, as far as there is such. */
+/** One path of the API: the answer of GET and the action of POST, if it has them. */
 struct Sonar3dEmulator::Api {
     struct Path {
         std::function<Json()> get;
@@ -94,7 +94,7 @@ struct Sonar3dEmulator::Api {
         describeTime();
     }
 
-    /** A path that only takes something, without an answer. */
+    /** A path with an action and without an answer. */
     static std::function<std::optional<Json>(const Json&)> taking(std::function<void(const Json&)> take) {
         return [take = std::move(take)](const Json& json) {
             take(json);
@@ -268,7 +268,7 @@ void Sonar3dEmulator::ask(types::Time now) {
     settings.frequency_khz = frequencyKhz(state_);
     settings.speed_of_sound = speedOfSound();
     const double opening_deg = state_.high_frequency ? high_opening_deg : low_opening_deg;
-    settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of beams
+    settings.field_of_view = types::Angle::fromDeg(opening_deg * columns / (columns - 1));  // to the edges of the beams
     Sonar3dState asked = state_;
     asked.speed_of_sound = settings.speed_of_sound;
     asked_.add(now, now + types::Time::fromSeconds(2 * settings.range / settings.speed_of_sound), std::move(asked));
@@ -282,7 +282,7 @@ std::optional<types::Time> Sonar3dEmulator::tick(types::Time now) {
     if (!asked_.empty()) due = std::max(due, asked_.deadline());
     if (now < due) return due;
     if (!asked_.empty() && !std::exchange(warned_, true))
-        outlet_.warn("no range image came of a ping that was asked for; another is asked for");
+        outlet_.warn("a requested ping gave no range image; another is requested");
     ask(now);
     return now + types::Time::fromSeconds(period());
 }

@@ -13,12 +13,12 @@
 
 namespace insonify::device {
 
-/** What of a Sonar 3D-15 is not set over its API. */
+/** Properties of a Sonar 3D-15 that are not set over its API. */
 struct Sonar3dDevice {
-    double longest_range = 15;         ///< That the API takes [m].
+    double longest_range = 15;         ///< The API's limit [m].
     double low_frequency_khz = 1200;   ///< 90 x 40 degrees, 5 pings a second.
     double high_frequency_khz = 2400;  ///< 40 x 40 degrees, 20 pings a second.
-    double temperature_celsius = 12;   ///< In the housing, and of the water for the automatic speed of sound.
+    double temperature_celsius = 12;   ///< In the housing, and for the automatic speed of sound.
     std::string multicast_address = "224.0.0.96";
     int multicast_port = 4747;
     bool compressed = true;
@@ -26,7 +26,7 @@ struct Sonar3dDevice {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"longest_range", "m", "that the API takes", 1, 65}, self.longest_range);
+        visit(Field{"longest_range", "m", "max range of the API", 1, 65}, self.longest_range);
         visit(Field{"low_frequency_khz", "kHz", "of the mode of 90 x 40 degrees, 5 pings a second", 10, 10000},
               self.low_frequency_khz);
         visit(Field{"high_frequency_khz", "kHz", "of the mode of 40 x 40 degrees, 20 pings a second", 10, 10000},
@@ -34,7 +34,7 @@ struct Sonar3dDevice {
         visit(Field{"temperature_celsius", "degC", "in the housing, and of the water for the automatic speed of sound",
                     -2, 40},
               self.temperature_celsius);
-        visit(Field{"multicast_address", "", "group to which images go where the client sets no other"},
+        visit(Field{"multicast_address", "", "group that images are sent to unless the client sets another"},
               self.multicast_address);
         visit(Field{"multicast_port", "1", "of the group", 1, 65535}, self.multicast_port);
         visit(Field{"compressed", "", "whether images are RIP2, as of release 1.6; else RIP1, as before"},
@@ -43,11 +43,11 @@ struct Sonar3dDevice {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What clients have set over the API; as the device has it when it is switched on. */
+/** The settings of clients over the API; initially the device's power-on state. */
 struct Sonar3dState {
     bool acoustics = false;
     double range_min = 0.3, range_max = 15;  ///< [m]
-    double speed_of_sound = 1491;            ///< [m/s]; 0: by salinity and temperature.
+    double speed_of_sound = 1491;            ///< [m/s]; 0: computed from salinity and temperature.
     bool high_frequency = false;
     bool fresh_water = false;
     std::string udp_mode = "multicast";
@@ -61,13 +61,13 @@ struct Sonar3dState {
 
 /** A Water Linked Sonar 3D-15 without sockets and clocks: answers to its HTTP API, and range images in its protocol.
  *
- *  Once acoustics are enabled it asks for pings at the rate of its mode, one at a time; each range image is sent with
- *  the image of its strengths. The clock of the device is that which it is given, shifted where a client sets it. There
- *  is no IMU: its switch is kept and nothing is sent. */
+ *  Once acoustics are enabled it requests pings at the rate of its mode, one at a time. Each range image is sent with
+ *  the image of its strengths. The device reads the given clock plus the offset that a client has set. There is no IMU:
+ *  its switch is kept and nothing is sent. */
 class Sonar3dEmulator {
 public:
     struct Outlet {
-        std::function<void(const types::SonarSettings&)> ask;  ///< Wants one ping.
+        std::function<void(const types::SonarSettings&)> ask;  ///< Requests one ping.
         std::function<void(const std::string& address, uint16_t port, Bytes packet)> send;
         std::function<void(const std::string&)> warn;
     };
@@ -77,9 +77,9 @@ public:
     }
 
     HttpReply answer(const HttpRequest& request, types::Time now);
-    /** A ping that was asked for, then or later: ranges and strengths by direction. */
+    /** Takes a requested ping, even a late one: ranges and strengths by direction. */
     void heard(const types::DepthMap& map);
-    /** Asks for what is due; when the next is. */
+    /** Sends due requests; returns when the next is due. */
     std::optional<types::Time> tick(types::Time now);
     const Sonar3dState& state() const { return state_; }
 
@@ -98,7 +98,7 @@ private:
     Sonar3dDevice device_;
     Outlet outlet_;
     Sonar3dState state_;
-    AskedPings<Sonar3dState> asked_{8};  ///< What held when each was.
+    AskedPings<Sonar3dState> asked_{8};  ///< With the state at each request.
     std::optional<types::Time> last_;
     types::Time shift_;  ///< Of the device's clock.
     uint32_t sequence_ = 0;

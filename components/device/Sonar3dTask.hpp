@@ -18,15 +18,14 @@ struct Sonar3dDeviceConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(listen_address, self.address);
-        visit(Field{"port", "1", "TCP port of the HTTP API; 0: any that is free, told in a notice", 0, 65535},
-              self.port);
+        visit(Field{"port", "1", "TCP port of the HTTP API; 0: a free port, named in a notice", 0, 65535}, self.port);
         Sonar3dDevice::describe(self.device, visit);
     }
     void check(types::Diagnostics& diagnostics) const { device.check(diagnostics); }
 };
 
-/** Stands in for a Water Linked Sonar 3D-15: its HTTP API, and range images by UDP. See Sonar3dEmulator for what it
- *  does. The sonar is a sonar::Sonar3dTask. */
+/** Replaces a Water Linked Sonar 3D-15: its HTTP API, and range images by UDP. Sonar3dEmulator has the device's
+ *  behaviour. The sonar is a sonar::Sonar3dTask. */
 class Sonar3dTask final : public DeviceTask {
 public:
     using DeviceTask::DeviceTask;

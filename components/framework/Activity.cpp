@@ -53,11 +53,11 @@ void Activity::release() {
         free_ = realtime_ = true;
         woken_ = false;
         next_cycle_ = Clock::now();
-        wake_after_ = nanoseconds(owner_.wakeAfter());  // asked for here: the owner may go while the thread waits
+        wake_after_ = nanoseconds(owner_.wakeAfter());  // read here: the owner may be destroyed while the thread waits
         if (!settings_.periodic()) next_cycle_ += wake_after_;
     }
     wake_.notify_one();
-    if (owner_.triggered()) trigger();  // by what came before
+    if (owner_.triggered()) trigger();  // samples that arrived before
 }
 
 void Activity::hold() {
@@ -65,7 +65,7 @@ void Activity::hold() {
         std::lock_guard lock(mutex_);
         free_ = false;
     }
-    call([] {});  // a cycle that has begun ends first
+    call([] {});  // a running cycle ends first
 }
 
 void Activity::trigger() {
@@ -75,7 +75,7 @@ void Activity::trigger() {
         if (!free_ || woken_) return;
         woken_ = true;
     }
-    wake_.notify_one();  // with the mutex free: the thread takes it at once
+    wake_.notify_one();  // without the mutex, so that the thread can lock it at once
 }
 
 void Activity::loop() {
@@ -111,7 +111,7 @@ bool Activity::due() const {
 
 bool Activity::timed() const { return settings_.periodic() || wake_after_.count() > 0; }
 
-/** Times are absolute: a late cycle does not shift the next; periods missed altogether are left out. */
+/** Times are absolute: a late cycle does not shift the next; a period that is missed altogether is skipped. */
 void Activity::schedule() {
     const auto now = Clock::now();
     if (!settings_.periodic()) {
@@ -147,12 +147,12 @@ bool Activity::sleepUntil(types::Time time) {
     owner_.timing().pause();
     {
         std::unique_lock lock(mutex_);
-        if (environment.wall_clock) {  // which may be set while this waits
+        if (environment.wall_clock) {  // may be set while this waits
             const auto end = Clock::now() + left();
             while (free_ && wake_.wait_until(lock, end) == std::cv_status::no_timeout) {
             }
         } else {
-            constexpr std::chrono::microseconds at_most(20'000);  // another clock may stand still, or go faster
+            constexpr std::chrono::microseconds at_most(20'000);  // another clock may stand still, or run faster
             for (auto rest = left(); free_ && rest.count() > 0; rest = left())
                 wake_.wait_for(lock, std::min(rest, at_most));
         }

@@ -16,23 +16,23 @@ namespace insonify::framework {
 
 class TaskContext;
 
-/** When a task's updateHook runs: every `period` seconds, or when a sample arrives on one of its triggering ports; and
- *  on what. Of the rest, lockstep knows nothing. */
+/** When a task's updateHook runs (every `period` seconds, or when a sample arrives on a triggering port), and the
+ *  settings of its thread. Lockstep uses only `period` and `trigger`. */
 struct ActivitySettings {
     double period = 0;                 ///< 0: triggered [s].
-    std::vector<std::string> trigger;  ///< Input ports that wake the task; empty: all that are connected.
-    bool fifo = false;                 ///< SCHED_FIFO, with `priority`; else the system's default.
-    int priority = 0;                  ///< 1 to 99, the highest.
-    std::vector<uint32_t> cpus;        ///< Processors that the thread keeps to; empty: any.
-    double deadline = 0;               ///< Samples written longer after their stamp are late; 0: none is [s].
-    double watchdog = 0;               ///< A cycle that takes longer hangs; 0: as the deployment has it [s].
+    std::vector<std::string> trigger;  ///< Input ports that wake the task; empty: all connected ports.
+    bool fifo = false;                 ///< SCHED_FIFO with `priority`; else the system's default.
+    int priority = 0;                  ///< 1 to 99; 99 is the highest.
+    std::vector<uint32_t> cpus;        ///< Processors that the thread may use; empty: any.
+    double deadline = 0;               ///< Max time from a sample's stamp to its writing; 0: no limit [s].
+    double watchdog = 0;               ///< Max duration of a cycle before it is reported; 0: the deployment's [s].
     bool periodic() const { return period > 0; }
 };
 
-/** The one thread on which all hooks and operations of a task run. It starts with the first call.
+/** The single thread that runs all hooks and operations of a task. The first call starts it.
  *
- *  It serves calls at any time. Cycles of its own, paced by the wall clock or by new samples, it runs only between
- *  release() and hold(): in lockstep the deployment asks for each cycle. */
+ *  The thread serves calls at any time. Between release() and hold() it also runs cycles by itself, paced by the wall
+ *  clock or by new samples. In lockstep the deployment requests each cycle. */
 class Activity {
 public:
     explicit Activity(TaskContext& owner) : owner_(owner) {}
@@ -41,11 +41,11 @@ public:
     Activity& operator=(const Activity&) = delete;
 
     const ActivitySettings& settings() const { return settings_; }
-    /** Takes the settings and tells the input ports which of them trigger. Not while released. */
+    /** Takes the settings and sets which input ports trigger the task. Not while released. */
     void configure(ActivitySettings settings);
 
-    /** Runs `work` on the task's thread and waits for its end; at once when this is that thread.
-     *  What `work` throws is thrown here. Allocates nothing. */
+    /** Runs `work` on the task's thread and waits until it ends; runs it directly when called on that thread. Rethrows
+     *  what `work` throws. Allocates nothing. */
     template <class Work>
     void call(Work&& work) {
         using Callable = std::remove_reference_t<Work>;
@@ -53,13 +53,13 @@ public:
         submit(job);
     }
 
-    void release();  ///< From now on the thread runs cycles by itself; the first at once if samples wait.
-    void hold();     ///< No cycle runs any more once this returns (called from another thread).
-    void trigger();  ///< A new sample is there; any thread.
-    /** Whether cycles have been released before: the task runs in realtime, even if it is held for its last cycle. */
+    void release();  ///< Lets the thread run cycles by itself; the first one at once if samples wait.
+    void hold();     ///< Stops the cycles; none runs after the return (called from another thread).
+    void trigger();  ///< Reports a new sample; any thread.
+    /** Whether release() has been called: the task runs in realtime, even while it is held for its last cycle. */
     bool realtime() const { return realtime_; }
-    /** In a cycle, on the task's thread: waits until the task's clock shows `time`. False as soon as the task is held.
-     */
+    /** Waits, within a cycle on the task's thread, until the task's clock shows `time`. Returns false as soon as the
+     *  task is held. */
     bool sleepUntil(types::Time time);
 
 private:
@@ -76,7 +76,7 @@ private:
     void loop();
     void serve(std::unique_lock<std::mutex>& lock);
     bool due() const;
-    bool timed() const;  ///< Whether next_cycle_ counts.
+    bool timed() const;  ///< Whether next_cycle_ applies.
     void schedule();
     void runCycle(std::unique_lock<std::mutex>& lock);
     void wait(std::unique_lock<std::mutex>& lock);
@@ -90,7 +90,7 @@ private:
     std::atomic<bool> realtime_{false};
     bool woken_ = false, ending_ = false;
     std::chrono::nanoseconds wake_after_{0};
-    Clock::time_point next_cycle_;  ///< Of a triggered task: when it runs without a sample.
+    Clock::time_point next_cycle_;  ///< For a triggered task: when it runs without a sample.
     std::thread thread_;
 };
 

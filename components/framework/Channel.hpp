@@ -9,8 +9,8 @@ namespace insonify::framework {
 
 class OutputPortBase;
 
-/** Where samples of one connection wait: a ring of fixed capacity, whose samples Channel holds. The mutex of its input
- *  port guards it. */
+/** The queue of one connection: a ring of fixed capacity. Channel holds the samples; the mutex of the input port guards
+ *  them. */
 class ChannelBase {
 public:
     ChannelBase(OutputPortBase& source, ConnPolicy policy);
@@ -20,13 +20,13 @@ public:
     OutputPortBase& source() const { return source_; }
     /** Samples that were refused, dropped or overwritten before they were read. */
     uint64_t lost() const { return lost_.load(std::memory_order_relaxed); }
-    /** Samples that the reader has taken and left aside for newer ones, see InputPort::readNewest. */
+    /** Samples that the reader took but skipped for newer samples, see InputPort::readNewest. */
     uint64_t passedOver() const { return passed_over_.load(std::memory_order_relaxed); }
     void notePassedOver() { passed_over_.fetch_add(1, std::memory_order_relaxed); }
 
-    /** Copies a sample of the ports' type; false when it was refused (full buffer). */
+    /** Copies a sample of the ports' type into the ring; false: refused, because the buffer is full. */
     bool push(const void* sample);
-    /** Moves the oldest into a sample of the ports' type; false when none waits. */
+    /** Moves the oldest sample into `sample`, which has the ports' type; false: the ring is empty. */
     bool pop(void* sample);
     bool empty() const { return count_ == 0; }
     void clear();

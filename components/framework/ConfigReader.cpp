@@ -16,7 +16,7 @@
 namespace insonify::framework {
 namespace {
 
-/** A scalar without quotes: in strict YAML only such a one can be a number or a truth value. */
+/** A scalar without quotes: in strict YAML only this can be a number or a boolean. */
 bool isPlain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
 bool parseDouble(std::string_view text, double& value) {
@@ -25,7 +25,7 @@ bool parseDouble(std::string_view text, double& value) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
-/** A number with a unit, "20.deg", or a block of Rock's that is one: {rad: 0.3}, {rad: 20.deg}, {kelvin: 280}. */
+/** Returns a number with a unit, "20.deg", also from one of Rock's blocks: {rad: 0.3}, {rad: 20.deg}, {kelvin: 280}. */
 std::optional<Quantity> quantityOf(const YAML::Node& node) {
     if (!node.IsDefined()) return std::nullopt;
     if (node.IsScalar()) return Quantity::parse(node.Scalar());
@@ -42,7 +42,7 @@ std::optional<Quantity> quantityOf(const YAML::Node& node) {
     return std::nullopt;
 }
 
-/** What stands there, for messages. */
+/** Returns the node's value, for messages. */
 std::string shown(const YAML::Node& node) {
     if (!node.IsDefined() || node.IsNull()) return "empty";
     if (quantityOf(node) && node.IsMap())
@@ -71,7 +71,7 @@ std::string wantedUnit(const types::Field& field) {
     return unit.empty() || unit == "1" ? "must be a number without a unit" : "must be in " + unit;
 }
 
-/** "write true. " for what other languages, and YAML 1.1, take for a truth value. */
+/** Returns "write true. " for the booleans of other languages and of YAML 1.1. */
 std::string truthHint(const YAML::Node& node) {
     static const std::vector<std::string> yes{"yes", "on", "1", "True", "TRUE", "y"};
     static const std::vector<std::string> no{"no", "off", "0", "False", "FALSE", "n"};
@@ -79,7 +79,7 @@ std::string truthHint(const YAML::Node& node) {
     return is(yes) ? "write true; " : is(no) ? "write false; " : "";
 }
 
-/** "20.m" of 20 and "m", "3.m.s^-1" of 3 and "m/s"; empty where a quantity cannot be written. */
+/** Returns "20.m" for 20 and "m", "3.m.s^-1" for 3 and "m/s"; empty where a quantity cannot be written. */
 std::string quantityText(const std::string& number, std::string unit) {
     if (const size_t slash = unit.find('/'); slash != std::string::npos)
         unit = unit.substr(0, slash) + "." + unit.substr(slash + 1) + "^-1";
@@ -90,7 +90,7 @@ bool areDigits(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); });
 }
 
-/** "write 20 or 20.m; " for a number with its unit, or a comma, as people write it: "20 m", "20m", "20,5". */
+/** Returns "write 20 or 20.m; " for usual forms of a number with a unit or a comma: "20 m", "20m", "20,5". */
 std::string unitHint(const YAML::Node& node, const types::Field& field) {
     if (!node.IsDefined() || !node.IsScalar()) return "";
     const std::string& text = node.Scalar();
@@ -109,7 +109,7 @@ std::string unitHint(const YAML::Node& node, const types::Field& field) {
     return fmt::format("write {:.12g}{}; ", *converted, quantity.empty() ? "" : " or " + quantity);
 }
 
-/** The node that a path such as "tvg.max_db" or "waypoints[2].time" leads to, or the last on the way that exists. */
+/** Returns the node at a path such as "tvg.max_db" or "waypoints[2].time", or the last existing node on the way. */
 YAML::Node nodeAt(const YAML::Node& block, std::string_view path) {
     YAML::Node node = block;
     while (!path.empty() && node.IsDefined()) {
@@ -171,7 +171,7 @@ bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
         if (!entry.first.IsScalar())
             report(entry.first, path, "has a key that is " + shown(entry.first) + "; keys are names"), good = false;
         else if (!seen.insert(entry.first.Scalar()).second)
-            report(entry.first, below(path, entry.first.Scalar()), "stands here twice; once is allowed"), good = false;
+            report(entry.first, below(path, entry.first.Scalar()), "is given twice; once is allowed"), good = false;
     }
     return good;
 }
@@ -231,7 +231,7 @@ bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const 
     if (digits.starts_with('-') || digits.starts_with('+')) digits.remove_prefix(1);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), magnitude);
     const bool exact = error == std::errc() && end == digits.data() + digits.size();
-    // Written with a point or an exponent: exact as a double, or not a whole number that can be trusted.
+    // With a decimal point or an exponent: exact as a double, otherwise not a reliable whole number.
     if (!exact && error == std::errc() && std::abs(wide) <= 0x1p53) magnitude = static_cast<uint64_t>(std::abs(wide));
     const uint64_t limit = negative ? ~static_cast<uint64_t>(lowest) + 1 : highest;
     if ((exact || (error == std::errc() && std::abs(wide) <= 0x1p53)) && magnitude <= limit) return true;

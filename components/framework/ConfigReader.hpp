@@ -1,5 +1,6 @@
 #pragma once
-// Strict reading of YAML into described structs: every diagnostic is collected, with its place, none stops the reading.
+// Strict reading of YAML into described structs. Reading continues after an error: every diagnostic is collected with
+// its place.
 #include <yaml-cpp/mark.h>
 
 #include <cstdint>
@@ -14,34 +15,35 @@
 
 namespace insonify::framework {
 
-/** Where a value was written that is not from the file at hand. */
+/** The origin of a value that is not written in the deployment file itself. */
 struct Origin {
-    std::string file;                           ///< Or an option of the command line, set_origin for one.
-    std::string path;                           ///< Its path there.
-    YAML::Mark mark = YAML::Mark::null_mark();  ///< Its place there.
+    std::string file;                           ///< Or an option of the command line, such as set_origin.
+    std::string path;                           ///< The value's path in that file.
+    YAML::Mark mark = YAML::Mark::null_mark();  ///< The value's place in that file.
 
     bool isOption() const { return file.starts_with("--"); }
 };
-using Origins = std::map<std::string, Origin>;  ///< By path; what lies below is from there as well.
+using Origins = std::map<std::string, Origin>;  ///< By path; a path includes everything below it.
 inline constexpr const char* set_origin = "--set";
 
 class ConfigReader {
 public:
-    /** Diagnostics name `file`, but for paths that have an origin of their own. Without a file diagnostics have no
+    /** Diagnostics name `file`, except for paths with their own origin. If `file` is empty, diagnostics have no
      *  place. */
     explicit ConfigReader(std::string file, Origins origins = {})
         : file_(std::move(file)), origins_(std::move(origins)) {}
 
     const types::Diagnostics& diagnostics() const { return diagnostics_; }
     void report(const YAML::Node& node, const std::string& path, const std::string& message);
-    /** From now on null stands for what is not there: it takes an optional out, and gives any other value its default;
-     *  maps of names are merged as well. */
+    /** Makes null remove values: it empties an optional and resets any other value to its default. Maps of names are
+     *  merged as well. */
     void takeOutByNull() { null_takes_out_ = true; }
     bool nullTakesOut() const { return null_takes_out_; }
-    /** Where diagnostics of nodes that do not exist are reported: the block that lacks them. */
+    /** Sets the place for diagnostics of nodes that do not exist: the block that lacks them. */
     void setFallback(const YAML::Mark& mark) { fallback_ = mark; }
 
-    /** Reads `node` into `value`; what the node does not name keeps its value. False when there was any diagnostic. */
+    /** Reads `node` into `value`; fields that the node does not name keep their values. Returns false when there was
+     *  any diagnostic. */
     template <types::Described T>
     bool read(const YAML::Node& node, const std::string& path, T& value) {
         return readBlock(*this, node, path, blockOf<T>(), &value);
@@ -50,19 +52,19 @@ public:
     bool readValue(const YAML::Node& node, const std::string& path, const types::Field& field, T& value) {
         return typeOf<T>().read(*this, node, path, field, &value);
     }
-    /** Reads a value from a piece of YAML that stands alone: an argument, a `--set`. */
+    /** Reads a value from a separate piece of YAML: an argument, a `--set`. */
     template <class T>
     bool readText(const std::string& yaml, const std::string& path, T& value) {
         return readText(yaml, path, typeOf<T>(), &value);
     }
     bool readText(const std::string& yaml, const std::string& path, const ValueType& type, void* value);
 
-    /** Diagnostics of a block, each at the node that its path leads to. */
+    /** Reports diagnostics of a block, each at the node of its path. */
     void report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics);
 
     bool isMap(const YAML::Node& node, const std::string& path);  ///< A map or empty, keys unique; else a diagnostic.
     bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a diagnostic.
-    /** A diagnostic for each key that is not among `known`, with the nearest known one. */
+    /** Reports each key that is not among `known`, with the nearest known key. */
     void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);
 
     // Scalars; each false with a diagnostic.
@@ -83,10 +85,10 @@ private:
     YAML::Mark fallback_ = YAML::Mark::null_mark();
 };
 
-/** "did you mean range? known: range, model": for a name that is not known. */
+/** Returns the hint for an unknown name: "did you mean range? known: range, model". */
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& known);
 
-/** Names of what has a name: ports, operations. */
+/** Returns the names of ports or operations. */
 template <class Named>
 std::vector<std::string> namesOf(const std::vector<Named*>& all) {
     std::vector<std::string> names;
@@ -94,8 +96,8 @@ std::vector<std::string> namesOf(const std::vector<Named*>& all) {
     return names;
 }
 
-/** The value of `key` in a map, an undefined node if there is none (YAML::Node's operator[] of a const node, but for
- *  maps with keys that are not scalars as well). */
+/** Returns the value of `key` in a map, or an undefined node if there is none. Unlike YAML::Node's operator[] of a
+ *  const node, it accepts maps with keys that are not scalars. */
 YAML::Node child(const YAML::Node& map, std::string_view key);
 
 inline std::string below(const std::string& path, const std::string& name) {

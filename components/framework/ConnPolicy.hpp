@@ -6,7 +6,7 @@
 
 namespace insonify::framework {
 
-/** How samples wait between a writer and a reader, named as in Orocos. Every loss is counted. */
+/** How samples wait between a writer and a reader, with Orocos' names. Every loss is counted. */
 struct ConnPolicy {
     enum Type { Data, Buffer, CircularBuffer };
     Type type =

@@ -17,7 +17,7 @@ bool holdsSamples(const TaskContext& task) {
     return std::ranges::any_of(task.inputs(), [](const auto* port) { return port->hasNew(); });
 }
 
-/** Tells what a task found wrong with its properties at the place where they stand. */
+/** Reports a task's diagnostic of its properties at the place where they are written. */
 void reportOf(const TaskSpec& spec, const types::Diagnostic& diagnostic, ConfigReader& reader) {
     const bool names_task = diagnostic.path.starts_with(spec.name + ".");
     const std::string path = names_task ? diagnostic.path.substr(spec.name.size() + 1) : diagnostic.path;
@@ -36,7 +36,7 @@ void stopTask(TaskContext& task, std::vector<std::string>& failures) {
     if (hasFailed(task)) failures.push_back(task.name() + ": " + task.lastError());
 }
 
-/** The earliest time that a source among the tasks wants to play. */
+/** Returns the earliest time that a ClockSource names. */
 std::optional<types::Time> firstTime(const Graph& graph) {
     std::optional<types::Time> first;
     for (const auto& task : graph.tasks())
@@ -45,7 +45,7 @@ std::optional<types::Time> firstTime(const Graph& graph) {
     return first;
 }
 
-// What a deployment tells of itself while it runs; waits for no task.
+// A deployment's status of a running task; waits for no task.
 types::TaskStatus statusOf(const TaskContext& task, const std::string& type) {
     types::TaskStatus status{task.record(),
                              toString(task.state()),
@@ -101,7 +101,7 @@ void Deployment::makeEnvironment(std::filesystem::path output_folder, uint64_t s
     environment_->names = spec_.names;
     environment_->warn = [this](const std::string& text) { warn(text); };
     environment_->deployment = this;
-    // The executor's, once it is there.
+    // The executor's, once it exists.
     const types::Time start = types::Time::fromSeconds(spec_.start_time);
     environment_->start_time = [start] { return start; };
     if (spec_.lockstep) environment_->now = environment_->start_time;
@@ -218,7 +218,7 @@ std::vector<std::string> Deployment::cleanup() {
     return failures;
 }
 
-// -- what tasks and the user see of it --------------------------------------------------------------------------------
+// -- queries of tasks and of the user ---------------------------------------------------------------------------------
 
 std::vector<types::TaskRecord> Deployment::records() const {
     std::vector<types::TaskRecord> records;

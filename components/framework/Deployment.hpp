@@ -16,27 +16,27 @@
 
 namespace insonify::framework {
 
-/** How far it came, and how. */
+/** How far a run got, with its failures and warnings. */
 struct RunResult : Progress {
-    std::vector<std::string> failures;  ///< "task: message"; empty: all went well.
-    std::vector<std::string> warnings;  ///< As of onWarning(), the first hundred.
+    std::vector<std::string> failures;  ///< "task: message"; empty: no failure.
+    std::vector<std::string> warnings;  ///< The first hundred of onWarning().
     bool failed() const { return !failures.empty(); }
 };
 
-/** Tasks made, given their properties and connected, as a DeploymentSpec says: a Graph, with the executor for its
+/** Creates, configures and connects the tasks of a DeploymentSpec as a Graph, and runs them with the executor of its
  *  schedule.
  *
  *      Deployment deployment(DeploymentSpec::load("deploy/minimal.yml"), registry, "out");  // throws every diagnostic
  *      deployment.configure();                                                              // throws every diagnostic
  *      RunResult result = deployment.run({.duration_s = 10}, stop, {});
  *
- *  Tasks configure in file order, start readers before writers, stop and clean up writers before readers; a reader
- *  has a last cycle before it stops, so that nothing that waits for it is lost. Its destructor cleans up. */
+ *  Tasks configure in file order, start readers before writers, and stop and clean up writers before readers. A reader
+ *  runs a last cycle before it stops, so that no waiting sample is lost. The destructor cleans up. */
 class Deployment final : public types::DeploymentControl {
 public:
-    /** Makes and checks; nothing is configured. Throws types::ConfigError with every diagnostic, those of `spec` first.
-     *  A `seed` that is not 0 gives each task that has a property of that name a hash of it and the task's name; 0: the
-     *  tasks of which none is written get one of the deployment's seed. */
+    /** Makes and checks the tasks; configures none. Throws types::ConfigError with every diagnostic, those of `spec`
+     *  first. If `seed` is not 0, each task with a `seed` property gets a hash of `seed` and its name. If `seed` is 0,
+     *  tasks without a written seed get a hash of the deployment's seed and their name. */
     Deployment(DeploymentSpec spec, Registry& registry, std::filesystem::path output_folder = ".", uint64_t seed = 0);
     ~Deployment() override;
     Deployment(const Deployment&) = delete;
@@ -49,13 +49,13 @@ public:
     const std::vector<Connection>& connections() const { return graph_.connections(); }
     const std::vector<TaskContext*>& order() const { return graph_.order(); }  ///< Writers before readers.
 
-    /** Configures every task; throws types::ConfigError with the diagnostics of all, having cleaned up. */
+    /** Configures every task. Throws types::ConfigError with the diagnostics of all tasks, after cleaning up. */
     void configure();
-    /** Starts, runs until a limit, the end of the sources, a task that fails, or `stop`; stops all. Does not clean up.
-     *  `report` as of the executors, on this thread. */
+    /** Starts the tasks, runs until a limit, the end of the sources, a failing task or `stop`, and stops the tasks.
+     *  Does not clean up. `report` is called as by Executor::run, on this thread. */
     RunResult run(const RunLimits& limits, const std::atomic<bool>& stop, const Executor::Report& report = {});
-    // A run that a program drives itself, in lockstep: start(), advance() as often as it likes, stop().
-    /** Returns the failures, "task: message"; where there are any, all have stopped again. */
+    // A run that a program drives itself, in lockstep: start(), any number of advance(), stop().
+    /** Returns the failures, "task: message"; after a failure all tasks are stopped again. */
     std::vector<std::string> start();
     /** Runs the next instant; false: no task is due any more. Throws std::logic_error in realtime. */
     bool advance() { return executor_->advance(); }
@@ -63,8 +63,9 @@ public:
     std::vector<std::string> stop();
     /** Returns the failures, "task: message". */
     std::vector<std::string> cleanup();
-    /** In realtime: what of priorities, processors and memory was not permitted, before tasks start; then tasks that
-     *  hang, are in error, or no longer. Comes on any thread, one at a time. */
+    /** Sets the receiver of warnings in realtime. Before tasks start it gets the priorities, processors and memory that
+     *  were not permitted; later, tasks that hang or are in error, and their recovery. Called on any thread, one call
+     *  at a time. */
     void onWarning(std::function<void(const std::string&)> told) { told_ = std::move(told); }
 
     std::string call(const std::string& operation, const std::vector<std::string>& arguments) override;
@@ -73,9 +74,9 @@ public:
     void pause(bool on) override { executor_->pause(on); }
     void step() override { executor_->step(); }
 
-    /** Samples lost in each connection, by "from>to". */
+    /** Returns the number of samples lost in each connection, by "from>to". */
     std::map<std::string, uint64_t> losses() const;
-    /** Samples of each connection that its reader has passed over for newer ones, by "from>to". */
+    /** Returns the number of samples of each connection that its reader skipped for newer samples, by "from>to". */
     std::map<std::string, uint64_t> passedOver() const;
 
 private:

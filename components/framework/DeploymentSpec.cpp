@@ -15,7 +15,7 @@ using types::Field;
 enum class Schedule { Lockstep, Realtime };
 enum class Scheduler { Other, Fifo };
 
-// What the keys of a deployment are, described as any other configuration.
+// The keys of a deployment, described like any other configuration.
 
 struct ActivityKeys {
     std::optional<double> period;
@@ -30,9 +30,11 @@ struct ActivityKeys {
         visit(Field{"trigger", "", "input ports whose samples run a cycle"}, self.trigger);
         visit(Field{"scheduler", "", "in realtime, the system's scheduler of the thread"}, self.scheduler);
         visit(Field{"priority", "1", "with scheduler: fifo", 1, 99}, self.priority);
-        visit(Field{"cpus", "", "in realtime, processors that the thread keeps to", 0, 1023}, self.cpus);
-        visit(Field{"deadline", "s", "after which a sample is late, from its stamp", 1e-6, 1e6}, self.deadline);
-        visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
+        visit(Field{"cpus", "", "in realtime, processors that the thread may run on", 0, 1023}, self.cpus);
+        visit(Field{"deadline", "s", "max time from a sample's stamp to its writing; later samples count as late", 1e-6,
+                    1e6},
+              self.deadline);
+        visit(Field{"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
               self.watchdog);
     }
     void check(types::Diagnostics& diagnostics) const {
@@ -41,7 +43,7 @@ struct ActivityKeys {
         if (scheduler == Scheduler::Fifo && !priority)
             diagnostics.push_back({"", "has no priority; scheduler: fifo needs one, from 1 to 99"});
         if (scheduler == Scheduler::Other && priority)
-            diagnostics.push_back({"priority", "is of no use with scheduler: other; fifo has one"});
+            diagnostics.push_back({"priority", "has no effect with scheduler: other; use scheduler: fifo"});
     }
     ActivitySettings settings() const {
         return {period.value_or(0),   trigger, scheduler == Scheduler::Fifo,
@@ -61,11 +63,10 @@ struct TaskKeys {
     static void describe(Self& self, V& visit) {
         visit(Field{"type", "", "registered type of the task"}, self.type);
         visit(Field{"activity", "", "when it runs"}, self.activity);
-        visit(Field{"aliases", "", "other names of ports and properties: where they lead"}, self.aliases);
-        visit(Field{"copies", "", "properties whose value another one takes as well: where that is"}, self.copies);
-        visit(Field{"switches", "", "properties true and false: the block that they put in or take out"},
-              self.switches);
-        visit(Field{"ignored_properties", "", "names in its configuration that nothing here takes: they are left out"},
+        visit(Field{"aliases", "", "other names of ports and properties, with their targets"}, self.aliases);
+        visit(Field{"copies", "", "properties whose value another property also gets: its path"}, self.copies);
+        visit(Field{"switches", "", "booleans: the block that true inserts and false removes"}, self.switches);
+        visit(Field{"ignored_properties", "", "names in its configuration that are not used here and omitted"},
               self.ignored_properties);
         visit(Field{"property_files", "", "its configuration in Rock's files"}, self.property_files);
         visit(Field{"properties", "", "its configuration"}, self.properties);
@@ -87,7 +88,7 @@ struct PolicyKeys {
     }
     void check(types::Diagnostics& diagnostics) const {
         if (type == ConnPolicy::Data && size)
-            diagnostics.push_back({"size", "is of no use with type: data; buffers have one"});
+            diagnostics.push_back({"size", "has no effect with type: data; use a buffer"});
         if (type != ConnPolicy::Data && !size) diagnostics.push_back({"", "has no size; a buffer needs one"});
     }
 };
@@ -125,12 +126,12 @@ struct DocumentKeys {
         visit(Field{"schedule", "", "simulated time or the wall clock"}, self.schedule);
         visit(Field{"start_time", "s", "start of simulated time", 0, 4e9}, self.start_time);
         visit(Field{"seed", "1", "a task without a seed gets a hash of this one and its name"}, self.seed);
-        visit(Field{"watchdog", "s", "in realtime, time of a cycle after which it is reported", 1e-3, 1e6},
+        visit(Field{"watchdog", "s", "in realtime, max duration of a cycle before it is reported", 1e-3, 1e6},
               self.watchdog);
         visit(Field{"lock_memory", "", "in realtime, all memory stays resident"}, self.lock_memory);
-        visit(Field{"namespace", "", "of ROS 2 topics and nodes whose names have no leading slash, /auv1"},
+        visit(Field{"namespace", "", "namespace of ROS 2 topics and nodes whose names have no leading slash, /auv1"},
               self.ros_namespace);
-        visit(Field{"frame_prefix", "", "before ROS 2 frames but those of the world, auv1 for auv1/base_link"},
+        visit(Field{"frame_prefix", "", "prefix of ROS 2 frames except those of the world, auv1 for auv1/base_link"},
               self.frame_prefix);
         visit(Field{"libraries", "", "shared objects with more task types"}, self.libraries);
         visit(Field{"tasks", "", "by name"}, self.tasks);
@@ -160,7 +161,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
     task.name = name.Scalar();
     task.place.reset(block);
     if (task.name.empty() || task.name.find('.') != std::string::npos)
-        reader.report(name, task.path(), "is no name for a task; must not be empty nor hold a dot");
+        reader.report(name, task.path(), "is not a name for a task; must not be empty or contain a dot");
     TaskKeys keys;
     reader.read(block, task.path(), keys);
     task.type = keys.type;
@@ -176,7 +177,7 @@ void readTask(ConfigReader& reader, const YAML::Node& name, const YAML::Node& bl
 
 void readTasks(ConfigReader& reader, const YAML::Node& tasks, DeploymentSpec& spec) {
     if (!tasks.IsDefined()) return;
-    reader.isMap(tasks, "tasks");  // finds two tasks of one name
+    reader.isMap(tasks, "tasks");  // reports two tasks of one name
     if (!tasks.IsMap()) return;
     for (const auto& entry : tasks)
         if (entry.first.IsScalar() && !spec.task(entry.first.Scalar()))
@@ -196,7 +197,7 @@ void readConnections(ConfigReader& reader, const YAML::Node& connections, Deploy
     }
 }
 
-/** Keys that are given, "scheduler, cpus"; a pair of each key and whether it is. */
+/** Returns the keys that are given, "scheduler, cpus", from pairs of a key and whether it is given. */
 std::string given(std::initializer_list<std::pair<const char*, bool>> keys) {
     std::string names;
     for (const auto& [key, is_given] : keys)
@@ -300,7 +301,7 @@ std::vector<std::string> DeploymentSpec::unused() const {
     for (const TaskSpec& task : tasks)
         if (!task.left_out.empty())
             lines.push_back(task.name +
-                            ": left out, by ignored_properties: " + fmt::format("{}", fmt::join(task.left_out, ", ")));
+                            ": omitted by ignored_properties: " + fmt::format("{}", fmt::join(task.left_out, ", ")));
     const auto note = [&](const std::string& whose, const std::string& keys) {
         if (!keys.empty()) lines.push_back(whose + "not used in " + (lockstep ? "lockstep: " : "realtime: ") + keys);
     };
@@ -325,7 +326,7 @@ void DeploymentSpec::set(const std::string& assignment) {
     const Origin origin{set_origin, assignment};
     const auto refuse = [&](const std::string& why) { diagnostics.push_back({assignment, why, set_origin}); };
     if (equals == std::string::npos) return refuse("must be task.property=value");
-    if (equals + 1 == assignment.size()) return refuse("has no value; null takes the property out");
+    if (equals + 1 == assignment.size()) return refuse("has no value; null removes the property");
     try {
         set(property, parseValue(assignment.substr(equals + 1)), origin);
     } catch (const types::ConfigError& error) {

@@ -27,20 +27,19 @@ struct PropertyFiles {
 struct TaskSpec {
     std::string name, type;
     ActivitySettings activity;
-    std::map<std::string, std::string> aliases;   ///< "task.port" or "task.property" by another name for it.
-    std::map<std::string, std::string> copies;    ///< "task.property" that takes the value of one of this task as well.
-    std::map<std::string, std::string> switches;  ///< "task.property", a block that true puts in and false takes out.
-    std::vector<std::string> ignored_properties;  ///< Names that nothing here takes: their values are left out.
-    std::set<std::string> left_out;               ///< Those of them that were given a value.
+    std::map<std::string, std::string> aliases;   ///< Targets "task.port" or "task.property", by alias.
+    std::map<std::string, std::string> copies;    ///< "task.property" that also gets this property's value.
+    std::map<std::string, std::string> switches;  ///< "task.property", a block: true inserts it, false removes it.
+    std::vector<std::string> ignored_properties;  ///< Properties without meaning here: their values are omitted.
+    std::set<std::string> left_out;               ///< Ignored properties that were given a value.
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.
     YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for diagnostics.
 
     std::string path() const { return "tasks." + name; }
-    /** What Rock calls its kind: that of its property files, which are named so ("project::Task.yml"), else its type.
-     */
+    /** Returns Rock's name of the task's kind: the model of its property files ("project::Task.yml"), else its type. */
     std::string model() const;
-    /** Whether a property, or the block that it stands in, is one of `ignored_properties`. */
+    /** Whether a property, or the block that contains it, is in `ignored_properties`. */
     bool ignores(const std::string& property) const;
 };
 
@@ -51,50 +50,50 @@ struct ConnectionSpec {
     std::string path;  ///< "connections[2]"
 };
 
-/** A deployment as written: nothing in it is made or checked against the tasks yet, and all of it may be edited.
+/** A deployment as written. Nothing is made or checked against the tasks yet, and every member may be edited.
  *  Diagnostics of reading are collected, so that Deployment reports them together with its own. */
 struct DeploymentSpec {
     std::string file;  ///< As given, for diagnostics.
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
     double start_time = 1;               ///< Of simulated time [s].
-    uint64_t seed = 1;                   ///< From which each task without a `seed` of its own gets one, see seedOf.
-    double watchdog = 10;                ///< In realtime, how long a cycle may take before it is reported [s].
-    bool lock_memory = false;            ///< In realtime, all memory stays resident.
+    uint64_t seed = 1;                   ///< Source of the seeds of tasks without their own `seed`, see seedOf.
+    double watchdog = 10;                ///< In realtime, the max duration of a cycle before it is reported [s].
+    bool lock_memory = false;            ///< In realtime, keeps all memory resident.
     std::vector<std::string> libraries;  ///< Shared objects, relative to the deployment file.
-    types::RosNames names;               ///< What ROS 2 names become in it.
+    types::RosNames names;               ///< Translation of ROS 2 names in this deployment.
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
     Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
     types::Diagnostics diagnostics;
 
-    /** Throws types::ConfigError when there is no text to be read or it is not YAML; other diagnostics go to
-     *  `diagnostics`. */
+    /** Reads a deployment file. Throws types::ConfigError if the text cannot be read or is not YAML; other diagnostics
+     *  are added to `diagnostics`. */
     static DeploymentSpec load(const std::filesystem::path& file);
     static DeploymentSpec parse(const std::string& text, const std::string& file);
 
     TaskSpec* task(const std::string& name);  ///< Null when there is none.
     const TaskSpec* task(const std::string& name) const { return const_cast<DeploymentSpec*>(this)->task(name); }
     std::vector<std::string> taskNames() const;
-    /** Where "task.port" leads if the task has an alias of that name, else itself. */
+    /** Returns the target of "task.port" if the task has an alias of that name, else the path itself. */
     std::string withoutAlias(const std::string& path) const;
-    /** The "task.alias" that leads to "task.port" or "task.property", of several the first; empty: none does. */
+    /** Returns the first "task.alias" of "task.port" or "task.property"; empty: no alias. */
     std::string aliasOf(const std::string& path) const;
-    /** What is written but its schedule leaves out, a line for each task and for the whole; empty: nothing. */
+    /** Returns what is written but unused under this schedule, one line per task and for the whole; empty: nothing. */
     std::vector<std::string> unused() const;
-    /** `task.property.path=value`, the value in YAML: a layer over the file. Of a block only what it names is changed;
-     *  null takes a property out. `namespace=auv1` and `frame_prefix=auv1` are those of the deployment. Diagnostics go
-     *  to `diagnostics`. */
+    /** Sets `task.property.path=value`, with the value in YAML, over the file. In a block, only the named values
+     *  change; null removes a property. `namespace=auv1` and `frame_prefix=auv1` set those of the deployment.
+     *  Diagnostics are added to `diagnostics`. */
     void set(const std::string& assignment);
-    /** The same for `task.property.path` and a value from elsewhere, whose file and place diagnostics name. */
+    /** Sets `task.property.path` to a value from elsewhere; diagnostics name its file and place. */
     void set(const std::string& property, const YAML::Node& value, const Origin& origin);
 };
 
-/** "camera.image" -> {"camera", "image"}: split at the first dot; the second is empty when there is none. */
+/** Splits at the first dot: "camera.image" -> {"camera", "image"}; the second is empty when there is no dot. */
 std::pair<std::string, std::string> splitPort(const std::string& path);
 
-/** What a deployment file may say, from the descriptions that it is read by: the keys of the document, of a task and of
- *  a connection, as `describe` lists properties. */
+/** The keys that a deployment file may have: of the document, of a task and of a connection. They are taken from the
+ *  descriptions that read them, as `describe` lists properties. */
 struct DeploymentKeys {
     std::vector<PropertyInfo> document, task, connection;
 };

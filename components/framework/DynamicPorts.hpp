@@ -1,5 +1,5 @@
 #pragma once
-// Ports that exist only because a connection names them, of any type in a list, for tasks that take what comes.
+// Ports that exist only because a connection names them, for tasks that accept any type of a list.
 //
 //     template <class T>
 //     struct Logged { std::string stream; size_t samples = 0; };          // what the task keeps with a port
@@ -24,11 +24,11 @@
 
 namespace insonify::framework {
 
-/** For ports with which a task keeps nothing. */
+/** For tasks that keep nothing with a port. */
 template <class T>
 struct KeepsNothing {};
 
-/** One port of DynamicInputs, with what its task keeps. */
+/** One port of DynamicInputs, with the data that its task keeps for it. */
 template <class T, template <class> class Kept>
 struct DynamicInput final {
     using Sample = T;
@@ -41,7 +41,7 @@ struct DynamicInput final {
     Kept<T> kept{};
 };
 
-/** One port of DynamicOutputs, with what its task keeps. */
+/** One port of DynamicOutputs, with the data that its task keeps for it. */
 template <class T, template <class> class Kept>
 struct DynamicOutput final {
     using Sample = T;
@@ -57,13 +57,14 @@ class DynamicInputs;
 template <class Samples, template <class> class Kept = KeepsNothing>
 class DynamicOutputs;
 
-/** Input ports of the types T, made as connections name them. */
+/** Input ports of the types T, made when connections name them. */
 template <class... T, template <class> class Kept>
 class DynamicInputs<std::tuple<T...>, Kept> {
 public:
     explicit DynamicInputs(TaskContext* owner) : owner_(owner) {}
 
-    /** A port for what `source` writes, with what the task keeps made of `with`; null where that is none of T. */
+    /** Makes a port for the samples of `source`, with task data constructed from `with`. Returns null if the type is
+     *  not in T. */
     template <class... Args>
     InputPortBase* make(const std::string& name, const OutputPortBase& source, const Args&... with) {
         InputPortBase* made = nullptr;
@@ -72,7 +73,7 @@ public:
         return made;
     }
     bool empty() const { return inputs_.empty(); }
-    /** Calls `use` with each, a DynamicInput, in the order in which they were made. */
+    /** Calls `use` with each DynamicInput, in the order of creation. */
     template <class Use>
     void forEach(Use&& use) {
         for (auto& input : inputs_) std::visit(use, input);
@@ -90,10 +91,10 @@ private:
     }
 
     TaskContext* owner_;
-    std::list<std::variant<DynamicInput<T, Kept>...>> inputs_;  ///< In place for good: ports do not move.
+    std::list<std::variant<DynamicInput<T, Kept>...>> inputs_;  ///< A list, because ports must not move.
 };
 
-/** Output ports of the types T, made as connections name them. */
+/** Output ports of the types T, made when connections name them. */
 template <class... T, template <class> class Kept>
 class DynamicOutputs<std::tuple<T...>, Kept> {
 public:
@@ -101,19 +102,20 @@ public:
 
     explicit DynamicOutputs(TaskContext* owner) : owner_(owner) {}
 
-    /** A port for samples of that type. */
+    /** Makes a port for samples of that type. */
     template <class Sample>
     DynamicOutput<Sample, Kept>& make(const std::string& name, const std::string& doc) {
         using One = DynamicOutput<Sample, Kept>;
         return std::get<One>(outputs_.emplace_back(std::in_place_type<One>, owner_, name, doc));
     }
-    /** A port of the first type for which `is(std::type_identity<T>{})`; null where that is none. It stays in place. */
+    /** Makes a port of the first type for which `is(std::type_identity<T>{})`; null if there is none. The port does not
+     *  move. */
     template <class Is>
     Output* makeFirst(const std::string& name, const std::string& doc, const Is& is) {
         const bool made = ((is(std::type_identity<T>{}) && (make<T>(name, doc), true)) || ...);
         return made ? &outputs_.back() : nullptr;
     }
-    /** Calls `use` with each, a DynamicOutput, in the order in which they were made. */
+    /** Calls `use` with each DynamicOutput, in the order of creation. */
     template <class Use>
     void forEach(Use&& use) {
         for (Output& output : outputs_) std::visit(use, output);
@@ -125,7 +127,7 @@ public:
 
 private:
     TaskContext* owner_;
-    std::list<Output> outputs_;  ///< In place for good: ports do not move.
+    std::list<Output> outputs_;  ///< A list, because ports must not move.
 };
 
 }  // namespace insonify::framework

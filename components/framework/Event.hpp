@@ -4,11 +4,11 @@
 
 namespace insonify::framework {
 
-/** What wakes a task from outside of its deployment: a message, a device.
+/** Wakes a task from outside its deployment: for a message, a device.
  *
  *      framework::Event arrived_{this};  // and where it arrives, on any thread: arrived_.raise();
  *
- *  In realtime the task then runs a cycle, unless it has a period. It needs no other activity. */
+ *  In realtime the task then runs a cycle, unless it has a period. The task needs no other activity. */
 class Event {
 public:
     explicit Event(TaskContext* owner) : owner_(*owner) { owner->enlist(this); }

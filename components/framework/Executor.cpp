@@ -12,7 +12,7 @@ Executor::Executor(const Graph& graph, Environment& environment, types::Time sta
 
 void Executor::begin() { wall_start_ = Clock::now(); }
 
-bool Executor::advance() { throw std::logic_error("only schedule: lockstep goes on instant by instant"); }
+bool Executor::advance() { throw std::logic_error("only schedule: lockstep can advance instant by instant"); }
 
 Progress Executor::progress() const {
     const uint64_t counted = graph_.countedSamples(), rehearsed = std::min(counted, first_);

@@ -8,7 +8,7 @@ namespace {
 
 bool isBuffered(const Connection& connection) { return connection.policy.type != ConnPolicy::Data; }
 
-/** The first task of which every writer is placed already; null when there is none. */
+/** Returns the first waiting task whose writers are all placed; null when there is none. */
 TaskContext* nextTask(const std::vector<TaskContext*>& waiting, const std::vector<Connection>& connections,
                       bool heed_buffered) {
     const auto waits = [&](const TaskContext* task) {

@@ -8,7 +8,7 @@
 
 namespace insonify::framework {
 
-/** One connection as made. */
+/** A connection between two ports. */
 struct Connection {
     OutputPortBase* from;
     InputPortBase* to;
@@ -17,28 +17,29 @@ struct Connection {
     std::string text() const { return from->path() + ">" + to->path(); }
 };
 
-/** Tasks, the connections between their ports, and the order in which they work. */
+/** Tasks, the connections between their ports, and the order in which the tasks run. */
 class Graph {
 public:
     const std::vector<std::unique_ptr<TaskContext>>& tasks() const { return tasks_; }  ///< In the order of add().
     TaskContext* task(const std::string& name) const;                                  ///< Null when there is none.
     const std::vector<Connection>& connections() const { return connections_; }
-    /** Writers before readers, else as in tasks(); where a loop forbids that, a buffered connection goes backwards. */
+    /** Writers before readers, otherwise as in tasks(). In a loop, a buffered connection leads backwards. */
     const std::vector<TaskContext*>& order() const { return order_; }
-    /** Connections without a buffer that lie on a loop made of such, one for each task that is on one. */
+    /** Returns the unbuffered connections that form loops: one for each task on such a loop. */
     std::vector<const Connection*> unbufferedLoops() const;
 
     TaskContext& add(std::unique_ptr<TaskContext> task);
-    /** False when the types of the ports differ. */
+    /** Connects two ports; false: the types of the ports differ. */
     bool connect(OutputPortBase& from, InputPortBase& to, ConnPolicy policy);
-    /** Finds the order, once all is connected. */
+    /** Computes order(), once all connections are made. */
     void arrange();
 
-    /** Counted samples (PortBase::counted) that every source of such has written; a source of them reads none. */
+    /** Returns the number of counted samples (PortBase::counted) that every source of counted samples has written. A
+     *  source of counted samples reads none. */
     uint64_t countedSamples() const;
-    /** Whether a task failed, so that a run must end: Exception or FatalError. */
+    /** Returns whether a task is in Exception or FatalError, so that a run must end. */
     bool hasFailed() const;
-    /** Whether a source of counted samples is in error: it gives none to count. */
+    /** Returns whether a source of counted samples is in error and thus writes none. */
     bool hasSourceInError() const;
 
 private:
@@ -50,7 +51,7 @@ private:
     std::vector<const OutputPortBase*> counted_;
 };
 
-/** Exception or FatalError. */
+/** Whether the task is in Exception or FatalError. */
 bool hasFailed(const TaskContext& task);
 
 }  // namespace insonify::framework

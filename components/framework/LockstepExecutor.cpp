@@ -9,7 +9,7 @@
 namespace insonify::framework {
 namespace {
 
-constexpr int max_refusals = 100'000;  ///< Instants in a row after which no counted sample is expected any more.
+constexpr int max_refusals = 100'000;  ///< Consecutive instants after which no counted sample is expected any more.
 
 bool readsNothing(const TaskContext& task) {
     return std::ranges::none_of(task.inputs(), [](const auto* port) { return port->connected(); });
@@ -28,7 +28,7 @@ LockstepExecutor::LockstepExecutor(const Graph& graph, Environment& environment,
     environment_.now = [this] { return types::Time{now_us_.load()}; };
 }
 
-// -- the order of work ------------------------------------------------------------------------------------------------
+// -- order of the tasks -----------------------------------------------------------------------------------------------
 
 void LockstepExecutor::findTasks() {
     timed_.clear(), sources_.clear(), triggered_.clear();
@@ -70,7 +70,7 @@ void LockstepExecutor::runInstant(types::Time instant) {
         sources_wrote_ |= samplesWritten(*timed.task) != written;
         ++timed.cycle;
     }
-    // Writers come before readers and update() empties the triggering ports, so one pass leaves all quiet.
+    // Writers run before readers and update() empties the triggering ports, so one pass suffices.
     for (TaskContext* task : triggered_)
         if (task->triggered()) task->update();
 }
@@ -104,7 +104,7 @@ void LockstepExecutor::run(const RunLimits& limits, const std::atomic<bool>& sto
         {
             const auto held = betweenInstants();
             if (!takeStep()) continue;           // paused meanwhile
-            const types::Time now_due = next();  // another, where a source has moved meanwhile
+            const types::Time now_due = next();  // may differ, if a source has advanced meanwhile
             if (now_due >= end || !takePart(limits)) return;
             runInstant(now_due);
         }
@@ -123,8 +123,8 @@ bool LockstepExecutor::takePart(const RunLimits& limits) {
 bool LockstepExecutor::sourcesAreDone(const RunLimits& limits) const {
     if (limits.samples > 0 && refusals_ >= max_refusals) return true;
     if (!std::ranges::all_of(sources_, [](const TaskContext* task) { return task->finished(); })) return false;
-    // With a limit a source that goes on holding its last value counts, unless that value is refused; one that gives
-    // nothing more does not.
+    // With a limit, a source that keeps writing its last value counts as active, unless that value is refused; a source
+    // that writes nothing more does not.
     if (limits.samples > 0 && refusals_ > 0) return true;
     const bool is_limited = limits.samples > 0 || limits.duration_s > 0;
     return !is_limited || !sources_wrote_;
@@ -150,7 +150,7 @@ std::unique_lock<std::mutex> LockstepExecutor::betweenInstants() {
     return lock;
 }
 
-// -- standing still ---------------------------------------------------------------------------------------------------
+// -- pausing ----------------------------------------------------------------------------------------------------------
 
 void LockstepExecutor::pause(bool on) {
     const auto held = betweenInstants();

@@ -6,19 +6,19 @@
 
 namespace insonify::framework {
 
-/** The order of work on simulated time: it reads no other clock, so that the same tasks and data give the same run.
+/** Runs tasks in simulated time. It reads no other clock, so the same tasks and data give the same run.
  *
- *  Time goes from one instant at which a task is due, by its period or as a ClockSource, to the next. At each, the due
- *  tasks run in file order, then triggered tasks, writers before readers. What a buffer carries backwards in that order
- *  (a loop) arrives at the next instant. Time can stand still, and go on step by step. */
+ *  Time advances to the next instant at which a task is due, by its period or as a ClockSource. At each instant the due
+ *  tasks run in file order, then triggered tasks, writers before readers. A sample that a buffer carries backwards in
+ *  that order (a loop) arrives at the next instant. Time can be paused and advanced step by step. */
 class LockstepExecutor final : public Executor {
 public:
     /** At `start` all tasks with a period are due. */
     LockstepExecutor(const Graph& graph, Environment& environment, types::Time start);
 
     void begin() override;
-    /** Ends as well once every source, a task that runs by the clock and reads nothing, has finished: with a limit,
-     *  only if none writes any more. `report` comes after each instant. */
+    /** Also ends once every source has finished; a source is a task that runs by the clock and reads nothing. With a
+     *  limit, the run ends then only if no source writes any more. Calls `report` after each instant. */
     void run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) override;
     bool advance() override;
     bool paused() const override { return paused_; }
@@ -29,7 +29,7 @@ public:
 private:
     static constexpr types::Time never{std::numeric_limits<int64_t>::max()};
 
-    /** A task with a period, or one that says itself when it wants to run. */
+    /** A task with a period, or a ClockSource, which names the time of its next cycle. */
     struct Timed {
         TaskContext* task;
         const ClockSource* source;  ///< Null for a task with a period.
@@ -38,34 +38,34 @@ private:
 
     void findTasks();
     types::Time due(const Timed& timed) const;
-    types::Time next() const;  ///< Instant at which a task is due; `never`: none is any more.
+    types::Time next() const;  ///< Next instant at which a task is due; `never`: none.
     types::Time nextBetweenInstants();
-    /** The due tasks in file order, then triggered ones until no sample triggers any. */
+    /** Runs the due tasks in file order, then triggered tasks until no sample triggers a task. */
     void runInstant(types::Time instant);
-    /** Sees to whether the next instant is rehearsed; false: it comes after the shard. */
+    /** Sets whether the next instant is rehearsed; false: the instant is after the shard. */
     bool takePart(const RunLimits& limits);
-    /** Whether no source has anything more to say, or a count is not to be reached any more. */
+    /** Whether no source will write a further sample, or the count of samples cannot be reached any more. */
     bool sourcesAreDone(const RunLimits& limits) const;
-    /** Waits until an instant is due at the pace that is wanted, or time stands still. */
+    /** Waits until the instant is due at the given pace, or until time is paused. */
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
     bool standsStill() const { return paused_ && steps_ == 0; }
-    /** While paused, until a step is asked for. */
+    /** Waits while paused, until a step is requested. */
     void standStill(const std::atomic<bool>& stop);
-    /** Whether an instant may begin; while paused, one of those that were asked for. Between instants. */
+    /** Returns whether an instant may begin; while paused, uses up one of the requested steps. Between instants. */
     bool takeStep();
     void letCallersIn(const std::atomic<bool>& stop) const;
 
     std::vector<Timed> timed_;
     std::vector<TaskContext*> triggered_;
     std::vector<const TaskContext*> sources_;
-    int refusals_ = 0;            ///< Instants in a row in which a source of counted samples was in error.
+    int refusals_ = 0;            ///< Consecutive instants in which a source of counted samples was in error.
     bool sources_wrote_ = false;  ///< Whether a task that runs by the clock wrote anything at the last instant.
     std::atomic<int64_t> now_us_;
     Clock::duration stood_still_{};  ///< In this run.
     std::atomic<bool> paused_{false};
-    std::atomic<uint64_t> steps_{0};  ///< To be made while paused.
+    std::atomic<uint64_t> steps_{0};  ///< Requested while paused.
     std::mutex instant_mutex_;
-    std::atomic<unsigned> callers_{0};  ///< That wait for the end of an instant.
+    std::atomic<unsigned> callers_{0};  ///< Waiting for the end of an instant.
 };
 
 }  // namespace insonify::framework

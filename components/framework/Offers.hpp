@@ -1,5 +1,5 @@
 #pragma once
-// What a task may offer its deployment beside ports, properties and operations, as a second base.
+// Interfaces that a task may offer its deployment in addition to ports, properties and operations, as a second base.
 //
 //     class ReaderTask final : public framework::TaskContext, public framework::ClockSource { ... };
 #include <functional>
@@ -13,65 +13,66 @@
 
 namespace insonify::framework {
 
-/** A task whose samples bear times of their own, by which the deployment goes. */
+/** A task whose samples have their own times, which drive the deployment's clock. */
 class ClockSource {
 public:
     virtual ~ClockSource() = default;
 
-    /** In lockstep, when the task wants its next cycle, where it has no period; none: not, or not any more. A cycle at
-     *  that time must move it on. Valid once the connections are made: the earliest of all tasks is then when simulated
-     *  time starts. */
+    /** Returns, in lockstep, the time of the next cycle of a task without a period; none: no cycle, or no further one.
+     *  A cycle at that time must advance this value. Valid once the connections are made: simulated time starts at the
+     *  earliest value of all tasks. */
     virtual std::optional<types::Time> nextTime() const { return std::nullopt; }
 
-    /** In realtime, the clock that all tasks read in place of the wall's, which it may follow at a pace of its own;
-     *  none: this task has none. Asked for once, when the connections are made. */
+    /** Returns, in realtime, the clock that all tasks read instead of `wall`; it may follow `wall` at its own pace.
+     *  None: this task has no clock. Called once, when the connections are made. */
     virtual std::function<types::Time()> clock(std::function<types::Time()> /*wall*/) { return {}; }
 };
 
-/** A task that plays what was recorded. */
+/** A task that plays a recording. */
 class Player {
 public:
     virtual ~Player() = default;
 
-    /** None: nothing is opened yet. Any thread. */
+    /** None: no recording is open yet. Any thread. */
     virtual std::optional<types::Playback> playback() const = 0;
 };
 
-/** A task that decides what of its work is done and what is left out. */
+/** A task that decides which parts of its work are done and which are omitted. */
 class Planned {
 public:
     virtual ~Planned() = default;
 
-    /** Null: not decided yet. Valid after the first cycle. When it has changed, the task calls
-     *  TaskContext::refreshRecord before it writes the first sample that it holds for. */
+    /** Null: not decided yet. Valid after the first cycle. When the plan has changed, the task calls
+     *  TaskContext::refreshRecord before it writes the first sample under the new plan. */
     virtual const types::Plan* plan() const = 0;
 };
 
-/** A task of which a run can be cut into shards: whatever sample a run begins with, this one writes of each the same.
+/** A task whose runs can be cut into shards: it writes the same sample no matter at which sample the run begins.
  *
- *  Instants before those of the shard are rehearsed (Environment::rehearsing). The task then does what later samples
- *  depend on, a motor that turns for example, and what may be long or leaves the deployment it leaves out: a source of
- *  counted samples makes nothing, and writes one that has a time and nothing else; who reads such hands them on, counts
+ *  Instants before the shard are rehearsed (Environment::rehearsing). The task then does only what later samples depend
+ *  on, such as turning a motor. It skips work that may take long or that leaves the deployment. A source of counted
+ *  samples writes a sample that has a time and nothing else. A task that reads such samples passes them on and counts
  *  them, and makes nothing of them. */
 class Divisible {
 public:
     virtual ~Divisible() = default;
 
-    /** Why a run with this task, as its properties are, cannot be cut; empty: it can. Starts with the property that
-     *  stands in the way and says what would do, "quality: is chosen ...". */
+    /** Returns why a run with this task and its properties cannot be cut; empty: it can. The text starts with the
+     *  property that prevents it and names the remedy, "quality: is chosen ...". */
     virtual std::string indivisible() const { return {}; }
 };
 
-/** A task that may be in error only because nobody sends it anything: a run that ends so has not failed. */
+/** A task that may be in error only because it receives no data: a run that ends in this state has not failed. */
 class Waits {
 public:
     virtual ~Waits() = default;
 
-    /** Whether it is so now, having heard of somebody before. From any thread. */
+    /** Whether it waits now, after having received data before. Any thread. */
     virtual bool waits() const = 0;
 };
 
-/** Of a task that is Planned; null: it is not, or not yet. On the task's thread, or when it has stopped. */
+/** Returns the plan of a Planned task; null: not Planned, or no plan yet. On the task's thread, or when it has
+ *  stopped. */
 inline const types::Plan* planOf(const TaskContext& task) {
     const auto* const planned = dynamic_cast<const Planned*>(&task);
     return planned ? planned->plan() : nullptr;

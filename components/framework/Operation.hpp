@@ -28,15 +28,17 @@ public:
 
     /** "double(double, text)" */
     virtual std::string signature() const = 0;
-    /** Calls with arguments in YAML and gives the result as text; types::ConfigError when they do not fit. */
+    /** Calls with arguments in YAML and returns the result as text. Throws types::ConfigError when the arguments do not
+     *  fit. */
     virtual std::string callText(const std::vector<std::string>& arguments) = 0;
 
 protected:
-    /** Throws types::ConfigError when there are not `taken`. */
+    /** Throws types::ConfigError when the number of arguments is not `taken`. */
     void requireCount(const std::vector<std::string>& arguments, size_t taken) const;
-    /** "double(double, text)"; null for no result. */
+    /** Returns "double(double, text)"; null `result`: no result. */
     static std::string signatureOf(const ValueType* result, const std::vector<const ValueType*>& arguments);
-    /** Reads arguments that are as many as they must be. Throws types::ConfigError when they do not fit. */
+    /** Reads the arguments; their number is already checked. Throws types::ConfigError when an argument does not
+     *  fit. */
     void read(const std::vector<std::string>& texts, const std::vector<const ValueType*>& types,
               const std::vector<void*>& values) const;
 
@@ -48,12 +50,12 @@ private:
 template <class Signature>
 class Operation;
 
-/** A function of a task that others call; it runs on the task's own thread, in every state of the task.
+/** A function of a task that others call. It runs on the task's own thread, in every state of the task.
  *
  *      framework::Operation<double(double)> turn{this, "turn", "turns the head to a bearing [rad]",
  *                                                [this](double bearing) { return head_.turn(bearing); }};
  *
- *  What it throws reaches the caller; the task's state is left alone. Argument types are those of properties. */
+ *  Exceptions reach the caller; the task's state stays. Argument types are those of properties. */
 template <class R, class... Args>
 class Operation<R(Args...)> final : public OperationBase {
 public:

@@ -1,12 +1,14 @@
 #pragma once
-// Typed ports. Small samples travel by value; large ones as std::shared_ptr<const T>, written once, never copied.
+// Typed ports. Small samples are copied; large samples are passed as std::shared_ptr<const T>, written once, never
+// copied.
 //
 //     InputPort<types::Pose>         pose{this, "pose", "the vehicle in the world"};
-//     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "what stands where"};
+//     OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "where each object is"};
 //
-// Ports connect and disconnect at any time, from any thread, while samples are written and read. One that goes
-// disconnects itself, whatever the ports at its other ends do meanwhile, except that they must not go or be
-// disconnected from it at that moment; no call on the port itself may be under way or begin. A writer waits for no
+// Ports connect and disconnect at any time, from any thread, while samples are written and read. A port's destructor
+// disconnects it. At that moment the connected ports may be in use, but must not be destroyed or disconnected from this
+// port, and no call on this port may run or begin. A writer never waits for a reader longer than the copying of one
+// sample takes.
 // reader: at most for the copying of one sample.
 #include <memory>
 #include <mutex>
@@ -21,11 +23,11 @@
 
 namespace insonify::framework {
 
-/** NoData: never written. OldData: the sample that was read before, again. NewData: one not read before. */
+/** NoData: never written. OldData: the sample that was read before. NewData: a sample not read before. */
 enum class FlowStatus { NoData, OldData, NewData };
 enum class Need { Required, Optional };
 
-/** What a port is and does without its type. */
+/** The untyped part of a port. */
 class PortBase {
 public:
     PortBase(TaskContext* owner, std::string name, std::string doc, std::string content)
@@ -36,13 +38,13 @@ public:
     TaskContext& owner() const { return *owner_; }
     const std::string& name() const { return name_; }
     const std::string& doc() const { return doc_; }
-    /** What its samples are, in words, where not all of their type are the same; empty: any. */
+    /** What the samples are, in words, where samples of one type differ in meaning; empty: any. */
     const std::string& content() const { return content_; }
     std::string path() const { return owner_->name() + "." + name_; }
     virtual std::string typeName() const = 0;
-    /** The C++ type of its samples, as they travel. */
+    /** The C++ type of its samples, as the connections carry them. */
     virtual const std::type_info& type() const = 0;
-    /** Whether its samples are what runs are counted in, see types::Counted. */
+    /** Whether runs are counted in these samples, see types::Counted. */
     virtual bool counted() const = 0;
 
 private:
@@ -63,7 +65,7 @@ public:
     bool triggers() const { return triggers_; }
     void setTriggers(bool on) { triggers_ = on; }
 
-    // For OutputPortBase alone.
+    // For OutputPortBase only.
     std::shared_ptr<ChannelBase> connect(OutputPortBase& source, ConnPolicy policy);
     void drop(const OutputPortBase& source);
     /** Wakes the task if the sample is taken and this port triggers. */
@@ -71,7 +73,7 @@ public:
 
 protected:
     void disconnectAll();
-    // The reading of InputPort, into a sample of its type.
+    // Used by InputPort, with a sample of its type.
     FlowStatus readInto(void* sample, bool copy_old);
     FlowStatus readNewestInto(void* sample, bool copy_old);
     FlowStatus takeNextInto(void* sample);
@@ -82,12 +84,12 @@ private:
     virtual void copyLast(void* sample) const = 0;
     virtual void forgetLast() = 0;
 
-    /** `taken_from` is set to where a new sample was taken from, for who wants to know. */
+    /** Reads the next sample; sets `taken_from`, unless null, to the channel of a new sample. */
     FlowStatus readFrom(std::shared_ptr<ChannelBase>* taken_from, void* sample, bool copy_old);
 
     Need need_;
     bool triggers_ = true;
-    mutable std::mutex mutex_;  ///< Guards the channels and all in them; held for one copy of a sample.
+    mutable std::mutex mutex_;  ///< Guards the channels and their contents; held for one copy of a sample.
     std::vector<std::shared_ptr<ChannelBase>> channels_;
     bool has_last_ = false;
 };
@@ -98,18 +100,18 @@ public:
     ~OutputPortBase() override;
     /** False when the types differ. */
     bool connectTo(InputPortBase& reader, ConnPolicy policy);
-    /** Ends every connection with `reader`: once this returns nothing of this port reaches it any more. */
+    /** Ends every connection with `reader`: once this returns, no sample of this port reaches it. */
     void disconnect(InputPortBase& reader);
     bool connected() const;
-    /** From now on a reader that connects later, with `init`, gets the last sample. A connection with `init` sees to
-     *  that itself, for those after it. */
+    /** Keeps the last sample, for readers that connect later with `init`. A connection with `init` turns this on for
+     *  later connections. */
     void keepLast();
     uint64_t written() const { return written_.load(std::memory_order_relaxed); }  ///< Samples since construction.
 
 protected:
-    /** A sample of the port's type. */
+    /** Writes a sample of the port's type. */
     void writeFrom(const void* sample);
-    /** A sample of this stamp has been written: the owner's latency in realtime. */
+    /** Records the owner's latency in realtime, once a sample of this stamp has been written. */
     void noteWritten(types::Time stamp) const { noteLatency(owner(), stamp); }
 
 private:
@@ -121,7 +123,7 @@ private:
     virtual void setLast(const void* sample) = 0;
 
     std::atomic<uint64_t> written_{0};
-    mutable std::mutex mutex_;  ///< Guards the list; taken before that of an input port, never after.
+    mutable std::mutex mutex_;  ///< Guards the list; locked before an input port's mutex, never after.
     std::vector<Reader> readers_;
     bool keep_last_ = false, has_last_ = false;
 };
@@ -134,12 +136,13 @@ public:
         : InputPortBase(owner, std::move(name), std::move(doc), need, std::move(content)) {}
     ~InputPort() override { disconnectAll(); }
 
-    /** The next sample; with OldData `sample` becomes the last one read, unless `copy_old` is false. */
+    /** Reads the next sample. With OldData, `sample` becomes the last sample read, unless `copy_old` is false. */
     FlowStatus read(T& sample, bool copy_old = true) { return readInto(&sample, copy_old); }
-    /** Drains the port and gives the newest sample; those before it count as passed over in their connections. */
+    /** Drains the port and returns its newest sample; earlier samples count as skipped in their connections. */
     FlowStatus readNewest(T& sample, bool copy_old = true) { return readNewestInto(&sample, copy_old); }
     bool readNew(T& sample) { return read(sample, false) == FlowStatus::NewData; }
-    /** The sample to work on: in lockstep the next; in realtime the newest, as of readNewest. False: none is new. */
+    /** Reads the sample to process: the next in lockstep, the newest (see readNewest) in realtime. False: no new
+     *  sample. */
     bool takeNext(T& sample) { return takeNextInto(&sample) == FlowStatus::NewData; }
 
     std::string typeName() const override { return types::typeName<T>(); }

@@ -11,7 +11,7 @@
 
 namespace insonify::framework {
 
-/** The properties of a task, without their type. */
+/** The untyped part of a task's properties. */
 class PropertiesBase {
 public:
     explicit PropertiesBase(TaskContext* owner) : owner_(*owner) { owner->enlist(this); }
@@ -19,24 +19,23 @@ public:
     PropertiesBase(const PropertiesBase&) = delete;
     PropertiesBase& operator=(const PropertiesBase&) = delete;
 
-    /** Takes the values of a YAML block over the defaults; diagnostics go to the reader. An undefined node is an empty
+    /** Reads a YAML block over the defaults and reports diagnostics to the reader. An undefined node is an empty
      *  block. */
     virtual void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) = 0;
     /** Every property with its default; nested names are dotted. */
     virtual std::vector<PropertyInfo> list() const = 0;
-    /** The properties that are present, as a log holds them. */
+    /** The properties that are present, in the form of a log. */
     virtual std::map<std::string, types::PropertyValue> values() const = 0;
-    /** Sets one property, of a block only what `yaml` names, in any state of the task; null takes it out, or gives it
-     *  its default. For the task's thread. Throws
-     *  types::ConfigError when the value does not fit, std::runtime_error when the task does not take it over: then
-     *  the old value stays. */
+    /** Sets one property in any state of the task; in a block, only the fields that `yaml` names. Null removes a
+     *  property or resets it to its default. For the task's thread. Throws types::ConfigError when the value does not
+     *  fit. Throws std::runtime_error when the task refuses the value. After a throw the old value stays. */
     void set(const std::string& name, const std::string& yaml) { setAll({{name, yaml}}); }
-    /** Several at once: all, or none. */
+    /** Sets several properties: all, or none. */
     void setAll(const std::map<std::string, std::string>& values);
 
 protected:
     void addSetters();
-    /** Puts the values of now back when called. */
+    /** Returns a function that restores the current values. */
     virtual std::function<void()> keep() = 0;
 
 private:
@@ -44,8 +43,8 @@ private:
     std::vector<std::unique_ptr<OperationBase>> setters_;
 };
 
-/** Properties as one described struct; each top-level field is a property, with an operation `set<Name>` (setRange,
- *  setMax_size: as oroGen forms it). */
+/** Properties in one described struct. Each top-level field is a property with an operation `set<Name>`, named as
+ *  oroGen names it (setRange, setMax_size). */
 template <types::Described Config>
 class Properties final : public PropertiesBase {
 public:
@@ -53,7 +52,7 @@ public:
     const Config& operator*() const { return value_; }
     const Config* operator->() const { return &value_; }
     using PropertiesBase::set;
-    /** From code: bounds are the caller's affair. Takes effect at the next configure. */
+    /** Sets the values from code, without checking bounds. Takes effect at the next configure. */
     void set(Config value) { value_ = std::move(value); }
 
     void load(ConfigReader& reader, const YAML::Node& block, const std::string& path) override {

@@ -36,7 +36,7 @@ void PropertySections::read(const std::filesystem::path& file, const std::string
         }
         take(std::move(section), body);
         section = header(line, shown, number);
-        body.assign(static_cast<size_t>(number), '\n');  // places in the section are places in the file
+        body.assign(static_cast<size_t>(number), '\n');  // keeps the section's line numbers those of the file
     }
     take(std::move(section), body);
 } catch (const types::ConfigError& error) {
@@ -60,14 +60,14 @@ PropertySection PropertySections::header(const std::string& line, const std::str
             report(file, number, "", "has " + word + " in the head of a section; may be name:x, merge:true, chain:a,b");
     }
     if (section.name.empty() && number == 1) section.name = "default";
-    if (section.name.empty()) report(file, number, "", "heads a section without a name; must be --- name:x");
+    if (section.name.empty()) report(file, number, "", "starts a section without a name; must be --- name:x");
     return section;
 }
 
 void PropertySections::take(PropertySection section, const std::string& body) {
     try {
         const std::vector<YAML::Node> documents = parseYaml(body, section.file);
-        if (section.line == 0 && (documents.empty() || documents.front().IsNull())) return;  // before the first head
+        if (section.line == 0 && (documents.empty() || documents.front().IsNull())) return;  // before the first header
         if (documents.size() > 1) report(section.file, section.line, section.name, "holds several YAML documents");
         if (!documents.empty()) section.body.reset(documents.front());
     } catch (const types::ConfigError& error) {
@@ -77,7 +77,7 @@ void PropertySections::take(PropertySection section, const std::string& body) {
     std::vector<PropertySection>& same = sections_[section.name];
     const auto twice = [&](const PropertySection& other) { return other.file == section.file; };
     if (std::any_of(same.begin(), same.end(), twice))
-        report(section.file, section.line, section.name, "is a section that stands here twice; once is allowed");
+        report(section.file, section.line, section.name, "is a section that is given twice; once is allowed");
     if (!section.merge) same.clear();
     same.push_back(std::move(section));
 }
@@ -98,7 +98,7 @@ std::vector<const PropertySection*> PropertySections::inOrder(const std::vector<
 void PropertySections::addChained(const std::string& name, std::vector<std::string>& open,
                                   std::vector<const PropertySection*>& all) {
     const auto found = sections_.find(name);
-    if (found == sections_.end()) return;  // told by who names it
+    if (found == sections_.end()) return;  // reported by the caller that names it
     open.push_back(name);
     for (const PropertySection& section : found->second) {
         for (const std::string& base : section.chain) {

@@ -21,14 +21,14 @@ struct PropertySection {
 
 /** Rock's property files: sections of YAML, each headed by `--- name:NAME [merge:false] [chain:a,b]`.
  *
- *  A file may begin with the section `default` without a header. A section of a later file is laid over those of its
- *  name in earlier files, or with `merge:false` takes their place. What a section chains is its base: it lies below.
- *  Ruby (`<%= %>`) is not run. */
+ *  A file may begin with the section `default` without a header. A section of a later file is merged over the sections
+ *  of its name in earlier files; with `merge:false` it replaces them. The sections that a section chains are its base,
+ *  below it. Ruby (`<%= %>`) is not run. */
 class PropertySections {
 public:
-    /** Reads a file, called `shown` in diagnostics, which are collected. */
+    /** Reads a file, named `shown` in diagnostics, which are collected. */
     void read(const std::filesystem::path& file, const std::string& shown);
-    /** What the sections of `names` hold, in the order in which they are laid one over the other. */
+    /** Returns the sections of `names` with their chained sections, the lowest first. */
     std::vector<const PropertySection*> inOrder(const std::vector<std::string>& names);
     const types::Diagnostics& diagnostics() const { return diagnostics_; }
     std::vector<std::string> names() const;

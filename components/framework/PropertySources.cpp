@@ -7,8 +7,8 @@
 namespace insonify::framework {
 namespace {
 
-/** A copy of `block` in which `key` has another value, or is gone if that is undefined: nodes that an anchor shares
- *  must not change together. */
+/** Returns a copy of `block` in which `key` has another value, or is missing if `value` is undefined. Nodes that share
+ *  an anchor must not change together. */
 YAML::Node with(const YAML::Node& block, const std::string& key, const YAML::Node& value) {
     YAML::Node changed(YAML::NodeType::Map);
     if (block.IsDefined() && block.IsMap())
@@ -18,7 +18,7 @@ YAML::Node with(const YAML::Node& block, const std::string& key, const YAML::Nod
     return changed;
 }
 
-/** The same for the value at a dotted path: what `change` makes of it. */
+/** The same for the value at a dotted path, with the result of `change`. */
 template <class Change>
 YAML::Node changedAt(const YAML::Node& block, const std::string& path, const Change& change) {
     if (path.empty()) return change(block);
@@ -35,7 +35,7 @@ bool leadsBelow(const std::map<std::string, std::string>& names, const std::stri
                        [&](const auto& name) { return name.first.starts_with(path + "."); });
 }
 
-/** Whether some of what lies below a block goes elsewhere, or nowhere. */
+/** Whether some values below a block are moved or ignored. */
 bool takesApart(const TaskSpec& task, const std::string& path) {
     return leadsBelow(task.aliases, path) || leadsBelow(task.switches, path) ||
            std::ranges::any_of(task.ignored_properties,
@@ -213,7 +213,7 @@ void PropertySources::set(TaskSpec& task, const std::string& property, const YAM
         }));
     };
     if (task.ignores(property))
-        throw types::ConfigError("", "", "is one of the task's ignored_properties, which nothing takes");
+        throw types::ConfigError("", "", "is one of the task's ignored_properties, which are not used");
     const bool has_place = from.file != set_origin;
     const Origin origin{from.file, has_place ? "" : fullPath(task, ""), from.mark};
     const YAML::Node block = changedAt(YAML::Node(), property, [&](const YAML::Node&) { return value; });

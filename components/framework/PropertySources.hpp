@@ -8,41 +8,40 @@
 
 namespace insonify::framework {
 
-/** Puts the properties of a deployment's tasks together: what stands in the deployment, over it the sections of
- *  property files, over that `--set`; of two values for one property the later counts, blocks are merged, lists element
- *  by element. A property with an alias goes to where the alias leads, with the place where it was written; one of
- *  `copies` stays as well; one of `switches` puts an empty block in there, or takes the block out, once all else is in
- *  its place; one of `ignored_properties` is left out. */
+/** Merges the properties of a deployment's tasks: the deployment, over it the sections of property files, over them
+ *  `--set`. Of two values for one property the later one counts. Blocks are merged, lists are merged element by
+ *  element. A property with an alias is moved to the alias' target and keeps the place where it was written. A property
+ *  in `copies` is copied. A property in `switches` inserts an empty block at its target or removes the block, after all
+ *  other values. A property in `ignored_properties` is omitted. */
 class PropertySources {
 public:
     explicit PropertySources(DeploymentSpec& spec) : spec_(spec) {}
-    /** Of the deployment and its property files. */
+    /** Applies the values of the deployment and of its property files. */
     void apply();
-    /** Of `--set`, as a live setter has it: blocks are merged, all else takes the place of what is there, null takes it
-     *  out. @param from where the value stands; with `--set` it has no place but its path in the deployment */
+    /** Applies a `--set`, with the rules of a live setter: blocks are merged, other values are replaced, null removes a
+     *  value. @param from the value's place; for `--set`, only its path in the deployment */
     void set(TaskSpec& task, const std::string& property, const YAML::Node& value,
              const Origin& from = {set_origin, ""});
 
 private:
-    /** A value that goes to another place than where it stands. */
+    /** A value whose target differs from the place where it is written. */
     struct Moved {
         std::string target;  ///< "task.property"
         YAML::Node value;
         Origin origin;
         bool is_switch;
     };
-    /** `block` without the values that have an alias or are ignored; the former, and those that are copied, are added
-     *  to `moved`. */
+    /** Returns `block` without aliased and ignored values. Adds aliased and copied values to `moved`. */
     YAML::Node withoutAliases(TaskSpec& task, const YAML::Node& block, const std::string& path, const Origin& origin,
                               std::vector<Moved>& moved);
     void applyFiles(TaskSpec& task);
-    /** Lays values where they lead; of switches the last is kept, for turn(). */
+    /** Applies moved values to their targets; keeps the last value of each switch for turn(). */
     void move(const std::vector<Moved>& moved);
     void turn(const std::string& target, bool on, const Origin& origin);
-    /** Lays `over` on the properties of `task` at `path`. */
+    /** Merges `over` into the properties of `task` at `path`. */
     void lay(TaskSpec& task, const std::string& path, const YAML::Node& over, const Origin& origin);
     YAML::Node laid(const YAML::Node& base, const YAML::Node& over, const std::string& path, const Origin& origin);
-    /** What becomes of `base` with `over` set. */
+    /** Returns `base` with `over` set. */
     YAML::Node set(const YAML::Node& base, const YAML::Node& over, const std::string& path, const Origin& origin);
     void checkTargets();
 

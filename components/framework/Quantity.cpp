@@ -53,13 +53,13 @@ std::optional<Unit> powered(std::string_view text) {
     return product(Unit{}, *unit, power);
 }
 
-/** Takes "3.5" from the front of "3.5.m"; false when there is no number with a point and a name behind. */
+/** Takes "3.5" from the front of "3.5.m"; false when there is no number followed by a point and a name. */
 bool takeNumber(std::string_view& text, double& number) {
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || !std::isfinite(number)) return false;
     text.remove_prefix(static_cast<size_t>(stop - text.data()));
-    if (*(stop - 1) == '.') return !text.empty();  // "20." of "20.deg" is a number, too
+    if (*(stop - 1) == '.') return !text.empty();  // "20." in "20.deg" is also a number
     if (text.size() < 2 || text.front() != '.') return false;
     text.remove_prefix(1);
     return true;
@@ -97,7 +97,7 @@ std::optional<Quantity> Quantity::parse(std::string_view text) {
 
 std::optional<double> Quantity::in(const Unit& other) const {
     if (unit.dimension != other.dimension) return std::nullopt;
-    const bool same = unit.scale == other.scale && unit.zero == other.zero;  // then no digit changes
+    const bool same = unit.scale == other.scale && unit.zero == other.zero;  // no digit changes
     const double converted = same ? number : (number * unit.scale + unit.zero - other.zero) / other.scale;
     if (rounding == 'r') return std::round(converted);
     if (rounding == 'f') return std::floor(converted);

@@ -5,7 +5,7 @@
 
 namespace insonify::framework {
 
-/** A unit as a factor, and for temperatures a zero, of SI units: powers of m, kg, s, K and rad. */
+/** A unit as a factor (and, for temperatures, an offset) to SI units: powers of m, kg, s, K and rad. */
 struct Unit {
     using Dimension = std::array<int, 5>;
     double scale = 1;
@@ -14,20 +14,19 @@ struct Unit {
     friend bool operator==(const Unit&, const Unit&) = default;
 };
 
-/** The unit of a property: "m", "m/s", "deg", "kHz", "degC", "1"...; none for levels (dB) and for what is not
- *  known. */
+/** Returns the unit of a property: "m", "m/s", "deg", "kHz", "degC", "1"...; none for levels (dB) and unknown units. */
 std::optional<Unit> unitOf(std::string_view name);
 
-/** A number with its unit, as Rock's configuration files have it. */
+/** A number with its unit, as in Rock's configuration files. */
 struct Quantity {
     double number = 0;
     Unit unit;
     char rounding = 0;  ///< 'r', 'f', 'c': round, floor, ceil; 0: none.
 
-    /** "20.deg", "5.cm", "3.m.s^-1", "7.5.m.floor": a number, then units (m N deg s g Pa bar, rad K Hz) with prefixes
-     *  (M k d c m mu u n p) and powers. None when it is not of that form. */
+    /** Parses "20.deg", "5.cm", "3.m.s^-1", "7.5.m.floor": a number, then units (m N deg s g Pa bar, rad K Hz) with
+     *  prefixes (M k d c m mu u n p) and powers. Returns none for other forms. */
     static std::optional<Quantity> parse(std::string_view text);
-    /** The number in another unit; none when it is of another dimension. */
+    /** Returns the number in another unit; none when the dimensions differ. */
     std::optional<double> in(const Unit& other) const;
 };
 

@@ -33,9 +33,8 @@ std::string useProcessors(const std::vector<uint32_t>& cpus) {
     for (const uint32_t cpu : cpus) CPU_SET(cpu, &wanted);
     const int error = pthread_setaffinity_np(pthread_self(), sizeof wanted, &wanted);
     if (error == 0) return {};
-    return fmt::format(
-        "does not keep to the CPUs {}: {}", fmt::join(cpus, ", "),
-        error == EINVAL ? "there are none of these, or none that this process may use" : std::strerror(error));
+    return fmt::format("cannot run on only the CPUs {}: {}", fmt::join(cpus, ", "),
+                       error == EINVAL ? "they do not exist, or this process may not use them" : std::strerror(error));
 }
 
 }  // namespace
@@ -49,7 +48,7 @@ std::vector<std::string> applyToThread(const ActivitySettings& settings) {
 }
 
 std::string lockMemory() {
-    // Under a limit the locking of what is there may work, and then allocating fails: so only without one.
+    // Under a limit, locking the present memory may work while later allocations fail. So lock only without a limit.
     rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
     if (setrlimit(RLIMIT_MEMLOCK, &limit) != 0) {
         getrlimit(RLIMIT_MEMLOCK, &limit);

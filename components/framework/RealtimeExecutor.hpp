@@ -9,27 +9,28 @@
 
 namespace insonify::framework {
 
-/** Gives this thread, and those that it will start, the scheduler, priority and processors of the settings.
- *  Returns what could not be had, and why; empty: all of it was. */
+/** Sets the scheduler, priority and processors of this thread and of threads that it starts later. Returns what was
+ *  refused, and why; empty: nothing was. */
 std::vector<std::string> applyToThread(const ActivitySettings& settings);
 
-/** All memory of the process, present and future, stays resident. Empty, or why it cannot: then nothing is locked. */
+/** Keeps all memory of the process, present and future, resident. Returns empty, or the reason why nothing is
+ *  locked. */
 std::string lockMemory();
 void unlockMemory();
 
-/** Has each task work on its own thread and the wall clock, or on that of a ClockSource among them. What the system
- *  does not permit of memory, priorities and processors is a warning of the environment, as is what a Watchdog sees. */
+/** Runs each task on its own thread, by the wall clock or by the clock of a ClockSource among them. Warnings of the
+ *  environment report refused memory locks, priorities and processors, and what a Watchdog reports. */
 class RealtimeExecutor final : public Executor {
 public:
     struct Options {
         bool lock_memory = false;  ///< All memory stays resident.
-        double watchdog = 10;      ///< How long a cycle may take, of a task that says nothing else [s].
+        double watchdog = 10;      ///< Max duration of a cycle, for tasks without their own limit [s].
     };
     RealtimeExecutor(const Graph& graph, Environment& environment, types::Time start, Options options);
 
     void begin() override;
     void release(TaskContext& task) override;
-    /** Until a limit, a task that fails, or `stop`. `report` comes every few milliseconds. */
+    /** Runs until a limit, a failing task, or `stop`. Calls `report` every few milliseconds. */
     void run(const RunLimits& limits, const std::atomic<bool>& stop, const Report& report) override;
     void end() override;
     void pause(bool on) override;

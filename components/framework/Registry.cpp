@@ -46,7 +46,7 @@ types::Diagnostics Registry::loadAll() {
     return wrong;
 }
 
-/** Some have other things than tasks. */
+/** A library may have other contents than tasks. */
 void Registry::enter(const loader::ComponentLibrary& library) {
     if (!entered_.insert(library.file().string()).second) return;
     if (const auto enter = library.entry<void(Registry&)>("insonify_register")) enter(*this);

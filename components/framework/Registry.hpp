@@ -15,8 +15,8 @@ class ComponentLibrary;
 
 namespace insonify::framework {
 
-/** The task types that a deployment may name: of the core, and of component libraries, which are loaded when they are
- * named. */
+/** The task types that a deployment may name: those of the core and of component libraries. A component library is
+ *  loaded when a deployment names one of its types. */
 class Registry {
 public:
     struct Entry {
@@ -25,22 +25,24 @@ public:
         std::function<std::unique_ptr<TaskContext>(const std::string& name)> make;
     };
 
-    /** A type that is already there is replaced. */
+    /** Adds a type, or replaces the type of that name. */
     template <class Task>
     void add(const std::string& type, const std::string& doc) {
         add({type, doc, [](const std::string& name) { return std::make_unique<Task>(name); }});
     }
     void add(Entry entry);
-    /** Null when there is no such type. A type that is not there is looked for in the component library of its
-     * namespace, if there is one. Throws types::ConfigError where that is absent or cannot be loaded. */
+    /** Makes a task; null when there is no such type. An unknown type is searched in the component library of its
+     *  namespace, if the namespace has one. Throws types::ConfigError when that library is missing or cannot be
+     *  loaded. */
     std::unique_ptr<TaskContext> make(const std::string& type, const std::string& name);
     const std::vector<Entry>& list() const { return entries_; }  ///< In order of registration.
 
-    /** Loads a shared object and calls its `extern "C" void insonify_register(insonify::framework::Registry&)`.
-     *  It stays loaded until the process ends. Throws types::ConfigError: not there, not loadable, no such entry. */
+    /** Loads a shared object and calls its `extern "C" void insonify_register(insonify::framework::Registry&)`. It
+     *  stays loaded until the process ends. Throws types::ConfigError when the file is missing, cannot be loaded, or
+     *  lacks that function. */
     void loadLibrary(const std::filesystem::path& file);
-    /** Adds the types of all component libraries that are there. @return what is wrong with those that cannot be loaded
-     */
+    /** Adds the types of all available component libraries. @return diagnostics of the libraries that cannot be
+     *  loaded */
     types::Diagnostics loadAll();
 
 private:

@@ -5,7 +5,7 @@
 
 namespace insonify::framework {
 
-/** Large samples used again once no reader holds them any more, so that a steady stream allocates nothing.
+/** Reuses large samples once no reader holds them, so that a steady stream allocates nothing.
  *
  *      std::shared_ptr<types::Image> image = pool_.take();   // contents are those of an earlier use
  *      ... fill it ...
@@ -25,9 +25,9 @@ public:
         return samples_.emplace_back(std::make_shared<T>());
     }
 
-    /** Makes what readers in step with the writer will need, copies of the first sample filled, so that later ones of
-     *  its size allocate nothing; `prepare` makes room in each that a copy does not have. Does nothing when there are
-     *  as many. */
+    /** Allocates the samples that readers in step with the writer need, as copies of the first filled sample, so that
+     *  later samples of that size allocate nothing. `prepare` reserves capacity that a copy does not have. Does nothing
+     *  when the pool already has that many samples. */
     template <class Prepare>
     void stock(const T& filled, const Prepare& prepare) {
         while (samples_.size() < stocked) prepare(*samples_.emplace_back(std::make_shared<T>(filled)));
@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    static constexpr size_t stocked = 4;  ///< One to fill, one with each of three readers [1].
+    static constexpr size_t stocked = 4;  ///< One to fill, and one for each of three readers [1].
 
     std::vector<std::shared_ptr<T>> samples_;
 };

@@ -7,7 +7,8 @@
 namespace insonify::framework {
 namespace {
 
-/** Whether `later` is `span` or more after `time`, which it is not before; unsigned, as signed it may overflow. */
+/** Returns whether `later` is at least `span` after `time`; it is not before `time`. Unsigned, because a signed
+ *  difference may overflow. */
 bool outlasts(types::Time later, types::Time time, types::Time span) {
     return static_cast<uint64_t>(later.microseconds) - static_cast<uint64_t>(time.microseconds) >=
            static_cast<uint64_t>(span.microseconds);
@@ -42,8 +43,8 @@ std::string AlignedPortBase::notice() const {
     if (counts_.late > 0)
         text = fmt::format("{} of {} samples came too late and were dropped", counts_.late, counts_.received);
     if (counts_.awaited > 0)
-        text +=
-            fmt::format("{}samples of others that went on without it: {}", text.empty() ? "" : "; ", counts_.awaited);
+        text += fmt::format("{}samples of other ports handed over without it: {}", text.empty() ? "" : "; ",
+                            counts_.awaited);
     return text.empty() ? text : port_.name() + ": " + text;
 }
 

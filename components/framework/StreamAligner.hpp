@@ -13,17 +13,17 @@ namespace insonify::framework {
 
 class StreamAligner;
 
-/** Of a sample that has not come yet. */
+/** The time of a sample that has not arrived yet. */
 constexpr types::Time before_all{std::numeric_limits<int64_t>::min()};
 
-/** One of the ports of a StreamAligner, without its type. */
+/** The untyped part of a StreamAligner's port. */
 class AlignedPortBase {
 public:
-    /** Since the aligner was cleared last [samples]. */
+    /** Counts since the aligner was last cleared [samples]. */
     struct Counts {
         uint64_t received = 0;
-        uint64_t late = 0;     ///< Dropped: older than what had been handed over, or than the one before on the port.
-        uint64_t awaited = 0;  ///< Samples of other ports that went on without one of this port, after the timeout.
+        uint64_t late = 0;     ///< Dropped: older than a sample handed over, or than the port's previous one.
+        uint64_t awaited = 0;  ///< Samples of other ports handed over without this port's, after the timeout.
     };
     AlignedPortBase(StreamAligner& aligner, const InputPortBase& port);
     virtual ~AlignedPortBase() = default;
@@ -31,22 +31,23 @@ public:
     AlignedPortBase& operator=(const AlignedPortBase&) = delete;
 
     const Counts& counts() const { return counts_; }
-    /** "pose: 3 of 120 samples came too late and were dropped": what was lost or not waited for; empty: nothing. */
+    /** Returns a notice of dropped samples and timeouts, "pose: 3 of 120 samples came too late and were dropped";
+     *  empty: nothing. */
     std::string notice() const;
 
     // For its aligner only.
     virtual bool empty() const = 0;
     virtual bool full() const = 0;
-    virtual types::Time firstTime() const = 0;  ///< Of the oldest that waits; there must be one.
-    virtual bool fill() = 0;                    ///< Takes what is new while there is room; false: nothing was.
-    virtual void handOver() = 0;                ///< The oldest that waits.
+    virtual types::Time firstTime() const = 0;  ///< Of the oldest waiting sample; there must be one.
+    virtual bool fill() = 0;                    ///< Takes new samples while there is capacity; false: none was new.
+    virtual void handOver() = 0;                ///< Hands over the oldest waiting sample.
     void clear();                               ///< Forgets samples and counts.
-    bool holdsUp(types::Time time) const;       ///< A sample before that time may still come.
+    bool holdsUp(types::Time time) const;       ///< A sample before that time may still arrive.
     void noteAwaited() { ++counts_.awaited; }
 
 protected:
-    virtual void forget() = 0;  ///< The samples that wait.
-    /** Takes note of a sample, and whether it still has a place in the order of time. */
+    virtual void forget() = 0;  ///< Drops the waiting samples.
+    /** Records a sample's time; returns whether it is in the order of time. */
     bool accepts(types::Time time);
 
 private:
@@ -56,8 +57,8 @@ private:
     types::Time last_ = before_all;  ///< Of the newest sample.
 };
 
-/** Hands over what comes in on several ports in the order of the samples' own time, whatever the order of their
- *  arrival, as Rock's stream aligner does.
+/** Hands over the samples of several ports in the order of their stamps, regardless of their order of arrival, as
+ *  Rock's stream aligner does.
  *
  *      framework::StreamAligner aligner_;
  *      framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& sample) { ... }};
@@ -65,17 +66,17 @@ private:
  *      bool startHook() override { return aligner_.clear(1.0), true; }
  *      void updateHook() override { aligner_.update(); }
  *
- *  A sample waits until every other port has one that is as late or later, so that none before it can come. It waits
- *  no longer once some port has a sample `timeout` later, or its own has no more room: a port that is silent holds up
- *  the others for so long and no more, and what it has missed is counted. Samples of one time come in the order in
- *  which their ports were declared. Late samples are dropped and counted. No clock is read: the same samples in the
- *  same order give the same. */
+ *  A sample waits until every other port has a sample that is as late or later, so that no earlier sample can arrive.
+ *  It stops waiting once some port has a sample later by `timeout`, or its own buffer is full. A silent port thus
+ *  delays the others by at most `timeout`; the samples that went on without it are counted. Samples of equal time are
+ *  handed over in the order in which their ports were declared. Late samples are dropped and counted. No clock is read:
+ *  the same samples in the same order give the same result. */
 class StreamAligner {
 public:
     void clear(double timeout);  ///< Forgets samples and counts; the timeout is in [s] of the samples' time.
-    void update();               ///< Takes what is new on the ports and hands over what is due.
-    void flush();                ///< Hands over all that waits: no more will come.
-    /** Of all ports; see AlignedPortBase::notice. */
+    void update();               ///< Takes new samples of the ports and hands over those that are due.
+    void flush();                ///< Hands over all waiting samples, when no more will arrive.
+    /** Returns the notices of all ports; see AlignedPortBase::notice. */
     std::vector<std::string> notices() const;
 
     // For its ports only.
@@ -97,11 +98,11 @@ private:
 template <class T>
 class AlignedPort final : public AlignedPortBase {
 public:
-    /** @param capacity of samples that may wait. */
+    /** @param capacity max number of waiting samples */
     AlignedPort(StreamAligner& aligner, InputPort<T>& port, std::function<void(const T&)> use, size_t capacity = 256)
         : AlignedPortBase(aligner, port), input_(port), use_(std::move(use)), ring_(capacity) {}
 
-    /** The oldest that waits: the one after those that were handed over. Null when there is none. */
+    /** The oldest waiting sample, next to be handed over. Null when there is none. */
     const T* next() const { return count_ > 0 ? &ring_[first_] : nullptr; }
 
 private:

@@ -6,7 +6,7 @@
 namespace insonify::framework {
 namespace {
 
-/** Null for a task outside of one. */
+/** Null for a task outside of a deployment. */
 const Deployment* deploymentOf(const TaskContext& task) {
     return dynamic_cast<const Deployment*>(task.environment().deployment);
 }
@@ -17,7 +17,8 @@ StreamName named(const std::string& path, const DeploymentSpec* spec) {
     return {task, object, known ? known->model() : ""};
 }
 
-/** The description of a property, of a block's field as well; null: the task has none, so that it is a port. */
+/** Returns the description of a property, also of a field in a block; null: the task has no such property, so the name
+ *  is a port. */
 std::optional<PropertyInfo> propertyOf(const TaskContext& task, const std::string& name) {
     for (const PropertiesBase* properties : task.properties())
         for (PropertyInfo& info : properties->list())
@@ -52,7 +53,7 @@ std::vector<PropertyAlias> propertyAliases(const TaskContext& task) {
     if (!deployment) return all;
     const DeploymentSpec& spec = deployment->spec();
     const auto add = [&](const TaskSpec& owner, const std::string& alias, const std::string& target, bool is_switch) {
-        if (alias.find('.') != std::string::npos) return;  // a field of a compound: no property of its own
+        if (alias.find('.') != std::string::npos) return;  // a field of a compound, not a separate property
         const auto [name, property] = splitPort(target);
         const TaskContext* const target_task = deployment->task(name);
         const auto info = target_task ? propertyOf(*target_task, property) : std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// What a port's samples and a task's properties are called outside of their deployment: in logs.
+// Names of ports' samples and tasks' properties outside of their deployment: in logs.
 #include <map>
 #include <string>
 #include <vector>
@@ -8,39 +8,39 @@
 
 namespace insonify::framework {
 
-/** Whose a stream is: "task.object", and what kind of task that is. */
+/** The name of a stream, "task.object", and the kind of its task. */
 struct StreamName {
     std::string task, object;
-    std::string model;  ///< As TaskSpec::model(); empty: it is not known.
+    std::string model;  ///< As TaskSpec::model(); empty: unknown.
     std::string path() const { return object.empty() ? task : task + "." + object; }
 };
 
-/** A task whose output ports stand for those of others: a second base. */
+/** A task whose output ports replace those of other tasks, as a second base. */
 class StandIn {
 public:
     virtual ~StandIn() = default;
 
-    /** The stream that a port was, "task.port". */
+    /** Returns the stream "task.port" that a port replaces. */
     virtual std::string streamOf(const std::string& port) const = 0;
-    /** What is known of the kind of task whose port that was; empty: nothing. */
+    /** Returns the kind of the task whose port is replaced; empty: unknown. */
     virtual std::string modelOf(const std::string& port) const = 0;
 };
 
-/** Of a port that stands for another, that one's name; else the first alias that leads to it, else its own. */
+/** Returns the name of the stream that the port replaces; else the first alias of the port, else its own name. */
 StreamName streamNameOf(const OutputPortBase& port);
 
-/** TaskSpec::model() of each task, by its name, of the deployment that a task belongs to; outside of one, none. */
+/** Returns TaskSpec::model() of each task, by name, in the deployment of a task; empty outside of a deployment. */
 std::map<std::string, std::string> taskModels(const TaskContext& task);
 
-/** Another name of a property, or of the switch of a block. */
+/** An alias of a property, or of the switch of a block. */
 struct PropertyAlias {
     StreamName name;
-    std::string task, property;  ///< Where it leads: "head.left_deg" within a block.
+    std::string task, property;  ///< The alias' target: "head.left_deg" within a block.
     bool is_switch = false;
     bool in_degrees = false;  ///< The property's unit.
 };
 
-/** Those of the deployment that a task belongs to; of a task outside of one, none. */
+/** Returns the aliases in the deployment of a task; none outside of a deployment. */
 std::vector<PropertyAlias> propertyAliases(const TaskContext& task);
 
 }  // namespace insonify::framework

@@ -30,7 +30,7 @@ auto find(const Ports& ports, const std::string& name) -> typename Ports::value_
     return nullptr;
 }
 
-/** The transitions of a task as operations: configure, start, stop, cleanup, recover. A call that is refused throws
+/** The transitions of a task as operations: configure, start, stop, cleanup, recover. A refused call throws
  *  std::runtime_error with the reason. */
 std::vector<std::unique_ptr<OperationBase>> lifeCycleOperations(TaskContext& task) {
     struct Transition {
@@ -247,7 +247,7 @@ Outcome TaskContext::recoverNow() {
 Outcome TaskContext::applyProperties(const std::string& what) {
     const std::string refused = "cannot set " + what + ": ";
     if (transition_) return refuse(refused + name_ + " is in the middle of " + transition_);
-    if (state() < TaskState::Stopped) return {};  // the next configure takes them over
+    if (state() < TaskState::Stopped) return {};  // the next configure applies them
     try {
         if (propertiesHook()) return {};
     } catch (...) {
@@ -286,7 +286,7 @@ void TaskContext::update() {
 }
 
 void TaskContext::failCycle(const char* hook, std::exception_ptr thrown) {
-    // The hook may have asked for transitions itself before it threw: what they undid is not undone again.
+    // The hook may have requested transitions itself before it threw: what they undid is not undone again.
     if (state() == TaskState::Exception || state() == TaskState::FatalError)
         return setLastError(lastError() + "; then " + hook + ": " + textOf(thrown));
     const bool configured = state() >= TaskState::Stopped;

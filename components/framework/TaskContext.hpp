@@ -20,11 +20,11 @@
 
 namespace insonify::framework {
 
-/** The states of Orocos, with its numbers. */
+/** The states of Orocos, with Orocos' numbers. */
 enum class TaskState : int32_t { Init, PreOperational, FatalError, Exception, Stopped, Running, RunTimeError };
 const char* toString(TaskState state);
 
-/** Whether a transition was made, and if not, why. */
+/** Whether a transition was made, and the reason if not. */
 struct Outcome {
     bool done = true;
     std::string reason;  ///< Empty when done.
@@ -33,25 +33,25 @@ struct Outcome {
 
 types::Time wallClock();
 
-/** Where a task finds and leaves files, and what time it is. Shared by all tasks of a deployment. */
+/** Folders, clock and other surroundings of a task, shared by all tasks of a deployment. */
 struct Environment {
     std::filesystem::path input_folder = ".";      ///< Of the deployment file.
     std::filesystem::path output_folder = ".";     ///< `--out`.
-    std::function<types::Time()> now = wallClock;  ///< Simulated or log time instead, where the deployment says so.
+    std::function<types::Time()> now = wallClock;  ///< Or simulated or log time, by the deployment's schedule.
     std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
     bool lockstep = false;
-    bool wall_clock = true;  ///< In realtime: no task has put a clock of its own in its place.
+    bool wall_clock = true;  ///< In realtime: no task has replaced the clock by its own.
     bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
-    /** This instant is not of the shard: see framework::Divisible. */
+    /** This instant is before the shard: see framework::Divisible. */
     bool rehearsing = false;
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
     uint64_t seed = 0;                             ///< Of the run (`--seed`), 0 when not given.
     types::RosNames names;                         ///< Namespace and frame prefix of the deployment.
-    std::function<void(const std::string&)> warn;  ///< Tells the user at once; empty outside of a deployment.
-    /** The records of all tasks, in file order, as each has told its own last: waits for no task. Empty for a task
+    std::function<void(const std::string&)> warn;  ///< Warns the user at once; empty outside of a deployment.
+    /** Returns the last published record of each task, in file order, without waiting for any task. Empty for a task
      *  outside of a deployment. */
     std::function<std::vector<types::TaskRecord>()> records;
-    /** How often tasks have told their records anew: so that nobody asks for them in vain. */
+    /** The number of times that tasks have published their records. Unchanged: records() returns the same as before. */
     std::shared_ptr<std::atomic<uint64_t>> record_changes = std::make_shared<std::atomic<uint64_t>>(0);
     types::DeploymentControl* deployment = nullptr;  ///< Null for a task outside of a deployment.
 };
@@ -69,12 +69,12 @@ class OperationBase;
  *
  *      PreOperational -configure-> Stopped -start-> Running -stop-> Stopped -cleanup-> PreOperational
  *
- *  All hooks run on the task's own thread, whoever asks. configureHook is undone by cleanupHook, startHook by
- *  stopHook, each exactly once; a hook that returns false or throws has not done its work and is not undone. A hook
- *  that throws is caught, what had been done is undone, exceptionHook runs, and the task ends in Exception with the
- *  message (FatalError when the undoing throws as well). `types::ConfigError` from configureHook is kept whole in
- *  `configError()`. Where Orocos differs: a second configure() cleans up first; a throw in stopHook or cleanupHook
- *  can be recovered from; start() runs no updateHook of its own; a transition asked for within another is refused. */
+ *  All hooks run on the task's own thread, for any caller. cleanupHook undoes configureHook and stopHook undoes
+ *  startHook, each exactly once. A hook that returns false or throws has not done its work and is not undone. If a hook
+ *  throws, finished hooks are undone, exceptionHook runs, and the task ends in Exception with the message (FatalError
+ *  when the undoing throws as well). A `types::ConfigError` from configureHook is kept whole in `configError()`.
+ *  Differences from Orocos: a second configure() cleans up first; a throw in stopHook or cleanupHook can be recovered
+ *  from; start() runs no updateHook; a transition requested within another is refused. */
 class TaskContext {
 public:
     using Stages = std::map<std::string, Statistics, std::less<>>;
@@ -94,16 +94,16 @@ public:
     Outcome stop();
     Outcome cleanup();
     Outcome recover();  ///< RunTimeError -> Running; Exception -> PreOperational.
-    /** One cycle: updateHook (errorHook in RunTimeError), again until no triggering port holds a new sample. */
+    /** Runs one cycle: updateHook (errorHook in RunTimeError), repeated until no triggering port holds a new sample. */
     void update();
     bool triggered() const;  ///< Whether a triggering port holds a new sample.
 
-    /** Text of the last throw, error() or refusal; empty if there was none. */
+    /** Text of the last exception, error() or refusal; empty if there was none. */
     std::string lastError() const;
-    /** The diagnostic that configureHook threw, if it was one of the configuration. */
+    /** The types::ConfigError that configureHook threw, or null. */
     const types::ConfigError* configError() const { return config_error_.get(); }
 
-    // What `describe`, the deployment and tests look at. Order is that of declaration.
+    // Accessors for `describe`, the deployment and tests, in the order of declaration.
     const std::vector<InputPortBase*>& inputs() const { return inputs_; }
     const std::vector<OutputPortBase*>& outputs() const { return outputs_; }
     const std::vector<PropertiesBase*>& properties() const { return properties_; }
@@ -111,28 +111,28 @@ public:
     const std::vector<Event*>& events() const { return events_; }
     InputPortBase* input(const std::string& port);  ///< Null when there is none of that name.
     OutputPortBase* output(const std::string& port);
-    /** configure, start, stop, cleanup, recover; `set<Property>` for each property (setRange); those of the task. */
+    /** The operations configure, start, stop, cleanup, recover; `set<Property>` for each property (setRange); the
+     *  task's own. */
     OperationBase* operation(const std::string& name);
 
-    /** A port that exists only because a connection names it, as DynamicPorts.hpp makes them: null refuses. */
+    /** Makes a port that exists only because a connection names it, see DynamicPorts.hpp; null refuses. */
     virtual InputPortBase* makeInput(const std::string& /*port*/, OutputPortBase& /*source*/) { return nullptr; }
     virtual OutputPortBase* makeOutput(const std::string& /*port*/) { return nullptr; }
 
-    /** Diagnostics that can be seen without configuring (files that are not there...); paths as in types::Diagnostic.
-     */
+    /** Reports errors that are visible without configuring (missing files...); paths as in types::Diagnostic. */
     virtual void check(types::Diagnostics& /*diagnostics*/) const {}
-    /** Notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
+    /** Returns notices for the user (a mesh without triangles, dropped vertices). Valid after configure. */
     virtual std::vector<std::string> notices() const { return {}; }
-    /** True once a source has nothing more to say: a lockstep run ends when all sources have. */
+    /** True once a source has no more samples: a lockstep run ends when all sources have finished. */
     virtual bool finished() const { return false; }
-    /** Whether it talks to others than its deployment, over a network or to a device. */
+    /** Whether the task communicates outside its deployment, over a network or with a device. */
     virtual bool reachesOutside() const { return false; }
 
-    /** In realtime a triggered task runs a cycle also when it has run none for so long [s]; 0: it waits for samples.
-     *  Asked for once, when it has started. */
+    /** In realtime, a triggered task also runs a cycle after this time without one [s]; 0: it waits for samples. Called
+     *  once, when the task has started. */
     virtual double wakeAfter() const { return 0; }
 
-    /** Properties, and the plan of a task that is Planned, for any thread; the type is the deployment's to know. */
+    /** Properties, and the plan of a Planned task, for any thread; the deployment adds the type. */
     types::TaskRecord record() const {
         std::lock_guard lock(record_mutex_);
         return record_;
@@ -142,8 +142,8 @@ public:
         std::lock_guard lock(record_mutex_);
         return recorded_plan_;
     }
-    /** Takes what holds now over into record(): on the task's thread, or before there is one. configure() and what
-     *  sets properties do it. */
+    /** Copies the current properties and plan into record(). Called on the task's thread, or before the thread exists.
+     *  configure() and property setters call it. */
     void refreshRecord();
 
     Environment& environment() { return *environment_; }
@@ -151,7 +151,7 @@ public:
     void setEnvironment(std::shared_ptr<Environment> environment) { environment_ = std::move(environment); }
     Activity& activity() { return *activity_; }
     const Activity& activity() const { return *activity_; }
-    const Statistics& cycles() const { return cycles_; }  ///< Times of updateHook, pauses left out [s].
+    const Statistics& cycles() const { return cycles_; }  ///< Durations of updateHook without pauses [s].
     const Stages& stages() const { return stages_; }      ///< Read when stopped.
     Timing& timing() { return timing_; }
     const Timing& timing() const { return timing_; }
@@ -163,10 +163,10 @@ public:
     void enlist(OperationBase* operation) { operations_.push_back(operation); }
     void enlist(Event* event) { events_.push_back(event); }
     void noteTaken() { ++taken_; }
-    /** Lets the task take changed properties over, on its thread. */
+    /** Lets the task apply changed properties, on its thread. */
     Outcome applyProperties(const std::string& what);
     // For its activity only.
-    /** One pass of updateHook or errorHook; true when a triggering port still holds a sample and this pass took one. */
+    /** Runs updateHook or errorHook once; true when a triggering port still holds a sample and this pass took one. */
     bool cycle();
 
 protected:
@@ -177,17 +177,17 @@ protected:
     virtual void stopHook() {}
     virtual void cleanupHook() {}
     virtual void exceptionHook() {}
-    /** A property was set while the task is configured: takes the new values over. False or a throw refuses them, and
-     *  the old ones are back. Tasks that do not override this refuse while running, and need to configure() again. */
+    /** Applies the new values after a property was set on a configured task. If it returns false or throws, the old
+     *  values are restored. The default refuses while running; the task then needs another configure(). */
     virtual bool propertiesHook() { return !isRunning(); }
 
-    /** Running -> RunTimeError: a recoverable error; from here errorHook runs instead of updateHook.
-     *  The default errorHook does nothing; a task that heals itself calls recover() from it. Only while running: a hook
-     *  of another transition keeps the text for its refusal, and throws where it cannot refuse. */
+    /** Running -> RunTimeError: a recoverable error; from here on errorHook runs instead of updateHook. The default
+     *  errorHook does nothing; a task that recovers by itself calls recover() in it. Only while running: in a hook of
+     *  another transition the text is kept for its refusal, or thrown where the hook cannot refuse. */
     void error(const std::string& why);
-    /** Tells the user now, "name: text", and in the run's summary; from any thread. For what recurs, seldom. */
+    /** Warns the user now, "name: text", and in the run's summary; any thread. Repeat a warning rarely. */
     void warn(const std::string& text);
-    /** Time of one named stage of this cycle [s]; names must be string literals met in the first cycle. */
+    /** Records the time of one named stage of this cycle [s]. Names must be string literals used in the first cycle. */
     void recordStage(const char* name, double seconds);
 
     types::Time now() const { return environment_->now(); }

@@ -8,7 +8,7 @@
 
 namespace insonify::framework {
 
-/** Durations in a histogram of 1 % steps from 0.1 us to 1000 s: adding never allocates; quantiles are within 1 %. */
+/** A histogram of durations in 1 % steps from 0.1 us to 1000 s: adding never allocates; quantiles are within 1 %. */
 class Statistics {
 public:
     void add(double seconds);
@@ -16,7 +16,7 @@ public:
     double median() const { return quantile(0.5); }
     double p99() const { return quantile(0.99); }
     double max() const { return max_; }
-    /** Smallest duration that a share `q` of all does not exceed [s]; 0 when there is none. */
+    /** Returns the duration that a share `q` of all durations does not exceed [s]; 0 when there is none. */
     double quantile(double q) const;
 
 private:
@@ -26,21 +26,21 @@ private:
     double max_ = 0;
 };
 
-/** How a task keeps its times. Written on the task's thread and read when it has stopped, but for what is atomic. */
+/** The times of a task. Written on the task's thread and read when the task has stopped, except the atomic members. */
 class Timing {
 public:
     using Clock = std::chrono::steady_clock;
 
-    Statistics jitter;      ///< From the instant at which a cycle of a periodic task was due to its begin [s].
-    Statistics latency;     ///< From a sample's stamp to its being written, of all outputs whose samples have one [s].
-    uint64_t overruns = 0;  ///< Periods that were left out, because cycles before them took too long.
-    uint64_t late = 0;      ///< Samples that were written after the activity's deadline.
-    uint64_t errors = 0;    ///< How often it went from Running to RunTimeError.
+    Statistics jitter;      ///< Delay of a periodic task's cycle after its due instant [s].
+    Statistics latency;     ///< From a sample's stamp to its writing, for outputs whose samples have a stamp [s].
+    uint64_t overruns = 0;  ///< Periods skipped because earlier cycles took too long.
+    uint64_t late = 0;      ///< Samples written after the activity's deadline.
+    uint64_t errors = 0;    ///< Number of changes from Running to RunTimeError.
     std::atomic<uint64_t> hangs{0};  ///< Cycles that the watchdog has reported.
 
     void begin();  ///< A cycle begins.
-    double end();  ///< It has ended; its duration without pauses [s].
-    void pause();  ///< Within a cycle: what follows is waiting, not work.
+    double end();  ///< Ends the cycle; returns its duration without pauses [s].
+    void pause();  ///< Within a cycle: waiting begins.
     void resume() { since_ = ticks(); }
     void noteLatency(double seconds) {
         latency.add(seconds);
@@ -48,7 +48,7 @@ public:
     }
     double lastLatency() const { return last_latency_; }                    ///< Any thread [s].
     double lastCycle() const { return static_cast<double>(last_) * 1e-9; }  ///< Its duration; any thread [s].
-    /** Since when it has been at work without a pause; 0: it is not. Any thread. */
+    /** Start of the current work without a pause; 0: the task is not working. Any thread. */
     std::chrono::nanoseconds workingSince() const { return std::chrono::nanoseconds(since_.load()); }
     static int64_t ticks() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
 
@@ -72,8 +72,8 @@ inline double Timing::end() {
 
 class TaskContext;
 
-/** A sample of that stamp has left the task, by a port or otherwise: in realtime its latency counts, and it is late
- *  after the activity's deadline. On the task's thread. */
+/** Records that a sample of that stamp has left the task, by a port or otherwise. In realtime its latency counts, and
+ *  the sample is late after the activity's deadline. On the task's thread. */
 void noteLatency(TaskContext& task, types::Time stamp);
 
 }  // namespace insonify::framework

@@ -1,5 +1,5 @@
 #pragma once
-// What a task can know of those from which it hears.
+// Properties of the tasks that a task's samples come from.
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace insonify::framework {
 
-/** The value of a property, or within a block at a path such as "head.left_deg"; none: it is not there. */
+/** Returns the value of a property, or of a path such as "head.left_deg" within a block; none: not present. */
 std::optional<types::PropertyValue> valueAt(const types::TaskRecord& task, const std::string& path);
 
-/** The first of these properties that the nearest task has from which a port hears, directly or by others; none: no
- *  such task has one. */
+/** Returns the first of these properties that the nearest task upstream of the port has, directly or through others;
+ *  none: no task has one. */
 std::optional<types::PropertyValue> upstreamValue(const InputPortBase& port, std::initializer_list<const char*> paths);
 
-/** The same for a number. */
+/** As upstreamValue, for a number. */
 std::optional<double> upstreamNumber(const InputPortBase& port, std::initializer_list<const char*> paths);
 
-/** The same for a property `mount`: where in its body the sensor is whose samples these are. */
+/** As upstreamValue, for the property `mount`: the pose on its body of the sensor that made the samples. */
 std::optional<types::Mount> upstreamMount(const InputPortBase& port);
 
 /** The output ports of poses that a port's samples depend on, nearest first. */

@@ -38,7 +38,7 @@ public:
         return std::floating_point<T> ? "double" : std::is_signed_v<T> ? "integer" : "integer >= 0";
     }
     std::string text(const void* value) const override { return fmt::format("{}", this->of(value)); }
-    /** No number is `null`: "nan" would be no JSON. */
+    /** A number cannot be `null`: "nan" would not be JSON. */
     void emit(YAML::Emitter& out, const void* value) const override {
         if (std::isfinite(static_cast<double>(this->of(value))))
             out << text(value);
@@ -95,7 +95,7 @@ public:
     types::PropertyValue logged(const void* value) const override { return flowYaml(*this, value); }
 };
 
-/** Read later, by somebody who knows what it is. */
+/** Read later by code that knows its type. */
 class NodeType final : public TypeOf<YAML::Node, ValueType> {
 public:
     bool read(ConfigReader&, const YAML::Node& node, const std::string&, const types::Field&,
@@ -131,7 +131,7 @@ const ValueType& only() {
 
 void* unconst(const void* value) { return const_cast<void*>(value); }
 
-/** Gives a member of a block the value that it has in a fresh one. */
+/** Sets a member of a block to its default value. */
 void giveDefault(const BlockType& block, const types::Field& field, const ValueType& type, void* member) {
     block.visit(unconst(block.fresh()), [&](const types::Field& other, const ValueType& same, void* value) {
         if (std::string_view(other.name) == field.name && &same == &type) type.assign(member, value);

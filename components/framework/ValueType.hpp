@@ -1,6 +1,6 @@
 #pragma once
-// What properties and arguments are made of, whatever their C++ type: read from YAML, listed, written. Each type is
-// compiled once, behind one interface, and all that is done with it is done by functions that know the interface alone.
+// Types of properties and arguments, independent of C++ types: read from YAML, listed, written. Each type is compiled
+// once behind one interface, and functions that know only that interface do all the work.
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -25,35 +25,35 @@ namespace insonify::framework {
 using types::PropertyInfo;
 class ConfigReader;
 
-/** One C++ type. A `value` is a pointer to one of this type. */
+/** One C++ type. A `value` points to an object of this type. */
 class ValueType {
 public:
-    /** Reads a node, with diagnostics to the reader; false when there was any. */
+    /** Reads a node and reports diagnostics to the reader; false when there was any. */
     virtual bool read(ConfigReader& reader, const YAML::Node& node, const std::string& path, const types::Field& field,
                       void* value) const = 0;
     /** "double", "list of text", "block, optional". */
     virtual std::string name() const = 0;
-    /** As `describe` shows it; empty for blocks and for what is absent. */
+    /** As `describe` shows it; empty for blocks and absent values. */
     virtual std::string text(const void* value) const = 0;
     virtual void emit(YAML::Emitter& out, const void* value) const = 0;
-    /** As a log holds it: numbers, booleans and texts as such, all else in flow YAML. */
+    /** The form in a log: numbers, booleans and texts unchanged, all else in flow YAML. */
     virtual types::PropertyValue logged(const void* value) const = 0;
     virtual void assign(void* to, const void* from) const = 0;
-    /** Whether there is nothing to write: an optional that is absent, a block that has moved. */
+    /** Whether nothing is to be written: an absent optional, a moved block. */
     virtual bool isAbsent(const void* /*value*/) const { return false; }
-    /** A key that is another task's now. */
+    /** Whether the key belongs to another task now. */
     virtual bool isMoved() const { return false; }
-    /** Adds the fields of a block, or of the block in an optional, list or map, whose name is `prefix`. */
+    /** Adds the fields of a block, or of the block in an optional, list or map, with the name `prefix`. */
     virtual void list(const std::string& /*prefix*/, const void* /*value*/, std::vector<PropertyInfo>& /*list*/) const {
     }
-    /** One with its defaults. */
+    /** Returns an object with its defaults. */
     virtual const void* fresh() const = 0;
 
 protected:
     ~ValueType() = default;
 };
 
-/** The type itself. A number, boolean, text, vector of three, enum with EnumNames, block, or an optional, a
+/** The ValueType of T: a number, boolean, text, vector of three, enum with EnumNames, block, or an optional, a
  *  std::vector or a map by name of these. */
 template <class T>
 const ValueType& typeOf();
@@ -83,7 +83,7 @@ public:
     virtual const ValueType& inner() const = 0;
     virtual size_t size(const void* value) const = 0;
     virtual const void* at(const void* value, size_t i) const = 0;
-    virtual void renew(void* value, size_t size) const = 0;  ///< So many elements with their defaults.
+    virtual void renew(void* value, size_t size) const = 0;  ///< Makes `size` elements with their defaults.
     bool read(ConfigReader&, const YAML::Node&, const std::string&, const types::Field&, void*) const override;
     std::string name() const override { return "list of " + inner().name(); }
     std::string text(const void* value) const override;
@@ -121,7 +121,7 @@ protected:
 class BlockType : public ValueType {
 public:
     using Visit = std::function<void(const types::Field&, const ValueType&, void* member)>;
-    /** Visits all fields, in order. Members of a value that was const may be looked at alone. */
+    /** Visits all fields, in order. Members of a const value must not be changed. */
     virtual void visit(void* value, const Visit& each) const = 0;
     virtual void check(const void* value, types::Diagnostics& diagnostics) const = 0;
     bool read(ConfigReader&, const YAML::Node&, const std::string&, const types::Field&, void*) const override;
@@ -155,18 +155,18 @@ private:
     size_t count_;
 };
 
-/** Reads a described struct: what the block does not name keeps its value. An undefined node is an empty block. False
- *  when there was any diagnostic. */
+/** Reads a described struct; fields that the block does not name keep their values. An undefined node is an empty
+ *  block. False when there was any diagnostic. */
 bool readBlock(ConfigReader& reader, const YAML::Node& node, const std::string& path, const BlockType& type,
                void* value);
 
 /** Every field with its default; nested names are dotted. */
 std::vector<PropertyInfo> listFields(const BlockType& type, const void* defaults);
 
-/** The fields that are present, by name, as a log holds them. */
+/** Returns the fields that are present, by name, in the form of a log. */
 std::map<std::string, types::PropertyValue> fieldValues(const BlockType& type, const void* value);
 
-/** A value in flow YAML on one line, which ConfigReader reads back to the same value. */
+/** Returns a value in flow YAML on one line, which ConfigReader reads back to the same value. */
 std::string flowYaml(const ValueType& type, const void* value);
 
 // -- templates --------------------------------------------------------------------------------------------------------
@@ -174,7 +174,7 @@ std::string flowYaml(const ValueType& type, const void* value);
 template <class T>
 concept Number = std::integral<T> || std::floating_point<T>;
 
-/** Types without others in them: one of each, in ValueType.cpp. */
+/** Types without inner types; each is defined in ValueType.cpp. */
 template <class T>
 concept Plain = Number<T> || std::same_as<T, std::string> || std::same_as<T, glm::dvec3> ||
     std::same_as<T, YAML::Node> || std::same_as<T, types::MovedTo>;

@@ -50,7 +50,7 @@ void Watchdog::lookForHang(Watched& watched) const {
     if (since == 0 || since == watched.reported || seconds(since) <= watched.limit.seconds) return;
     watched.reported = since;
     task.timing().hangs.fetch_add(1);
-    report_(fmt::format("{}: hangs: a cycle has not come back for {:.3g} s", task.name(), watched.limit.seconds));
+    report_(fmt::format("{}: hangs: a cycle has run for {:.3g} s", task.name(), watched.limit.seconds));
 }
 
 }  // namespace insonify::framework

@@ -12,8 +12,8 @@
 
 namespace insonify::framework {
 
-/** Looks at tasks from a thread of its own, for as long as it lives: reports a cycle that does not come back, once, and
- *  when it has; and each time that a task goes into RunTimeError, and back. It cannot end a cycle. */
+/** Watches tasks from its own thread while it exists. It reports a hanging cycle once, and its end, and each change of
+ *  a task to RunTimeError and back. It cannot end a cycle. */
 class Watchdog {
 public:
     struct Limit {
@@ -21,7 +21,7 @@ public:
         double
             seconds;  ///< How long a cycle may take, without the pauses that it makes itself, see Activity::sleepUntil.
     };
-    /** Reports, "camera: ...", come on the watchdog's thread. */
+    /** Called with "camera: ..." on the watchdog's thread. */
     using Report = std::function<void(const std::string&)>;
 
     Watchdog(const std::vector<Limit>& limits, Report report);
@@ -32,7 +32,7 @@ public:
 private:
     struct Watched {
         Limit limit;
-        int64_t reported = 0;  ///< When the cycle that hangs has begun; 0: none [ns].
+        int64_t reported = 0;  ///< Start of the hanging cycle that was reported; 0: none [ns].
         bool in_error = false;
     };
     void loop();
@@ -41,7 +41,7 @@ private:
 
     std::vector<Watched> watched_;
     Report report_;
-    double interval_ = 0.05;  ///< Between two looks [s].
+    double interval_ = 0.05;  ///< Between two checks [s].
     std::mutex mutex_;
     std::condition_variable wake_;
     bool ending_ = false;

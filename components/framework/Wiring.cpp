@@ -19,9 +19,9 @@ std::vector<std::string> typesOf(const Registry& registry) {
     return types;
 }
 
-constexpr const char* unknown_key = "is not a key here; ";  // as ConfigReader tells it
+constexpr const char* unknown_key = "is not a key here; ";  // as ConfigReader writes it
 
-/** Whether there is such a property, or was: what has moved elsewhere is told by the task. */
+/** Whether the property exists or has moved; the task itself reports a moved property. */
 bool knows(PropertiesBase& properties, const std::string& key) {
     YAML::Node block(YAML::NodeType::Map);
     block.force_insert(key, YAML::Node());
@@ -40,7 +40,7 @@ std::vector<std::string> topLevel(const PropertiesBase& properties) {
     return names;
 }
 
-/** Each once, in the order of their first. */
+/** Returns each name once, in the order of first appearance. */
 std::vector<std::string> unique(const std::vector<std::string>& names) {
     std::vector<std::string> all;
     for (const std::string& name : names)
@@ -105,14 +105,14 @@ void Wiring::loadLibraries() {
         }
 }
 
-/** Null with a diagnostic where there is no such type. */
+/** Null, with a diagnostic, when there is no such type. */
 std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
     const auto refuse = [&](const std::string& why) {
         report(child(spec.place, "type"), spec.path() + ".type", "is " + spec.type + why);
     };
     try {
         if (auto task = registry_.make(spec.type, spec.name)) return task;
-        registry_.loadAll();  // for names that may be meant
+        registry_.loadAll();  // for suggestions
         refuse("; " + suggestion(spec.type, typesOf(registry_)));
     } catch (const types::ConfigError& error) {
         for (const types::Diagnostic& each : error.diagnostics())
@@ -123,7 +123,7 @@ std::unique_ptr<TaskContext> Wiring::makeTask(const TaskSpec& spec) {
 
 void Wiring::makeTasks() {
     for (const TaskSpec& spec : spec_.tasks) {
-        if (spec.type.empty()) continue;  // told by the reading
+        if (spec.type.empty()) continue;  // reported when the file was read
         auto task = makeTask(spec);
         if (!task) continue;
         task->setEnvironment(environment_);
@@ -168,8 +168,8 @@ std::vector<std::string> Wiring::aliasesOfProperties(const TaskSpec& spec) const
     return names;
 }
 
-/** What of a task's properties it knows. Where it has aliases, what it does not know is told here, since a task knows
- *  nothing of them. */
+/** Returns the part of a task's properties that the task knows. If it has aliases, unknown keys are reported here,
+ *  because the task does not know its aliases. */
 YAML::Node Wiring::withoutUnknown(const TaskContext& task, const TaskSpec& spec, ConfigReader& reader) const {
     const std::vector<std::string> aliases = aliasesOfProperties(spec);
     if (aliases.empty() || task.properties().size() != 1 || !spec.properties.IsDefined() || !spec.properties.IsMap())
@@ -214,7 +214,7 @@ void Wiring::connect() {
     for (const ConnectionSpec& connection : spec_.connections) {
         const std::string text = connection.from + ">" + connection.to;
         if (std::find(made.begin(), made.end(), text) != made.end())
-            report(connection.place, connection.path, "stands here twice: " + text);
+            report(connection.place, connection.path, "is given twice: " + text);
         else
             connectOne(connection);
         made.push_back(text);
@@ -224,7 +224,7 @@ void Wiring::connect() {
 void Wiring::connectOne(const ConnectionSpec& connection) {
     OutputPortBase* from = findOutput(connection);
     if (!from) {
-        findTask(connection, "to", connection.to);  // tells when that one is unknown as well
+        findTask(connection, "to", connection.to);  // reports an unknown task here as well
         return;
     }
     InputPortBase* to = findInput(connection, *from);
@@ -233,8 +233,8 @@ void Wiring::connectOne(const ConnectionSpec& connection) {
         return report(connection.place, connection.path, "connects " + from->owner().name() + " with itself");
     if (!from->content().empty() && !to->content().empty() && from->content() != to->content())
         return report(connection.place, connection.path,
-                      fmt::format("{} gives {}, {} takes {}; the one cannot be the other", from->path(),
-                                  from->content(), to->path(), to->content()));
+                      fmt::format("{} gives {}, {} takes {}; the contents must match", from->path(), from->content(),
+                                  to->path(), to->content()));
     if (!graph_.connect(*from, *to, connection.policy))
         return report(connection.place, connection.path,
                       fmt::format("{} is {}, {} is {}; types must be equal", from->path(), from->typeName(), to->path(),
@@ -306,7 +306,7 @@ void Wiring::checkTasks() {
 }
 
 void Wiring::checkInputs(const TaskContext& task, const TaskSpec& spec) {
-    // A connection that failed has been told; that its port is now without one need not be.
+    // A failed connection has been reported; do not also report that its port is unconnected.
     const auto meant = [&](const InputPortBase& port) {
         const auto& all = spec_.connections;
         return std::any_of(all.begin(), all.end(), [&](const auto& c) { return c.to == port.path(); });
@@ -348,7 +348,7 @@ void Wiring::checkLoops() {
         const auto& specs = spec_.connections;
         const auto spec = std::find_if(specs.begin(), specs.end(), made);
         report(spec->place, spec->path,
-               loop->text() + " closes a loop without a buffer; give one of its connections one");
+               loop->text() + " closes a loop without a buffer; give one of its connections a buffer");
     }
     graph_.arrange();
 }

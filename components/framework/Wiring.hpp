@@ -10,15 +10,14 @@
 
 namespace insonify::framework {
 
-/** Makes the Graph that a DeploymentSpec says: tasks, properties, ports, connections; collects every diagnostic on the
- *  way.
- */
+/** Makes the Graph of a DeploymentSpec (tasks, properties, ports, connections) and collects every diagnostic on the
+ *  way. */
 class Wiring {
 public:
-    /** `environment` is for all tasks. */
+    /** All tasks share `environment`. */
     Wiring(DeploymentSpec& spec, std::shared_ptr<Environment> environment, Registry& registry)
         : spec_(spec), environment_(std::move(environment)), registry_(registry) {}
-    /** Once. Throws types::ConfigError with every diagnostic, those of reading the file first. */
+    /** Makes the graph, once. Throws types::ConfigError with every diagnostic, those of reading the file first. */
     Graph make(uint64_t seed);
 
 private:
@@ -26,29 +25,29 @@ private:
     void makeTasks();
     std::unique_ptr<TaskContext> makeTask(const TaskSpec& spec);
     void loadProperties(uint64_t seed);
-    /** Aliases and switches of a task's properties; those that lead to ports. */
+    /** Returns the aliases and switches of a task that lead to properties, or to ports. */
     std::vector<std::string> aliasesOfProperties(const TaskSpec& spec) const;
     std::vector<std::string> aliasesOfPorts(const TaskSpec& spec, bool outputs) const;
     YAML::Node withoutUnknown(const TaskContext& task, const TaskSpec& spec, ConfigReader& reader) const;
-    /** Sets the `seed` of a task that has one: from `seed`, else from the deployment's unless one is written. A seed
-     *  given by --set stays. */
+    /** Sets the `seed` of a task that has this property: from `seed`, else from the deployment's unless a seed is
+     *  written. A seed given by --set stays. */
     void seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t seed);
     void connect();
     void connectOne(const ConnectionSpec& connection);
     OutputPortBase* findOutput(const ConnectionSpec& connection);
     InputPortBase* findInput(const ConnectionSpec& connection, OutputPortBase& source);
     TaskContext* findTask(const ConnectionSpec& connection, const char* key, const std::string& port);
-    /** Its properties are not to be relied on: ports made on demand and checks would only repeat their diagnostics. */
+    /** Whether the task's properties are unreliable: dynamic ports and checks would only repeat their diagnostics. */
     bool isUnreliable(const TaskContext& task) const;
     void checkTasks();
     void checkInputs(const TaskContext& task, const TaskSpec& spec);
     void checkActivity(TaskContext& task, const TaskSpec& spec);
-    /** Whether something runs it, or would if its connections were right. */
+    /** Whether something runs the task, or would if its connections were correct. */
     bool hasCycles(const TaskContext& task, const TaskSpec& spec) const;
     void checkLoops();
     types::Diagnostic diagnostic(const YAML::Node& place, const std::string& path, const std::string& message) const;
     void report(const YAML::Node& place, const std::string& path, const std::string& message);
-    /** A diagnostic that another one may well have brought about: told after all those. */
+    /** Reports a diagnostic that may follow from another one; it is listed after all primary diagnostics. */
     void consequence(const YAML::Node& place, const std::string& path, const std::string& message);
 
     DeploymentSpec& spec_;
@@ -59,8 +58,8 @@ private:
     std::vector<const TaskContext*> unreliable_;
 };
 
-/** The seed of a task, from that of the deployment or of `run --seed`: stable over runs, machines and versions; below
- *  2^53. */
+/** Returns the seed of a task, from that of the deployment or of `run --seed`: stable over runs, machines and versions;
+ *  below 2^53. */
 uint64_t seedOf(uint64_t seed, const std::string& task);
 
 }  // namespace insonify::framework

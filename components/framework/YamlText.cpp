@@ -57,7 +57,8 @@ bool isIndentedByTab(const std::string& line) {
     return !isBlank(line) && tab != std::string::npos && tab < line.find_first_not_of(" \t");
 }
 
-/** Where lines begin that are above this one and open still: the indents that it may have, smallest first. */
+/** Returns the indents that a line may have, smallest first: the starts of the lines above whose blocks are still
+ *  open. */
 std::vector<size_t> openIndents(const std::vector<std::string>& lines, size_t line) {
     std::vector<size_t> indents;
     for (size_t i = line; i-- > 0;)
@@ -66,14 +67,14 @@ std::vector<size_t> openIndents(const std::vector<std::string>& lines, size_t li
     return indents;
 }
 
-/** Whether the line above this one ends as a key does that has a block below it. */
+/** Whether the line above ends like a key with a block below it. */
 bool opensBlock(const std::vector<std::string>& lines, size_t line) {
     while (line-- > 0)
         if (!isBlank(lines[line])) return lines[line].find_last_not_of(" \t\r") == lines[line].rfind(':');
     return false;
 }
 
-/** What is wrong with the indent of a line, of which YAML's own words tell nothing; empty when nothing is. */
+/** Returns what is wrong with a line's indent, which YAML's own message does not say; empty: nothing. */
 std::string indentDiagnostic(const std::vector<std::string>& lines, size_t line) {
     if (line >= lines.size() || isBlank(lines[line])) return "";
     if (isIndentedByTab(lines[line])) return "is indented with a tab; indent with spaces";
@@ -83,10 +84,10 @@ std::string indentDiagnostic(const std::vector<std::string>& lines, size_t line)
     if (indent > open.back() && opensBlock(lines, line)) return "";
     std::string may_be;
     for (const size_t each : open) may_be += (may_be.empty() ? "" : " or ") + std::to_string(each);
-    return "is indented by " + std::to_string(indent) + " spaces; as the lines above are, it may be by " + may_be;
+    return "is indented by " + std::to_string(indent) + " spaces; after the lines above, it may be by " + may_be;
 }
 
-/** YAML's words for what is wrong, in ours where they tell little. */
+/** Returns yaml-cpp's message, reworded where it says little. */
 std::string yamlDiagnostic(const std::string& text, const YAML::Exception& error) {
     if (error.msg.find("map flow") != std::string::npos) return "is not YAML: a { has no } to close it";
     if (error.msg.find("sequence flow") != std::string::npos) return "is not YAML: a [ has no ] to close it";
@@ -94,7 +95,7 @@ std::string yamlDiagnostic(const std::string& text, const YAML::Exception& error
         error.mark.line < 0 ? "" : indentDiagnostic(linesOf(text), static_cast<size_t>(error.mark.line));
     if (!indent.empty()) return indent;
     if (error.msg == "illegal map value")
-        return "is not YAML: has a colon where there can be no key; a text with \": \" in it is put in quotes";
+        return "is not YAML: has a colon where no key can be; put a text with \": \" in quotes";
     return "is not YAML: " + error.msg;
 }
 
@@ -120,8 +121,8 @@ private:
     int last_ = -1;
 };
 
-/** Throws YAML::Exception where yaml-cpp would find documents without end: at what cannot begin a value, such as a
- *  comma, it makes an empty one and stays where it is. */
+/** Throws YAML::Exception where yaml-cpp would find endless documents: at a character that cannot begin a value, such
+ *  as a comma, it makes an empty document and does not advance. */
 void checkDocuments(const std::string& text) {
     std::istringstream stream(text);
     YAML::Parser parser(stream);

@@ -7,16 +7,18 @@
 
 namespace insonify::framework {
 
-/** The bytes of a file; types::ConfigError when it cannot be read. `what` it must be: "a deployment file". */
+/** Returns the bytes of a file. Throws types::ConfigError when it cannot be read; `what` names the expected kind: "a
+ *  deployment file". */
 std::string readFile(const std::filesystem::path& file, const std::string& what);
 
-/** Whether it is UTF-8 without a NUL. */
+/** Whether the bytes are UTF-8 without a NUL. */
 bool isText(std::string_view bytes);
 
-/** The documents of a text in YAML; types::ConfigError with the place in `file` when it is not. */
+/** Returns the YAML documents of a text. Throws types::ConfigError with the place in `file` when the text is not
+ *  YAML. */
 std::vector<YAML::Node> parseYaml(const std::string& text, const std::string& file);
-/** One value that stands by itself, as on a command line; types::ConfigError without a place when it is none, or
- *  several. Empty text is null. */
+/** Returns one separate value, as on a command line. Empty text is null. Throws types::ConfigError without a place when
+ *  there is no single value. */
 YAML::Node parseValue(const std::string& text);
 
 }  // namespace insonify::framework

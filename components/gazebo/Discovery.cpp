@@ -74,17 +74,17 @@ std::string Heard::text() const {
         if (const auto name = TopicName::of(each))
             names.push_back(fmt::format("{} in partition {}", name->topic, name->partition));
     if (!names.empty())
-        texts.push_back(fmt::format("heard are {}", fmt::join(names, ", ")));
+        texts.push_back(fmt::format("available are {}", fmt::join(names, ", ")));
     else if (is_anybody_there_)
-        texts.push_back(fmt::format("nobody offers any that ends in {}", ending_));
+        texts.push_back(fmt::format("no name that ends in {} is offered", ending_));
     else if (other_versions_.empty())
-        texts.push_back("no program of Gazebo's is heard: is Gazebo running, on this machine or in its network?");
+        texts.push_back("no program of Gazebo is found: is Gazebo running, on this machine or in its network?");
     for (const uint32_t version : other_versions_)
         texts.push_back(version == statistics_version
-                            ? "programs with GZ_TRANSPORT_TOPIC_STATISTICS are there, which others do not hear: unset "
-                              "it for Gazebo"
-                            : fmt::format("programs that speak version {} of Gazebo's discovery are there; version {} "
-                                          "is understood",
+                            ? "programs with GZ_TRANSPORT_TOPIC_STATISTICS are running, which other programs ignore: "
+                              "unset it for Gazebo"
+                            : fmt::format("programs with version {} of Gazebo's discovery are running; version {} is "
+                                          "supported",
                                           version, discovery_version));
     return fmt::format("{}", fmt::join(texts, "; "));
 }
@@ -130,7 +130,7 @@ std::string connectionDatagram(const std::string& process, const std::string& no
     pub.set_process_uuid(process);
     pub.set_node_uuid(node);
     pub.set_scope(wire::Discovery::Publisher::ALL);
-    pub.mutable_msg_pub()->set_ctrl(publication.process);  // to whom it is said
+    pub.mutable_msg_pub()->set_ctrl(publication.process);  // the recipient
     pub.mutable_msg_pub()->set_msg_type(publication.type);
     return framed(message);
 }

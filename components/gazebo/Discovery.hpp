@@ -7,11 +7,11 @@
 
 namespace insonify::gazebo {
 
-// Datagrams by which programs of Gazebo's transport find each other: two bytes of length, least first, and a message.
-// Version 10 of this protocol is spoken by ignition-transport 8 to 11 and gz-transport 12 to 15.
+// Datagrams by which programs of Gazebo's transport find each other: two bytes of length, little endian, and a message.
+// ignition-transport 8 to 11 and gz-transport 12 to 15 use version 10 of this protocol.
 
 inline constexpr uint32_t discovery_version = 10;
-/** Programs with GZ_TRANSPORT_TOPIC_STATISTICS count lost messages and speak this version. Others ignore them. */
+/** Version of programs with GZ_TRANSPORT_TOPIC_STATISTICS, which count lost messages. Other programs ignore them. */
 inline constexpr uint32_t statistics_version = 110;
 
 /** A topic or a service that a program offers. */
@@ -25,43 +25,44 @@ struct Publication {
     bool is_for_host = false;        ///< Only for programs on the same machine.
 };
 
-/** What a datagram says. */
+/** The content of a datagram. */
 struct Announcement {
     enum class Kind { Offer, Withdrawal, Alive, Goodbye };
     Kind kind = Kind::Alive;
     std::string process;      ///< UUID of the sender.
-    Publication publication;  ///< What is offered or withdrawn.
+    Publication publication;  ///< The publication that is offered or withdrawn.
 };
 
-/** A program has gone when no datagram of it has come for this time [s]. It sends one each second. */
+/** A program counts as gone after this time without a datagram [s]. Programs send a datagram each second. */
 inline constexpr double silence_s = 3;
 
-/** The topics and services that are there, for messages to a user whose own is not. */
+/** The available topics and services, to list when the topic or service of a user is missing. */
 class Heard {
 public:
-    /** Keeps the names of topics that end like this: "/pose/info". */
+    /** Keeps the names of topics with this ending, such as "/pose/info". */
     explicit Heard(std::string ending) : ending_(std::move(ending)) {}
     void add(const Publication& publication);
     void addVersion(uint32_t version);
-    /** "heard are /world/sea/pose/info in partition auv:me", or that there is nothing. */
+    /** Returns a text such as "available are /world/sea/pose/info in partition auv:me", or that nothing is
+     *  available. */
     std::string text() const;
 
 private:
     std::string ending_;
-    std::set<std::string> names_;  ///< Qualified.
+    std::set<std::string> names_;  ///< Qualified names.
     std::set<uint32_t> other_versions_;
     bool is_anybody_there_ = false;
 };
 
-/** Reads a datagram. None: it is damaged, of `own_process`, of no use to a listener, or of another version, which
- *  `heard` keeps. */
+/** Reads a datagram. Returns none if the datagram is damaged, of `own_process`, without use for a receiver, or of
+ *  another version. `heard` keeps other versions. */
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard);
 
-/** Asks who offers a topic or a service. */
+/** Returns a datagram that asks for publishers of a topic or a service. */
 std::string askDatagram(const std::string& process, const std::string& topic);
 std::string aliveDatagram(const std::string& process);
 std::string goodbyeDatagram(const std::string& process);
-/** Informs the publisher of a topic that `node` of `process` takes its messages, or no longer does. */
+/** Returns a datagram that informs the publisher of a topic that `node` of `process` begins, or ends, to receive it. */
 std::string connectionDatagram(const std::string& process, const std::string& node, const Publication& publication,
                                bool begins);
 

@@ -1,5 +1,5 @@
-// The component library gazebo: what a deployment loads that names a type of this namespace, or a world of Gazebo's as
-// its scene.
+// The component library gazebo, which is loaded by deployments that name a type of this namespace, or a world of Gazebo
+// as their scene.
 #include "components/gazebo/PoseTask.hpp"
 #include "components/gazebo/World.hpp"
 #include "components/loader/Interface.hpp"

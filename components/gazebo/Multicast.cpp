@@ -25,7 +25,7 @@ sockaddr_in placeOf(uint32_t address, uint16_t port) {
     return place;
 }
 
-/** IPv4 addresses of this machine, of networks that are up. */
+/** Returns the IPv4 addresses of this machine in networks that are up. */
 std::vector<uint32_t> ownAddresses() {
     std::vector<uint32_t> addresses;
     ifaddrs* first = nullptr;

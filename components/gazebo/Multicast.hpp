@@ -8,35 +8,36 @@
 
 namespace insonify::gazebo {
 
-/** The datagrams of a multicast group, by all networks of this machine, its own included. Not for several threads. */
+/** Sends and receives datagrams of a multicast group on all networks of this machine, including loopback. Not
+ *  thread-safe. */
 class Multicast {
 public:
-    /** Throws types::ConfigError where no network takes part. */
+    /** Throws types::ConfigError when no network supports multicast. */
     Multicast(const TransportOptions& options, uint16_t port);
     ~Multicast();
     Multicast(const Multicast&) = delete;
     Multicast& operator=(const Multicast&) = delete;
 
-    /** To wait on until it can be read. */
+    /** Returns a descriptor for poll(); readable when a datagram has arrived. */
     int descriptor() const { return receiver_; }
-    /** By each network; one that is down at the moment is passed over. */
+    /** Sends on each network; ignores networks that are down. */
     void send(const std::string& datagram) const;
 
     struct Datagram {
         std::string bytes;
         bool is_from_here = false;  ///< From this machine.
     };
-    /** Returns the next datagram that has come; none where all are read. Does not wait. */
+    /** Returns the next datagram that has arrived; none when all are read. Does not wait. */
     std::optional<Datagram> receive() const;
 
 private:
     void close();
 
-    uint32_t group_ = 0;  ///< Address, in the order of networks.
+    uint32_t group_ = 0;  ///< Address, in network byte order.
     uint16_t port_ = 0;
     int receiver_ = -1;
     std::vector<int> senders_;         ///< One for each network.
-    std::vector<uint32_t> addresses_;  ///< This machine's, in the order of networks.
+    std::vector<uint32_t> addresses_;  ///< Addresses of this machine, in network byte order.
 };
 
 /** Returns this machine's address in the network of "tcp://ADDRESS:PORT". */

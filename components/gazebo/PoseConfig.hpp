@@ -9,7 +9,7 @@
 
 namespace insonify::gazebo {
 
-/** One body's place as one port's poses. */
+/** The source of the poses of one output port. */
 struct BodyConfig {
     std::string port = "pose";
     std::string entity;
@@ -18,7 +18,7 @@ struct BodyConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"port", "", "output port that connections lead from"}, self.port);
+        visit(Field{"port", "", "output port of the poses"}, self.port);
         visit(Field{"entity", "", "the model of this name, of the world's poses; empty: odometry is given"},
               self.entity);
         visit(Field{"odometry", "", "topic of the body's Odometry, /model/rov/odometry; empty: entity is given"},
@@ -33,17 +33,17 @@ struct PoseConfig {
     types::WorldFrame world_frame = types::WorldFrame::AsIs;
     std::string partition;
 
-    PoseConfig();  // not in line: g++ 12 takes its texts for uninitialized
+    PoseConfig();  // not inline: g++ 12 would warn that its strings are uninitialized
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"bodies", "", "what is read"}, self.bodies);
+        visit(Field{"bodies", "", "bodies whose poses are read"}, self.bodies);
         visit(Field{"world", "", "name of Gazebo's world, whose poses are on /world/NAME/pose/info"}, self.world);
         visit(Field{"pose_topic", "", "another topic of poses; empty: that of the world"}, self.pose_topic);
         visit(Field{"world_frame", "",
-                    "axes of Gazebo's world: as_is, those of the scene, as where both read one SDF file; enu or ned, "
-                    "where x of the scene is north"},
+                    "axes of Gazebo's world: as_is, those of the scene, as when both read the same SDF file; enu or "
+                    "ned, if x of the scene is north"},
               self.world_frame);
         visit(Field{"partition", "", "of Gazebo's transport; empty: GZ_PARTITION, or IGN_PARTITION"}, self.partition);
     }

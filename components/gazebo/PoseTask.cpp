@@ -7,9 +7,9 @@
 namespace insonify::gazebo {
 namespace {
 
-constexpr double patience = 5;  ///< Before it is said that nobody offers a topic [s].
+constexpr double patience = 5;  ///< Time until the warning that nobody offers a topic [s].
 
-/** "crate, lid and 3 more". */
+/** Returns a text such as "crate, lid and 3 more". */
 std::string listOf(const std::vector<std::string>& names) {
     constexpr size_t most = 5;
     const size_t shown = std::min(names.size(), most);
@@ -32,18 +32,18 @@ void PoseConfig::check(types::Diagnostics& diagnostics) const {
         const std::string path = "bodies[" + std::to_string(i) + "]";
         has_entity |= !bodies[i].entity.empty();
         if (bodies[i].entity.empty() == bodies[i].odometry.empty())
-            diagnostics.push_back({path, "must have an entity or an odometry, one of both"});
+            diagnostics.push_back({path, "must have either an entity or an odometry"});
         if (!ports.insert(bodies[i].port).second)
             diagnostics.push_back({path + ".port", "is " + bodies[i].port + " a second time"});
     }
     if (has_entity && world.empty() == pose_topic.empty())
-        diagnostics.push_back({"world", "must be given for the poses of entities, or pose_topic, one of both"});
+        diagnostics.push_back({"world", "must be given for the poses of entities, or pose_topic, but not both"});
 }
 
 std::vector<std::string> PoseTask::notices() const {
     std::vector<std::string> all = drops_.summary();
     if (const uint64_t lost = inbox_ ? inbox_->lost() : 0; lost > 0)
-        all.push_back(std::to_string(lost) + " messages lost, for newer ones");
+        all.push_back(std::to_string(lost) + " messages lost, replaced by newer messages");
     return all;
 }
 
@@ -61,7 +61,7 @@ bool PoseTask::configureHook() {
 }
 
 bool PoseTask::startHook() {
-    inbox_->take();  // what came before the start
+    inbox_->take();  // drops messages from before the start
     clocks_.assign(subscriptions_->topics().size(), {});
     started_ = now();
     is_silence_reported_ = false;
@@ -85,11 +85,10 @@ void PoseTask::warnOfSilence() {
 
 void PoseTask::report(const WorldWatch::Change& change) {
     if (!change.came.empty())
-        warn("world " + config->world + " has more by now than the scene, which does not show it: " +
-             listOf(change.came) + "; start again to take the world as it is");
+        warn("world " + config->world + " has entities that the scene does not have: " + listOf(change.came) +
+             "; restart to take the world as it is");
     if (!change.went.empty())
-        warn("world " + config->world +
-             " has less by now than the scene, which still shows it: " + listOf(change.went));
+        warn("world " + config->world + " has lost entities that the scene still has: " + listOf(change.went));
 }
 
 void PoseTask::take(Arrived& message) {
@@ -102,7 +101,7 @@ void PoseTask::take(Arrived& message) {
         if (reading.order == Order::Repeated) return;
         if (reading.order == Order::Late)
             return drops_.add(subscriptions_->topics()[message.topic] +
-                              ": the stamp lies before that of the message before");
+                              ": the stamp is before that of the previous message");
         time = reading.time;
     }
     for (Placed& placed : message.bodies) write(placed, time);
@@ -127,7 +126,7 @@ void PoseTask::cleanupHook() {
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<PoseTask>("gazebo::PoseTask", "reads where bodies are in a world of Gazebo's");
+    registry.add<PoseTask>("gazebo::PoseTask", "reads the poses of bodies in a Gazebo world");
 }
 
 }  // namespace insonify::gazebo

@@ -12,21 +12,22 @@
 
 namespace insonify::gazebo {
 
-/** Reads where bodies are in a world of Gazebo's; for `schedule: realtime`.
+/** Reads the poses of bodies in a Gazebo world; for `schedule: realtime`.
  *
  *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every message that is
- *  newer than the one before is a pose, stamped by the simulation's time carried over to ours. A message wakes the
- * task; with a period it takes what has come by then. While the simulation stands still there is no pose; one that is
- * reset begins anew. What comes into the world later, or goes from it, is a warning: the scene is as it was.
+ *  newer than the previous message gives a pose, stamped by the time of the simulation converted to our clock. A
+ *  message wakes the task; with a period the task takes the messages that have arrived. A paused simulation gives no
+ *  poses; after a reset, poses begin anew. Entities that appear in the world later, or disappear, are a warning: the
+ *  scene remains as it was.
  *
- *  What is dropped is counted: a warning at the first and then every ten seconds at most, a notice with the sum at
- *  the end. Refused in lockstep, whose time does not wait for messages. */
+ *  Dropped messages are counted. A warning reports the first, then at most one warning every ten seconds; a notice at
+ *  the end reports the sum. Lockstep, whose time does not wait for messages, is an error. */
 class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies> {
 public:
     using ListenerTask::ListenerTask;
 
     std::vector<std::string> notices() const override;
-    /** For what came before it ran. */
+    /** Wakes the task for messages that arrived before it ran [s]. */
     double wakeAfter() const override { return 0.5; }
 
 private:
@@ -36,20 +37,20 @@ private:
     void cleanupHook() override;
 
     void take(Arrived& message);
-    /** Warns once where nobody has offered a topic for a while. */
+    /** Warns once when nobody has offered a topic for a while. */
     void warnOfSilence();
     void report(const WorldWatch::Change& change);
     void write(Placed& placed, types::Time time);
 
     std::unique_ptr<Inbox> inbox_;
-    std::unique_ptr<Subscriptions> subscriptions_;  ///< Puts into the inbox, so it goes first.
+    std::unique_ptr<Subscriptions> subscriptions_;  ///< Fills the inbox, so it must be destroyed first.
     std::vector<types::SenderClock> clocks_;        ///< By topic.
     types::ThrottledWarning drops_{"message", "dropped"};
     types::Time started_;
     bool is_silence_reported_ = false;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::gazebo

@@ -13,7 +13,7 @@ types::Pose poseOf(const wire::Pose& message, const types::Axes& axes) {
     const wire::Quaternion& q = message.orientation();
     types::Pose pose;
     pose.position = axes.rockFromWorld(vectorOf(message.position()));
-    // A message leaves out what is not turned at all.
+    // A message omits the identity orientation.
     const glm::dquat turned =
         message.has_orientation() ? glm::dquat(q.w(), q.x(), q.y(), q.z()) : glm::dquat(1, 0, 0, 0);
     pose.orientation = axes.rockFromOrientation(turned);

@@ -19,9 +19,9 @@ namespace {
 using ReplyClock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::milliseconds;
 constexpr int64_t max_reply = int64_t{1} << 30;  // [bytes]
-constexpr Milliseconds ask_period{300};          // of asking who offers the service
+constexpr Milliseconds ask_period{300};          // between requests for publishers of the service
 
-/** "/scene/info" of "/world/sea/scene/info". */
+/** Returns the last two parts of a name, such as "/scene/info". */
 std::string endingOfService(const std::string& name) {
     const size_t last = name.rfind('/');
     return last == std::string::npos || last == 0 ? name : name.substr(name.rfind('/', last - 1));
@@ -53,7 +53,7 @@ public:
         if (!found)
             return {"", other_types_.empty() ? fmt::format("is not offered in partition {} within {:g} s (timeout); {}",
                                                            options_.partition, timeout_.count(), heard_.text())
-                                             : fmt::format("takes {}; {} is asked for, and {}", other_types_,
+                                             : fmt::format("takes {}, not {} and {}", other_types_,
                                                            service_.request_type, service_.reply_type)};
         zmq::context_t context;
         zmq::socket_t replies(context, zmq::socket_type::dealer), requests(context, zmq::socket_type::dealer);
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    /** None: nobody offers it until the end. */
+    /** Returns the publication of the service; none when nobody offers it within the timeout. */
     std::optional<Publication> find() {
         for (auto next = ReplyClock::now(); ReplyClock::now() < end_;) {
             if (ReplyClock::now() >= next) {
@@ -100,7 +100,7 @@ private:
         if (offer.is_for_host && !datagram.is_from_here) return false;
         if (messageName(offer.type) == service_.request_type && messageName(offer.reply_type) == service_.reply_type)
             return true;
-        other_types_ = offer.type + " and answers " + offer.reply_type;
+        other_types_ = offer.type + " and returns " + offer.reply_type;
         return false;
     }
 
@@ -109,9 +109,9 @@ private:
             waitFor({{replies.handle(), 0, ZMQ_POLLIN, 0}}, end_);
             std::vector<zmq::message_t> frames;
             if (!zmq::recv_multipart(replies, std::back_inserter(frames), zmq::recv_flags::dontwait)) continue;
-            // service, node, mark of the request, message, whether it is a success
+            // service, node, mark of the request, message, success
             if (frames.size() < 5 || frames[2].to_string_view() != mark) continue;
-            if (frames[4].to_string_view() != "1") return {"", "answers that it has failed"};
+            if (frames[4].to_string_view() != "1") return {"", "reports a failure"};
             return {frames[3].to_string(), ""};
         }
         return {"",
@@ -128,7 +128,7 @@ private:
     const std::string process_ = makeUuid(), node_ = makeUuid();
     Multicast multicast_;
     Heard heard_;
-    std::string other_types_;  ///< Types of a service with that name.
+    std::string other_types_;  ///< Types of a service with this name but other types.
 };
 
 }  // namespace

@@ -12,14 +12,14 @@ struct Service {
     std::string request_type, reply_type;
 };
 
-/** What a service answers. */
+/** The reply of a service. */
 struct Reply {
     std::string message;  ///< Bytes of its type.
     std::string failure;  ///< Why there is no message, as the rest of a sentence after the service's name.
 };
 
-/** Finds a service and asks it once, with a message of these bytes; waits until `timeout` has passed at most. Throws
- *  types::ConfigError: no network takes part, or the transport does not take the name. */
+/** Finds a service and calls it once with a message of these bytes; waits at most `timeout`. Throws types::ConfigError
+ *  when no network supports multicast, or the name is invalid for the transport. */
 Reply request(const TransportOptions& options, const Service& service, const std::string& message,
               std::chrono::duration<double> timeout);
 

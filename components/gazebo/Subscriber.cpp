@@ -22,10 +22,10 @@ namespace {
 
 using WorkerClock = std::chrono::steady_clock;
 constexpr int64_t max_message = int64_t{256} << 20;  // [bytes]
-constexpr int max_burst = 200;                       ///< Messages that are read before discovery has its turn.
-constexpr std::chrono::milliseconds period{1000};    ///< Between two heartbeats, as all programs have it.
+constexpr int max_burst = 200;                       ///< Max messages that are read before datagrams of discovery.
+constexpr std::chrono::milliseconds period{1000};    ///< Between two heartbeats, the same for all programs.
 
-/** The last two parts of a topic: "/pose/info". */
+/** Returns the last two parts of a topic, such as "/pose/info". */
 std::string endingOf(const std::string& topic) {
     const size_t last = topic.rfind('/');
     const size_t before = last == std::string::npos || last == 0 ? last : topic.rfind('/', last - 1);
@@ -93,7 +93,7 @@ private:
         multicast_.send(goodbyeDatagram(process_));
     }
 
-    /** That we are there, and what we look for. Publishers that have gone are let go. */
+    /** Sends a heartbeat and the topics without a publisher. Forgets publishers that are silent. */
     void announce() {
         multicast_.send(aliveDatagram(process_));
         for (size_t i = 0; i < names_.size(); ++i)
@@ -111,7 +111,7 @@ private:
             if (!zmq::recv_multipart(socket_, std::back_inserter(frames), zmq::recv_flags::dontwait)) return;
             if (frames.size() < 4) continue;  // topic, sender's address, message, type
             const auto name = std::ranges::find(names_, frames[0].to_string_view());
-            if (name == names_.end()) continue;  // of a longer name
+            if (name == names_.end()) continue;  // a topic that only begins with the name
             const Topic& topic = topics_[static_cast<size_t>(name - names_.begin())];
             topic.use(messageName(frames[3].to_string()), frames[2].to_string_view());
         }
@@ -139,8 +139,8 @@ private:
         }
     }
 
-    /** Sent anew with each offer: a publisher sends messages only to programs that have asked, and a datagram may be
-     *  lost. */
+    /** Requests the messages of a publication, or ends the request. Repeated with each offer, because a datagram may be
+     *  lost and a publisher sends only to programs that have asked. */
     void connect(const Publication& publication, bool begins) const {
         multicast_.send(connectionDatagram(process_, node_, publication, begins));
     }
@@ -151,7 +151,7 @@ private:
             try {
                 if (!isConnected(publication.address)) socket_.connect(publication.address);
             } catch (const zmq::error_t&) {
-                return;  // no address
+                return;  // invalid address
             }
             publications_[{publication.address, publication.topic}] = publication;
             last_heard_[publication.process] = WorkerClock::now();
@@ -164,7 +164,7 @@ private:
         return std::ranges::any_of(publications_, [&](const auto& each) { return each.first.address == address; });
     }
 
-    /** An empty topic is all of them. */
+    /** Removes the publication of a topic; an empty topic means all topics of the process. */
     void forget(const std::string& process, const std::string& topic) {
         for (auto each = publications_.begin(); each != publications_.end();) {
             const auto [key, publication] = *each;
@@ -196,9 +196,9 @@ private:
     Multicast multicast_;
     zmq::context_t context_;
     zmq::socket_t socket_{context_, zmq::socket_type::sub};
-    std::map<Key, Publication> publications_;                    ///< That are received.
-    std::map<std::string, WorkerClock::time_point> last_heard_;  ///< By process, of those publications.
-    const int stop_;                                             ///< Readable: the thread ends.
+    std::map<Key, Publication> publications_;                    ///< Publications that are received.
+    std::map<std::string, WorkerClock::time_point> last_heard_;  ///< Time of the last datagram of their processes.
+    const int stop_;                                             ///< Becomes readable when the thread shall end.
     std::vector<std::atomic<bool>> has_publisher_;               ///< For each topic.
     mutable std::mutex mutex_;
     Heard heard_;

@@ -10,7 +10,7 @@
 namespace insonify::gazebo {
 namespace {
 
-/** A message of another type than the topic should have, or a damaged one. */
+/** Returns the entry for a message that is damaged or has a wrong type. */
 Arrived unread(size_t topic, const std::string& type, const std::string& wanted) {
     return {topic,
             {},
@@ -64,7 +64,7 @@ Topic Subscriptions::entities(const PoseConfig& config, Inbox& inbox) {
     struct State {
         std::vector<BodyConfig> bodies;
         types::WorldFrame frame;
-        std::string world;  ///< Empty: the topic is not that of a whole world.
+        std::string world;  ///< Empty when the topic is not that of a whole world.
         std::string partition;
         std::optional<WorldWatch> watch;
     };

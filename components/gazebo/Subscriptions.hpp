@@ -16,24 +16,24 @@ namespace insonify::gazebo {
 
 /** A body in a message. */
 struct Placed {
-    size_t body = 0;  ///< Its place in the configuration.
+    size_t body = 0;  ///< Index in the configuration.
     types::Pose pose;
     std::string diagnostic;  ///< Why there is no pose.
 };
 
-/** One message, as far as it is wanted. */
+/** The relevant parts of one message. */
 struct Arrived {
     size_t topic = 0;
-    std::optional<types::Time> stamp;  ///< Of the simulation.
+    std::optional<types::Time> stamp;  ///< Simulated time.
     std::vector<Placed> bodies;
     WorldWatch::Change change;
-    std::string diagnostic;  ///< Why nothing of the message is taken.
+    std::string diagnostic;  ///< Why the message is dropped.
 };
 
-/** Takes messages on the thread of Gazebo's transport and hands them to the task. Everything is for any thread. */
+/** Passes messages from the thread of Gazebo's transport to the task. Thread-safe. */
 class Inbox {
 public:
-    static constexpr size_t capacity = 1000;  ///< Messages, of which the oldest go when nobody takes them.
+    static constexpr size_t capacity = 1000;  ///< Max messages; a full inbox drops the oldest message.
 
     /** `arrived` is called on the transport's thread. */
     explicit Inbox(std::function<void()> arrived) : arrived_(std::move(arrived)) {}
@@ -48,18 +48,18 @@ private:
     uint64_t lost_ = 0;
 };
 
-/** The topics of Gazebo's transport that a configuration needs; their messages go to the inbox while this lives. */
+/** Subscribes to the topics that a configuration needs, and puts their messages into the inbox until destroyed. */
 class Subscriptions {
 public:
-    /** Throws types::ConfigError where a topic or the partition has no name that the transport takes, or no network
-     *  takes part. */
+    /** Throws types::ConfigError when a topic or the partition is invalid for the transport, or when no network
+     *  supports multicast. */
     Subscriptions(const PoseConfig& config, Inbox& inbox);
 
-    /** By their numbers in Arrived. */
+    /** Returns the topics by the index Arrived::topic. */
     const std::vector<std::string>& topics() const { return topics_; }
     const std::string& partition() const { return options_.partition; }
     bool hasPublisher(size_t topic) const { return subscriber_->hasPublisher(topic); }
-    /** Lists the topics that are there and end like the first. */
+    /** Lists the available topics with the ending of the first topic. */
     std::string heard() const { return subscriber_->heard(); }
 
 private:

@@ -13,7 +13,7 @@
 namespace insonify::gazebo {
 namespace {
 
-/** Returns Harmonic's variable, or Fortress's where that is not set. */
+/** Returns the value of a GZ_ variable (Garden and later), or of the IGN_ variable (Fortress) when that is not set. */
 std::optional<std::string> variable(const std::string& name) {
     for (const char* prefix : {"GZ_", "IGN_"})
         if (const char* const value = std::getenv((prefix + name).c_str())) return value;

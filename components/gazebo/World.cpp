@@ -20,11 +20,12 @@
 namespace insonify::gazebo {
 namespace {
 
-constexpr size_t max_parts = 100'000;  ///< Models, links and visuals of a world.
+constexpr size_t max_parts = 100'000;  ///< Max number of models, links and visuals of a world.
 
 glm::dvec3 pointOf(const wire::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/** A message leaves out what is not turned at all. Not finite for an orientation without a length. */
+/** Returns the matrix of a pose. A message omits the identity orientation. Not finite for an orientation without
+ *  length. */
 glm::dmat4 matrixOf(const wire::Pose& pose) {
     const wire::Quaternion& q = pose.orientation();
     const glm::dquat turn =
@@ -36,7 +37,7 @@ glm::dmat4 matrixOf(const wire::Pose& pose) {
 
 bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/** Why the sizes of a shape cannot be; empty: they can. */
+/** Returns why the sizes of a shape are invalid; empty when they are valid. */
 std::string reasonAgainst(const meshes::Shape& shape) {
     if (const types::Diagnostic fault = meshes::faultOf(shape); !fault.message.empty())
         return fmt::format("its {} {}", fault.path, fault.message);
@@ -61,7 +62,7 @@ public:
     }
 
 private:
-    /** `scope` is the name of what holds the model, with "::" behind it. */
+    /** `scope` is the name of the parent with "::" behind it. */
     void addModel(const wire::Model& model, const std::string& scope, int parent, const glm::dmat4& world_from_scope) {
         names_.insert(model.name());
         const auto node = addNode("model", scope + model.name(), parent, world_from_scope, model.pose());
@@ -80,23 +81,23 @@ private:
         for (const wire::Model& nested : model.model()) addModel(nested, inner, *node, world_from_model);
     }
 
-    /** None where it has no place. */
+    /** Returns the index of the new node; none when its pose is invalid. */
     std::optional<int> addNode(const char* kind, const std::string& name, int parent,
                                const glm::dmat4& world_from_parent, const wire::Pose& pose) {
         count();
         const glm::dmat4 world_from_node = world_from_parent * matrixOf(pose);
         if (!scene::isFinite(world_from_node)) {
             builder_.notice(
-                fmt::format("{} {} is left out: its pose is not finite, or its orientation has no length", kind, name));
+                fmt::format("{} {} is omitted: its pose is not finite, or its orientation has no length", kind, name));
             return {};
         }
         const int node = builder_.addNode(name, parent, world_from_node);
         if (const std::string& given = builder_.node(node).name; given != name)
-            builder_.notice(fmt::format("{} {} is there twice; the second is {} here", kind, name, given));
+            builder_.notice(fmt::format("{} {} exists twice; the second is named {} here", kind, name, given));
         return node;
     }
 
-    /** `holders` are the names of what holds it, the innermost first. */
+    /** `holders` are the names of its link and model, the innermost first. */
     void addVisual(const wire::Visual& visual, const std::string& scope, int node,
                    const std::vector<std::string>& holders) {
         count();
@@ -113,8 +114,8 @@ private:
         builder_.addVisual(name, node, node_from_visual, shape, {materialOf(visual, holders), {}});
     }
 
-    /** Gazebo sends colours, and no names of materials: one is taken of the visual or of what holds it, where matter is
-     *  in that name. Empty: none, or a mesh, which has materials of its own. */
+    /** Returns the name of a material. Gazebo sends colours, but no names of materials; the name is that of the visual,
+     *  or of its link or model, if it contains a matter. Empty for no material, or for a mesh, which has its own. */
     static std::string materialOf(const wire::Visual& visual, const std::vector<std::string>& holders) {
         const std::string& given = visual.material().script().name();
         if (!given.empty() || visual.geometry().type() == wire::Geometry::MESH) return given;
@@ -155,7 +156,7 @@ private:
         }
     }
 
-    /** Where a file is here that is at this place, or has this URI, on Gazebo's machine; the same where it is not. */
+    /** Returns the path on this machine of a file with a path or URI on Gazebo's machine; `uri` itself if not found. */
     std::string placeOf(const std::string& uri) const {
         if (builder_.paths().find(uri, {})) return uri;
         const std::filesystem::path path = uri.starts_with("file://") ? uri.substr(7) : uri;
@@ -183,7 +184,7 @@ private:
 
 std::mutex taken_mutex;
 
-/** By qualified name of the world's service. */
+/** Returns the names of entities by the qualified name of the world's service. */
 std::map<std::string, std::set<std::string>>& taken() {
     static std::map<std::string, std::set<std::string>> worlds;
     return worlds;

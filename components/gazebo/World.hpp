@@ -10,24 +10,24 @@
 
 namespace insonify::gazebo {
 
-/** What of a world is a scene, and the names of all that the world has. */
+/** The scene of a world, and the names of all entities of the world. */
 struct World {
     scene::Scene scene;
     std::set<std::string> names;  ///< Names of models, links, visuals and lights, each without its scope.
 };
 
-/** Asks Gazebo for a world's models, see scene::sharedWorld(). */
+/** Requests the models of a world from Gazebo, see scene::sharedWorld(). */
 scene::Scene readWorld(const scene::GazeboConfig& config, const std::filesystem::path& folder);
 
-/** Makes a scene of the bytes of Gazebo's message Scene.
+/** Makes a scene from the bytes of Gazebo's message Scene.
  *
- *  Each model and link is a node, named by its scope ("rov::arm::hand"), and below that of its model. Objects are the
- *  visuals. A mesh or picture is looked for where the message says, then by the last parts of its path in the folders
- *  of meshes::ModelPaths: Gazebo may run on another machine. What cannot be shown is in Geometry::notices. Throws
- *  types::ConfigError where the bytes are no Scene, or one of too many parts. */
+ *  Each model and link is a node, named by its scope ("rov::arm::hand"), below the node of its model. Objects are the
+ *  visuals. Gazebo may run on another machine. Meshes and pictures are therefore searched at the path in the message,
+ *  then by the last parts of the path in the folders of meshes::ModelPaths. Geometry::notices lists visuals that cannot
+ *  be shown. Throws types::ConfigError when the bytes are no Scene, or the Scene has too many parts. */
 World worldOf(std::string_view message, const std::filesystem::path& folder);
 
-/** Names in the world when its scene was taken last in this process; none: it was not. */
+/** Returns the names in a world when its scene was last read in this process; none when it was not read. */
 std::optional<std::set<std::string>> namesTaken(const std::string& world, const std::string& partition);
 
 }  // namespace insonify::gazebo

@@ -22,14 +22,14 @@ constexpr const char* hint =
     "install Mesa's software renderer (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri) or a graphics driver with EGL, "
     "and set the property `device` or INSONIFY_EGL_DEVICE to auto, software or a device number";
 
-/** Whether the system has EGL: where it has none, libepoxy would end the process. */
+/** Returns whether the system has EGL. Without EGL, libepoxy would end the process. */
 bool hasEgl() {
     static const bool has = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL) != nullptr;
     return has;
 }
 
-/** Whether the kernel has a node of a graphics card, by the names of drivers for Linux: where it has none, EGL, which
- *  loads a score of libraries, need not be asked. */
+/** Returns whether the kernel has a node of a graphics card, by the names of drivers for Linux. Without a node EGL,
+ *  which loads about twenty libraries, is not needed. */
 bool hasNode() {
     constexpr std::string_view drivers[] = {"dri", "nvidia", "nvhost", "nvmap", "dxg", "mali", "kgsl", "pvr"};
     std::error_code none;
@@ -68,7 +68,7 @@ EGLDisplay surfacelessDisplay() {
     return initialised(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr));
 }
 
-/** A context of OpenGL 4.5 core, current on this thread; null when this display has none. */
+/** Makes a context of OpenGL 4.5 core, current on this thread; null when this display has none. */
 EGLContext contextOn(EGLDisplay display, bool robust, EGLContext shared) {
     if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
     std::vector<EGLint> wish = {EGL_CONTEXT_MAJOR_VERSION,       4,
@@ -85,7 +85,7 @@ EGLContext contextOn(EGLDisplay display, bool robust, EGLContext shared) {
     return EGL_NO_CONTEXT;
 }
 
-/** The property, or the environment's choice, or any. */
+/** Returns the property, else the environment variable, else "auto". */
 std::string chosen(const std::string& device) {
     const char* variable = std::getenv("INSONIFY_EGL_DEVICE");
     return !device.empty() ? device : variable && *variable ? variable : "auto";
@@ -93,7 +93,7 @@ std::string chosen(const std::string& device) {
 
 bool isWord(const std::string& device) { return device == "auto" || device == "software"; }
 
-/** Position in EGL's list; throws GlError when it has none such. */
+/** Returns the position in EGL's list; throws GlError when the list has no such device. */
 size_t indexOf(const std::string& device, size_t count) {
     size_t index = 0;
     const auto [end, diagnostic] = std::from_chars(device.data(), device.data() + device.size(), index);
@@ -103,13 +103,13 @@ size_t indexOf(const std::string& device, size_t count) {
     return index;
 }
 
-/** A display that is initialised when it is its turn: to initialise one may wake a card and load its driver. */
+/** A display that is initialised only when needed, because this may wake a card and load its driver. */
 struct Candidate {
     std::function<EGLDisplay()> display;
-    bool may_be_card = false;  ///< Its GL_RENDERER decides: a display chip's may be llvmpipe.
+    bool may_be_card = false;  ///< The GL_RENDERER decides: that of a display chip may be llvmpipe.
 };
 
-/** The displays that a choice of device allows, best first. */
+/** Returns the displays that a choice of device allows, best first. */
 std::vector<Candidate> candidates(const std::string& device) {
     std::vector<Candidate> displays;
     const auto all = devices();
@@ -127,7 +127,7 @@ std::vector<Candidate> candidates(const std::string& device) {
     return displays;
 }
 
-/** Whether GL is asked to tell at once what it refuses, which keeps drivers from working ahead. */
+/** Returns whether GL shall report errors at once, which keeps drivers from working ahead. */
 bool wantsDebug() {
     const char* variable = std::getenv("INSONIFY_GL_DEBUG");
     if (variable && *variable) return std::string(variable) != "0";
@@ -138,7 +138,7 @@ bool wantsDebug() {
 #endif
 }
 
-/** The graphics card of which the system tells; empty when it has none. */
+/** Returns the node of the system's graphics card; empty when there is none. */
 std::string cardOfSystem() {
     for (const char* device : {"/dev/nvidiactl", "/dev/dri/renderD128"})
         if (std::error_code none; std::filesystem::exists(device, none)) return device;
@@ -147,7 +147,7 @@ std::string cardOfSystem() {
 
 std::string textOf(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
 
-/** Whether a display gives a context on a graphics card. Leaves no context current on this thread. */
+/** Returns whether a display gives a context on a graphics card. Leaves no context current on this thread. */
 bool isCard(EGLDisplay display) {
     const EGLContext context = display == EGL_NO_DISPLAY ? EGL_NO_CONTEXT : contextOn(display, false, EGL_NO_CONTEXT);
     if (context == EGL_NO_CONTEXT) return false;
@@ -216,7 +216,7 @@ bool EglContext::hasCard() {
 EglContext::EglContext(Sharing with) : wanted_(with.other.wanted_) {
     const EglContext& other = with.other;
     if (!createOn(other.display_, other.robust_, other.context_))
-        throw GlError("no second OpenGL context beside that of " + other.renderer_);
+        throw GlError("no second OpenGL context next to that of " + other.renderer_);
     watch();
 }
 
@@ -239,7 +239,7 @@ void EglContext::create(const std::string& device) {
     };
     std::vector<std::string> renderers(all.size());
     for (size_t i = 0; i < all.size(); ++i) {
-        if (!all[i].may_be_card && preferredRenderer(renderers)) break;  // no card comes after it
+        if (!all[i].may_be_card && preferredRenderer(renderers)) break;  // the remaining candidates are no cards
         if (!opens(all[i])) continue;
         renderers[i] = textOf(GL_RENDERER);
         if (!all[i].may_be_card || !isSoftwareRenderer(renderers[i])) return;
@@ -280,8 +280,8 @@ void EglContext::requireThread() const {
 std::string EglContext::fallback() const {
     if (!software_ || wanted_ != "auto") return {};
     const std::string card = cardOfSystem();
-    if (card.empty()) return "drawn in software by " + renderer_ + ": there is no graphics card";
-    return "Warning: drawn in software by " + renderer_ + ": the system has a graphics card (" + card +
+    if (card.empty()) return "rasterised in software by " + renderer_ + ": there is no graphics card";
+    return "Warning: rasterised in software by " + renderer_ + ": the system has a graphics card (" + card +
            "), but EGL gives no OpenGL 4.5 on it; install its driver's EGL (NVIDIA: libegl-nvidia0, in a container "
            "NVIDIA_DRIVER_CAPABILITIES=graphics), or set device: software";
 }
@@ -310,7 +310,7 @@ void EglContext::check() {
     if (robust_ && glGetGraphicsResetStatus() != GL_NO_ERROR)
         throw GlError("the OpenGL context was lost (" + renderer_ + "): restart the task; " + hint);
     if (const GLenum code = glGetError(); code != GL_NO_ERROR && error_.empty())
-        error_ = "error " + std::to_string(code) + "; INSONIFY_GL_DEBUG=1 makes it tell where and why";
+        error_ = "error " + std::to_string(code) + "; set INSONIFY_GL_DEBUG=1 to see where and why";
     if (!error_.empty()) throw GlError("OpenGL: " + std::exchange(error_, {}));
 }
 

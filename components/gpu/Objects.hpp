@@ -1,5 +1,5 @@
 #pragma once
-// OpenGL objects that are made in their constructor and gone with their destructor.
+// OpenGL objects that are made in their constructor and deleted in their destructor.
 #include <epoxy/gl.h>
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace insonify::gpu {
 
-/** Owns one OpenGL name; moves, never copies. */
+/** Owner of one OpenGL name; movable, not copyable. */
 class Name {
 public:
     using Delete = void (*)(GLuint);
@@ -31,7 +31,7 @@ private:
     Delete destroy_ = nullptr;
 };
 
-/** How a buffer is made and mapped that processor and device see at the same time, as long as it lives. */
+/** Flags of a buffer that stays mapped for its lifetime, so that processor and device see it at the same time. */
 constexpr GLbitfield mapped_for_good = GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 
 /** Memory on the device. */
@@ -48,8 +48,9 @@ public:
     size_t bytes() const { return bytes_; }
     void write(const void* data, size_t bytes, size_t offset = 0);
     void read(void* data, size_t bytes, size_t offset = 0) const;
-    void clear();  ///< All bytes zero.
-    /** All of it, seen by the processor; `access` as it was made with. Throws GlError when the device shares none. */
+    void clear();  ///< Sets all bytes to zero.
+    /** Maps the whole buffer for the processor, with the `access` of its constructor. Throws GlError when the device
+     *  does not share the memory. */
     void* map(GLbitfield access) const;
     void bind(GLenum target) const { glBindBuffer(target, id()); }
     void bindBase(GLenum target, GLuint index) const { glBindBufferBase(target, index, id()); }
@@ -59,12 +60,12 @@ private:
     size_t bytes_ = 0;
 };
 
-/** A two-dimensional texture with one level, or with all when `mipmapped`. */
+/** A two-dimensional texture with one level, or with all levels when `mipmapped`. */
 class Texture {
 public:
     Texture() = default;
     Texture(GLenum format, int width, int height, bool mipmapped = false);
-    /** With several samples a pixel, at places that are the device's. */
+    /** Makes a texture with several samples per pixel, at places that the device determines. */
     static Texture multisampled(GLenum format, int width, int height, int samples);
     GLuint id() const { return name_.id(); }
     void bind(GLuint unit) const { glBindTextureUnit(unit, id()); }
@@ -76,7 +77,7 @@ private:
 class Framebuffer {
 public:
     Framebuffer() = default;
-    /** Throws GlError when the device cannot draw into these. */
+    /** Throws GlError when the device cannot rasterise into these textures. */
     Framebuffer(const Texture& colour, const Texture& depth);
     GLuint id() const { return name_.id(); }
     void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, id()); }
@@ -90,10 +91,10 @@ public:
     VertexArray();
     GLuint id() const { return name_.id(); }
     void bind() const { glBindVertexArray(id()); }
-    /** Floats, `components` a vertex, tightly packed, as attribute `location`. */
+    /** Sets attribute `location` to tightly packed floats, `components` per vertex. */
     void attribute(GLuint location, const Buffer& buffer, int components) const;
-    /** Attributes `location` to `location + rows - 1` from rows of four floats: the same for all vertices of an
-     *  instance. */
+    /** Sets attributes `location` to `location + rows - 1` to rows of four floats, which are the same for all vertices
+     *  of an instance. */
     void instanceRows(GLuint location, const Buffer& buffer, int rows) const;
     void indices(const Buffer& buffer) const { glVertexArrayElementBuffer(id(), buffer.id()); }
 
@@ -101,16 +102,16 @@ private:
     Name name_;
 };
 
-/** A list in memory that the processor writes and the device reads, with no call between: a command sees what was
- *  written before it was asked for. Who writes there anew waits first for a fence behind the last command that reads.
- *  Only to be written: for the processor, such memory may be slow to read. */
+/** A list in memory that the processor writes and the device reads, without a call in between. A command sees the items
+ *  that were written before it was issued. Before overwriting items, wait for a fence behind the last command that
+ *  reads them. Write only: reading this memory may be slow for the processor. */
 template <class T>
 class UploadList {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
     UploadList() = default;
-    /** With room for so many, which is all that there ever is. */
+    /** Makes a list with a fixed capacity of `room` items. */
     explicit UploadList(size_t room)
         : room_(room),
           buffer_(room * sizeof(T), nullptr, GL_MAP_WRITE_BIT | mapped_for_good),

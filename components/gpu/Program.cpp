@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view include_word = "#include \"";
 
-/** `text` with each included file in place of its line; files include at most once a level, never themselves. */
+/** Returns `text` with each `#include` line replaced by the file, recursively. No file may include itself. */
 std::string withIncludes(std::string_view text) {
     std::string result;
     while (!text.empty()) {

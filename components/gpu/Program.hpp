@@ -10,16 +10,16 @@
 
 namespace insonify::gpu {
 
-/** Text of a file of shaders/, as built in. Throws GlError for an unknown name. */
+/** Returns the built-in text of a file of shaders/. Throws GlError for an unknown name. */
 std::string_view shaderFile(std::string_view name);
 
-/** The file with its `#include "x.glsl"` lines replaced and `#define` lines put after `#version 450 core`. */
+/** Returns a file with its `#include "x.glsl"` lines replaced, and `#define` lines after `#version 450 core`. */
 std::string shaderSource(std::string_view name, const std::vector<std::string>& defines);
 
 /** One stage of a program. */
 struct Shader {
     GLenum stage;
-    std::string file, text;  ///< `text` as shaderSource() makes it of the file.
+    std::string file, text;  ///< `text` is shaderSource() of the file.
     auto operator<=>(const Shader&) const = default;
 };
 
@@ -37,13 +37,13 @@ private:
     Name name_;
 };
 
-/** Programs of one context that are compiled once and kept: whoever asks for the same text again gets the same one. */
+/** The compiled programs of one context. Each text is compiled once; later requests return the same program. */
 class Programs {
 public:
     const Program& raster(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines);
     const Program& compute(std::string_view file, const std::vector<std::string>& defines);
     size_t count() const { return made_.size(); }
-    /** The stages of all programs. */
+    /** Returns the stages of all programs. */
     std::vector<Shader> shaders() const;
 
 private:

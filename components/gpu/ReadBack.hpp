@@ -5,11 +5,11 @@
 
 namespace insonify::gpu {
 
-/** A point in what a context has been asked for, on its thread. */
+/** A point in the sequence of a context's commands. */
 class Fence {
 public:
-    Fence() = default;  ///< Of nothing: nobody waits for it.
-    /** Here. */
+    Fence() = default;  ///< Behind no command: wait() returns at once.
+    /** Returns a fence behind all commands so far. */
     static Fence here() {
         Fence fence;
         fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -23,25 +23,25 @@ public:
     ~Fence() {
         if (sync_) glDeleteSync(sync_);
     }
-    /** Returns when all that came before is done. Throws GlError when the device has failed. */
+    /** Waits until all commands before the fence are done. Throws GlError when the device has failed. */
     void wait() const;
 
 private:
     GLsync sync_ = nullptr;
 };
 
-/** What comes back from the device, in memory that both see: a read is asked for like a draw, and nobody waits before
- *  the bytes are wanted. One read at a time. */
+/** Reads bytes back from the device into memory that both sides see. A read is queued like a draw; only wait() blocks.
+ *  One read at a time. */
 class ReadBack {
 public:
     ReadBack() = default;
     explicit ReadBack(size_t bytes);
     size_t bytes() const { return bytes_; }
-    /** Asks for the first bytes of `from`, once all that was asked for before is done. */
+    /** Queues a read of the first bytes of `from`, after all earlier commands. */
     void ask(const Buffer& from);
-    /** The same of the picture in a texture, row by row from below; `format` as GL_RG_INTEGER, of 32-bit words. */
+    /** Queues a read of a texture of 32-bit words, row by row from below; `format` is such as GL_RG_INTEGER. */
     void ask(const Texture& from, GLenum format);
-    /** Waits for what was asked for last; valid until the next is asked for. */
+    /** Waits for the last read and returns its bytes, which are valid until the next read. */
     const void* wait() const;
 
 private:

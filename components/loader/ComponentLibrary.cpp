@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 constexpr Component all_components[] = {
     {"dataset", "data sets to learn from"},
     {"dds", "ROS 2 messages"},
-    {"device", "stand-ins for instruments, and recordings of theirs"},
-    {"gazebo", "poses and worlds of Gazebo's"},
+    {"device", "simulated instruments, and their recordings"},
+    {"gazebo", "poses and worlds of Gazebo"},
     {"mavlink", "poses of autopilots"},
     {"nav", "a DVL, an inertial unit and a pressure gauge"},
     {"sdf", "scenes in SDF, .world and .sdf, with meshes as .dae, .obj and .stl", {".sdf", ".world"}},
@@ -40,7 +40,7 @@ constexpr Component all_components[] = {
     throw types::ConfigError(file.string(), "", why);
 }
 
-/** The library or program that holds this code. */
+/** Returns the library or program of this code. */
 fs::path ownFile() {
     Dl_info info{};
     std::error_code none;
@@ -54,7 +54,7 @@ bool isName(const std::string& name) {
     return !name.empty() && std::ranges::all_of(name, fits);
 }
 
-/** Files of that name, each once though several folders lead to it. */
+/** Returns the files of that name, each once even if several folders contain it. */
 std::vector<fs::path> filesOf(const std::string& name) {
     std::vector<fs::path> files;
     for (const fs::path& folder : folders()) {
@@ -65,8 +65,8 @@ std::vector<fs::path> filesOf(const std::string& name) {
     return files;
 }
 
-/** Why the system's loader would fail on a file, or worse: it maps the parts that the headers name, there or not.
- */
+/** Returns why a file cannot be loaded. The system's loader would map the parts named in its headers even if they are
+ *  missing. */
 std::string damageOf(const fs::path& file) {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) return "is no file";
@@ -84,7 +84,7 @@ std::string damageOf(const fs::path& file) {
     return "";
 }
 
-/** The version in a file, read before any of its code runs; empty where there is none. */
+/** Returns the version in a file, read before its code runs; empty: there is none. */
 std::string versionOf(const fs::path& file) {
     static constexpr std::string_view before = interface_mark;
     std::ifstream stream(file, std::ios::binary);
@@ -100,7 +100,7 @@ void refuseOtherVersion(const fs::path& file) {
     const std::string version = versionOf(file);
     if (version == interface_version) return;
     if (version.empty()) refuse(file, "has no line INSONIFY_COMPONENT_LIBRARY, which every component library has");
-    refuse(file, "is for Insonify " + version + "; this is " + interface_version + ": build it anew");
+    refuse(file, "is for Insonify " + version + "; this is " + interface_version + ": rebuild it");
 }
 
 struct Loaded {
@@ -113,8 +113,7 @@ Loaded& loaded() {
     return loaded;
 }
 
-/** Libraries of users that are linked with nothing find the framework in the process. Python would keep it to itself.
- */
+/** Makes the framework's symbols visible to users' libraries that are linked with nothing. Python would hide them. */
 void showOwnSymbols() {
     static const bool shown = [] {
         const fs::path own = ownFile();
@@ -202,9 +201,9 @@ std::string absence(const std::string& name) {
         std::error_code none;
         return fs::exists(around / file, none);
     };
-    if (has("__init__.py") || has("../insonify.libs"))  // by pip, from a wheel or the sources; or an archive
+    if (has("__init__.py") || has("../insonify.libs"))  // by pip, from a wheel or the sources; or from an archive
         return "the component library " + name +
-               ", which wheels and archives do not hold; the Debian packages do, as insonify-" + name;
+               ", which is not in wheels and archives; it is in the Debian package insonify-" + name;
     return "the component library " + name + ", which is not here; `" +
            (has("build.ninja") ? "scripts/setup " : "apt install insonify-") + name + "` installs it";
 }

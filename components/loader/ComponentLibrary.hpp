@@ -1,5 +1,5 @@
 #pragma once
-// Component libraries: what a deployment, a scene's file or a command needs beyond the core is loaded when it is named.
+// Component libraries: the parts beyond the core, loaded when a deployment, a scene's file or a command names them.
 #include <array>
 #include <filesystem>
 #include <span>
@@ -9,23 +9,24 @@
 
 namespace insonify::loader {
 
-/** A component of Insonify that is a library of its own. Its name is that of the file without ".so", and of the
- * namespace of its tasks. */
+/** A component of Insonify in its own library. Its name is that of the file without ".so", and of the namespace of its
+ *  tasks. */
 struct Component {
     const char* name;
     const char* gives;                                  ///< For users: "ROS 2 messages".
     std::array<std::string_view, 2> file_endings = {};  ///< Files that need it: ".sdf".
 };
 std::span<const Component> components();
-/** Null where Insonify has none of that name. */
+/** Null if Insonify has no component of that name. */
 const Component* findComponent(const std::string& name);
 
-/** A shared object that is loaded, until the process ends. */
+/** A loaded shared object; it stays loaded until the process ends. */
 class ComponentLibrary {
 public:
     ComponentLibrary(std::filesystem::path file, void* handle) : file_(std::move(file)), handle_(handle) {}
     const std::filesystem::path& file() const { return file_; }
-    /** An `extern "C"` function, such as `entry<void(Registry&)>("insonify_register")`; null where it has none. */
+    /** Returns an `extern "C"` function, such as `entry<void(Registry&)>("insonify_register")`; null if there is
+     *  none. */
     template <class Function>
     Function* entry(const char* name) const {
         return reinterpret_cast<Function*>(find(name));
@@ -38,22 +39,22 @@ private:
     void* handle_;
 };
 
-/** Where component libraries are looked for: the folders of INSONIFY_COMPONENT_PATH, separated by colons, which must be
- *  absolute, and the folder `insonify` beside the library that this code is in. The working folder is none of them. */
+/** Returns the folders of component libraries: those of INSONIFY_COMPONENT_PATH, absolute and separated by colons, and
+ *  the folder `insonify` next to the library of this code. The working folder is not searched. */
 std::vector<std::filesystem::path> folders();
 
-/** Names of the component libraries that are there, in order of the alphabet; nothing is loaded. */
+/** Returns the names of the available component libraries in alphabetical order; loads nothing. */
 std::vector<std::string> present();
 bool isPresent(const std::string& name);
 
-/** Loads a library by its name, the same each time; safe to call from any thread. Throws types::ConfigError: it is
- * absent, in two folders, damaged, of another version, or needs what is not there. */
+/** Loads a library by its name; the same object each time; safe to call from any thread. Throws types::ConfigError when
+ *  it is absent, in two folders, damaged, of another version, or lacks a dependency. */
 const ComponentLibrary& load(const std::string& name);
 
-/** Loads a library of a user's. Throws types::ConfigError as above. */
+/** Loads a user's library. Throws types::ConfigError as load() does. */
 const ComponentLibrary& loadFile(const std::filesystem::path& file);
 
-/** "the component library dds, which is not here; `scripts/setup dds` installs it". */
+/** Returns "the component library dds, which is not here; `scripts/setup dds` installs it". */
 std::string absence(const std::string& name);
 
 }  // namespace insonify::loader

@@ -1,4 +1,4 @@
-# Writes OUTPUT, a header with the VERSION and the hash of all headers of SOURCE_DIR, where it differs from what is there.
+# Writes OUTPUT, a header with VERSION and the hash of all headers in SOURCE_DIR, if it has changed.
 file(GLOB_RECURSE headers RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/components/*.hpp ${SOURCE_DIR}/types/*.hpp)
 list(SORT headers)
 set(all "")

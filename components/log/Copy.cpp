@@ -15,7 +15,7 @@ bool takes(const Selection& selection, const Stream& stream) {
     return selection.streams.empty() || selection.streams.contains(stream.name);
 }
 
-/** What the first stream of a log carries for all of them. */
+/** Returns the deployment in a log's metadata, which belongs to the whole log. */
 Metadata ofTheWholeLog(const Reader& log) {
     const std::string deployment = log.metadatum("insonify_deployment");
     return deployment.empty() ? Metadata{} : Metadata{{"insonify_deployment", deployment}};
@@ -28,7 +28,7 @@ public:
           anew_(options.anew.has_value()),
           out_(createLog(to, options.anew.value_or(McapConfig{}))) {}
 
-    /** Takes what is wanted of a log; its streams join those of the same names. */
+    /** Copies the selected part of a log; its streams are merged with those of the same names. */
     void add(Reader& log) {
         for (const Gap& gap : log.gaps())
             lose(fmt::format("{}: bytes {} to {} ({} in all): {}", log.path().string(), gap.from, gap.to,
@@ -90,7 +90,8 @@ private:
     const bool anew_;
     std::unique_ptr<Writer> out_;
     bool has_stream_ = false;
-    std::map<std::string, std::optional<size_t>> numbers_;  ///< Of the streams in the new log; none: it takes it not.
+    std::map<std::string, std::optional<size_t>> numbers_;  ///< Stream numbers in the new log; none: its format has no
+                                                            ///< such type.
     size_t place_ = 0;                                      ///< Samples seen of these streams.
     Copied copied_;
 };
@@ -98,7 +99,7 @@ private:
 void refuse(const Readers& logs, const Selection& selection, const std::filesystem::path& to) {
     for (const std::string& name : selection.streams)
         if (std::ranges::none_of(logs, [&](const auto& log) { return log->find(name); }))
-            logs.front()->indexOf(name);  // throws, with the names that there are
+            logs.front()->indexOf(name);  // throws, with the existing names
     for (const auto& log : logs) {
         if (log->streams().empty()) throw types::ConfigError(log->path(), "", "holds no stream");
         std::error_code not_there;
@@ -107,7 +108,7 @@ void refuse(const Readers& logs, const Selection& selection, const std::filesyst
     }
 }
 
-/** The streams' own names, of those that are given as topics as well. */
+/** Returns the streams' own names, for names or topics. */
 std::set<std::string> namesOf(const Readers& logs, const std::set<std::string>& given) {
     std::set<std::string> names;
     for (const std::string& name : given)
@@ -116,7 +117,7 @@ std::set<std::string> namesOf(const Readers& logs, const std::set<std::string>& 
     return names;
 }
 
-/** Streams of one name become one in the copy: they must be of one type, of the same layout. */
+/** Checks that streams of one name, which become one stream in the copy, have the same type and layout. */
 void refuseOtherTypes(const Readers& logs, const Selection& selection) {
     struct Known {
         std::string type, layout;
@@ -131,7 +132,7 @@ void refuseOtherTypes(const Readers& logs, const Selection& selection) {
             const char* layout = stream.type == before.type ? " of another layout" : "";
             throw types::ConfigError(
                 log->path(), stream.name,
-                fmt::format("is {}{}; in the log before it was {}", stream.type, layout, before.type));
+                fmt::format("is {}{}; in the previous log it was {}", stream.type, layout, before.type));
         }
 }
 
@@ -156,10 +157,10 @@ std::string copyProperties(const std::filesystem::path& log, const std::filesyst
     if (!properties || propertyLogOf(*cut)) return "";
     const std::filesystem::path copied = to.parent_path() / properties->filename();
     if (std::filesystem::exists(copied))
-        return fmt::format("{} is of another run: {} is not kept with {}; give that a folder of its own",
+        return fmt::format("{} is of another run: {} is not copied next to {}; give that a folder of its own",
                            copied.string(), properties->string(), to.string());
     copyLog({*properties}, copied, {.at_damage = AtDamage::Skip});
-    return fmt::format("{} is kept with it", copied.string());
+    return fmt::format("{} is copied with it", copied.string());
 }
 
 }  // namespace insonify::log

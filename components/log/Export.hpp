@@ -10,27 +10,28 @@ namespace insonify::log {
 /** Writes a stream as numpy arrays and returns the files.
  *
  *  Pings, and beams and scans as pings: `bins` [pings, beams, bins] float32, `bearings` [pings, beams] rad, `time`
- *  [pings] s, `bin_duration` [pings] s (one-way), `speed_of_sound` [pings] m/s, `range_m`
- *  [pings, bins] float32 m, of the middle of each bin. Pictures: `pixels` [pictures, rows,
- *  columns, bytes of a pixel] uint8, `time` s. Where their shape changes a new file begins: x.0.npz, x.1.npz.
- *  Truth of pings: `elevation`, `object`, `share`, `hits`, `grazing`, `path` and `shadow` [pings, beams, bins], as
- *  types::SonarTruth has them, `objects` (names), `time`, `bearings`, `range_m`. Returns of pings: `first_range` and so
- *  forth [pings, beams], as types::SonarReturns has them, `time`, `bearings`. Elements of pings: `in_phase`,
- *  `quadrature` [pings, elements, samples], `positions`, `weights` [pings, elements], `range_m` [pings, samples],
- *  `wavelength`, `speed_of_sound`, `time`, as types::SonarElements has them.
+ *  [pings] s, `bin_duration` [pings] s (one-way), `speed_of_sound` [pings] m/s, `range_m` [pings, bins] float32 m, of
+ *  the middle of each bin. Pictures: `pixels` [pictures, rows, columns, bytes of a pixel] uint8, `time` s. When the
+ *  shape changes, a new file begins: x.0.npz, x.1.npz.
+ *  Truth of pings: `elevation`, `object`, `share`, `hits`, `grazing`, `path` and `shadow` [pings, beams, bins], as in
+ *  types::SonarTruth, `objects` (names), `time`, `bearings`, `range_m`. Returns of pings: `first_range` and the other
+ *  fields of types::SonarReturns [pings, beams], `time`, `bearings`. Elements of pings: `in_phase`, `quadrature`
+ *  [pings, elements, samples], `positions`, `weights` [pings, elements], `range_m` [pings, samples], `wavelength`,
+ *  `speed_of_sound`, `time`, as in types::SonarElements.
  *  Points: `time` s, `points` [n, 3] m, `intensity`, of each point. Maps of distances: `distances`, `remissions` [maps,
- *  rows, columns], `time`, and the angles of the last map. Ranges: `time`, `range`.
- *  Poses: `time` s, `position` [n, 3] m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles
- *  [rad]: `time`, `value`. `meta`, where it is given, stands beside them as one text. Throws ConfigError for a stream
- *  that is not there or of another type, std::runtime_error on a full disk. */
+ *  rows, columns], `time`, and the angles of the last map. Ranges: `time`, `range`. Poses: `time` s, `position` [n, 3]
+ *  m, `orientation` [n, 4] (w, x, y, z). Numbers, texts, times [s] and angles [rad]: `time`, `value`. If `meta` is not
+ *  empty, it is added as one text. Throws ConfigError for a missing stream or one of another type, std::runtime_error
+ *  on a full disk. */
 std::vector<std::filesystem::path> exportNpz(Reader& log, const std::string& stream, const std::filesystem::path& path,
                                              const std::string& meta = "");
 
-/** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, a line for each bin [s, 1, rad, 1,
- *  1]; truth the same, with `elevation,object,share,hits,grazing,path,shadow` for the value, and returns without bins.
- *  1], elements `time,element,position,sample,in_phase,quadrature`. Points: `time,x,y,z,intensity`; maps:
- *  `time,row,column,distance,remission`; ranges: `time,range`. Poses: `time,x,y,z,qw,qx,qy,qz`, which a trajectory
- *  reads [s, m, 1]. Numbers, texts, times [s] and angles [rad]: `time,value`. Throws as exportNpz. */
+/** Writes a stream as text. Pings, beams and scans: `time,beam,bearing,bin,value`, one line per bin [s, 1, rad, 1, 1].
+ *  Truth: the same with `elevation,object,share,hits,grazing,path,shadow` instead of the value. Returns:
+ *  `time,beam,bearing` and their fields. Elements: `time,element,position,sample,in_phase,quadrature`. Points:
+ *  `time,x,y,z,intensity`. Maps: `time,row,column,distance,remission`. Ranges: `time,range`. Poses:
+ *  `time,x,y,z,qw,qx,qy,qz`, the columns of a trajectory file [s, m, 1]. Numbers, texts, times [s] and angles [rad]:
+ *  `time,value`. Throws as exportNpz. */
 void exportCsv(Reader& log, const std::string& stream, const std::filesystem::path& path);
 
 }  // namespace insonify::log

@@ -16,14 +16,14 @@ namespace {
 
 using types::Sonar;
 
-/** A text file that gathers lines; close() throws std::runtime_error when not all of them arrived. */
+/** A text file written by lines; close() throws std::runtime_error when a line is missing. */
 class CsvFile {
 public:
     CsvFile(const std::filesystem::path& path, const std::string& header) : path_(path), file_(path) {
         if (!file_) throw types::ConfigError(path, "", "cannot be written: " + std::generic_category().message(errno));
         file_ << header << '\n';
     }
-    /** A line of numbers, each as short as it can be read back exactly; times with six decimals. */
+    /** Writes a line of numbers, each in its shortest exact form; times with six decimals. */
     template <class... Values>
     void line(types::Time time, const Values&... values) {
         text_.clear();
@@ -59,21 +59,21 @@ void writePings(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
-/** Where a row of a sample is: the bearing of a beam, the position of an element. */
+/** Returns the place of a row of a sample: the bearing of a beam, the position of an element. */
 template <types::Arrayed T>
 double rowPlace(const T& sample, size_t row) {
     return sample.bearings[row].rad;
 }
 double rowPlace(const types::SonarElements& signals, size_t row) { return signals.positions[row]; }
 
-/** The columns that tell which number of a sample stands in a line. */
+/** Returns the columns with the indices of a sample's numbers. */
 template <types::Arrayed T>
 const char* placeColumns(const T& sample) {
     return sample.shape().size() == 2 ? "time,beam,bearing,bin" : "time,beam,bearing";
 }
 const char* placeColumns(const types::SonarElements&) { return "time,element,position,sample"; }
 
-/** A line for each bin, or for each beam where there is one number of each. */
+/** Writes a line for each bin, or for each beam if there is one number per beam. */
 template <types::Arrayed T>
 void writeGrids(Reader& log, const std::string& stream, const std::filesystem::path& path) {
     std::string header = placeColumns(T{});
@@ -96,7 +96,7 @@ void writeGrids(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
-/** A line for each point, or for each cell. */
+/** Writes a line for each point, or for each cell. */
 void writePart(CsvFile& csv, const types::PointCloud& cloud, types::Time time) {
     for (size_t k = 0; k < cloud.points.size(); ++k)
         csv.line(time, cloud.points[k].x, cloud.points[k].y, cloud.points[k].z, cloud.intensity(k));
@@ -115,7 +115,7 @@ void writeParts(Reader& log, const std::string& stream, const std::filesystem::p
     csv.close();
 }
 
-/** Text in quotes, those within it doubled. */
+/** Returns a text in quotes, with its quotes doubled. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) result += c == '"' ? std::string(2, c) : std::string(1, c);
@@ -178,7 +178,7 @@ void exportCsv(Reader& log, const std::string& stream, const std::filesystem::pa
         throw types::ConfigError(
             log.path(), stream,
             "holds " + declared.type +
-                "; as text can be written pings, beams and scans of sonars, truth, returns and "
+                "; streams that can be text: pings, beams and scans of sonars, truth, returns and "
                 "elements of pings, points, maps of distances, ranges, poses, readings of navigation's "
                 "sensors, numbers and texts "
                 "(pictures: .png and .npz)");

@@ -14,12 +14,12 @@ using types::Image;
 using types::PointCloud;
 using types::Sonar;
 
-/** Successive samples of one shape. */
+/** Consecutive samples of one shape. */
 struct Run {
     std::vector<size_t> shape;
     std::vector<SampleRef> samples;
 
-    /** Shape of all of them together. */
+    /** Shape of all samples together. */
     std::vector<size_t> whole() const {
         std::vector<size_t> all = shape;
         all.insert(all.begin(), samples.size());
@@ -94,7 +94,7 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, Sonar ping) {
     npz.array("range_m", {count, run.shape[1]}, range);
 }
 
-/** Time and bearings; of samples of bins their ranges and the names of the objects, which are the first sample's. */
+/** Writes time and bearings; for samples of bins also their ranges and the names of the first sample's objects. */
 template <types::Arrayed T>
 void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
     std::vector<double> time, bearings;
@@ -119,7 +119,8 @@ void writeGrid(Reader& log, const Run& run, NpzFile& npz, T sample) {
     }
 }
 
-/** Of signals of elements: time, where each element and each sample is, and what turns range into phase. */
+/** Writes, for signals of elements, time, the positions of elements and samples, and the wavelength and speed of
+ *  sound. */
 void writeGrid(Reader& log, const Run& run, NpzFile& npz, types::SonarElements sample) {
     std::vector<double> time, positions, weights, wavelength, speed_of_sound, range;
     for (const SampleRef& at : run.samples) {
@@ -187,7 +188,7 @@ void writeRun(Reader& log, const Run& run, NpzFile& npz, DepthMap map) {
     npz.array("horizontal_interval", {horizontal.size()}, horizontal);
 }
 
-/** All points one after the other, each with its time. */
+/** Writes all points one after the other, each with its time. */
 void writePoints(Reader& log, const std::string& stream, NpzFile& npz) {
     std::vector<double> time, points, intensity;
     log.forEach<PointCloud>(stream, [&](const PointCloud& cloud, const SampleRef& at) {
@@ -203,7 +204,7 @@ void writePoints(Reader& log, const std::string& stream, NpzFile& npz) {
     npz.array("intensity", {time.size()}, intensity);
 }
 
-/** One text; nothing when it is empty. */
+/** Writes one text; nothing if it is empty. */
 void writeMeta(NpzFile& npz, const std::string& meta) {
     if (!meta.empty()) npz.text("meta", meta);
 }
@@ -309,7 +310,7 @@ std::vector<Path> exportNpz(Reader& log, const std::string& stream, const Path& 
         throw types::ConfigError(
             log.path(), stream,
             "holds " + declared.type +
-                "; as arrays can be written pings, beams and scans of sonars, truth, returns "
+                "; streams that can be arrays: pings, beams and scans of sonars, truth, returns "
                 "and elements of pings, points, maps of distances, ranges, poses, readings of navigation's sensors, "
                 "pictures, numbers and texts");
     return files;

@@ -18,7 +18,7 @@ namespace {
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 
-/** Whether another open file holds the log; takes hold of it if not. */
+/** Whether another open file has locked the log; locks it if not. */
 bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
 }  // namespace
@@ -54,7 +54,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     if (file_ < 0) throw types::ConfigError(path_, "", "the log cannot be written: " + reason(errno));
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
-    const bool taken = is_file && isTaken(file_);  // a device, as /dev/null, is there for everyone
+    const bool taken = is_file && isTaken(file_);  // a device such as /dev/null may be shared
     if (taken || (is_file && ftruncate(file_, 0) != 0)) {
         const std::string why = taken ? "another logger writes it" : reason(errno);
         ::close(std::exchange(file_, -1));
@@ -82,7 +82,8 @@ void OutputFile::append(const char* data, size_t size) {
 }
 
 void OutputFile::fail(int error_number) {
-    // Half a block at the end would stop Rock's Ruby reader: back to the last whole one. A device cannot be cut.
+    // An incomplete block at the end would stop Rock's Ruby reader: truncate to the last complete one. A device cannot
+    // be truncated.
     [[maybe_unused]] const int cut = ftruncate(file_, static_cast<off_t>(size_));
     ::close(std::exchange(file_, -1));
     throw std::runtime_error(path_.string() + ": the log cannot be written: " + reason(error_number));

@@ -4,10 +4,10 @@
 
 namespace insonify::log {
 
-/** An open file to read from. All positions are in bytes from its beginning. */
+/** A file open for reading. Positions are in bytes from its beginning. */
 class InputFile {
 public:
-    /** Throws ConfigError when it cannot be read or is no file. */
+    /** Throws ConfigError when the path cannot be read or is not a file. */
     explicit InputFile(const std::filesystem::path& path);
     ~InputFile();
     InputFile(const InputFile&) = delete;
@@ -22,19 +22,19 @@ private:
     uint64_t size_ = 0;
 };
 
-/** A log that is being written: one writer at a time, nothing in it by halves. */
+/** A log that is being written, by one writer at a time and without incomplete writes. */
 class OutputFile {
 public:
-    /** Creates the file, or empties it. Throws ConfigError when that cannot be done or another one, of this process or
-     *  not, has it open. */
+    /** Creates or empties the file. Throws ConfigError when this fails or another OutputFile, of any process, has it
+     *  open. */
     explicit OutputFile(std::filesystem::path path);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     OutputFile(OutputFile&& other) noexcept;
 
-    /** Writes all of it. Otherwise throws std::runtime_error with the system's reason, and the file ends as it did
-     *  before, and is closed. */
+    /** Writes all bytes. On failure, throws std::runtime_error with the system's reason; the file is truncated to its
+     *  previous end and closed. */
     void append(const char* data, size_t size);
     /** Throws std::runtime_error with the system's reason. */
     void close();
@@ -49,8 +49,8 @@ private:
     uint64_t size_ = 0;
 };
 
-/** Removes a log and its index; false: it is not there, or cannot be. Throws ConfigError when a Writer, of this process
- *  or not, has it open. */
+/** Removes a log and its index; false: there is none, or it cannot be removed. Throws ConfigError when a Writer of any
+ *  process has it open. */
 bool removeLog(const std::filesystem::path& path);
 
 }  // namespace insonify::log

@@ -13,10 +13,10 @@ namespace insonify::log {
 namespace {
 
 constexpr uint16_t zip64_version = 45;
-constexpr uint16_t first_of_1980 = 0x21;  // a date is needed, and files should not differ by it
+constexpr uint16_t first_of_1980 = 0x21;  // a date is required, and files must not differ by it
 constexpr uint32_t see_extra = 0xffffffff;
 
-/** Bytes of a zip record, little endian. */
+/** The bytes of a zip record, little endian. */
 class Record {
 public:
     template <class T>
@@ -63,7 +63,7 @@ std::string endRecords(uint64_t count, uint64_t central_size, uint64_t central) 
     return record.bytes();
 }
 
-/** Header of an .npy file, filled up so that the data stand on a multiple of 64 bytes. */
+/** Returns the header of an .npy file, padded so that the data begin at a multiple of 64 bytes. */
 std::string npyHeader(const std::string& type, const std::vector<size_t>& shape) {
     std::string tuple;
     for (const size_t extent : shape) tuple += std::to_string(extent) + ",";
@@ -76,10 +76,10 @@ std::string npyHeader(const std::string& type, const std::vector<size_t>& shape)
     return record.bytes();
 }
 
-/** The code points of a text in UTF-8; each byte that is none of a whole, shortest sequence is U+FFFD. */
+/** Returns the code points of a UTF-8 text; each byte outside of a complete, shortest sequence is U+FFFD. */
 std::u32string codePointsOf(const std::string& text) {
     constexpr char32_t replacement = 0xFFFD, first_surrogate = 0xD800, last_surrogate = 0xDFFF, last = 0x10FFFF;
-    constexpr char32_t shortest[] = {0, 0x80, 0x800, 0x10000};  // that takes so many bytes more
+    constexpr char32_t shortest[] = {0, 0x80, 0x800, 0x10000};  // by the number of further bytes
     std::u32string points;
     for (size_t at = 0; at < text.size();) {
         const auto lead = static_cast<uint8_t>(text[at]);
@@ -113,7 +113,7 @@ void NpzFile::begin(const std::string& name, const std::string& type, const std:
 }
 
 void NpzFile::append(const void* data, size_t size) {
-    if (size == 0) return;  // zlib takes a null pointer for a new start
+    if (size == 0) return;  // zlib restarts at a null pointer
     Entry& entry = entries_.back();
     file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
     entry.size += size;

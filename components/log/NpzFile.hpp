@@ -8,7 +8,7 @@
 
 namespace insonify::log {
 
-/** Numpy's name of a little-endian number: "<f4"; of a truth value in a byte: "|b1". */
+/** Numpy's name of a little-endian number: "<f4"; of a boolean in a byte: "|b1". */
 template <class T>
 std::string numpyType() {
     if constexpr (std::is_same_v<T, bool>) return "|b1";
@@ -16,14 +16,14 @@ std::string numpyType() {
     return kind + std::to_string(sizeof(T));
 }
 
-/** Writes a numpy `.npz`: a zip file of uncompressed arrays, with 64-bit sizes throughout.
- *  What fails while writing is told by close(), which throws std::runtime_error. */
+/** Writes a numpy `.npz`: a zip file of uncompressed arrays, with 64-bit sizes throughout. close() reports errors of
+ *  writing; it throws std::runtime_error. */
 class NpzFile {
 public:
     /** Throws ConfigError when the file cannot be created. */
     explicit NpzFile(const std::filesystem::path& path);
 
-    /** Starts an array in C order, whose elements follow by append(). */
+    /** Begins an array in C order; append() adds its elements. */
     void begin(const std::string& name, const std::string& type, const std::vector<size_t>& shape);
     void append(const void* data, size_t size);
     void end();
@@ -33,11 +33,11 @@ public:
         append(values.data(), values.size() * sizeof(T));
         end();
     }
-    /** Texts in UTF-8 as numpy's unicode strings; bytes that are no UTF-8 become U+FFFD. */
+    /** Writes UTF-8 texts as numpy's unicode strings; invalid bytes become U+FFFD. */
     void texts(const std::string& name, const std::vector<std::string>& values) {
         texts(name, {values.size()}, values);
     }
-    /** One text, an array of no dimension: `str(x[name])`. */
+    /** Writes one text as an array without dimensions: `str(x[name])`. */
     void text(const std::string& name, const std::string& value) { texts(name, {}, {value}); }
     void close();
 

@@ -21,7 +21,7 @@ bool isNumber(const std::string& text, double& value) {
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-/** A date in UTC, 'T' or a blank before the time of day, which may have a fraction and end in Z. */
+/** Parses a date in UTC: 'T' or a blank before the time of day, which may have a fraction and end in Z. */
 bool isDate(std::string text, types::Time& time) {
     if (text.ends_with('Z')) text.pop_back();
     if (text.size() < std::size("2026-11-22 12:55:44") - 1) return false;

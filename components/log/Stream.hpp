@@ -1,5 +1,5 @@
 #pragma once
-// What a log holds, whatever its format.
+// The contents of a log, independent of its format.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,53 +13,53 @@
 
 namespace insonify::log {
 
-/** Keys and values that a stream carries. */
+/** The keys and values of a stream. */
 using Metadata = std::map<std::string, std::string>;
 
-/** What a log declares of one stream, and what it holds of it. */
+/** A log's declaration of one stream, and its contents. */
 struct Stream {
     std::string name;                ///< "task.port".
-    std::string type;                ///< Rock's name of its samples; of a type that is not known, the log's own.
-    std::optional<size_t> sample{};  ///< Place of the type in types::SampleTypes; none: it is not known.
+    std::string type;                ///< Rock's name of its samples' type; for an unknown type, the log's own.
+    std::optional<size_t> sample{};  ///< Index of the type in types::SampleTypes; none: unknown.
     Metadata metadata{};
     size_t count = 0;             ///< Samples [1].
     types::Time first{}, last{};  ///< World time of its first and last sample, 0 without samples.
-    std::string topic{};          ///< Of its messages, "/auv/sonar"; empty in a log that has none.
+    std::string topic{};          ///< Of its messages, "/auv/sonar"; empty in logs without topics.
 
-    /** Whether its samples are of T. */
+    /** Whether its samples have type T. */
     template <class T>
     bool holds() const {
         return sample == types::sampleIndex<T>();
     }
-    /** Mean rate between the first sample and the last; 0 where there is none [Hz]. */
+    /** Returns the mean rate between the first sample and the last; 0: undefined [Hz]. */
     double rate() const {
         const double span = (last - first).seconds();
         return span > 0 ? static_cast<double>(count - 1) / span : 0;
     }
-    /** Of its metadata; empty where it is not there. */
+    /** Returns a metadatum of the stream; empty: there is none. */
     std::string metadatum(const std::string& key) const {
         const auto found = metadata.find(key);
         return found == metadata.end() ? "" : found->second;
     }
 };
 
-/** Where one sample stands in a log. */
+/** The place of one sample in a log. */
 struct SampleRef {
     size_t stream = 0;       ///< Index into Reader::streams().
     types::Time received{};  ///< When it was logged.
     types::Time time{};      ///< When it was true in the world.
-    uint64_t position = 0;   ///< Of its bytes in the file, or of what is compressed and holds it [B].
-    size_t number = 0;       ///< Its place in Reader::samples() [1].
+    uint64_t position = 0;   ///< Of its bytes in the file, or of the compressed block around it [B].
+    size_t number = 0;       ///< Its index in Reader::samples() [1].
 };
 
-/** A part of a file that is no log. */
+/** A part of a file that is not readable as a log. */
 struct Gap {
     uint64_t from = 0, to = 0;  ///< [B]
-    uint64_t byte = 0;          ///< The first that is wrong [B].
+    uint64_t byte = 0;          ///< The first wrong byte [B].
     std::string what;           ///< What is wrong with it.
 };
 
-/** Adds a gap; one that begins where the last ends makes that longer. */
+/** Adds a gap; a gap that begins where the last one ends extends it. */
 inline void addGap(std::vector<Gap>& gaps, Gap gap) {
     if (!gaps.empty() && gaps.back().to == gap.from)
         gaps.back().to = gap.to;
@@ -67,20 +67,19 @@ inline void addGap(std::vector<Gap>& gaps, Gap gap) {
         gaps.push_back(std::move(gap));
 }
 
-/** What is done where a file goes on with something that cannot be: read no further, or look for what goes on. */
+/** What to do at damage: stop reading, or search for the next readable part. */
 enum class AtDamage { Stop, Skip };
 
-/** Bytes that are not what they must be: the first of them, counted from the beginning of the file or of the buffer
- *  that was read, and why. */
+/** Invalid bytes: the position of the first, from the beginning of the file or buffer, and the reason. */
 struct FormatError : std::runtime_error {
     FormatError(uint64_t at, const std::string& what) : std::runtime_error(what), byte(at) {}
     uint64_t byte;
 };
 
-/** "2026-11-22 12:55:44.500000" (UTC) of a time of this century, "2.500000 s" of one that counts from a start. */
+/** Returns "2026-11-22 12:55:44.500000" (UTC) for a time of this century, "2.500000 s" for a time since a start. */
 std::string readable(types::Time time);
 
-/** The reverse: such a date, down to the second or finer, or the seconds after `start`. Throws ConfigError that names
+/** Parses a date of that form, to the second or finer, or seconds after `start`. Throws ConfigError that names
  *  `what`. */
 types::Time readTime(const std::string& text, const std::string& what, types::Time start = {});
 

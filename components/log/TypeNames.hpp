@@ -1,5 +1,5 @@
 #pragma once
-// What Rock calls a sample's type, in logs of either format.
+// Rock's names of samples' types, in logs of either format.
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
@@ -23,7 +23,7 @@ template <class T>
 concept Numeric = std::is_arithmetic_v<T>;
 template <class T>
 concept Text = std::is_same_v<T, std::string>;
-/** Eigen types in Rock, opaque there: they travel as /wrappers/Matrix and /wrappers/Quaternion. */
+/** Eigen types, opaque in Rock: they are sent as /wrappers/Matrix and /wrappers/Quaternion. */
 template <class T>
 concept Matrix = std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::dvec4> || std::is_same_v<T, glm::dmat3>;
 template <class T>
@@ -36,7 +36,7 @@ void forEachField(V&& visit) {
     T::describe(value, visit);
 }
 
-/** Whether Rock has T only by way of opaque (Eigen) fields, so that its logged type is another, named `..._m`. */
+/** Whether T has opaque (Eigen) fields in Rock, so that its logged type is another one, named `..._m`. */
 template <class T>
 bool hasOpaque() {
     if constexpr (Vector<T>)
@@ -61,7 +61,7 @@ std::string numericName() {
         return (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T)) + "_t";
 }
 
-/** Name of T as logged: "/base/samples/RigidBodyState_m", "/std/vector</float>". */
+/** Returns the name of T in logs: "/base/samples/RigidBodyState_m", "/std/vector</float>". */
 template <class T>
 std::string typelibName() {
     if constexpr (Numeric<T>)
@@ -84,7 +84,7 @@ std::string typelibName() {
         return std::string(T::type_name) + (hasOpaque<T>() ? "_m" : "");
 }
 
-/** Name of T in Rock's C++: without the suffix of opaques. */
+/** Returns the name of T in Rock's C++, without the suffix of opaques. */
 template <class T>
 std::string cxxName() {
     if constexpr (types::Described<T>)

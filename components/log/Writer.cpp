@@ -15,7 +15,7 @@ void McapConfig::check(types::Diagnostics& diagnostics) const {
             diagnostics.push_back({path, "is \"" + *stream.topic + "\"; must be words of letters, digits and _, none " +
                                              "beginning with a digit, as /auv/sonar"});
         else if (const auto [other, is_new] = streams_by_topic.emplace(topic, name); !is_new)
-            diagnostics.push_back({path, "is " + topic + ", as that of " + other->second + "; must be another"});
+            diagnostics.push_back({path, "is " + topic + ", the topic of " + other->second + "; must be another"});
     }
 }
 

@@ -18,9 +18,9 @@ namespace insonify::log {
  *      const size_t ping = log->addStream<types::Sonar>("sonar.ping");
  *      log->write(ping, received, sample);
  *
- *  Samples gather in memory and go to the file with flush(), close(), or when a megabyte has come together. A write
- *  that fails throws std::runtime_error with the system's reason and leaves what was flushed before, whole. After it
- * the writer takes nothing more until next(), and kept() is the number of samples that are in files. For one thread. */
+ *  Samples are collected in memory and written by flush(), close(), or after each megabyte. A failed write throws
+ *  std::runtime_error with the system's reason; earlier flushed samples stay intact. After a failure the writer accepts
+ *  no sample until next(), and kept() is the number of samples in files. For one thread. */
 class Writer {
 public:
     virtual ~Writer() = default;
@@ -30,35 +30,34 @@ public:
     size_t addStream(const std::string& name, const Metadata& metadata = {}) {
         return add(types::sampleIndex<T>(), name, metadata);
     }
-    /** The same for the type at a place of types::SampleTypes. */
+    /** The same for the type with an index in types::SampleTypes. */
     virtual size_t add(size_t sample, const std::string& name, const Metadata& metadata) = 0;
-    /** Adds a sample, received at this moment. Throws std::runtime_error for one that the format cannot hold. */
+    /** Adds a sample, received at this time. Throws std::runtime_error for a sample that the format cannot store. */
     template <class T>
     void write(size_t stream, types::Time received, const T& sample) {
         put(stream, received, received, types::SampleView(&sample));
     }
-    /** @param time when it was true, of one that bears no stamp. */
+    /** @param time when the sample was true, if it has no stamp */
     virtual void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) = 0;
 
-    /** Declares a stream as another log does: with all that it declares there where both are of one format, else for
-     *  its samples' type; with `more` metadata, of keys that it has not. Throws ConfigError for a type that the format
-     *  cannot hold. */
+    /** Declares a stream as in another log: with its whole declaration if both logs have one format, else by its
+     *  samples' type; with `more` metadata of new keys. Throws ConfigError for a type that the format cannot store. */
     virtual size_t addLike(const Reader& log, size_t stream, const Metadata& more = {}) = 0;
-    /** Adds a sample of such a stream: byte for byte where both logs are of one format, else what it says. */
+    /** Adds a sample of such a stream: byte for byte if both logs have one format, else converted. */
     virtual void copy(size_t stream, Reader& log, const SampleRef& at) = 0;
 
-    virtual void flush() = 0;  ///< Hands all samples to the system: they survive the end of this process.
-    virtual void close() = 0;  ///< Flushes, ends the file. Nothing may be written after it.
-    /** Closes and goes on in another file, with the same streams; after a write that failed without what had not been
-     *  flushed, and again where next() itself has failed. Throws as createLog and close(). */
+    virtual void flush() = 0;  ///< Passes all samples to the system: they survive the end of this process.
+    virtual void close() = 0;  ///< Flushes and ends the file. Nothing may be written afterwards.
+    /** Closes and continues in another file, with the same streams. After a failed write, omits the samples that were
+     *  not flushed; may be repeated if next() itself has failed. Throws as createLog and close(). */
     virtual void next(std::filesystem::path path) = 0;
-    virtual bool isOpen() const = 0;  ///< Not after a write that failed.
+    virtual bool isOpen() const = 0;  ///< False after a failed write.
     virtual const std::filesystem::path& path() const = 0;
-    virtual uint64_t size() const = 0;  ///< Of the file, with what is not flushed [B].
+    virtual uint64_t size() const = 0;  ///< Of the file, including unflushed samples [B].
     virtual uint64_t kept() const = 0;  ///< Samples that were flushed, in all files [1].
 };
 
-/** What of a stream's messages is not as usual. */
+/** Settings of one stream's messages that differ from the defaults. */
 struct McapStream {
     std::optional<std::string> topic, frame_id, child_frame_id;
 
@@ -66,16 +65,17 @@ struct McapStream {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"topic", "", "as in ROS, /auv/sonar; absent: /task/port"}, self.topic);
-        visit(Field{"frame_id", "", "of its messages; absent: the sonar's, of poses what they name"}, self.frame_id);
-        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: what its pose names"}, self.child_frame_id);
+        visit(Field{"frame_id", "", "of its messages; absent: the sonar's, or the frame in the poses"}, self.frame_id);
+        visit(Field{"child_frame_id", "", "the body of an Odometry; absent: the body in its pose"},
+              self.child_frame_id);
     }
 };
 
-/** How samples become messages in an MCAP file: by default as dds::PublisherTask sends them. */
+/** How samples become messages in an MCAP file; by default as dds::PublisherTask sends them. */
 struct McapConfig : ros::MessageOptions {
     bool transforms = true;
     std::map<std::string, McapStream> streams;  ///< By name, "task.port".
-    types::RosNames names;                      ///< Namespace and frame prefix of the deployment; no key.
+    types::RosNames names;                      ///< Namespace and frame prefix of the deployment; not a key.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -90,8 +90,8 @@ struct McapConfig : ros::MessageOptions {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Creates a log, or empties it; the format follows from the name, *.mcap or pocolog. Throws ConfigError when that
- *  cannot be done or another Writer, of this process or not, has it open. */
+/** Creates or empties a log; its name decides the format, *.mcap or pocolog. Throws ConfigError when this fails or a
+ *  Writer of any process has it open. */
 std::unique_ptr<Writer> createLog(const std::filesystem::path& path, const McapConfig& mcap = {});
 
 }  // namespace insonify::log

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::chrono::seconds retry_period{1};
 
-/** x.1.log of x.0.log, and of x.log. */
+/** Returns x.1.log for x.0.log and for x.log. */
 std::filesystem::path sequelOf(const std::filesystem::path& log) {
     if (sequenceNumber(log)) return nextInSequence(log);
     return log.parent_path() / (log.stem().string() + ".1" + log.extension().string());
@@ -28,7 +28,7 @@ LogThread::~LogThread() {
     try {
         finish();
     } catch (const std::exception&) {
-        // A destructor has nobody to tell; finish() does.
+        // A destructor cannot report errors; finish() does.
     }
 }
 
@@ -109,12 +109,12 @@ void LogThread::work(Entry* entry) {
     if (health_.fails) tryAgain();
     try {
         if (entry) health_.fails ? pass(*entry) : write(*entry);
-        entry = nullptr;  // a flush that fails is not of this entry
+        entry = nullptr;  // a failing flush does not concern this entry
         if (Clock::now() < next_flush_) return;
         next_flush_ = Clock::now() + flush_period_;
         if (!health_.fails) log_.flush();
     } catch (const std::exception& error) {
-        const bool is_refused = log_.isOpen();  // the file is there, and cannot hold this
+        const bool is_refused = log_.isOpen();  // the file works, and cannot store this entry
         if (at_failure_ == AtFailure::Throw || (is_refused && (!entry || entry->declaration))) throw;
         is_refused ? refuse(*entry, error.what()) : beginOutage(error.what());
         if (entry && !is_refused) pass(*entry);
@@ -138,7 +138,7 @@ void LogThread::write(Entry& entry) {
 void LogThread::pass(Entry& entry) {
     if (entry.declaration) return pending_.push_back(std::exchange(entry.declaration, nullptr));
     ++handed_;
-    entry.sample = types::AnySample{};  // a large sample goes back to its writer's pool
+    entry.sample = types::AnySample{};  // returns a large sample to its writer's pool
 }
 
 void LogThread::refuse(Entry& entry, const std::string& why) {
@@ -149,7 +149,7 @@ void LogThread::refuse(Entry& entry, const std::string& why) {
 }
 
 void LogThread::beginOutage(const std::string& why) {
-    const bool is_empty = kept_at_opening_ == log_.kept();  // goes on in the same file, which holds nothing
+    const bool is_empty = kept_at_opening_ == log_.kept();  // continues in the same empty file
     sequel_ = is_empty ? log_.path() : sequelOf(log_.path());
     next_try_ = Clock::now() + retry_period;
     std::lock_guard lock(mutex_);

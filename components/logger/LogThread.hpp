@@ -13,40 +13,40 @@
 
 namespace insonify::logger {
 
-/** What a log does when its file cannot be written: it throws, or loses samples, and goes on in another file as soon as
- *  that can be written. */
+/** The behaviour of a log whose file cannot be written: it throws, or drops samples and continues in another file as
+ *  soon as that can be written. */
 enum class AtFailure { Throw, Heal };
 
-/** How a log that heals is. */
+/** The state of a log that heals. */
 struct LogHealth {
     uint64_t outages = 0;        ///< Times that the file could not be written.
-    uint64_t lost = 0;           ///< Samples of outages that are over.
-    uint64_t refused = 0;        ///< Samples that the format cannot hold.
+    uint64_t lost = 0;           ///< Samples of past outages.
+    uint64_t refused = 0;        ///< Samples that the format cannot store.
     bool fails = false;          ///< There is an outage.
-    std::string failure;         ///< The reason of the last.
-    std::filesystem::path file;  ///< In which the log has gone on after the last.
+    std::string failure;         ///< The reason of the last outage or refusal.
+    std::filesystem::path file;  ///< The file in which the log continued after the last outage.
 };
 
 /** Declares a stream. */
 using Declare = std::function<size_t(log::Writer&)>;
 
-/** Writes samples to a log on a thread of its own, in the order in which they were pushed, and flushes in between.
+/** Writes samples to a log on its own thread, in the order of push(), and flushes in between.
  *
- *  Between push() and the file lies a ring of fixed size. Where the file is slower than the samples for long, push()
- *  waits for room. What fails with the file is thrown once, by the next push() or by finish(), with the number of
- *  samples that were pushed and are not in the file. Where it is to heal instead, samples are lost until the log can go
- *  on in its next file, x.0.log in x.1.log, which is tried each second; finish() throws when it cannot to the end. */
+ *  A ring of fixed size is between push() and the file. If the file is slower than the samples for long, push() waits
+ *  for space. An error of the file is thrown once, by the next push() or by finish(), with the number of pushed samples
+ *  that are not in the file. With AtFailure::Heal, samples are dropped instead until the log can continue in its next
+ *  file, x.1.log after x.0.log, which is tried each second. finish() throws if this does not succeed until the end. */
 class LogThread {
 public:
-    /** `log` and `rotation` are the thread's alone until finish(). Flushes every `flush_period` [s]; `capacity` is
-     *  above 0. */
+    /** Until finish(), `log` and `rotation` are used only by the thread. Flushes every `flush_period` [s]; `capacity`
+     *  is above 0. */
     LogThread(log::Writer& log, Rotation& rotation, size_t capacity, double flush_period,
               AtFailure at_failure = AtFailure::Throw);
     ~LogThread();
     LogThread(const LogThread&) = delete;
     LogThread& operator=(const LogThread&) = delete;
 
-    /** Takes a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
+    /** Adds a sample of a stream, received at that time. Throws std::runtime_error once the file has failed. */
     template <class Sample>
     void push(size_t stream, types::Time received, Sample sample) {
         Entry& entry = freeEntry();
@@ -56,10 +56,10 @@ public:
         ++pushed_;
         commit();
     }
-    /** Declares a stream before the samples that are pushed after it. Throws as push(). */
+    /** Declares a stream before the samples that are pushed later. Throws as push(). */
     void declare(Declare declaration);
-    /** Writes and flushes what waits, and ends the thread. Throws std::runtime_error if the file has failed and push()
-     *  has not told it. */
+    /** Writes and flushes the waiting samples, and ends the thread. Throws std::runtime_error if the file has failed
+     *  and push() has not thrown. */
     void finish();
     LogHealth health() const;
 
@@ -77,8 +77,8 @@ private:
     void run();
     void writeAll();
     void write(Entry& entry);
-    void work(Entry* entry);  ///< One turn of the thread: an entry, where there is one, and what is due.
-    void pass(Entry& entry);  ///< Lets a sample go, written or lost; a stream waits for the next file.
+    void work(Entry* entry);  ///< One iteration of the thread: an entry, if there is one, and due flushes.
+    void pass(Entry& entry);  ///< Releases a sample, written or lost; a stream waits for the next file.
     void refuse(Entry& entry, const std::string& why);
     void beginOutage(const std::string& why);
     void tryAgain();
@@ -86,23 +86,23 @@ private:
 
     log::Writer& log_;
     Rotation& rotation_;
-    const uint64_t kept_before_;  ///< Samples that were in the log when the thread began.
+    const uint64_t kept_before_;  ///< Samples in the log when the thread began.
     uint64_t pushed_ = 0;
     std::chrono::nanoseconds flush_period_;
     const AtFailure at_failure_;
-    uint64_t handed_ = 0;           ///< Samples for the file so far, lost ones too.
+    uint64_t handed_ = 0;           ///< Samples for the file so far, including lost samples.
     uint64_t kept_at_opening_ = 0;  ///< Samples in files when the present file was opened.
-    std::vector<Declare> pending_;  ///< Streams that came in an outage.
-    std::filesystem::path sequel_;  ///< Where the log is to go on.
+    std::vector<Declare> pending_;  ///< Streams declared in an outage.
+    std::filesystem::path sequel_;  ///< The log's next file.
     Clock::time_point next_try_, next_flush_;
-    LogHealth health_;  ///< Changed by the thread, with the mutex.
+    LogHealth health_;  ///< Changed by the thread, under the mutex.
     mutable std::mutex mutex_;
     std::condition_variable work_, room_;
     std::vector<Entry> ring_;
     size_t first_ = 0, count_ = 0;  ///< The thread owns ring_[first_] while count_ > 0; push() the entries after them.
     bool ending_ = false;
     bool failed_ = false;
-    std::string failure_;  ///< Not told yet.
+    std::string failure_;  ///< Not thrown yet.
     uint64_t kept_ = 0;    ///< Samples in the log when it failed.
     std::thread thread_;
 };

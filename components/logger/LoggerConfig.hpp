@@ -10,7 +10,7 @@
 
 namespace insonify::logger {
 
-/** Place of a file in its sequence: 3 for x.3.log; none for x.log. */
+/** Returns a file's number in its sequence: 3 for x.3.log; none for x.log. */
 inline std::optional<unsigned> sequenceNumber(const std::filesystem::path& log) {
     const std::string digits = log.stem().extension().string();
     unsigned number = 0;
@@ -44,20 +44,20 @@ struct LoggerConfig {
                     "replaced"},
               self.file);
         visit(Field{"property_file", "",
-                    "log of all tasks' properties, in the folder of the other, a stream for each; empty: none"},
+                    "log of all tasks' properties, in the folder of `file`, with a stream for each; empty: none"},
               self.property_file);
-        visit(Field{"max_file_size", "B", "from this size on the log goes on in NAME.1.log and so forth", 1e6, 1e15},
+        visit(Field{"max_file_size", "B", "above this size the log continues in NAME.1.log and so on", 1e6, 1e15},
               self.max_file_size);
-        visit(Field{"max_file_duration", "s", "after this time the log goes on in NAME.1.log and so forth", 0.1, 1e9},
+        visit(Field{"max_file_duration", "s", "after this time the log continues in NAME.1.log and so on", 0.1, 1e9},
               self.max_file_duration);
         visit(Field{"flush_period", "s", "at most this much is lost when the process is killed", 0.001, 1},
               self.flush_period);
-        visit(Field{"queue", "1", "samples that may wait for the file beyond those in the ports' buffers", 1, 65536},
+        visit(Field{"queue", "1", "max samples waiting for the file, in addition to the ports' buffers", 1, 65536},
               self.queue);
-        visit(Field{"record", "", "false: samples are passed over until it is true again; may be set while running"},
+        visit(Field{"record", "", "false: samples are skipped until it is true again; may be set while running"},
               self.record);
-        visit(Field{"metadata", "", "keys and values that every stream of the log carries"}, self.metadata);
-        visit(Field{"mcap", "", "how samples become ROS 2 messages; of a log that ends in .mcap"}, self.mcap);
+        visit(Field{"metadata", "", "keys and values in the metadata of every stream"}, self.metadata);
+        visit(Field{"mcap", "", "how samples become ROS 2 messages, for a log that ends in .mcap"}, self.mcap);
     }
     void check(types::Diagnostics& diagnostics) const {
         const auto isLog = [](const std::filesystem::path& path) {
@@ -75,7 +75,7 @@ struct LoggerConfig {
                                                         "'; it must be a file name that ends in .log, as in "
                                                         "properties.0.log, or empty"});
         if (std::filesystem::path(file).filename() == property_file)
-            diagnostics.push_back({"property_file", "is '" + property_file + "', as `file` is; it must be another"});
+            diagnostics.push_back({"property_file", "is '" + property_file + "', the same as `file`; it must differ"});
     }
 };
 

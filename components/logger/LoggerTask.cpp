@@ -15,7 +15,7 @@ namespace insonify::logger {
 
 namespace {
 
-/** A text in quotes, as JSON has it. */
+/** Returns a text in quotes, as in JSON. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text)
@@ -26,7 +26,7 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-/** Adds what the first sample of a stream tells of all of them. */
+/** Adds what the first sample of a stream states for all of its samples. */
 template <class T>
 log::Metadata withNames(log::Metadata metadata, const T& sample) {
     if constexpr (types::NamesObjects<T>) {
@@ -42,17 +42,17 @@ constexpr size_t sampleOf(const Input&) {
     return types::sampleIndex<typename Input::Sample>();
 }
 
-/** Declares a stream. @param sample place of its type in types::SampleTypes. */
+/** Declares a stream. @param sample index of its type in types::SampleTypes */
 Declare declaration(size_t sample, const framework::StreamName& stream, log::Metadata metadata) {
     return [sample, name = stream.path(), metadata = std::move(metadata)](log::Writer& log) {
         return log.add(sample, name, metadata);
     };
 }
 
-/** @param streams those of the inputs before. */
+/** @param streams those of the earlier inputs */
 void checkInput(const framework::InputPortBase& port, const std::string& stream, std::set<std::string>& streams) {
     if (port.channels().size() > 1)
-        throw types::ConfigError("", port.path(), "has several connections; give each a port of its own on the logger");
+        throw types::ConfigError("", port.path(), "has several connections; give each its own port on the logger");
     if (!streams.insert(stream).second)
         throw types::ConfigError("", port.path(), "logs " + stream + " a second time; connect it once");
 }
@@ -64,7 +64,7 @@ std::string textOf(const types::Mount& mount) {
                        mount.roll_deg, mount.pitch_deg, mount.yaw_deg);
 }
 
-/** Properties of the deployment by their other names, with what they are now. */
+/** Returns the deployment's properties by their aliases, with their present values. */
 std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector<types::TaskRecord>& records) {
     std::vector<PropertyAlias> aliases;
     for (const framework::PropertyAlias& alias : framework::propertyAliases(logger)) {
@@ -77,8 +77,8 @@ std::vector<PropertyAlias> aliasesOf(const LoggerTask& logger, const std::vector
     return aliases;
 }
 
-/** How far readers of a log are off, because its pings have bin_duration in whole microseconds: the sonar of a port has
- *  bins of another length. Empty: they are not, or that is not known. */
+/** Returns a warning if the sonar of a port has bins of another length than its pings' whole microseconds of
+ *  bin_duration, with the resulting error of a log's readers. Empty: no error, or unknown. */
 std::string roundingText(const framework::InputPortBase& port, const types::Sonar& ping) {
     const auto rounding = framework::upstreamValue(port, {"range_rounding"});
     const auto range = framework::upstreamNumber(port, {"range"});
@@ -110,11 +110,11 @@ std::vector<std::string> LoggerTask::notices() const {
     if (inputs_.empty()) all.emplace_back("nothing is connected to it: the log will be empty");
     all.insert(all.end(), frame_notices_.begin(), frame_notices_.end());
     if (health_.lost > 0)
-        all.push_back(fmt::format("{} samples are in no file, of {} times that it could not be written; the last: {}",
+        all.push_back(fmt::format("{} samples are in no file, because it could not be written {} times; the last: {}",
                                   health_.lost, health_.outages, health_.failure));
     if (health_.refused > 0)
-        all.push_back(fmt::format("{} samples are in no file, which cannot hold them; the last: {}", health_.refused,
-                                  health_.failure));
+        all.push_back(fmt::format("{} samples are in no file, because it cannot store them; the last: {}",
+                                  health_.refused, health_.failure));
     return all;
 }
 
@@ -122,7 +122,7 @@ bool LoggerTask::heals() const { return framework::mayLose(environment()); }
 
 void LoggerTask::followHealth() {
     const LogHealth before = std::exchange(health_, thread_->health());
-    if (health_.refused > before.refused && before.refused == 0) warn("a sample is passed over: " + health_.failure);
+    if (health_.refused > before.refused && before.refused == 0) warn("a sample is skipped: " + health_.failure);
     if (health_.fails) {
         if (state() != framework::TaskState::RunTimeError)
             error(health_.failure + "; samples are lost until a file can be written");
@@ -236,7 +236,7 @@ bool LoggerTask::configureHook() {
     removeSequels(path);
     log::McapConfig mcap = config->mcap;
     mcap.names = environment().names;
-    mcap.names.remaps.clear();  // a log is no node
+    mcap.names.remaps.clear();  // a log is not a node
     log_ = log::createLog(path, mcap);
     rotation_.emplace(*config, *log_);
     frame_notices_.clear();
@@ -331,7 +331,8 @@ void LoggerTask::cleanupHook() {
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<LoggerTask>("logger::LoggerTask", "writes what it is connected to into a pocolog or MCAP file");
+    registry.add<LoggerTask>("logger::LoggerTask",
+                             "writes the samples of its connected ports to a pocolog or MCAP file");
 }
 
 }  // namespace insonify::logger

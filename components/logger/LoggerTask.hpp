@@ -18,36 +18,35 @@
 
 namespace insonify::logger {
 
-/** Writes what it is connected to into a pocolog file that Rock's tools open, or, when its name ends in .mcap, as
- *  ROS 2 messages into an MCAP file, with metadata.yaml beside it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
+/** Writes the samples of its connected ports to a pocolog file for Rock's tools or, when the file's name ends in .mcap,
+ *  as ROS 2 messages to an MCAP file with metadata.yaml next to it for `ros2 bag`: see log/mcap/SampleWriter.hpp.
  *
- *  Ports: an input for each connection that names one, whatever the name, of any type in types/Samples.hpp; give
- *  it a buffer. The stream is named after its source, `task.port`; one with an alias after that, a replayed one as it
- *  was. Samples bear the time at which they were true and
- *  the time at which they reached this task. Every stream carries the seed of the run in its metadata, and the plans
- * that the tasks had at its first sample, with which it is declared, the first one of the log the deployment as well;
- * streams without samples come at the end. One of truth has the names of the objects as well (`insonify_objects`, a
- * JSON list); one of pings the mount of its sonar in the body and the stream of the body's poses (`insonify_mount`, a
- * JSON object, `insonify_body`). The properties of all tasks go into `property_file` at each start; of several loggers
- * that name one, the first does it.
+ *  Ports: an input for each connection that names one, of any name and of any type in types/Samples.hpp; give it a
+ *  buffer. A stream is named after its source, `task.port`, or the source's alias; a replayed stream keeps its recorded
+ *  name. A sample has the time at which it was true and the time at which it reached this task. Metadata of every
+ *  stream: the seed of the run, and the plans of the tasks at the stream's first sample, with which it is declared. The
+ *  first stream of the log also has the deployment. Streams without samples are declared at the end. Streams of truth
+ *  have the names of the objects (`insonify_objects`, a JSON list). Streams of pings have the mount of their sonar in
+ *  the body and the stream of the body's poses (`insonify_mount`, a JSON object, `insonify_body`). The properties of
+ *  all tasks are written to `property_file` at each start; if several loggers name the same file, the first one writes
+ *  it.
  *
- *  The log of a shard is what `log cut` makes of the whole run's. It is not flushed before its end, for it is of use
- *  whole alone, and where an MCAP file is flushed depends on how fast the run is.
+ *  The log of a shard equals that of `log cut` from the whole run. It is not flushed before its end, because only a
+ *  complete log is useful, and the places of flushes in an MCAP file depend on the speed of the run.
  *
- *  The file is opened by configure (what cannot be written refuses it), written by a thread of its own, flushed every
- *  `flush_period`, continued in NAME.1.log where `max_file_size` or `max_file_duration` says so, and finished with its
- *  index by cleanup. A file slower than the samples makes this task wait, and then its ports' buffers count what they
- *  lose. In realtime a disk that is full or broken is RunTimeError, in which samples are lost and counted, until the
- * log goes on in its next file, which is tried each second; a sample that the format cannot hold is passed over.
- * Outside of realtime, where nothing else may be lost, both end in Exception, which states how many samples are lost.
- * What was flushed stays. */
+ *  configure opens the file (and fails if it cannot be written), a separate thread writes it and flushes every
+ *  `flush_period`, and cleanup finishes it with its index. The log continues in NAME.1.log after `max_file_size` or
+ *  `max_file_duration`. If the file is slower than the samples, this task waits, and its ports' buffers count the lost
+ *  samples. In realtime a full or broken disk causes RunTimeError: samples are lost and counted until the log continues
+ *  in its next file, which is tried each second. A sample that the format cannot store is skipped. Outside of realtime,
+ *  where no other sample may be lost, both cause Exception with the number of lost samples. Flushed samples stay. */
 class LoggerTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
 
     framework::Properties<LoggerConfig> config{this};
 
-    /** Throws ConfigError for a type that a log cannot hold. */
+    /** Throws ConfigError for a type that a log cannot store. */
     framework::InputPortBase* makeInput(const std::string& port, framework::OutputPortBase& source) override;
     std::vector<std::string> notices() const override;
 
@@ -56,7 +55,7 @@ private:
     template <class T>
     struct Stream {
         const framework::StreamName name;   ///< Of the source.
-        std::optional<size_t> number = {};  ///< In the log, once it is declared.
+        std::optional<size_t> number = {};  ///< In the log, once declared.
     };
 
     bool configureHook() override;
@@ -70,35 +69,35 @@ private:
     /** The values of all properties but `record`. */
     std::map<std::string, types::PropertyValue> fixedValues() const;
     std::filesystem::path makePath(const std::string& file) const;
-    /** Whether no other logger of the deployment writes the same property file and comes first. */
+    /** Whether this is the first logger of the deployment that writes this property file. */
     bool logsProperties();
     bool heals() const;
     void followHealth();
-    void recordProperties();            ///< What of all tasks' properties has changed since the last time.
-    log::Metadata runMetadata() const;  ///< What all streams of the run carry.
-    /** Metadata of the log's next stream, with the current plans. */
+    void recordProperties();            ///< The properties of all tasks that changed since the last call.
+    log::Metadata runMetadata() const;  ///< Common to all streams of the run.
+    /** Returns the metadata of the log's next stream, with the current plans. */
     log::Metadata streamMetadata(const framework::StreamName& stream);
-    /** With what is known of the sonar whose pings an input takes. */
+    /** Adds what is known of the sonar whose pings an input takes. */
     template <class Input>
     log::Metadata metadataOf(const Input& input);
-    /** The first stream of poses in the log that the pings of a port depend on; empty: none. */
+    /** Returns the first stream of poses in the log that the pings of a port depend on; empty: none. */
     std::string bodyOf(const framework::InputPortBase& port) const;
-    /** Frames to which different sonars lay claim in an MCAP file. */
+    /** Returns the frames that several sonars claim in an MCAP file. */
     std::vector<std::string> sharedFrames() const;
 
     framework::DynamicInputs<types::SampleTypes, Stream> inputs_{this};
     std::unique_ptr<log::Writer> log_;
     std::optional<Rotation> rotation_;
     std::optional<PropertyLog> properties_;
-    uint64_t recorded_changes_ = 0;  ///< Of the tasks' records, with the last record of properties.
+    uint64_t recorded_changes_ = 0;  ///< Changes of the tasks' records at the last record of properties.
     std::optional<LogThread> thread_;
     std::vector<std::string> frame_notices_;
     LogHealth health_;                                        ///< As reported.
-    std::map<std::string, types::PropertyValue> configured_;  ///< With these values.
+    std::map<std::string, types::PropertyValue> configured_;  ///< The property values at configure.
     size_t declared_ = 0;                                     ///< Streams in the log.
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::logger

@@ -6,16 +6,16 @@
 
 namespace insonify::logger {
 
-/** Removes the files that follow `log` from an earlier run: Rock would take them for a part of this one. Throws
- *  ConfigError when another logger writes the last of them, before any is removed. */
+/** Removes the files that follow `log` from an earlier run, because Rock would read them as parts of this run. Throws
+ *  ConfigError when another logger writes the last of them, before removing any. */
 void removeSequels(const std::filesystem::path& log);
 
-/** Decides when a log goes on in its next file: x.0.log, x.1.log... */
+/** Decides when a log continues in its next file: x.0.log, x.1.log... */
 class Rotation {
 public:
     Rotation(const LoggerConfig& config, log::Writer& log);
 
-    /** Goes on in the next file, if this one is full or old enough, before a sample received at `now`. Throws as
+    /** Continues in the next file if this one is full or old enough, before a sample received at `now`. Throws as
      *  log::Writer::next. */
     void before(types::Time now);
 

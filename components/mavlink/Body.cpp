@@ -12,7 +12,7 @@ using Order = types::SenderClock::Order;
 
 constexpr types::Axes ned{types::WorldFrame::Ned};
 
-/** Of a later stamp since an earlier one, also where they have begun again between. */
+/** Returns the time from an earlier stamp to a later one, also across a wrap-around. */
 Time between(uint32_t earlier_ms, uint32_t later_ms) {
     return {int64_t{1000} * static_cast<int32_t>(later_ms - earlier_ms)};
 }
@@ -26,7 +26,7 @@ types::Pose poseAt(glm::dvec3 north_east_down, glm::dquat ned_from_body) {
     return pose;
 }
 
-constexpr const char* overtaken = "the stamp lies before that of the message before";
+constexpr const char* overtaken = "the stamp is before that of the previous message";
 constexpr const char* not_finite = "position and orientation are not finite, or the orientation has no length";
 
 }  // namespace
@@ -71,7 +71,7 @@ bool Body::listensTo(const Sender& sender, Time now) {
 }
 
 Body::Taken Body::take(const Frame& frame, uint64_t way, Time now) {
-    if (!listensTo({way, frame.component}, now)) return {{}, "of another sender while the first goes on"};
+    if (!listensTo({way, frame.component}, now)) return {{}, "from another sender while the first is still sending"};
     if (const auto attitude = messageOf<AttitudeQuaternion>(frame)) return take(*attitude, now);
     if (const auto position = messageOf<LocalPositionNed>(frame)) return take(*position, now);
     if (const auto estimate = messageOf<VisionPositionEstimate>(frame)) return take(*estimate, now);
@@ -81,7 +81,7 @@ Body::Taken Body::take(const Frame& frame, uint64_t way, Time now) {
 std::vector<uint32_t> Body::missing(Time now) const {
     const auto lacks = [&](Time came) { return types::elapsed(came, now) > patience; };
     std::vector<uint32_t> all;
-    if (config_.source == Source::Vision) return all;  // what is beside the autopilot sends of itself
+    if (config_.source == Source::Vision) return all;  // sources other than the autopilot send unasked
     if (lacks(attitude_came_)) all.push_back(AttitudeQuaternion::kind.message);
     if (lacks(position_came_)) all.push_back(LocalPositionNed::kind.message);
     return all;
@@ -90,7 +90,7 @@ std::vector<uint32_t> Body::missing(Time now) const {
 std::string Body::incomplete(const char* came, const char* lacks, Time now) {
     if (!incomplete_since_) incomplete_since_ = now;
     if (now - *incomplete_since_ < patience) return {};
-    return std::string(came) + " comes without " + lacks + ": the vehicle is to stream both";
+    return std::string(came) + " arrives without " + lacks + ": the vehicle must stream both";
 }
 
 Time Body::sinceBoot(uint32_t milliseconds) const {

@@ -7,18 +7,18 @@ namespace {
 
 constexpr uint8_t magic_1 = 0xfe, magic_2 = 0xfd;
 constexpr size_t header_1 = 6, header_2 = 10, sum_size = 2, signature_size = 13;  // [bytes]
-constexpr uint8_t is_signed = 1;                                                  // of the flags to be understood
+constexpr uint8_t is_signed = 1;                                                  // an incompatibility flag
 
-/** Where the parts of a frame lie that begins with the first of these bytes. */
+/** Sizes of the parts of a frame [bytes]. */
 struct Extent {
     size_t header, payload;
     size_t signature = 0;
-    uint8_t flags = 0;  ///< Those that must be understood.
+    uint8_t flags = 0;  ///< Incompatibility flags.
     size_t sum() const { return header + payload; }
     size_t whole() const { return sum() + sum_size + signature; }
 };
 
-/** None: the bytes end within it. */
+/** Returns the sizes of the frame that begins with the first byte; none when the bytes end within the frame. */
 std::optional<Extent> extentOf(std::span<const uint8_t> bytes) {
     if (bytes.size() < header_1) return {};
     if (bytes[0] == magic_1) {
@@ -55,7 +55,7 @@ bool addsUp(std::span<const uint8_t> bytes, const Extent& extent, uint8_t crc_ex
     return device::read<uint16_t>(bytes, extent.sum()) == sumOf(bytes.subspan(1, extent.sum() - 1), crc_extra);
 }
 
-/** Reads on from one place of a datagram to the next. */
+/** Reads the frames of a datagram in order. */
 class DatagramReader {
 public:
     DatagramReader(std::span<const uint8_t> bytes, std::span<const Kind> kinds) : bytes_(bytes), kinds_(kinds) {}
@@ -66,18 +66,18 @@ public:
     }
 
 private:
-    /** Bytes that have been dealt with. */
+    /** Reads a frame, if there is one, and returns the number of bytes to skip. */
     size_t step() {
         if (bytes_[0] != magic_1 && bytes_[0] != magic_2) return refuse("bytes that are no frame", 1);
         const auto extent = extentOf(bytes_);
         if (!extent) return refuse("a frame that is cut off", 1);
-        if ((extent->flags & ~is_signed) != 0) return refuse("a frame with flags that are not known", extent->whole());
+        if ((extent->flags & ~is_signed) != 0) return refuse("a frame with unknown flags", extent->whole());
         Frame frame = frameOf(bytes_, *extent);
         const auto kind = std::ranges::find(kinds_, frame.message, &Kind::message);
         if (kind == kinds_.end()) return extent->whole();
-        if (!addsUp(bytes_, *extent, kind->crc_extra)) return refuse("a frame whose sum is wrong", 1);
+        if (!addsUp(bytes_, *extent, kind->crc_extra)) return refuse("a frame with a wrong checksum", 1);
         if (frame.version == 1 && frame.payload.size() != kind->size)
-            return refuse("a frame of another length than its message has", extent->whole());
+            return refuse("a frame with a wrong length for its message", extent->whole());
         found_.frames.push_back(std::move(frame));
         return extent->whole();
     }
@@ -86,7 +86,7 @@ private:
         return size;
     }
 
-    std::span<const uint8_t> bytes_;  ///< What is left.
+    std::span<const uint8_t> bytes_;  ///< Remaining bytes.
     std::span<const Kind> kinds_;
     Datagram found_;
 };

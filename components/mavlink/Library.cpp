@@ -1,4 +1,4 @@
-// The component library mavlink: what a deployment loads that names a type of this namespace.
+// The component library mavlink, which is loaded by deployments that name a type of this namespace.
 #include "components/loader/Interface.hpp"
 #include "components/mavlink/PoseTask.hpp"
 

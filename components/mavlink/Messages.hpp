@@ -1,6 +1,6 @@
 #pragma once
-// Messages of MAVLink's common set, as far as poses need them. Each lists its fields in the order of the wire, which is
-// not that of the definitions: the largest come first. Of version 2 the fields that were added later are left out.
+// The messages of MAVLink's common set that poses need. Each lists its fields in the order of the wire, by decreasing
+// size, which differs from the order of the definitions. Extension fields of version 2 are omitted.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace insonify::mavlink {
 
-/** Who is there, once a second. */
+/** Announces a component, once a second. */
 struct Heartbeat {
     static constexpr Kind kind{0, 50, 9};
     static constexpr const char* name = "HEARTBEAT";
@@ -22,8 +22,8 @@ struct Heartbeat {
     }
 };
 
-/** How the vehicle lies: the quaternion turns vectors of the body (x forward, y right, z down) into the world (north,
- *  east, down); rates are those about the body's axes [rad/s]. */
+/** The attitude of the vehicle. The quaternion rotates vectors of the body (x forward, y right, z down) into the world
+ *  (north, east, down); rates are about the body's axes [rad/s]. */
 struct AttitudeQuaternion {
     static constexpr Kind kind{31, 246, 32};
     static constexpr const char* name = "ATTITUDE_QUATERNION";
@@ -37,7 +37,7 @@ struct AttitudeQuaternion {
     }
 };
 
-/** Where the vehicle is, and how fast: north, east, down of the origin of its estimate [m, m/s]. */
+/** Position and velocity of the vehicle: north, east, down of the origin of its estimate [m, m/s]. */
 struct LocalPositionNed {
     static constexpr Kind kind{32, 185, 28};
     static constexpr const char* name = "LOCAL_POSITION_NED";
@@ -50,8 +50,8 @@ struct LocalPositionNed {
     }
 };
 
-/** What something beside the autopilot says of the vehicle's pose: north, east, down [m], and the angles of its body (x
- *  forward, y right, z down) by yaw, then pitch, then roll [rad]. */
+/** An estimate of the vehicle's pose by a component other than the autopilot: north, east, down [m], and the angles of
+ *  the body (x forward, y right, z down) by yaw, then pitch, then roll [rad]. */
 struct VisionPositionEstimate {
     static constexpr Kind kind{102, 158, 32};
     static constexpr const char* name = "VISION_POSITION_ESTIMATE";
@@ -64,7 +64,7 @@ struct VisionPositionEstimate {
     }
 };
 
-/** Asks for something to be done. */
+/** Sends a command. */
 struct CommandLong {
     static constexpr Kind kind{76, 152, 33};
     static constexpr const char* name = "COMMAND_LONG";
@@ -80,11 +80,11 @@ struct CommandLong {
     }
 };
 
-/** Those that are heard: heartbeats tell that somebody is there. */
+/** The messages that are received. A heartbeat reveals a vehicle that sends nothing else. */
 inline constexpr std::array heard_kinds{Heartbeat::kind, AttitudeQuaternion::kind, LocalPositionNed::kind,
                                         VisionPositionEstimate::kind};
 
-/** Writes fields behind each other. */
+/** Appends fields to a payload. */
 struct PayloadWriter {
     Bytes& payload;
     template <class... Fields>
@@ -93,7 +93,7 @@ struct PayloadWriter {
     }
 };
 
-/** Reads fields one behind the other from bytes that are all there. */
+/** Reads consecutive fields from a payload that has all of them. */
 struct PayloadReader {
     std::span<const uint8_t> payload;
     size_t at = 0;
@@ -108,7 +108,7 @@ struct PayloadReader {
     }
 };
 
-/** A message as a frame. */
+/** Returns a message as a frame. */
 template <class Message>
 Frame frameOf(const Message& message, uint8_t system, uint8_t component, uint8_t sequence = 0, int version = 2) {
     Frame frame{version, sequence, system, component, Message::kind.message, {}};
@@ -117,8 +117,8 @@ Frame frameOf(const Message& message, uint8_t system, uint8_t component, uint8_t
     return frame;
 }
 
-/** The message of a frame; none where it is another one. Zeros that version 2 leaves out at the end are put back, and
- *  fields that were added later are passed over. */
+/** Returns the message of a frame; none when the frame has another message. Restores the trailing zeros that version 2
+ *  omits, and ignores extension fields. */
 template <class Message>
 std::optional<Message> messageOf(const Frame& frame) {
     if (frame.message != Message::kind.message) return {};

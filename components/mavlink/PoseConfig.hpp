@@ -11,13 +11,13 @@
 
 namespace insonify::mavlink {
 
-/** Which messages make a pose. */
+/** The messages that make a pose. */
 enum class Source {
-    Estimate,  ///< ATTITUDE_QUATERNION and LOCAL_POSITION_NED: what an autopilot takes its own pose for.
-    Vision     ///< VISION_POSITION_ESTIMATE: what something beside it does.
+    Estimate,  ///< ATTITUDE_QUATERNION and LOCAL_POSITION_NED: the estimate of an autopilot.
+    Vision     ///< VISION_POSITION_ESTIMATE: the estimate of another component.
 };
 
-/** One body's messages as one port's poses. */
+/** The source of the poses of one output port. */
 struct BodyConfig {
     std::string port = "pose";
     Source source = Source::Estimate;
@@ -27,17 +27,17 @@ struct BodyConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"port", "", "output port that connections lead from"}, self.port);
+        visit(Field{"port", "", "output port of the poses"}, self.port);
         visit(Field{"source", "",
                     "estimate: ATTITUDE_QUATERNION with LOCAL_POSITION_NED, of an autopilot; vision: "
                     "VISION_POSITION_ESTIMATE"},
               self.source);
         visit(Field{"system_id", "", "of the vehicle", 1, 255}, self.system_id);
-        visit(Field{"component_id", "", "of who speaks for it; absent: any, one at a time", 1, 255}, self.component_id);
+        visit(Field{"component_id", "", "of the sender; absent: any, one at a time", 1, 255}, self.component_id);
     }
 };
 
-/** How a vehicle is asked for its messages. */
+/** The request for a vehicle's messages. */
 struct RequestConfig {
     double rate = 20;
 
@@ -59,12 +59,13 @@ struct PoseConfig {
         using types::Field;
         visit(Field{"address", "", "numeric address to listen on; 0.0.0.0: every network of this machine"},
               self.address);
-        visit(Field{"port", "1", "of UDP; 0: any that is free, told in a notice", 0, 65535}, self.port);
-        visit(Field{"bodies", "", "what is read"}, self.bodies);
-        visit(Field{"origin", "m", "where the messages' origin lies in the world: x north, y west, z up"}, self.origin);
+        visit(Field{"port", "1", "of UDP; 0: any free port, printed in a notice", 0, 65535}, self.port);
+        visit(Field{"bodies", "", "bodies whose poses are read"}, self.bodies);
+        visit(Field{"origin", "m", "position of the messages' origin in the world: x north, y west, z up"},
+              self.origin);
         visit(Field{"request", "",
-                    "vehicles that are heard are asked for what they do not send, by SET_MESSAGE_INTERVAL; absent: "
-                    "nothing is ever sent"},
+                    "requests messages that a vehicle does not send, by SET_MESSAGE_INTERVAL; absent: nothing is ever "
+                    "sent"},
               self.request);
     }
     void check(types::Diagnostics& diagnostics) const {

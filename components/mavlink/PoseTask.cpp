@@ -5,7 +5,7 @@
 namespace insonify::mavlink {
 namespace {
 
-constexpr uint8_t our_system = 255, our_component = 190;  // a ground station's
+constexpr uint8_t our_system = 255, our_component = 190;  // those of a ground station
 constexpr types::Time request_period{1'000'000};
 
 std::string textOf(const Frame& frame) {
@@ -40,7 +40,7 @@ bool PoseTask::configureHook() {
 }
 
 bool PoseTask::startHook() {
-    network_->take();  // what came before the start
+    network_->take();  // drops datagrams from before the start
     peers_.clear();
     requested_ = {};
     has_written_ = false;
@@ -98,7 +98,8 @@ void PoseTask::requestFor(const Body& body, device::Client client, types::Time n
         command.parameters[0] = static_cast<float>(message);
         command.parameters[1] = static_cast<float>(1e6 / config->request->rate);
         command.target_system = static_cast<uint8_t>(body.config().system_id);
-        command.target_component = static_cast<uint8_t>(body.config().component_id.value_or(1));  // an autopilot
+        command.target_component =
+            static_cast<uint8_t>(body.config().component_id.value_or(1));  // that of an autopilot
         send(command, client);
     }
 }

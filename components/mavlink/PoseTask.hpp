@@ -13,7 +13,7 @@
 
 namespace insonify::mavlink {
 
-/** Which messages an output of PoseTask is of. */
+/** The body of an output of PoseTask. */
 template <class Sample>
 struct Follows {
     std::unique_ptr<Body> body;
@@ -22,20 +22,20 @@ struct Follows {
 /** Reads the poses of vehicles from MAVLink over UDP; for `schedule: realtime`.
  *
  *  Ports: an output for each of `bodies`: body in the world, Rock's axes (x north, y west, z up). Every pose is
- * written, in order. A datagram wakes the task; with a period it takes what has come by then.
+ *  written, in order. A datagram wakes the task; with a period the task takes the datagrams that have arrived.
  *
- *  What is dropped is counted: a warning tells it at the first and then every ten seconds at most, a notice the sum at
- *  the end. So are messages of other systems, warned of only as long as none has become a pose. With `request` a
- *  heartbeat goes to whoever has sent a frame, and a command for each message that stays away, once a second. Refused
- * in lockstep, whose time does not wait for messages. */
+ *  Dropped messages are counted. A warning reports the first, then at most one warning every ten seconds; a notice at
+ *  the end reports the sum. Messages of other systems are counted likewise, with warnings only until the first pose.
+ *  With `request` each sender of a frame gets a heartbeat, and a command for each missing message, once a second.
+ *  Lockstep, whose time does not wait for messages, is an error. */
 class PoseTask final : public pose::ListenerTask<PoseConfig, &PoseConfig::bodies, Follows> {
 public:
     using ListenerTask::ListenerTask;
 
     std::vector<std::string> notices() const override;
-    /** For what came before it ran, and for requests. */
+    /** Wakes the task for datagrams that arrived before it ran, and for requests [s]. */
     double wakeAfter() const override { return 0.5; }
-    /** For tests with port 0. */
+    /** Returns the UDP port, for tests with port 0. */
     uint16_t port() const { return network_->portOf(0); }
 
 private:
@@ -48,18 +48,19 @@ private:
     void take(const Frame& frame, device::Client client);
     void request(types::Time now);
     void requestFor(const Body& body, device::Client client, types::Time now);
-    /** As a ground station. */
+    /** Sends a message as a ground station. */
     template <class Message>
     void send(const Message& message, device::Client client);
 
     std::unique_ptr<device::Network> network_;
-    types::ThrottledWarning drops_{"message", "dropped"}, others_{"message", "of others passed over"};
-    std::map<device::Client, uint8_t> peers_;  ///< Who sends frames, and the number of the next one to it.
+    types::ThrottledWarning drops_{"message", "dropped"}, others_{"message", "of others ignored"};
+    std::map<device::Client, uint8_t>
+        peers_;  ///< Senders of frames, and the sequence number of the next frame to them.
     types::Time requested_;
     bool has_written_ = false;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::mavlink

@@ -35,7 +35,7 @@ Surface surfaceOf(const aiMesh& from) {
     return surface;
 }
 
-/** A placing for each mesh of each node, without recursion. */
+/** Returns a placing for each mesh of each node, without recursion. */
 std::vector<FileMeshes::Placing> placingsOf(const aiScene& from, const glm::dmat4& world_from_file) {
     struct Visit {
         const aiNode* node;
@@ -55,7 +55,7 @@ std::vector<FileMeshes::Placing> placingsOf(const aiScene& from, const glm::dmat
     return placings;
 }
 
-/** Assimp keeps what the standard library threw in it, or, of its later steps, only the text of that. */
+/** Rethrows an exception that assimp caught. From its later steps it keeps only the text of the exception. */
 void rethrow(const Assimp::Importer& importer) {
     if (importer.GetException()) std::rethrow_exception(importer.GetException());
     const std::string text = importer.GetErrorString();
@@ -63,13 +63,13 @@ void rethrow(const Assimp::Importer& importer) {
     if (text.find(' ') == std::string::npos || text.find("::") != std::string::npos) throw std::logic_error(text);
 }
 
-/** Assimp cites what it cannot read, which may be the rest of the file. */
+/** Shortens a text: assimp cites unreadable input, which may be the rest of the file. */
 std::string shortened(const std::string& text) {
     constexpr size_t most = 160;
     return text.size() <= most ? text : text.substr(0, most) + "...";
 }
 
-/** Assimp's own sentences are passed on; what the standard library throws says nothing of the file. */
+/** Throws assimp's message. Messages of the standard library are replaced, as they do not describe the file. */
 [[noreturn]] void refuse(const Assimp::Importer& importer) {
     try {
         rethrow(importer);

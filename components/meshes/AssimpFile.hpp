@@ -6,10 +6,11 @@
 
 namespace insonify::meshes {
 
-/** Reads a mesh file by assimp, which damaged files may crash, hang or fill memory with: only for a process of its own.
+/** Reads a mesh file with assimp. Damaged files may crash or hang assimp or exhaust memory, so use this only in a
+ *  separate process.
  *
- *  `world_from_file` turns the file's axes; the unit and up axis of .dae are honoured by assimp, which gives y-up.
- *  Throws std::runtime_error with a sentence on the file where it is refused, std::bad_alloc where memory ends. */
+ *  `world_from_file` turns the file's axes; assimp applies the unit and up axis of .dae, and gives y-up. Throws
+ *  std::runtime_error with a sentence about the file if it is refused, std::bad_alloc if memory is exhausted. */
 FileMeshes readByAssimp(const std::filesystem::path& file, const glm::dmat4& world_from_file);
 
 }  // namespace insonify::meshes

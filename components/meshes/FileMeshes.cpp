@@ -51,7 +51,7 @@ public:
         items.resize(count);
         copy(items.data(), count * size);
     }
-    /** A number of things that take at least one byte each. */
+    /** Reads a count of items that take at least one byte each. */
     size_t count() {
         const auto count = value<uint64_t>();
         if (count > bytes_.size()) throw std::runtime_error("more is announced than follows");

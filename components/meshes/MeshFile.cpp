@@ -41,7 +41,7 @@ std::filesystem::path findReader(const std::filesystem::path& file) {
     refuse(file, fmt::format("cannot be read: needs {}, with its program {}", loader::absence("meshes"), mesh_reader));
 }
 
-/** A file in memory that goes with its last user. */
+/** A file in memory that is deleted with its last user. */
 class MemoryFile {
 public:
     explicit MemoryFile(const std::filesystem::path& file) : descriptor_(memfd_create("insonify meshes", MFD_CLOEXEC)) {
@@ -55,7 +55,7 @@ public:
     MemoryFile& operator=(const MemoryFile&) = delete;
 
     int descriptor() const { return descriptor_; }
-    /** What is in it now; to be called once. */
+    /** Returns its contents. Call it once. */
     std::span<const std::byte> bytes(const std::filesystem::path& file) {
         struct stat state {};
         if (fstat(descriptor_, &state) != 0) refuseForSystem(file, "fstat", errno);
@@ -73,8 +73,8 @@ private:
     size_t size_ = 0;
 };
 
-/** How the process is started: nothing of ours but the reply is open there, no signal blocked or ignored, and a
- *  terminal's SIGINT does not reach it. */
+/** Settings to start the process. Only the reply stays open in it, no signal is blocked or ignored, and a terminal's
+ *  SIGINT does not reach it. */
 class SpawnSettings {
 public:
     explicit SpawnSettings(int reply) {
@@ -110,18 +110,19 @@ private:
     posix_spawnattr_t attributes_;
 };
 
-/** Why a process that ended by a signal did so. */
+/** Returns why a signal ended the process. */
 std::string causeOf(int signal, const ReadLimits& limits) {
     switch (signal) {
         case SIGXCPU: return fmt::format("takes more than {} s to compute", limits.processor_s);
         case SIGALRM: return fmt::format("was not read within {} s", limits.wall_s);
         case SIGXFSZ: return fmt::format("holds more than {} MB", limits.memory >> 20);
-        case SIGKILL: return "was too much to read: its reader was killed, as for want of memory";
+        case SIGKILL: return "was too much to read: its reader was killed, probably out of memory";
         default: return fmt::format("crashes the library that reads it (assimp, SIG{})", sigabbrev_np(signal));
     }
 }
 
-/** Waits for the end. Where a program ignores SIGCHLD there is no status; then the reply alone tells. */
+/** Waits for the end of the process. If a program ignores SIGCHLD there is no status; then only the reply shows the
+ *  outcome. */
 void await(pid_t process, const std::filesystem::path& file, const ReadLimits& limits) {
     int status = 0;
     while (waitpid(process, &status, 0) < 0)
@@ -131,7 +132,7 @@ void await(pid_t process, const std::filesystem::path& file, const ReadLimits& l
         refuse(file, fmt::format("cannot be read: its reader ended with {}{}", WEXITSTATUS(status), remedy));
 }
 
-/** The meshes of a file, by their index there; without triangles where there is none that can be drawn. */
+/** Returns the meshes of a file at the same indices; without triangles if no triangle is usable. */
 std::vector<types::Mesh> meshesOf(FileMeshes& from, std::vector<std::string>& notices) {
     std::vector<types::Mesh> meshes(from.parts.size());
     DroppedTriangles dropped;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr uint32_t facets = 64;
 
-/** Turns a line of (radius, z), from the bottom up, about z. */
+/** Revolves a profile of (radius, z), from the bottom up, about z. */
 Surface revolve(const std::vector<glm::dvec2>& profile) {
     Surface surface;
     for (const glm::dvec2 point : profile)
@@ -37,7 +37,7 @@ Surface revolve(const std::vector<glm::dvec2>& profile) {
     return surface;
 }
 
-/** Half of a ball's outline about (0, z): the lower half from its pole, or the upper one to it. */
+/** Adds half of a sphere's outline about (0, z): the lower half from its pole, or the upper half to its pole. */
 void addQuarter(std::vector<glm::dvec2>& profile, double radius, double z, bool is_upper) {
     constexpr uint32_t steps = facets / 4;
     for (uint32_t i = 0; i <= steps; ++i) {
@@ -48,10 +48,10 @@ void addQuarter(std::vector<glm::dvec2>& profile, double radius, double z, bool 
     }
 }
 
-constexpr int max_picture_side = 32768;  ///< Larger pictures are refused before they are decoded [pixels].
-constexpr int max_corners = 2049;        ///< Along each side.
+constexpr int max_picture_side = 32768;  ///< Max side of pictures, checked before they are decoded [pixels].
+constexpr int max_corners = 2049;        ///< Max vertices along each side.
 
-/** Pixels of one side that become corners: evenly apart, with both ends. */
+/** Returns the pixels of one side that become vertices: evenly spaced, including both ends. */
 std::vector<int> cornersOf(int pixels) {
     const int count = std::min(pixels, max_corners);
     std::vector<int> corners;

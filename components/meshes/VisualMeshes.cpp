@@ -57,7 +57,7 @@ const types::GeometryPtr& VisualMeshes::readOnce(const std::filesystem::path& pa
 
 std::vector<Placing> VisualMeshes::merge(const types::Geometry& from, const std::string& submesh, const Look& look) {
     std::vector<Placing> placings;
-    std::map<int, int> meshes, materials;  // indices here by indices there
+    std::map<int, int> meshes, materials;  // indices in geometry_ by indices in `from`
     for (const types::Object& object : from.objects) {
         const std::string& mesh_name = from.meshes[static_cast<size_t>(object.mesh)].name;
         if (!submesh.empty() && submesh != object.name && submesh != mesh_name) continue;

@@ -14,10 +14,10 @@
 
 namespace insonify::meshes {
 
-/** What a visual says about its material. */
+/** The material of a visual. */
 struct Look {
-    std::string name;                 ///< Of its material script; empty: the mesh's own, or "default".
-    scene::AcousticValues acoustics;  ///< Known to be right.
+    std::string name;                 ///< Name of its material script; empty: the mesh's own, or "default".
+    scene::AcousticValues acoustics;  ///< Already validated.
     auto operator<=>(const Look&) const = default;
 };
 
@@ -27,27 +27,27 @@ struct Placing {
     glm::dmat4 visual_from_object{1};
 };
 
-/** Makes the meshes of a world's visuals, each once however often it stands there with the same material. */
+/** Makes the meshes of a world's visuals. A mesh that several visuals use with the same material is made once. */
 class VisualMeshes {
 public:
     explicit VisualMeshes(types::Geometry& geometry) : geometry_(geometry) {}
 
-    /** `make()` is called for the first visual of that key and material. */
+    /** Returns the mesh of a key and material. Calls `make()` for the first visual with them. */
     template <class Make>
     Placing shape(const std::string& key, const Look& look, Make make) {
         const auto [known, is_new] = shapes_.try_emplace({key, look}, -1);
         if (is_new) known->second = add(make(), key, look);
         return {known->second};
     }
-    /** The objects of a mesh file, or those that are called `submesh` or whose mesh is; none when there is no such.
-     *  A file that cannot be read is a types::ConfigError. */
+    /** Returns the objects of a mesh file, or only the objects whose name or mesh name is `submesh`; empty if there are
+     *  none. Throws types::ConfigError for a file that cannot be read. */
     const std::vector<Placing>& file(const std::filesystem::path& path, const std::string& submesh, const Look& look);
 
-    /** The same, moved so that the centre of their box is the origin. */
+    /** Returns placings moved so that the centre of their box is the origin. */
     std::vector<Placing> centred(std::vector<Placing> placings) const;
 
 private:
-    /** What a mesh file gave: one that cannot be read is not tried again for each visual. */
+    /** The result of reading a mesh file. A file that cannot be read is not tried again for each visual. */
     struct FileRead {
         types::GeometryPtr geometry;
         std::optional<types::ConfigError> failure;
@@ -60,7 +60,7 @@ private:
     int mergeMesh(const types::Geometry& from, int mesh, const Look& look, std::map<int, int>& materials);
 
     types::Geometry& geometry_;
-    std::map<Look, int> materials_;  ///< Of shapes.
+    std::map<Look, int> materials_;  ///< Materials of shapes.
     std::map<std::pair<std::string, Look>, int> shapes_;
     std::map<std::string, FileRead> files_;
     std::map<std::tuple<std::string, std::string, Look>, std::vector<Placing>> placings_;

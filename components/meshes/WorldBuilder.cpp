@@ -31,7 +31,7 @@ Placing scaled(Placing placing, glm::dvec3 size) {
     return placing;
 }
 
-/** A square whose normal is turned from z by the shortest way. */
+/** Turns a square's normal from z by the shortest rotation. */
 Placing turnedTo(Placing placing, glm::dvec3 normal) {
     const double length = glm::length(normal);
     if (!(length > 0)) return placing;

@@ -16,7 +16,7 @@
 
 namespace insonify::meshes {
 
-// Geometries of a visual, as SDF defines them, about the visual's origin [m].
+// Geometries of a visual, as defined by SDF, about the visual's origin [m].
 struct BoxShape {
     glm::dvec3 size{0};
 };
@@ -28,13 +28,13 @@ struct EllipsoidShape {
 struct CylinderShape {
     double radius = 0, length = 0;  ///< Along z.
 };
-/** About z, its point up, its middle at the origin. */
+/** A cone about z, its apex up, its middle at the origin. */
 struct ConeShape {
-    double radius = 0, length = 0;  ///< The radius is that of its base.
+    double radius = 0, length = 0;  ///< Radius of the base.
 };
 /** A cylinder along z between two half spheres. */
 struct CapsuleShape {
-    double radius = 0, length = 0;  ///< The length is that of the cylinder.
+    double radius = 0, length = 0;  ///< Length of the cylinder.
 };
 struct PlaneShape {
     glm::dvec3 normal{0, 0, 1};
@@ -45,40 +45,40 @@ struct MeshShape {
     std::string submesh;  ///< Empty: all of the file.
     bool is_centred = false;
     glm::dvec3 scale{1};
-    std::filesystem::path named_in;  ///< The file with the URI, where there is one.
+    std::filesystem::path named_in;  ///< The file that contains the URI, if any.
 };
 struct HeightmapShape {
     std::string uri;
     glm::dvec3 size{0}, position{0};
-    std::filesystem::path named_in;  ///< The file with the URI, where there is one.
+    std::filesystem::path named_in;  ///< The file that contains the URI, if any.
 };
-/** A geometry that is not read. */
+/** A geometry that is not supported. */
 struct OtherShape {};
 using Shape = std::variant<OtherShape, BoxShape, EllipsoidShape, CylinderShape, ConeShape, CapsuleShape, PlaneShape,
                            MeshShape, HeightmapShape>;
 
-/** Makes a scene of a world's models, links and visuals. Nodes are models and links, objects are visuals. What cannot
- *  be shown is a notice of the scene. */
+/** Builds a scene from a world's models, links and visuals. Nodes are models and links, objects are visuals.
+ *  Unsupported parts are notices of the scene. */
 class WorldBuilder {
 public:
-    /** Files are looked for from `world`, see ModelPaths. */
+    /** Searches files from `world`, see ModelPaths. */
     explicit WorldBuilder(const std::filesystem::path& world) : paths_(world), meshes_(geometry_) {}
 
-    /** Returns the node's index. `parent` is -1 at the top. */
+    /** Adds a node and returns its index. `parent` is -1 at the top. */
     int addNode(const std::string& name, int parent, const glm::dmat4& world_from_node);
     const glm::dmat4& worldFromNode(int node) const { return world_from_node_[static_cast<size_t>(node)]; }
     const scene::Node& node(int index) const { return scene_.nodes[static_cast<size_t>(index)]; }
 
-    /** `name` starts with that of its model and link. */
+    /** Adds a visual. `name` starts with the names of its model and link. */
     void addVisual(const std::string& name, int node, const glm::dmat4& node_from_visual, const Shape& shape,
                    const Look& look);
-    /** Says in a notice why a visual is not shown. */
+    /** Adds a notice with the reason why a visual is omitted. */
     void leaveOut(const std::string& visual, const std::string& why);
     void notice(std::string text) { geometry_.notices.push_back(std::move(text)); }
     std::vector<std::string>& notices() { return geometry_.notices; }
     const ModelPaths& paths() const { return paths_; }
 
-    /** Ends the building. */
+    /** Finishes and returns the scene. */
     scene::Scene take();
 
 private:
@@ -95,7 +95,7 @@ private:
     size_t flat_visuals_ = 0;
 };
 
-/** What is wrong with the sizes of a shape: the key of SDF, and why. The message is empty where nothing is. */
+/** Returns an invalid size of a shape: its key in SDF, and the reason. The message is empty if all sizes are valid. */
 types::Diagnostic faultOf(const Shape& shape);
 
 }  // namespace insonify::meshes

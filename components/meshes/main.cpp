@@ -1,5 +1,5 @@
-// insonify-read-mesh: reads one mesh file for the insonify library, which starts it as a process of its own. What it
-// answers goes to file descriptor 3.
+// insonify-read-mesh: reads one mesh file for the insonify library, which starts it as a separate process. It writes
+// its reply to file descriptor 3.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -17,7 +17,7 @@ using namespace insonify::meshes;
 using insonify::scene::z_up_from_y_up;
 
 #ifdef __SANITIZE_ADDRESS__
-/** The sanitizer takes address space without end, so that it has to limit memory itself. */
+/** The address sanitizer reserves unlimited address space, so it has to limit memory itself. */
 extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=1024:hard_rss_limit_mb=2048"; }
 #endif
 
@@ -29,7 +29,7 @@ constexpr bool limits_memory = false;
 constexpr bool limits_memory = true;
 #endif
 
-/** A limit that is lower already stays. */
+/** Lowers a limit; a lower limit stays. */
 void limit(__rlimit_resource what, rlim_t most, rlim_t at_last) {
     rlimit limits{};
     getrlimit(what, &limits);
@@ -66,5 +66,5 @@ int main(int argc, char** argv) {
     limitAll(static_cast<unsigned>(std::atoi(argv[3])), static_cast<unsigned>(std::atoi(argv[4])),
              std::strtoull(argv[5], nullptr, 10));
     const bool is_y_up = *argv[2] == 'y';
-    _exit(writeReply(read(argv[1], is_y_up), reply) ? 0 : 3);  // nothing is tidied up, which could crash as well
+    _exit(writeReply(read(argv[1], is_y_up), reply) ? 0 : 3);  // skips cleanup, which could crash as well
 }

@@ -7,24 +7,24 @@
 
 namespace insonify::nav {
 
-/** What lies around a log, for straight beams: the triangles of a scene, moved objects where they are, or a level
- *  bottom. */
+/** The surroundings of a Doppler velocity log, for straight beams: the triangles of a scene including moved objects, or
+ *  a level bottom. */
 class Bottom {
 public:
-    /** A level bottom at a height of the world [m]; none: nothing is met. */
+    /** @param height of a level bottom in the world [m]; none: no bottom */
     explicit Bottom(std::optional<double> height = {}) : height_(height) {}
 
-    /** The scene instead, as of this snapshot. What is not moved is looked at once for each geometry. */
+    /** Replaces the bottom by the scene of this snapshot. Objects that are not moved are placed once per geometry. */
     void take(types::SnapshotPtr snapshot);
     bool hasScene() const { return snapshot_ != nullptr; }
-    /** Whether a place is in the water, as far as the scene has a surface. */
+    /** Returns whether a place is under the water surface; true when the scene has no surface. */
     bool isUnderWater(const glm::dvec3& place) const;
 
-    /** How far it is from a place in the world along a unit vector, at most `farthest`; none: nothing is met [m]. */
+    /** Returns the range from a place in the world along a unit vector [m]; none when nothing is within `farthest`. */
     std::optional<double> range(const glm::dvec3& from, const glm::dvec3& direction, double farthest) const;
 
 private:
-    /** Where an object is, and a box along the world's axes that holds it. */
+    /** The pose of an object, and its bounding box along the world's axes. */
     struct Placed {
         glm::dmat4 world_from_object{1};
         glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
@@ -35,8 +35,8 @@ private:
 
     std::optional<double> height_;
     types::SnapshotPtr snapshot_;
-    std::vector<Placed> placed_;  ///< Of each object of the geometry.
-    std::vector<size_t> moved_;   ///< Objects that are not where the geometry has them.
+    std::vector<Placed> placed_;  ///< One per object of the geometry.
+    std::vector<size_t> moved_;   ///< Objects that are moved from their place in the geometry.
 };
 
 }  // namespace insonify::nav

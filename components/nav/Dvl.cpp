@@ -11,7 +11,7 @@
 namespace insonify::nav {
 namespace {
 
-/** What each beam draws random numbers for: constants of the instrument, and what differs from ping to ping. */
+/** The random numbers of each beam: constants of the instrument, and errors that differ from ping to ping. */
 enum Channel : uint64_t { Scale, Bias, Velocity, Range, Dropout };
 uint64_t channelOf(Channel channel, size_t beam) { return 200 + beam_count * channel + beam; }
 

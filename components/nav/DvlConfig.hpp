@@ -5,7 +5,7 @@
 
 namespace insonify::nav {
 
-/** Errors of what each beam tells. */
+/** Errors of the measurements of each beam. */
 struct BeamErrors {
     double velocity_noise = 0;
     double scale_error = 0;
@@ -18,19 +18,20 @@ struct BeamErrors {
         using types::Field;
         visit(Field{"velocity_noise", "m/s", "deviation of each beam's velocity, from ping to ping", 0, 100},
               self.velocity_noise);
-        visit(Field{"scale_error", "1",
-                    "deviation of each beam's scale, which stays: the long-term accuracy as a share of velocity", 0, 1},
-              self.scale_error);
-        visit(Field{"velocity_bias", "m/s", "deviation of each beam's bias, which stays: the other long-term part", 0,
-                    100},
+        visit(
+            Field{"scale_error", "1",
+                  "deviation of each beam's constant scale error: the long-term accuracy as a share of velocity", 0, 1},
+            self.scale_error);
+        visit(Field{"velocity_bias", "m/s", "deviation of each beam's constant bias: the other long-term part", 0, 100},
               self.velocity_bias);
         visit(Field{"range_noise", "m", "deviation of each beam's range, from ping to ping", 0, 1000},
               self.range_noise);
-        visit(Field{"dropout", "1", "share of beams that are lost though the bottom is in reach", 0, 1}, self.dropout);
+        visit(Field{"dropout", "1", "share of beams that are lost although the bottom is in reach", 0, 1},
+              self.dropout);
     }
 };
 
-/** Four beams about an axis that looks down, out of it by `slant_deg`: a Janus configuration. */
+/** A Janus configuration: four beams at an angle of `slant_deg` to an axis that looks down. */
 struct DvlConfig {
     SensorConfig sensor{};
     double slant_deg = 30;
@@ -44,22 +45,21 @@ struct DvlConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        SensorConfig::describe(self.sensor, visit,
-                               "of the instrument in the body; it looks down where it is not turned",
-                               "between pings; 0: one for each pose");
-        visit(Field{"slant_deg", "deg", "of each beam out of the instrument's axis", 5, 60}, self.slant_deg);
-        visit(Field{"beam_azimuth_deg", "deg", "of the first beam from ahead, positive to port; the others each 90 on",
-                    -360, 360},
+        SensorConfig::describe(self.sensor, visit, "of the instrument in the body; without rotation it looks down",
+                               "between pings; 0: a ping per pose");
+        visit(Field{"slant_deg", "deg", "angle of each beam to the instrument's axis", 5, 60}, self.slant_deg);
+        visit(Field{"beam_azimuth_deg", "deg",
+                    "of the first beam from ahead, positive to port; the others follow at 90 each", -360, 360},
               self.beam_azimuth_deg);
-        visit(Field{"min_altitude", "m", "a bottom that is nearer along the axis is not heard", 0, 1e4},
+        visit(Field{"min_altitude", "m", "min height above the bottom, along the axis; nearer beams are lost", 0, 1e4},
               self.min_altitude);
-        visit(Field{"max_altitude", "m", "a bottom that is farther along the axis is not heard", 1e-3, 1e4},
+        visit(Field{"max_altitude", "m", "max height above the bottom, along the axis; farther beams are lost", 1e-3,
+                    1e4},
               self.max_altitude);
-        visit(Field{"speed_of_sound", "m/s", "that it tells beside its velocities", 1, 1e4}, self.speed_of_sound);
-        visit(
-            Field{"bottom_height", "m",
-                  "of a level bottom in the world, where no scene is connected; absent: there must be one", -1e5, 1e5},
-            self.bottom_height);
+        visit(Field{"speed_of_sound", "m/s", "reported with the velocities", 1, 1e4}, self.speed_of_sound);
+        visit(Field{"bottom_height", "m",
+                    "of a level bottom in the world, if no scene is connected; absent: a scene is required", -1e5, 1e5},
+              self.bottom_height);
         visit(Field{"errors", "", "of its beams; absent: none"}, self.errors);
     }
     void check(types::Diagnostics& diagnostics) const {

@@ -13,7 +13,7 @@ uint64_t bitsOf(uint64_t seed, uint64_t channel, types::Time time) {
     return types::hashed(seed, channel, static_cast<uint64_t>(time.microseconds));
 }
 
-/** The most that is told: the last whole step within the range. */
+/** Returns the max reading: the last whole step within the range. */
 double lastStep(const AxisErrors& errors) {
     return errors.resolution > 0 ? errors.resolution * std::floor(*errors.range / errors.resolution) : *errors.range;
 }

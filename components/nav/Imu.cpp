@@ -18,7 +18,7 @@ WanderingBias attitudeError(const ImuConfig& config, uint64_t axis) {
     return {types::radians(degrees), errors.error_time, config.sensor.randomSeed(), first_of_attitude + axis};
 }
 
-/** The turn of a rotation vector [rad]. */
+/** Returns the rotation of a rotation vector [rad]. */
 glm::dquat turnOf(const glm::dvec3& vector) {
     const double angle = glm::length(vector);
     return angle > 0 ? glm::angleAxis(angle, vector / angle) : glm::dquat(1, 0, 0, 0);

@@ -7,19 +7,22 @@
 
 namespace insonify::nav {
 
-/** What an inertial unit without errors feels, in its axes. */
+/** The true inputs of an inertial unit, in its axes. */
 struct InertialTruth {
-    glm::dvec3 specific_force;  ///< Acceleration less gravity: at rest +g upwards [m/s^2].
-    glm::dvec3 angular_rate;    ///< Of the unit, against the stars where the earth turns [rad/s].
+    glm::dvec3 specific_force;  ///< Acceleration minus gravity: at rest +g upwards [m/s^2].
+    glm::dvec3 angular_rate;    ///< Rate of the unit, relative to inertial space if the earth rotates [rad/s].
 };
-/** @param gravity positive down [m/s^2]; @param earth rate of the earth in the world, 0 for a world at rest [rad/s]. */
+/** Returns the true inputs of an inertial unit.
+ *  @param gravity positive down [m/s^2]
+ *  @param earth rate of the earth in the world, 0 for a world at rest [rad/s] */
 InertialTruth inertialTruth(const Motion& motion, double gravity, const glm::dvec3& earth);
 
 /** An inertial unit with its errors: attitude, angular rate and specific force. */
 class Imu {
 public:
     explicit Imu(const ImuConfig& config);
-    /** Covariances are those of noise, wandering biases and steps; that of the attitude of its errors. */
+    /** Returns a measurement. Its covariances contain noise, wandering biases and steps; that of the attitude contains
+     *  the attitude errors. */
     types::Imu measure(const Motion& motion);
 
 private:
@@ -33,12 +36,12 @@ private:
     glm::dvec3 earth_;
     Triad gyroscope_, accelerometer_;
     std::array<WanderingBias, 3> attitude_errors_;  ///< About the axes of the world [rad].
-    double interval_ = 0;                           ///< That a measurement averages over [s].
+    double interval_ = 0;                           ///< Averaging time of a measurement [s].
 };
 
-/** Without the attitude, as Rock has it. */
+/** Returns the measurement without the attitude, as Rock's type. */
 types::ImuSensors sensorsOf(const types::Imu& imu);
-/** The attitude and the angular rate, as Rock has them: of frame "imu" in "world"; its place is unknown. */
+/** Returns attitude and angular rate as Rock's pose of frame "imu" in "world"; its position is unknown. */
 types::Pose orientationOf(const types::Imu& imu);
 
 }  // namespace insonify::nav

@@ -7,7 +7,7 @@
 
 namespace insonify::nav {
 
-/** Errors of three like axes. */
+/** Errors of three equal axes. */
 struct TriadConfig : AxisErrors {
     glm::dvec3 bias{0};
 };
@@ -16,16 +16,15 @@ struct GyroscopeConfig : TriadConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"noise_density", "rad/s/sqrt(Hz)", "of white noise: the angular random walk", 0, 1},
+        visit(Field{"noise_density", "rad/s/sqrt(Hz)", "density of white noise: the angular random walk", 0, 1},
               self.noise_density);
-        visit(Field{"bias", "rad/s", "that stays", -10, 10}, self.bias);
-        visit(Field{"bias_deviation", "rad/s", "of the bias that wanders; Allan's deviation has 0.618 of it at most", 0,
-                    1},
-              self.bias_deviation);
-        visit(Field{"bias_time", "s", "after which the wandering bias forgets where it was", 1e-3, 1e9},
-              self.bias_time);
-        visit(Field{"resolution", "rad/s", "of what it tells; 0: any number", 0, 1}, self.resolution);
-        visit(Field{"range", "rad/s", "most that it tells, either way; absent: no end", 1e-6, 1e6}, self.range);
+        visit(Field{"bias", "rad/s", "constant", -10, 10}, self.bias);
+        visit(
+            Field{"bias_deviation", "rad/s", "of the wandering bias; the Allan deviation is at most 0.618 of it", 0, 1},
+            self.bias_deviation);
+        visit(Field{"bias_time", "s", "correlation time of the wandering bias", 1e-3, 1e9}, self.bias_time);
+        visit(Field{"resolution", "rad/s", "of the readings; 0: continuous", 0, 1}, self.resolution);
+        visit(Field{"range", "rad/s", "max magnitude of the readings; absent: unlimited", 1e-6, 1e6}, self.range);
     }
 };
 
@@ -33,20 +32,19 @@ struct AccelerometerConfig : TriadConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"noise_density", "m/s^2/sqrt(Hz)", "of white noise: the velocity random walk", 0, 10},
+        visit(Field{"noise_density", "m/s^2/sqrt(Hz)", "density of white noise: the velocity random walk", 0, 10},
               self.noise_density);
-        visit(Field{"bias", "m/s^2", "that stays", -100, 100}, self.bias);
-        visit(Field{"bias_deviation", "m/s^2", "of the bias that wanders; Allan's deviation has 0.618 of it at most", 0,
+        visit(Field{"bias", "m/s^2", "constant", -100, 100}, self.bias);
+        visit(Field{"bias_deviation", "m/s^2", "of the wandering bias; the Allan deviation is at most 0.618 of it", 0,
                     10},
               self.bias_deviation);
-        visit(Field{"bias_time", "s", "after which the wandering bias forgets where it was", 1e-3, 1e9},
-              self.bias_time);
-        visit(Field{"resolution", "m/s^2", "of what it tells; 0: any number", 0, 10}, self.resolution);
-        visit(Field{"range", "m/s^2", "most that it tells, either way; absent: no end", 1e-3, 1e6}, self.range);
+        visit(Field{"bias_time", "s", "correlation time of the wandering bias", 1e-3, 1e9}, self.bias_time);
+        visit(Field{"resolution", "m/s^2", "of the readings; 0: continuous", 0, 10}, self.resolution);
+        visit(Field{"range", "m/s^2", "max magnitude of the readings; absent: unlimited", 1e-3, 1e6}, self.range);
     }
 };
 
-/** Of the attitude that the unit computes: errors that wander, about level axes and about the vertical. */
+/** Wandering errors of the attitude that the unit computes, about level axes and about the vertical. */
 struct AttitudeConfig {
     double tilt_deviation_deg = 0;
     double heading_deviation_deg = 0;
@@ -59,7 +57,7 @@ struct AttitudeConfig {
               self.tilt_deviation_deg);
         visit(Field{"heading_deviation_deg", "deg", "of the error about the vertical", 0, 180},
               self.heading_deviation_deg);
-        visit(Field{"error_time", "s", "after which an error forgets where it was", 1e-3, 1e9}, self.error_time);
+        visit(Field{"error_time", "s", "correlation time of these errors", 1e-3, 1e9}, self.error_time);
     }
 };
 
@@ -76,11 +74,12 @@ struct ImuConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         SensorConfig::describe(self.sensor, visit, "of the unit in the body",
-                               "between measurements; 0: one for each pose");
+                               "between measurements; 0: a measurement per pose");
         visit(Field{"latitude_deg", "deg", "of the world, for gravity and the rotation of the earth", -90, 90},
               self.latitude_deg);
         visit(Field{"gravity", "m/s^2", "instead of WGS 84's normal gravity", 0, 1000}, self.gravity);
-        visit(Field{"earth_rotation", "", "the gyroscope feels the earth turn, and the accelerometer Coriolis' force"},
+        visit(Field{"earth_rotation", "",
+                    "the gyroscope measures the rotation of the earth, and the accelerometer the Coriolis force"},
               self.earth_rotation);
         visit(Field{"gyroscope", "", "its errors; absent: none"}, self.gyroscope);
         visit(Field{"accelerometer", "", "its errors; absent: none"}, self.accelerometer);

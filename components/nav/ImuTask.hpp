@@ -12,12 +12,12 @@ namespace insonify::nav {
 
 /** An inertial measurement unit with an attitude, from the poses of the body.
  *
- *  In: `pose`, body in the world. Out, one pose late and stamped with the pose that it belongs to (see MotionTracker):
- *  `imu`, attitude, angular rate and specific force in the axes of the unit (x forward, y left, z up); the same as
- *  Rock's `calibrated_sensors` and `orientation_samples`. A unit at rest and level tells +g along z.
+ *  Input: `pose`, body in the world. Outputs, one pose late and stamped with their pose (see MotionTracker): `imu`,
+ *  attitude, angular rate and specific force in the axes of the unit (x forward, y left, z up); the same as Rock's
+ *  `calibrated_sensors` and `orientation_samples`. A unit at rest and level measures +g along z.
  *
- *  The same seed and poses give the same errors, in a replay too that starts with the first pose: a bias wanders from
- *  there. A pose that is not finite leads to RunTimeError, from which the next good one recovers. */
+ *  The same seed and poses give the same errors. A replay repeats them if it starts with the first pose, where the
+ *  biases begin to wander. A pose that is not finite leads to RunTimeError; the next valid pose recovers from it. */
 class ImuTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -41,7 +41,7 @@ private:
     std::optional<Imu> unit_;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::nav

@@ -1,4 +1,4 @@
-// The component library nav: what a deployment loads that names a type of this namespace.
+// The component library nav, which is loaded by deployments that name a type of this namespace.
 #include "components/loader/Interface.hpp"
 #include "components/nav/ImuTask.hpp"
 

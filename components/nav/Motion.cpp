@@ -10,7 +10,7 @@
 namespace insonify::nav {
 namespace {
 
-/** Rotation vector of a unit quaternion, the shorter way [rad]. */
+/** Returns the rotation vector of a unit quaternion, the shorter way [rad]. */
 glm::dvec3 rotationVector(glm::dquat turn) {
     if (turn.w < 0) turn = -turn;
     const glm::dvec3 half(turn.x, turn.y, turn.z);
@@ -39,8 +39,7 @@ std::optional<Motion> MotionTracker::take(const types::Pose& body) {
     const bool paused = std::abs(seconds) > longest_gap;
     if (pauses_.isDue(paused))
         warning_ = fmt::format(
-            "poses {:.3g} s apart tell no motion; there are no measurements until three come that are at most {:g} s "
-            "apart",
+            "poses {:.3g} s apart give no motion; measurements resume after three poses that are at most {:g} s apart",
             std::abs(seconds), longest_gap);
     if (paused) count_ = 0;
     if (count_ > 0 && seconds <= 0) return {};

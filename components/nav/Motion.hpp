@@ -11,7 +11,7 @@
 
 namespace insonify::nav {
 
-/** How a sensor moves at one moment. */
+/** The motion of a sensor at one time. */
 struct Motion {
     types::Time time;
     glm::dvec3 position{0};              ///< In the world [m].
@@ -22,43 +22,43 @@ struct Motion {
     double interval = 0;                 ///< Mean time to the poses before and after it [s].
 };
 
-/** How a sensor that is fixed to a body moves, from the poses of the body: of three poses in a row the motion at the
- *  middle one, so that it is one pose late. Its stamp is that of the middle pose.
+/** Computes the motion of a sensor that is fixed to a body from the poses of the body. Three consecutive poses give the
+ *  motion at the middle pose, with its stamp, so the motion is one pose late.
  *
- *  The sensor's place is taken as a parabola through the three, and so is its turn, as a rotation vector from the
- * middle one. With poses `h` seconds apart that leaves out h^2/6 of the third derivative in velocity, h^2/6 of the
- * second of the rate in the angular rate, and h^2/12 of the fourth derivative of the place in acceleration: at 100 Hz,
- * on a swell of 1 m and 6 s, 2e-5 m/s and 1e-5 m/s^2. What a lever arm adds needs no formula: it is in the sensor's
- * places. */
+ *  Position, and rotation as a rotation vector from the middle pose, are parabolas through the three poses. With poses
+ *  `h` seconds apart this omits h^2/6 of the third derivative in velocity, h^2/6 of the second derivative of the rate
+ *  in the angular rate, and h^2/12 of the fourth derivative in acceleration: at 100 Hz, on a swell of 1 m and 6 s, 2e-5
+ *  m/s and 1e-5 m/s^2. The sensor's positions contain the effect of a lever arm. */
 class MotionTracker {
 public:
-    static constexpr double longest_gap = 1;  ///< A longer pause between two poses is no motion [s].
+    static constexpr double longest_gap = 1;  ///< Max time between two poses of a motion [s].
 
     explicit MotionTracker(const types::Mount& mount = {}) : mount_(mount) {}
 
-    /** Takes the next pose of the body, which must be usable (types::isUsable). Tells the motion at the one before,
-     * once there are three, and if it is finite. A stamp that is not after the last is passed over; one that is more
-     * than `longest_gap` earlier or later begins anew. A place far from the last is taken as motion, however fast. */
+    /** Takes the next pose of the body, which must be usable (types::isUsable). Returns the motion at the pose before,
+     *  once there are three poses and if it is finite. Ignores a stamp that is not after the last, unless it is more
+     *  than `longest_gap` earlier. Such a stamp, and one more than `longest_gap` later, starts anew. A jump counts as
+     *  motion, at any speed. */
     std::optional<Motion> take(const types::Pose& body);
 
-    /** What to tell of a pause before the pose that was taken last: at the first, and again only after ten poses that
-     *  came in time (types::RecurringDiagnostic). Empty: nothing. */
+    /** Returns the warning about a pause before the last pose; empty without one. It is repeated only after ten poses
+     *  in time (types::RecurringDiagnostic). */
     std::string takeWarning();
 
 private:
     Motion middle() const;
 
     types::Mount mount_;
-    std::array<types::Pose, 3> poses_;  ///< Of the sensor, the newest last.
-    int count_ = 0;                     ///< Poses since it has begun, at most 3 [1].
+    std::array<types::Pose, 3> poses_;  ///< Poses of the sensor, the newest last.
+    int count_ = 0;                     ///< Number of poses since the start, at most 3 [1].
     types::RecurringDiagnostic pauses_;
     std::string warning_;
 };
 
-/** When a measurement is due of those that come: the first on or after each multiple of a period, by their stamps. */
+/** Selects the measurements that are due: the first on or after each multiple of a period, by their stamps. */
 class Cadence {
 public:
-    /** @param period [s]; 0: each is due. */
+    /** @param period [s]; 0: every measurement is due */
     explicit Cadence(double period = 0) : period_(types::Time::fromSeconds(period).microseconds) {}
     bool isDue(types::Time time);
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr uint64_t noise_channel = 300, drift_channel = 301;
 constexpr double max_water_pressure =
-    1.3e8;  ///< More than at the deepest place; below it depth grows with pressure [Pa].
+    1.3e8;  ///< Above the pressure at max depth; up to it depth grows with pressure [Pa].
 
-/** The pressure that depthOfOcean has at a depth, halved in on [Pa]. */
+/** Returns the inverse of depthOfOcean() at a depth, by bisection [Pa]. */
 double pressureOfOcean(double depth, double latitude_deg) {
     double low = 0, high = max_water_pressure;
     while (high - low > 1e-6) {

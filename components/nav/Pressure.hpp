@@ -6,26 +6,27 @@
 
 namespace insonify::nav {
 
-/** Deepest that pressures are told of: deeper ones are taken as this [m]. */
+/** Max depth; larger depths count as this [m]. */
 constexpr double deepest = 12000;
 
-/** Depth of a pressure above that of the air [Pa] at a latitude, in the standard ocean of 0 degC and 35 psu [m]: N.
- *  Fofonoff and R. Millard, "Algorithms for computation of fundamental properties of seawater", UNESCO technical papers
- *  in marine science 44, 1983, after Saunders and Fofonoff (1976); to 0.1 m down to 10000 dbar. */
+/** Returns the depth [m] of a gauge pressure [Pa] at a latitude, in the standard ocean of 0 degC and 35 psu, accurate
+ *  to 0.1 m down to 10000 dbar: N. Fofonoff and R. Millard, "Algorithms for computation of fundamental properties of
+ *  seawater", UNESCO technical papers in marine science 44, 1983, after Saunders and Fofonoff (1976). */
 double depthOfOcean(double pascal, double latitude_deg);
 
-/** Absolute pressure at a depth below the surface [Pa]: that of the air and the water above. In water of one density
- *  density x normal gravity x depth; else the one that depthOfOcean has there. Above the surface, where depth is
- *  negative, that of an air of one temperature, 288 K. */
+/** Returns the absolute pressure at a depth below the surface [Pa]: that of the air plus that of the water above. In
+ *  water of constant density the latter is density x normal gravity x depth; otherwise it is the inverse of
+ *  depthOfOcean(). Above the surface, at negative depths, the pressure is that of air of constant temperature, 288
+ *  K. */
 double pressureAt(double depth, const PressureConfig& config);
-/** The depth of a pressure in the same water, 0 above the surface [m]. */
+/** Returns the depth of an absolute pressure in the same water [m]; 0 above the surface. */
 double depthAt(double pascal, const PressureConfig& config);
 
 /** A pressure gauge with its errors. */
 class PressureGauge {
 public:
     explicit PressureGauge(const PressureConfig& config);
-    /** At the place of a pose of the gauge; never below 0. */
+    /** Returns the reading at a pose of the gauge; never below 0. */
     types::Pressure measure(const types::Pose& gauge);
 
 private:
@@ -33,8 +34,8 @@ private:
     WanderingBias drift_;
 };
 
-/** The depth that a reading has in the same water, as Rock's depth gauges tell it: z of frame "pressure" in "world"
- * [m], with the variance that noise, drift and resolution give it [m^2]; the rest unknown. */
+/** Returns the depth of a reading in the same water, as Rock's depth gauges report it: z of frame "pressure" in "world"
+ *  [m] with the variance from noise, drift and resolution [m^2]; other fields are unknown. */
 types::Pose depthSample(const types::Pressure& reading, const PressureConfig& config);
 
 }  // namespace insonify::nav

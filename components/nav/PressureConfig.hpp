@@ -17,10 +17,11 @@ struct GaugeErrors {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"noise", "Pa", "deviation, from measurement to measurement", 0, 1e7}, self.noise);
-        visit(Field{"offset", "Pa", "that stays", -1e7, 1e7}, self.offset);
-        visit(Field{"drift_deviation", "Pa", "of an offset that wanders about 0", 0, 1e7}, self.drift_deviation);
-        visit(Field{"drift_time", "s", "after which it forgets where it was", 1e-3, 1e9}, self.drift_time);
-        visit(Field{"resolution", "Pa", "of what it tells; 0: any number", 0, 1e7}, self.resolution);
+        visit(Field{"offset", "Pa", "constant", -1e7, 1e7}, self.offset);
+        visit(Field{"drift_deviation", "Pa", "deviation of an offset that wanders about 0", 0, 1e7},
+              self.drift_deviation);
+        visit(Field{"drift_time", "s", "correlation time of the drift", 1e-3, 1e9}, self.drift_time);
+        visit(Field{"resolution", "Pa", "of the readings; 0: continuous", 0, 1e7}, self.resolution);
     }
 };
 
@@ -37,14 +38,14 @@ struct PressureConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         SensorConfig::describe(self.sensor, visit, "of the gauge in the body",
-                               "between measurements; 0: one for each pose");
+                               "between measurements; 0: a measurement per pose");
         visit(Field{"water_surface", "m", "its height in the world", -1e5, 1e5}, self.water_surface);
         visit(Field{"latitude_deg", "deg", "of the world, for gravity", -90, 90}, self.latitude_deg);
-        visit(Field{"density", "kg/m^3", "of water that is alike at all depths; absent: UNESCO's standard ocean (1983)",
-                    1, 1e5},
-              self.density);
+        visit(
+            Field{"density", "kg/m^3", "of water of constant density; absent: UNESCO's standard ocean (1983)", 1, 1e5},
+            self.density);
         visit(Field{"atmosphere", "Pa", "pressure of the air at the surface", 0, 1e7}, self.atmosphere);
-        visit(Field{"max_pressure", "Pa", "most that it tells; absent: no end", 1, 1e12}, self.max_pressure);
+        visit(Field{"max_pressure", "Pa", "max reading; absent: unlimited", 1, 1e12}, self.max_pressure);
         visit(Field{"errors", "", "of the gauge; absent: none"}, self.errors);
     }
 };

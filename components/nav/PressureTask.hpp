@@ -12,9 +12,9 @@ namespace insonify::nav {
 
 /** A pressure gauge, from the poses of the body.
  *
- *  In: `pose`, body in the world. Out, at the time of the pose: `pressure`, absolute; the depth in the same water as
- *  Rock's `depth_samples`. The same seed and poses give the same errors, in a replay too that starts with the first
- *  pose. A pose that is not finite leads to RunTimeError, from which the next good one recovers. */
+ *  Input: `pose`, body in the world. Outputs, at the time of the pose: `pressure`, absolute; the depth in the same
+ *  water as Rock's `depth_samples`. The same seed and poses give the same errors; a replay repeats them if it starts
+ *  with the first pose. A pose that is not finite leads to RunTimeError; the next valid pose recovers from it. */
 class PressureTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;

@@ -6,15 +6,15 @@
 
 namespace insonify::nav {
 
-/** What every sensor has: where it sits, how often it measures, and whose random numbers its errors are. */
+/** The configuration that all sensors share: mount, period of measurements, and seed of the errors. */
 struct SensorConfig {
     types::Mount mount{};
-    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task one of its own.
+    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task its own seed.
     double period = 0;
 
     uint64_t randomSeed() const { return seed.value_or(1); }
 
-    /** The keys of all sensors, with what one says of its mount and of its period. */
+    /** Describes the keys of all sensors, with a sensor's descriptions of its mount and its period. */
     template <class Self, class V>
     static void describe(Self& self, V& visit, const char* mount, const char* period) {
         using types::Field;

@@ -9,10 +9,10 @@
 namespace insonify::noise {
 namespace {
 
-constexpr size_t blocks = 64;              ///< Philox blocks that are drawn at a time,
-constexpr size_t block_bins = 2 * blocks;  ///< which are the complex fields of so many bins.
+constexpr size_t blocks = 64;              ///< Philox blocks that are drawn at a time.
+constexpr size_t block_bins = 2 * blocks;  ///< Bins whose complex fields these blocks contain.
 constexpr size_t filtered_bins = 256;      ///< Bins of a beam that are filtered at a time.
-constexpr size_t margin = 64;              ///< Bins that filters reach to either side, at most.
+constexpr size_t margin = 64;              ///< Max reach of a filter to either side [bins].
 constexpr size_t drawn_bins = filtered_bins + 2 * margin;
 
 /** Real and imaginary parts of a field along a beam. */
@@ -21,7 +21,7 @@ struct Field {
     float real[count], imaginary[count];
 };
 
-/** White noise of bins from `margin` before the chunk to `margin` behind it. */
+/** Fills white noise of the bins from `margin` before the chunk to `margin` behind it. */
 INSONIFY_VECTOR_CLONES
 void drawField(const BeamKey& key, size_t chunk, Field<drawn_bins>& field) {
     static_assert(drawn_bins % block_bins == 0 && filtered_bins % block_bins == 0);
@@ -64,7 +64,7 @@ void addSquares(const Field<filtered_bins>& field, float scale, float* __restric
 }  // namespace
 
 std::vector<float> gaussianFilter(double width) {
-    // The filter's spectrum is the root of the power spectrum, whose Fourier series are the correlations.
+    // The filter's spectrum is the root of the power spectrum, whose Fourier coefficients are the correlations.
     constexpr size_t points = 1024, longest = 256;
     std::vector<double> spectrum(points), half;
     for (size_t m = 0; m < points; ++m) {
@@ -82,7 +82,7 @@ std::vector<float> gaussianFilter(double width) {
         half.push_back(tap);
         sum += (t == 0 ? 1 : 2) * tap * tap;
     }
-    constexpr double least = 1e-5;  // of the middle one
+    constexpr double least = 1e-5;  // relative to the middle tap
     while (half.size() > 1 && std::abs(half.back()) < least * half.front()) half.pop_back();
     std::vector<float> taps;
     for (const double tap : half) taps.push_back(static_cast<float>(tap / std::sqrt(sum)));
@@ -119,7 +119,7 @@ void FieldFilter::draw(const BeamKey& key, size_t beam_count, size_t bin_count, 
     variates.assign(beam_count * bin_count, 0.0f);
     const size_t reach = across_.size() - 1;
     for (int look = 0; look < looks_; ++look) {
-        // A key that no unfiltered variate has; numbers of beams begin at `reach` before the first one.
+        // This key differs from that of every unfiltered variate. Beams are counted from `reach` before the first.
         const BeamKey own{{key.seed[0], key.seed[1] ^ 0x9E3779B9u * static_cast<uint32_t>(look + 1)},
                           key.beam,
                           key.ping_low,

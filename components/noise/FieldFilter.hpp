@@ -7,21 +7,21 @@
 
 namespace insonify::noise {
 
-/** Half of a symmetric filter, from its middle on, with which white noise of unit power gets the correlation
- *  exp(-(lag / width)^2 / 2) of fields at whole lags, and so exp(-(lag / width)^2) of intensities. Its square sums up
- *  to 1. `width` is at most 16. */
+/** Returns half of a symmetric filter, from its middle on. Filtered white noise of unit power has the correlation
+ *  exp(-(lag / width)^2 / 2) of fields at whole lags, and so exp(-(lag / width)^2) of intensities. The squares of the
+ *  whole filter sum up to 1. `width` is at most 16 lags. */
 std::vector<float> gaussianFilter(double width);
 
-/** Variates of unit mean as a receiver gives them out: complex Gaussian noise that has passed a filter in range and one
- *  across beams, squared, and averaged over looks (ACOUSTICS.md 6.8).
+/** Variates of unit mean with a receiver's correlation: complex Gaussian noise that is filtered in range and across
+ *  beams, squared, and averaged over looks (ACOUSTICS.md 6.8).
  *
- *  The noise of a bin depends on the key, beam and bin alone, and not on the size of the ping. */
+ *  The noise of a bin depends only on the key, beam and bin, not on the size of the ping. */
 class FieldFilter {
 public:
     explicit FieldFilter(const FilterConfig& config);
 
-    /** Fills the variates of all beams. `key.beam` has the bits of a stream, and no beam. Allocates nothing when
-     *  `variates` has had this size. */
+    /** Fills the variates of all beams. `key.beam` contains only the bits of a stream. Allocates nothing when
+     *  `variates` has had this size before. */
     void draw(const BeamKey& key, size_t beam_count, size_t bin_count, std::vector<float>& variates);
 
 private:
@@ -29,8 +29,8 @@ private:
     void addPower(size_t beam, size_t bin_count, float* variates) const;
 
     int looks_;
-    std::vector<float> along_, across_;  ///< Halves of the two filters.
-    std::vector<float> beams_;           ///< Fields of as many beams as `across_` spans, filtered in range.
+    std::vector<float> along_, across_;  ///< Halves of the filters in range and across beams.
+    std::vector<float> beams_;           ///< Fields of the beams that `across_` spans, filtered in range.
 };
 
 }  // namespace insonify::noise

@@ -10,7 +10,7 @@ namespace insonify::noise {
 namespace {
 
 constexpr int steps = 8192;
-constexpr double tail = 32;  ///< exp(-tail) is less than the least tail that is asked for.
+constexpr double tail = 32;  ///< exp(-tail) is below the smallest tail of the table.
 
 /** Shares of the law below and above points of y = ln x, evenly spaced. */
 struct Shares {
@@ -19,7 +19,8 @@ struct Shares {
     double y(size_t i) const { return low + step * static_cast<double>(i); }
 };
 
-/** Where shape (1 + y - exp(y)) = -tail: by Chernoff's bound less than exp(-tail) of the law lies farther out. */
+/** Returns y where shape (1 + y - exp(y)) = -tail. By Chernoff's bound less than exp(-tail) of the law is farther
+ *  out. */
 double endOf(double shape, double inside, double outside) {
     for (int i = 0; i < 200; ++i) {
         const double y = (inside + outside) / 2;
@@ -28,14 +29,14 @@ double endOf(double shape, double inside, double outside) {
     return outside;
 }
 
-/** The density of y = ln x of a gamma variate x of unit mean, by Simpson's rule over each step. */
+/** Integrates the density of y = ln x of a gamma variate x of unit mean, by Simpson's rule over each step. */
 Shares sharesOf(double shape) {
     constexpr double least = -90;  // exp(-90) is as good as 0 in a float
     const double low = endOf(shape, 0, least), high = endOf(shape, 0, 40);
     const double scale = shape * std::log(shape) - std::lgamma(shape);
     const auto density = [&](double y) { return std::exp(scale + shape * (y - std::exp(y))); };
     Shares shares{low, (high - low) / steps, std::vector<double>(steps + 1), std::vector<double>(steps + 1)};
-    // Farther out the density falls as exp(shape (1 - x) y) or faster.
+    // Beyond `low` the density falls as exp(shape (1 - x) y) or faster.
     shares.below[0] = density(low) / (shape * (1 - std::exp(low)));
     std::vector<double> parts(steps);
     for (size_t i = 0; i < steps; ++i) {
@@ -47,13 +48,13 @@ Shares sharesOf(double shape) {
     return shares;
 }
 
-/** Between the points `i` and `i` + 1, where ln of the share is as `wanted`. */
+/** Returns the y between points `i` and `i` + 1 where ln of the share is `wanted`. */
 double between(const Shares& shares, const std::vector<double>& share, size_t i, double wanted) {
     const double from = std::log(share[i]), to = std::log(share[i + 1]);
     return shares.y(i) + shares.step * std::clamp((wanted - from) / (to - from), 0.0, 1.0);
 }
 
-/** The y above which the share exp(-t) lies; of two shares the lesser is known the better. */
+/** Returns the y above which the share is exp(-t). Uses the smaller of the two shares, which is more accurate. */
 double quantile(const Shares& shares, double t) {
     const bool is_low = t < 0.6931;
     const double wanted = is_low ? std::log(-std::expm1(-t)) : -t, share = std::exp(wanted);
@@ -69,7 +70,7 @@ double quantile(const Shares& shares, double t) {
 
 GammaTable::GammaTable(double shape) {
     const Shares shares = sharesOf(shape);
-    constexpr float least = std::numeric_limits<float>::min();  // smaller ones are slow, and as good as 0
+    constexpr float least = std::numeric_limits<float>::min();  // smaller numbers are slow, and as good as 0
     for (int32_t bits = first_bits; bits <= last_bits; bits += cell_size) {
         const double y = quantile(shares, static_cast<double>(std::bit_cast<float>(bits)));
         const auto x = static_cast<float>(std::exp(y));

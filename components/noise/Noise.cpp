@@ -49,13 +49,13 @@ void drawNormals(const BeamKey& key, Stream stream, size_t chunk, Variates& vari
         }
 }
 
-/** Gamma variates in place of exponential ones. */
+/** Replaces exponential variates by gamma variates. */
 INSONIFY_VECTOR_CLONES
 void turnToGamma(const float* values, Variates& variates) {
     for (float& variate : variates) variate = GammaTable::variate(values, variate);
 }
 
-/** out = (in texture + mean) factor */
+/** Computes out = (in texture + mean) factor. */
 INSONIFY_VECTOR_CLONES
 void multiplyFields(const float* in, const Variates& texture, float mean, const Variates& factor, float* out,
                     size_t size) {
@@ -83,7 +83,7 @@ struct Noise::Run {
     const float* clean;
     float* noisy;
     size_t size;
-    size_t offset;  ///< Of its first bin in the ping.
+    size_t offset;  ///< Index of the first bin in the ping.
 
     void multiplyBy(const Variates& factor, float mean) const {
         for (size_t i = 0; i < size; ++i) noisy[i] = (clean[i] + mean) * factor[i];
@@ -100,7 +100,7 @@ struct Noise::Run {
         }
         return clamped;
     }
-    /** Variates of unit mean: those of the filter, or exponential ones. */
+    /** Fills variates of unit mean: filtered variates where there are any, else exponential variates. */
     void draw(Stream stream, const std::vector<float>& filtered, Variates& variates) const {
         if (filtered.empty()) return drawExponentials(key, stream, chunk, variates);
         std::copy_n(filtered.data() + offset, size, variates.data());
@@ -148,7 +148,7 @@ uint64_t Noise::addTo(const Run& run) const {
     return clamped;
 }
 
-/** Whether the noise of the sea is an intensity of its own, and not in the mean of the speckle. */
+/** Returns whether the noise of the sea is added as a separate intensity, and not in the mean of the speckle. */
 bool Noise::addsAmbient() const {
     const bool has_ambient =
         config_.speckle && (config_.speckle->law == SpeckleLaw::Rayleigh || config_.speckle->law == SpeckleLaw::K);

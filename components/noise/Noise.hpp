@@ -10,29 +10,29 @@
 
 namespace insonify::noise {
 
-/** Puts noise on the intensities of pings, as it reaches the receiver.
+/** Adds speckle and noise to the intensities of pings before they reach the receiver.
  *
- *  Speckle multiplies. The noise of the sea is added: with `rayleigh` and `k` as fields, which is one exponential
- *  variate about the sum of both means; with the other laws as an intensity of its own, exponentially distributed.
+ *  Speckle multiplies. The noise of the sea is added. With `rayleigh` and `k` it is added as a field: one exponential
+ *  variate scales the sum of both means. With the other laws it is a separate, exponentially distributed intensity.
  *
- *  The variate of a bin depends on (seed, ping, beam, bin) alone, where the ping is known by its time in microseconds:
- *  a replayed log gets the noise of the run that it came from. */
+ *  The variate of a bin depends only on (seed, ping, beam, bin), where the ping is identified by its time in
+ *  microseconds. A replayed log therefore gets the same noise as the original run. */
 class Noise {
 public:
     explicit Noise(const NoiseConfig& config);
 
-    /** Gives `noisy` everything of `clean` and its bins with noise. NaN stays NaN, and nothing that was not negative
-     *  becomes negative. Allocates nothing once a ping of this shape has been there.
-     *  @return how many gaussian factors were below 0 and clamped. */
+    /** Copies `clean` to `noisy` and adds noise to the bins. NaN stays NaN, and no bin becomes negative unless it was.
+     *  Allocates nothing after the first ping of this shape.
+     *  @return the number of gaussian factors that were below 0 and clamped */
     uint64_t add(const types::Sonar& clean, types::Sonar& noisy);
 
-    /** Mean intensity of what is added to a bin; 0 where nothing is [1]. */
+    /** Returns the mean intensity that is added to a bin; 0 without added noise [1]. */
     double background() const { return static_cast<double>(ambient_) + static_cast<double>(additive_); }
 
 private:
     struct Run;
-    /** Filtered variates of all bins of a ping: what multiplies echoes, the sea's noise and additive noise; empty
-     * without. */
+    /** Filtered variates of all bins of a ping: for the factor on echoes, the noise of the sea and additive noise.
+     *  Empty when not used. */
     struct Filtered {
         std::vector<float> factor, ambient, additive;
     };
@@ -42,7 +42,7 @@ private:
     uint64_t multiply(const Run& run) const;
 
     NoiseConfig config_;
-    std::optional<GammaTable> gamma_;  ///< Of laws gamma and k.
+    std::optional<GammaTable> gamma_;  ///< Table of laws gamma and k.
     std::optional<FieldFilter> filter_;
     Filtered filtered_;
     float ambient_ = 0, additive_ = 0;  ///< Mean intensities [1].

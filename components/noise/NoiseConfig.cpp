@@ -20,9 +20,9 @@ void AmbientConfig::check(types::Diagnostics& diagnostics) const {
         return diagnostics.push_back(
             {"", "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"});
     for (const auto& [name, value] : computed) {
-        if (level_db && value) diagnostics.push_back({name, "stands beside level_db; give one of the two"});
+        if (level_db && value) diagnostics.push_back({name, "is given together with level_db; give one of the two"});
         if (!level_db && !value)
-            diagnostics.push_back({"", std::string("has no ") + name + "; without level_db it must"});
+            diagnostics.push_back({"", std::string("has no ") + name + ", which is needed without level_db"});
     }
 }
 

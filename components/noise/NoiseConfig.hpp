@@ -7,9 +7,9 @@
 
 namespace insonify::noise {
 
-/** Of the factor on intensity. Rayleigh: exponential of unit mean, of many scatterers in every bin. Gamma: the mean of
- *  `looks` of them. K: an exponential whose mean is gamma distributed of `shape`, of few or patchy scatterers.
- *  Gaussian: N(mean, deviation), clamped at 0, of Cerqueira et al. 2017. */
+/** Laws of the speckle factor on intensity. Rayleigh: exponential of unit mean, for many scatterers in every bin.
+ *  Gamma: the mean of `looks` exponential factors. K: exponential with a gamma-distributed mean of `shape`, for few or
+ *  patchy scatterers. Gaussian: N(mean, deviation), clamped at 0, by Cerqueira et al. 2017. */
 enum class SpeckleLaw { Rayleigh, Gamma, K, Gaussian };
 
 struct SpeckleConfig {
@@ -26,15 +26,16 @@ struct SpeckleConfig {
                     "distributed mean (Jakeman and Pusey 1976); gaussian: normal factor, clamped at 0 (Cerqueira et "
                     "al. 2017)"},
               self.law);
-        visit(Field{"looks", "1", "of law gamma: how many exponential factors are averaged", 1, 1e4}, self.looks);
-        visit(Field{"shape", "1", "of law k: 1 to 20 on sea floors, rayleigh above", 1e-3, 1e6}, self.shape);
+        visit(Field{"looks", "1", "law gamma: number of exponential factors that are averaged", 1, 1e4}, self.looks);
+        visit(Field{"shape", "1", "law k: 1 to 20 on sea floors; larger values approach rayleigh", 1e-3, 1e6},
+              self.shape);
         visit(Field{"mean", "1", "of the gaussian factor", 0, 1e6}, self.mean);
         visit(Field{"deviation", "1", "standard deviation of the gaussian factor", 0, 1e6}, self.deviation);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Noise of the sea at the receiver: its mean intensity in a bin, or what it is computed from. */
+/** Noise of the sea at the receiver: its mean intensity in a bin, or the quantities that determine it. */
 struct AmbientConfig {
     std::optional<double> level_db, wind_m_s, bandwidth_khz, source_level_db;
     double directivity_index_db = 0;
@@ -46,12 +47,12 @@ struct AmbientConfig {
         using types::Field;
         visit(Field{"level_db", "dB", "mean intensity in a bin, relative to the source", -3000, 300}, self.level_db);
         visit(Field{"wind_m_s", "m/s", "instead: speed of the wind, for Coates' formula", 0, 100}, self.wind_m_s);
-        visit(Field{"directivity_index_db", "dB", "of the receiver: how much less noise it hears", 0, 100},
+        visit(Field{"directivity_index_db", "dB", "of the receiver; reduces the noise by this", 0, 100},
               self.directivity_index_db);
         visit(Field{"bandwidth_khz", "kHz", "of the receiver", 1e-3, 1e4}, self.bandwidth_khz);
         visit(Field{"source_level_db", "dB re 1 uPa m", "of the sonar", -300, 400}, self.source_level_db);
         visit(Field{"frequency_khz", "kHz", "of the sonar", 1e-3, 1e4}, self.frequency_khz);
-        visit(Field{"shipping", "1", "activity of ships, which are heard below 1 kHz", 0, 1}, self.shipping);
+        visit(Field{"shipping", "1", "activity of ships, whose noise is below 1 kHz", 0, 1}, self.shipping);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -66,7 +67,7 @@ struct AdditiveConfig {
     }
 };
 
-/** The receiver's filter and its averaging, as speckle and noise have passed them (ACOUSTICS.md 6.8). */
+/** The receiver's filter and averaging of looks, which apply to speckle and noise (ACOUSTICS.md 6.8). */
 struct FilterConfig {
     int looks = 1;
     std::optional<double> correlation_bins = {}, correlation_beams = {};
@@ -85,9 +86,9 @@ struct FilterConfig {
     }
 };
 
-/** What noise a ping gets: a block that is absent is not computed. */
+/** The noise of a ping. An absent block is not simulated. */
 struct NoiseConfig {
-    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task one of its own.
+    std::optional<uint64_t> seed = {};  ///< None: 1. A deployment gives each task its own seed.
     std::optional<SpeckleConfig> speckle;
     std::optional<AmbientConfig> ambient;
     std::optional<AdditiveConfig> additive;
@@ -109,8 +110,8 @@ struct NoiseConfig {
         visit(Field{"additive", "", "exponentially distributed background, for model cerqueira2017; absent: none"},
               self.additive);
         visit(Field{"filter", "",
-                    "the receiver's filter and averaging of looks, which speckle (rayleigh, k) and noise have passed; "
-                    "absent: one look, independent in each bin"},
+                    "the receiver's filter and averaging of looks, applied to speckle (rayleigh, k) and noise; absent: "
+                    "one look, independent in each bin"},
               self.filter);
     }
     void check(types::Diagnostics& diagnostics) const {
@@ -126,7 +127,8 @@ struct NoiseConfig {
     }
 };
 
-/** Mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10) [1]. */
+/** Returns the mean intensity of the noise in a bin, relative to the source: 10^((N + 10 log10 B - DI - SL) / 10)
+ *  [1]. */
 double ambientIntensity(const AmbientConfig& ambient);
 
 }  // namespace insonify::noise

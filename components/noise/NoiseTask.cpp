@@ -8,7 +8,7 @@
 namespace insonify::noise {
 namespace {
 
-/** Tells how far the loudest bin of a ping is below a mean intensity. */
+/** Returns a warning with the distance of a ping's loudest bin below a mean intensity. */
 std::string burialText(const types::Sonar& ping, size_t loudest, double background) {
     const double echo_db = 10 * std::log10(static_cast<double>(ping.bins[loudest]));
     const double noise_db = 10 * std::log10(background);
@@ -55,7 +55,7 @@ types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
 void NoiseTask::judge(const types::Sonar& ping) {
     float most = 0;
     for (const float bin : ping.bins) most = bin > most ? bin : most;
-    if (most == 0) return;  // of an empty ping the sonar tells
+    if (most == 0) return;  // the sonar reports an empty ping
     const bool is_buried = static_cast<double>(most) < noise_->background();
     if (!buried_.isDue(is_buried)) return;
     const auto loudest = static_cast<size_t>(std::ranges::find(ping.bins, most) - ping.bins.begin());

@@ -14,14 +14,14 @@
 
 namespace insonify::noise {
 
-/** Puts speckle and background noise into pings: one ping out for each ping in, with its time unchanged.
+/** Adds speckle and background noise to pings: one ping out for each ping in, with its time unchanged.
  *
- *  It comes before the receiver, whose gain raises noise and echoes alike. The bins must be linear intensities: a ping
- *  with bins below 0 leads to RunTimeError, from which the next good one recovers. The same seed and the same ping
- *  times give the same noise, in a replay too; each task of a deployment has a seed of its own, unless one is written.
- *  Without any noise the ping itself is passed on, not a copy. Properties that are set hold from the next ping on. A
- *  warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after echoes
- *  have stood out. */
+ *  The task belongs before the receiver, whose gain amplifies noise and echoes alike. The bins must be linear
+ *  intensities. A ping with bins below 0 leads to RunTimeError; the next valid ping recovers from it. The same seed and
+ *  the same ping times give the same noise, in a replay too. Each task of a deployment has its own seed, unless a seed
+ *  is given. Without any noise the ping itself is passed on, not a copy. Changed properties apply from the next ping. A
+ *  warning reports a ping whose loudest echo is below the mean of the added noise: once, and again only after pings
+ *  with louder echoes. */
 class NoiseTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -40,7 +40,7 @@ private:
     void updateHook() override;
     void errorHook() override { updateHook(); }
     types::SonarPtr withNoise(const types::SonarPtr& ping);
-    /** Tells of a ping whose echoes are all below the mean of the noise that is added. */
+    /** Warns when all echoes of a ping are below the mean of the added noise. */
     void judge(const types::Sonar& ping);
 
     std::optional<Noise> noise_;
@@ -49,7 +49,7 @@ private:
     types::RecurringDiagnostic buried_;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::noise

@@ -1,6 +1,6 @@
 #pragma once
-// Counter-based random numbers: no state, any element at any time, in any order. Everything here is written for loops
-// over lanes that the compiler turns into vector code.
+// Counter-based random numbers without state: elements may be computed in any order. All functions are written for
+// loops that the compiler turns into vector code.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace insonify::noise {
 using Counter = std::array<uint32_t, 4>;
 using Key = std::array<uint32_t, 2>;
 
-/** What, with bin and stream, makes the counter and the key of a beam's numbers. */
+/** The part of Philox's counter and key that is the same for all numbers of a beam; bin and stream are the rest. */
 struct BeamKey {
     Key seed;
     uint32_t beam;
     uint32_t ping_low, ping_high;
 };
 
-/** Philox4x32-10: four words of 32 random bits for each counter and key.
- *  J. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011. */
+/** Returns four words of 32 random bits for a counter and a key, by Philox4x32-10. J. Salmon et al., "Parallel random
+ *  numbers: as easy as 1, 2, 3", SC 2011. */
 inline Counter philox(Counter counter, Key key) {
     for (int round = 0; round < 10; ++round) {
         const uint64_t first = uint64_t{0xD2511F53} * counter[0];
@@ -34,12 +34,12 @@ inline Counter philox(Counter counter, Key key) {
     return counter;
 }
 
-/** -ln(u) for u = (bits + 0.5) / 2^32: exponentially distributed of unit mean, in [1.2e-10, 22.9], within 1e-6
- *  relative. */
+/** Returns -ln(u) for u = (bits + 0.5) / 2^32: exponentially distributed with unit mean, in [1.2e-10, 22.9], to a
+ *  relative error of 1e-6. */
 inline float exponential(uint32_t bits) {
     constexpr uint32_t half_root = 0xB504F333;  // 2^32 sqrt(1/2): above it 1 - u is small, and exact from ~bits
     const float above = -(static_cast<float>(~bits) + 0.5f) * 0x1p-32f;
-    // Below it, split into 2^exponent and a mantissa in [sqrt(1/2), sqrt(2)).
+    // Smaller u is split into 2^exponent and a mantissa in [sqrt(1/2), sqrt(2)).
     const float u = (static_cast<float>(bits) + 0.5f) * 0x1p-32f;
     const types::PowersOfTwo parts = types::split(u);
     const bool near_one = bits >= half_root;
@@ -52,7 +52,7 @@ struct Normals {
     float first, second;
 };
 
-/** Two independent variates of N(0, 1), at most 6.8 from 0 (Box and Muller 1958). */
+/** Returns two independent variates of N(0, 1), at most 6.8 from 0 (Box and Muller 1958). */
 inline Normals normals(uint32_t radius_bits, uint32_t angle_bits) {
     const float radius = std::sqrt(2.0f * exponential(radius_bits));
     // The angle is 2 pi angle_bits / 2^32: the nearest quarter turn and a rest within pi / 4 of it.

@@ -23,13 +23,13 @@ constexpr uint32_t max_samples = 65536, max_period_us = 1000, max_delay_us = 1'0
 
 double numberAt(std::span<const char> header, size_t at) { return static_cast<double>(field<float>(header, at)); }
 
-/** Beams by the way of pinging; 0: there is none of this number. */
+/** Returns the number of beams in a ping mode; 0 for an unknown mode. */
 uint32_t beamsOf(uint32_t ping_mode) {
     if (ping_mode == 0 || ping_mode > 12) return 0;
     return ping_mode <= 2 ? 48 : ping_mode <= 5 ? 96 : ping_mode <= 8 ? 64 : 128;
 }
 
-/** By the maker's data sheets, of its two the higher or the lower. */
+/** Returns the higher or the lower of a model's two frequencies, from the maker's data sheets. */
 double frequencyOf(ArisModel model, bool is_high) {
     switch (model) {
         case ArisModel::Aris3000: return is_high ? 3000 : 1800;

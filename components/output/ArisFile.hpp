@@ -11,23 +11,24 @@ namespace insonify::output {
 /** Reads the frames of an .aris file (Sound Metrics, ARIS File SDK: DDF version 5).
  *
  *  Codes are levels, 80 dB from 0 to 255. Beams have the bearings of ArisBeams. Bins before the window are 0; the
- * window begins at the nearest bin. A pose has latitude and longitude of the header, the platform's depth, and the
- * angles of the sonar's compass, or where that has none the platform's; without a position it stays at x = y = 0. */
+ *  window begins at the nearest bin. A pose has the header's latitude and longitude, the platform's depth, and the
+ *  angles of the sonar's compass. Without that compass it has the platform's angles; without a position it stays at x =
+ *  y = 0. */
 class ArisFile final : public FanFile {
 public:
-    /** Whether a file begins as one, or as one of the DIDSON's, which came before it. */
+    /** Returns whether a file begins like an ARIS file, or like a file of its predecessor, the DIDSON. */
     static bool isOne(const std::filesystem::path& path);
-    /** Throws types::ConfigError for a file that cannot be read or is of another version. */
+    /** Throws types::ConfigError for a file that cannot be read or has another version. */
     explicit ArisFile(const std::filesystem::path& path);
 
     std::optional<double> dynamicRange() const override { return 80; }
 
 private:
-    /** What a frame's header states of its samples. */
+    /** The layout of a frame's samples, from its header. */
     struct Shape {
         std::span<const double> bearings;  ///< [deg]
         uint32_t first = 0;                ///< Bins before the window.
-        double period = 0, speed = 0;      ///< Of a sample, two-way [s]; of sound [m/s].
+        double period = 0, speed = 0;      ///< Two-way sample period [s]; speed of sound [m/s].
         double frequency_khz = 0;
     };
 
@@ -37,7 +38,7 @@ private:
     types::Time timeOf(std::span<const char> header) const;
     std::optional<Stated> stated(std::span<const char> header);
 
-    std::optional<bool> has_place_;  ///< The first frame states where it is on the earth.
+    std::optional<bool> has_place_;  ///< Whether the first frame has a position on the earth.
 };
 
 }  // namespace insonify::output

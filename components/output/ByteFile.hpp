@@ -8,18 +8,18 @@
 
 namespace insonify::output {
 
-/** A file that a thread of its own writes, so that who gives bytes waits for no disk. */
+/** Writes a file on a separate thread, so that callers do not wait for the disk. */
 class ByteFile {
 public:
-    /** Throws ConfigError where the file cannot be made. */
+    /** Throws ConfigError if the file cannot be created. */
     explicit ByteFile(const std::filesystem::path& path);
-    ~ByteFile();  ///< Writes what waits; errors are not told any more.
+    ~ByteFile();  ///< Writes the queue; errors are no longer reported.
     ByteFile(const ByteFile&) = delete;
     ByteFile& operator=(const ByteFile&) = delete;
 
-    /** Throws what earlier bytes met. */
+    /** Throws if earlier bytes could not be written. */
     void append(const std::vector<char>& bytes);
-    /** Writes what waits and closes. Throws std::runtime_error when not all of it arrived. */
+    /** Writes the queue and closes the file. Throws std::runtime_error if some bytes could not be written. */
     void close();
 
 private:

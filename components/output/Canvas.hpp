@@ -9,13 +9,13 @@
 
 namespace insonify::output {
 
-/** Makes `picture` a BGR image of this size and time, and gives a view of its pixels. */
+/** Makes `picture` a BGR image of this size and time; returns a view of its pixels. */
 cv::Mat openCanvas(types::Image& picture, cv::Size size, types::Time time);
 
-/** The line of text on top of every picture: time, range, shape, reference level or largest code. Keeps its memory. */
+/** The line of text on top of every picture: time, range, shape, and reference level or max code. Reuses its memory. */
 class Title {
 public:
-    /** Draws on the uppermost rows of `canvas`; what does not fit in its width is left out. */
+    /** Draws on the top rows of `canvas`; text that exceeds its width is omitted. */
     void draw(cv::Mat& canvas, const types::Sonar& ping, const LevelScale& scale);
 
 private:
@@ -25,18 +25,17 @@ private:
     int column_ = 0;
 };
 
-/** Paints the ground of title and picture, and the bar of all colours with its upper left corner at `bar`, where there
- *  is room for it. */
+/** Paints the background of title and picture, and the colour bar with its upper left corner at `bar`, if it fits. */
 void paintBackground(cv::Mat& canvas, const Palette& palette, cv::Point bar);
 
-/** A picture and a line of text to go below it. */
+/** A picture and the line of text below it. */
 struct Captioned {
     const types::Image& picture;
     const std::string& caption;
 };
 
-/** Two BGR pictures beside each other, with the time of the left one. Fans whose bearings differ by rounding differ in
- *  height: the background fills the rest. */
+/** Draws two BGR pictures side by side, with the time of the left picture. Fans whose bearings differ by rounding
+ *  differ in height: the background fills the rest. */
 void sideBySide(const Captioned& left, const Captioned& right, types::Image& picture);
 
 }  // namespace insonify::output

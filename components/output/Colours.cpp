@@ -11,7 +11,7 @@ struct Anchor {
     cv::Vec3d bgr;
 };
 
-/** From black water over brown and orange to white: the look of imaging-sonar viewers. */
+/** From black water over brown and orange to white, as in viewers of imaging sonars. */
 const Anchor amber[] = {{0, {6, 5, 6}},        {40, {6, 22, 44}},      {96, {8, 62, 120}},    {150, {14, 118, 204}},
                         {200, {48, 180, 246}}, {235, {140, 226, 255}}, {255, {236, 252, 255}}};
 

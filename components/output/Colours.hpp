@@ -10,7 +10,7 @@ namespace insonify::output {
 using Palette = std::array<cv::Vec3b, 256>;
 Palette paletteOf(ColourMap map);
 
-inline const cv::Scalar background{26, 19, 14};  ///< Around the picture: blue, green, red.
+inline const cv::Scalar background{26, 19, 14};  ///< The background's blue, green, red.
 inline const cv::Scalar title_ground{44, 33, 25};
 inline const cv::Vec3b ink{226, 220, 210};  ///< Lines and text.
 

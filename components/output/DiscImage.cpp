@@ -13,7 +13,7 @@ constexpr double full_turn = 2 * std::numbers::pi;
 constexpr double sector_width = full_turn / DiscImage::sectors;
 constexpr int sub_pixel_bits = 4;
 
-/** Centre of a sector, from astern over starboard, ahead and port to astern again [rad]. */
+/** Returns the centre of a sector, counted from astern over starboard, ahead and port to astern again [rad]. */
 double bearingOf(uint32_t sector) { return (sector + 0.5) * sector_width - std::numbers::pi; }
 
 void drawHead(cv::Mat& canvas, const FanLayout& layout, double bearing) {
@@ -51,8 +51,8 @@ void DiscImage::clear(const types::Sonar& ping) {
     disc_.bins.assign(size_t{sectors} * ping.bin_count, std::numeric_limits<float>::quiet_NaN());
 }
 
-/** Copies a beam into the sectors whose centre it covers and to which no other beam of the ping is nearer, and in any
- *  case into the sector that it points to. */
+/** Copies a beam to the sectors whose centre it covers, unless another beam of the ping is nearer. Always copies it to
+ *  the sector that it points to. */
 void DiscImage::overwrite(const types::Sonar& ping, size_t place) {
     const uint32_t beam = arc_.beams[place];
     const double half_width = ping.beam_width.rad > 0 ? std::min(ping.beam_width.rad, full_turn) / 2 : 0;

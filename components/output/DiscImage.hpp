@@ -3,10 +3,9 @@
 
 namespace insonify::output {
 
-/** The picture of a mechanically scanning sonar: a disc on which every ping overwrites the sector of its beam width,
- *  so that each direction shows the last echo from there. Where beams of one ping overlap, the nearest centre counts.
- *  A line shows where the head looks. Ahead is up, port left.
- *  A ping of other bins or range starts an empty disc. */
+/** Draws the pings of a mechanically scanning sonar on a disc. Each ping overwrites the sector of its beam width, so
+ *  that each direction shows its last echo. Where beams of one ping overlap, the nearest centre counts. A line shows
+ *  the direction of the head. Ahead is up, port left. A ping with other bins or range starts an empty disc. */
 class DiscImage final : public Painter {
 public:
     explicit DiscImage(const DisplayConfig& config) : fan_(config) {}
@@ -16,7 +15,7 @@ public:
 
     const FanLayout& layout() const { return fan_.layout(); }
 
-    /** Directions that the disc keeps apart: 0.45 degrees each, the finest step of common heads. */
+    /** Resolution of directions: 0.45 degrees each, the finest step of common heads. */
     static constexpr uint32_t sectors = 800;
 
 private:

@@ -21,7 +21,7 @@ std::optional<FanFrame> FanFile::next() {
     } catch (const types::ConfigError& error) {
         if (frames_ == 0) throw;
         const types::Diagnostic& found = error.diagnostics().front();
-        damage_ = fmt::format("{}: {}; only the {} pings before it are read", found.path, found.message, frames_);
+        damage_ = fmt::format("{}: {}; only the {} earlier pings are read", found.path, found.message, frames_);
         return std::nullopt;
     }
 }
@@ -33,7 +33,7 @@ std::string FanFile::diagnosticOf(double time_us) const {
                            time_us * 1e-6);
     const double step = time_us - static_cast<double>(last_.microseconds);
     if (frames_ > 0 && step < 0)
-        return fmt::format("the time is {:.6g} s before that of the ping before", -step * 1e-6);
+        return fmt::format("the time is {:.6g} s before that of the previous ping", -step * 1e-6);
     return "";
 }
 

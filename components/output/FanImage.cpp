@@ -86,7 +86,7 @@ void FanImage::buildGround() {
     overlay_->finish();
 }
 
-/** The ping's beams in order of bearing, with no more range cells than there are pixels. */
+/** Gathers the ping's beams in order of bearing, with at most one range cell per pixel. */
 void FanImage::gather(const types::Sonar& ping) {
     const size_t count = shape_.bin_count;
     for (size_t row = 0; row < shape_.beams.size(); ++row)

@@ -11,27 +11,27 @@
 
 namespace insonify::output {
 
-/** Draws a ping as the fan that it was in the water: ahead is up, port is left, with range rings in metres and
- *  bearings in degrees. Bearings may be in any order and unevenly spaced; up to the full circle.
+/** Draws a ping as a fan: ahead is up, port is left, with range rings in metres and bearings in degrees. Bearings may
+ *  be in any order, unevenly spaced, and span up to the full circle.
  *
- *  Where each pixel's echo comes from is tabled once and kept until bearings, bins or range change. Ranges that are
- *  finer than the picture are averaged as intensities first. */
+ *  A table maps pixels to bins until bearings, bins or range change. Ranges finer than the picture are first averaged
+ *  as intensities. */
 class FanImage final : public Painter {
 public:
     explicit FanImage(const DisplayConfig& config);
 
     void paint(const types::Sonar& ping, types::Image& picture) override;
 
-    /** The same without the line of text on top; gives a view of the picture's pixels. */
+    /** Draws the same without the line of text on top; returns a view of the picture's pixels. */
     cv::Mat draw(const types::Sonar& ping, types::Image& picture);
 
-    /** Where things are in the last picture. There must have been one. */
+    /** Returns the layout of the last picture, which must exist. */
     const FanLayout& layout() const { return *layout_; }
     const LevelScale& scale() const { return scale_; }
     int tablesBuilt() const { return tables_built_; }
 
 private:
-    /** Pixels of one row that show water. */
+    /** The pixels of one row that show water. */
     struct Span {
         int row, begin, end;
     };

@@ -11,29 +11,29 @@ namespace insonify::output {
 namespace {
 
 namespace glf {
-// Each record: a header, its data.
+// Each record is a header and its data.
 constexpr char mark = '*';
 constexpr size_t stamp = 6, type = 14, device = 15, header = 21, head = header + 4;
 constexpr int image_type = 0;
 constexpr uint16_t end_mark = 0xDEDE, image_mark = 0xEFEF;
-// An image, from the begin of its record: numbers, samples, a bearing of 8 bytes for each beam, the tail.
+// Offsets in an image's record: numbers, samples, a bearing of 8 bytes for each beam, the tail.
 constexpr size_t version = header + 4, start_range = header + 6, end_range = header + 10, start_bearing = header + 16,
                  end_bearing = header + 20, numbers = header + 28, compression = header + 24;
 constexpr uint16_t max_version = 3, compression_since = 3;
 constexpr int zlib = 0, none = 1, h264 = 2;
-// The tail, from its begin.
+// Offsets in the tail.
 constexpr size_t state = 0, modulation = 4, transmit_time = 12, ping_flags = 20, sound_speed = 22, platform = 30,
                  is_zoomed = 31, tail_mark = 32, tail_size = 34;
 constexpr uint32_t inverted = 0xE000;
-constexpr uint16_t high_frequency = 0x0101;  // the maker's header has bit 0, its example bit 8
+constexpr uint16_t high_frequency = 0x0101;  // bit 0 in the maker's header, bit 8 in its example
 constexpr uint32_t max_beams = 4096, max_ranges = 65536;
 constexpr size_t max_samples = size_t{1} << 25;
-constexpr double epoch_s = 315532800;  // 1980 since 1970
+constexpr double epoch_s = 315532800;  // 1980, since 1970
 }  // namespace glf
 
 bool isKnownType(int type) { return type <= 5 || type == 98 || type == 99; }
 
-/** Whether the bytes are the begin of a record. */
+/** Returns whether the bytes are the beginning of a record. */
 bool beginsRecord(std::span<const char> head) {
     if (head.size() < glf::head || head[0] != glf::mark) return false;
     const double stamp = field<double>(head, glf::stamp);
@@ -43,7 +43,7 @@ bool beginsRecord(std::span<const char> head) {
     return isKnownType(type) && stamp >= 0 && stamp < 1e10 && (type != glf::image_type || is_image);
 }
 
-/** By the maker's name of the model; 0: unknown [kHz]. */
+/** Returns the frequency by the maker's name of the model; 0 if unknown [kHz]. */
 double geminiFrequency(int platform, uint16_t flags) {
     switch (platform) {
         case 1:  // 720is, ik, im, and the ik's three sectors of 360 degrees
@@ -114,7 +114,7 @@ std::vector<char> GlfFile::samplesOf(std::span<const char> record, const Image& 
     const std::span<const char> packed = record.subspan(image.packed, image.packed_size);
     std::vector<char> samples(packed.begin(), packed.end());
     if (image.compression == glf::zlib) {
-        constexpr size_t max_ratio = 1032;  // of deflate
+        constexpr size_t max_ratio = 1032;  // max of deflate
         if (image.packed_size < image.samples() / max_ratio)
             failAt(image.packed,
                    fmt::format("{} bytes cannot hold the {} samples of {} beams and {} ranges", image.packed_size,
@@ -187,7 +187,7 @@ void GlfFile::skipToRecord(size_t size) {
                 return entry_.skip(i);
         entry_.skip(bytes.size() - glf::head + 1);
     }
-    entry_.skip(glf::head);  // what is left is no record
+    entry_.skip(glf::head);  // the rest is not a record
 }
 
 std::optional<FanFrame> GlfFile::read() {

@@ -12,15 +12,15 @@
 
 namespace insonify::output {
 
-/** Reads the images of a .glf file (Tritech Gemini) of the sonar that comes first: records in the .dat file of an
- *  archive.
+/** Reads the images of a .glf file (Tritech Gemini), of the first sonar in it. A .glf file is an archive whose .dat
+ *  file has the records.
  *
- *  Samples are the file's, unpacked; what their values mean is not published. Bearings are those of each image's table.
- *  A range line is one period of the modulation frequency, two-way. The file has no poses. Times, which count from
- * 1980, are taken as UTC. */
+ *  Samples are the file's, unpacked; the meaning of their values is not published. Bearings are those of each image's
+ *  table. A range line is one period of the modulation frequency, two-way. The file has no poses. Times, which count
+ *  from 1980, are taken as UTC. */
 class GlfFile final : public FanFile {
 public:
-    /** Whether a file begins as one: as an archive. */
+    /** Returns whether a file begins like an archive, as a .glf file does. */
     static bool isOne(const std::filesystem::path& path) { return ZipEntry::isArchive(path); }
     /** Throws types::ConfigError for a file that cannot be read or has no records. */
     explicit GlfFile(const std::filesystem::path& path) : FanFile(path), entry_(path, ".dat") {}
@@ -29,12 +29,12 @@ public:
     std::vector<std::string> notices() const override;
 
 private:
-    /** Where the parts of an image's record are, from its begin [B], and their numbers. */
+    /** The offsets of the parts of an image's record [B], and their numbers. */
     struct Image {
         uint32_t start_range = 0, end_range = 0, beams = 0;
         int compression = 0;
         size_t packed = 0, packed_size = 0, bearings = 0, tail = 0, size = 0;
-        /** Samples of the lines that are stated; what is before the first may be there, too. */
+        /** Returns the number of samples of the stated lines; the lines before the first may also be present. */
         size_t samples() const { return size_t{beams} * (end_range - start_range); }
         size_t allSamples() const { return size_t{beams} * end_range; }
     };
@@ -46,13 +46,13 @@ private:
     std::vector<char> samplesOf(std::span<const char> record, const Image& image) const;
     std::vector<double> bearingsOf(std::span<const char> record, const Image& image) const;
     void setRanges(std::span<const char> tail, const Image& image, types::Sonar& ping);
-    /** Passes over a part of this record and all that does not look like the next one. */
+    /** Skips a part of this record and everything up to the next record. */
     void skipToRecord(size_t size);
     [[noreturn]] void failAt(size_t offset, const std::string& why) const;
 
     ZipEntry entry_;
-    std::optional<uint16_t> device_;  ///< Whose images are read.
-    double stamp_ = 0;                ///< Of the last record, since 1980 [s].
+    std::optional<uint16_t> device_;  ///< The device whose images are read.
+    double stamp_ = 0;                ///< Time of the last record, since 1980 [s].
     std::optional<uint64_t> cut_off_record_;
     std::map<int, size_t> other_types_;    ///< Records by type.
     std::map<int, size_t> other_devices_;  ///< Images by device.

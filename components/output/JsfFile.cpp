@@ -9,7 +9,7 @@
 namespace insonify::output {
 namespace {
 
-/** Where the fields of a message are, in bytes from its start. */
+/** Offsets of a message's fields [B]. */
 namespace jsf {
 constexpr size_t header = 16, version = 2, type = 4, subsystem = 7, channel = 8, size = 12;
 constexpr uint16_t magic = 0x1601, sonar_data = 80;
@@ -21,7 +21,7 @@ constexpr size_t samples = header + 240, seconds = header + 0, first_sample = he
                  altitude = header + 144, sound_speed = header + 148, year = header + 156, day = header + 158,
                  weight = header + 168, heading = header + 172, pitch = header + 174, roll = header + 176,
                  course = header + 192, milliseconds_today = header + 200;
-constexpr int16_t envelope = 0, analytic = 1;  ///< As `format`.
+constexpr int16_t envelope = 0, analytic = 1;  ///< Values of `format`.
 enum Validity {
     position = 1,
     course_bit = 2,
@@ -35,7 +35,7 @@ enum Validity {
 
 bool isValid(std::span<const char> message, int bit) { return field<uint16_t>(message, jsf::validity) & bit; }
 
-/** A number of 16 bits with four more above them, which versions from 10 on have. */
+/** Returns a number of 16 bits with four more bits above, present since version 10. */
 uint32_t extended(std::span<const char> message, size_t at, int shift) {
     const bool has_more = field<uint8_t>(message, jsf::version) >= 10;
     const uint32_t more = has_more ? field<uint16_t>(message, jsf::high_bits) >> shift & 0xF : 0;
@@ -110,7 +110,7 @@ JsfFile::Side JsfFile::side() const {
     if (!(interval_ns > 0 && interval_ns <= 1e9))
         fail(at_ + jsf::interval,
              fmt::format("the sample interval is {:g} ns; it must be above 0 and at most 1 s", interval_ns));
-    side.resolution = interval_ns * 1e-9 / 2;  // of time, one way; `line` makes it a range
+    side.resolution = interval_ns * 1e-9 / 2;  // time, one way; `line` converts it to a range
     return side;
 }
 
@@ -135,7 +135,7 @@ std::optional<SideScanFile::Stated> JsfFile::stated(const Side& side) {
     const bool has_heading = isValid(message, jsf::heading_bit), has_course = isValid(message, jsf::course_bit);
     if (!isValid(message, jsf::position) || (!has_heading && !has_course) || units < 1 || units > 4)
         return std::nullopt;
-    constexpr double metres[] = {1e-3, 1 / 600000.0, 0.1, 0.01};  // the second in degrees
+    constexpr double metres[] = {1e-3, 1 / 600000.0, 0.1, 0.01};  // the second applies to degrees
     const double unit = metres[units - 1];
     Stated stated{units == 2, field<int32_t>(message, jsf::y) * unit, field<int32_t>(message, jsf::x) * unit};
     stated.heading =

@@ -11,13 +11,13 @@
 namespace insonify::output {
 
 /** Reads the side-scan pings of a JSF file (EdgeTech, 0004824 and 0023492: messages of type 80, channel 0 to port and 1
- *  to starboard) of the subsystem that comes first, of 20, 21 and 22.
+ *  to starboard). Reads the first subsystem of 20, 21 and 22 that occurs.
  *
  *  Samples are envelopes, or the magnitude of analytic data, times 2^-weight; samples before matched filtering are
- *  omitted. Both sides of a ping have one number; a side without the other is a ping of one beam. */
+ *  omitted. Both sides of a ping have the same number; a side without the other becomes a ping of one beam. */
 class JsfFile final : public SideScanFile {
 public:
-    /** Whether a file begins as one. */
+    /** Returns whether a file begins like a JSF file. */
     static bool isOne(const std::filesystem::path& path);
     /** Throws types::ConfigError for a file that cannot be read. */
     explicit JsfFile(const std::filesystem::path& path) : SideScanFile(path) {}
@@ -26,13 +26,13 @@ public:
     std::vector<std::string> notices() const override;
 
 private:
-    /** A message of one side. */
+    /** The message of one side. */
     struct Side {
         std::vector<char> message;
-        uint64_t at = 0;  ///< Where the message begins in the file [B].
+        uint64_t at = 0;  ///< Offset of the message in the file [B].
         bool is_port = false, is_complex = false;
-        uint32_t number = 0, first = 0, count = 0;  ///< The ping's; bins before the samples; samples.
-        double resolution = 0;                      ///< Slant range of a sample [m].
+        uint32_t number = 0, first = 0, count = 0;  ///< The ping's number; bins before the samples; samples.
+        double resolution = 0;                      ///< Slant range per sample [m].
     };
 
     std::optional<Side> nextSide();

@@ -42,9 +42,9 @@ void LevelScale::follow() {
     started_ = true;
 }
 
-/** The level that 0.2 % of the bins with an echo exceed [dB]; NaN when there is none. */
+/** Returns the level that 0.2 % of the bins with an echo exceed [dB]; NaN without echoes. */
 double LevelScale::strongLevel() {
-    constexpr float lowest = -379, highest = 385.5f;  // the range of a float, and more than any level in dB
+    constexpr float lowest = -379, highest = 385.5f;  // covers floats, and all levels in dB
     const float steps_per_db = static_cast<float>(histogram_.size() - 1) / (highest - lowest);
     histogram_.fill(0);
     size_t count = 0;

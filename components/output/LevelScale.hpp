@@ -6,20 +6,20 @@
 
 namespace insonify::output {
 
-/** Log compression: level 255 is the reference, level 0 lies `dynamic_range_db` below it, clipped at both ends. Codes
- *  are not compressed: level 255 is the largest, level 0 is 0.
+/** Compresses bins to levels: 255 is the reference, 0 is `dynamic_range_db` below it, clipped at both ends. Codes are
+ *  not compressed: 255 is the max code, 0 is 0.
  *
- *  Without a fixed `reference_db` the reference follows the echoes: the level that 0.2 % of a picture's bins exceed,
- *  smoothed with a tenth of the difference from one picture to the next. */
+ *  Without a fixed `reference_db`, the reference follows the echoes. It is the level that 0.2 % of a picture's bins
+ *  exceed, smoothed with a tenth of the difference from one picture to the next. */
 class LevelScale {
 public:
     explicit LevelScale(const DisplayConfig& config) : config_(config) {}
 
-    /** @param bins 32-bit floats on the scale of the configuration; NaN and nothing (0, negative) become level 0.
-     *  @param levels 8 bits each, of the same shape. */
+    /** @param bins 32-bit floats on the scale of the configuration; NaN and no echo (0, negative) become level 0
+     *  @param levels 8 bits each, of the same shape */
     void apply(const cv::Mat& bins, cv::Mat& levels);
 
-    /** The level of the brightest colour in the last picture [dB]; 0 where bins are codes. */
+    /** Returns the level of the brightest colour in the last picture [dB]; 0 if bins are codes. */
     double referenceDb() const { return reference_db_; }
     const DisplayConfig& config() const { return config_; }
 

@@ -10,10 +10,10 @@
 
 namespace insonify::output {
 
-/** The point of the earth that becomes x = y = 0 of the world. The first position sets it. */
+/** The point on the earth that becomes x = y = 0 of the world. The first position sets it. */
 class LocalOrigin {
 public:
-    /** Metres north and east of the origin [m]; WGS 84, on the plane that touches it at the origin. */
+    /** Returns metres north and east of the origin [m]; WGS 84, on the tangent plane at the origin. */
     glm::dvec2 fromDegrees(double latitude, double longitude) {
         if (!origin_) set({latitude, longitude}, "latitude {:.7f}, longitude {:.7f} (WGS 84)");
         constexpr double radius = 6378137, e2 = 6.69437999014e-3;  // [m], [1]
@@ -23,15 +23,15 @@ public:
         return {types::radians(latitude - origin_->x) * along,
                 types::radians(std::remainder(longitude - origin_->y, 360)) * across * std::cos(latitude_rad)};
     }
-    /** Metres north and east of the origin [m], which is that of the coordinates unless they begin farther away than
-     *  any local ones. */
+    /** Returns metres north and east of the origin [m]. The origin is that of the coordinates, unless the first are too
+     *  large to be local; then it is the first position. */
     glm::dvec2 fromMetres(double north, double east) {
         constexpr double local = 1e4;
         const bool is_local = std::abs(north) <= local && std::abs(east) <= local;
         if (!origin_) set(is_local ? glm::dvec2(0) : glm::dvec2(north, east), "north {:.2f} m, east {:.2f} m");
         return glm::dvec2(north, east) - *origin_;
     }
-    /** As the file has it; empty before the first position. */
+    /** Returns the origin as in the file; empty before the first position. */
     const std::string& text() const { return text_; }
 
 private:

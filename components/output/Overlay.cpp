@@ -21,7 +21,7 @@ cv::Point subPixel(cv::Point2d at) {
     return {cvRound(at.x * (1 << sub_pixel_bits)), cvRound(at.y * (1 << sub_pixel_bits))};
 }
 
-/** Degrees between spokes, so that their labels have room on the outer arc. */
+/** Returns the degrees between spokes, so that their labels fit on the outer arc. */
 double spokeStep(double radius) {
     for (const double step : {1, 2, 5, 10, 15, 30, 45})
         if (types::radians(step) * radius > 56) return step;

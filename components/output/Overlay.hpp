@@ -9,7 +9,7 @@
 
 namespace insonify::output {
 
-/** Lines and text that lie over every picture, drawn once and then blended where they cover anything. */
+/** Lines and text on top of every picture. They are drawn once and then blended only where they cover anything. */
 class Overlay {
 public:
     explicit Overlay(cv::Size size) : cover_(size, CV_8U, cv::Scalar(0)) {}
@@ -17,9 +17,9 @@ public:
     enum class Anchor { Left, Centre, Right };
     void line(cv::Point2d from, cv::Point2d to, int opacity);
     void arc(cv::Point2d centre, double radius, double right, double left, int opacity);
-    /** Text whose middle line runs through `at`, which is its left end, centre or right end. */
+    /** Draws text whose middle line runs through `at`, which is its left end, centre or right end. */
     void text(const std::string& text, cv::Point2d at, Anchor anchor, bool degrees = false);
-    /** To be called once everything is drawn. */
+    /** Must be called after all drawing. */
     void finish();
     void blend(cv::Mat& picture) const;
     cv::Size size() const { return cover_.size(); }
@@ -33,18 +33,18 @@ private:
     std::vector<Touch> touched_;
 };
 
-/** Range rings labelled in metres and spokes labelled in degrees, positive to port. */
+/** Draws range rings labelled in metres and spokes labelled in degrees, positive to port. */
 Overlay fanOverlay(const FanLayout& layout);
 
 inline const cv::Size colour_bar_size{12, 128};
 
-/** Whether a picture of this size has room for the bar of all colours with its upper left corner at `at`. */
+/** Returns whether the colour bar with its upper left corner at `at` fits in a picture of this size. */
 bool fitsColourBar(cv::Size picture, cv::Point at);
 
-/** The levels of the bar of all colours at `at`, relative to the brightest; nothing where the bar does not fit. */
+/** Labels the colour bar at `at` with levels relative to the brightest; draws nothing if the bar does not fit. */
 void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display);
 
-/** A round step (1, 2 or 5 times a power of ten) not below `least`. */
+/** Returns a round step (1, 2 or 5 times a power of ten) not below `least`. */
 double roundStep(double least);
 
 }  // namespace insonify::output

@@ -5,13 +5,13 @@
 
 namespace insonify::output {
 
-/** Makes pictures of a stream of pings. */
+/** Makes pictures from a stream of pings. */
 class Painter {
 public:
     virtual ~Painter() = default;
-    /** @param picture becomes a BGR image, 8 bits a channel, with the ping's time. Its memory is used again. */
+    /** @param picture becomes a BGR image, 8 bits a channel, with the ping's time; its memory is reused */
     virtual void paint(const types::Sonar& ping, types::Image& picture) = 0;
-    /** Takes note of a ping of which no picture is wanted. */
+    /** Takes a ping for which no picture is made. */
     virtual void skip(const types::Sonar& /*ping*/) {}
 };
 

@@ -8,7 +8,7 @@
 
 namespace insonify::output {
 
-/** Of two pictures beside each other, for which a ping waits for a sample of another port. */
+/** Properties of tasks that show two pictures side by side: a ping waits for a sample of another port. */
 struct PairConfig : PictureConfig {
     double timeout = 1;
 
@@ -17,11 +17,10 @@ struct PairConfig : PictureConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         PictureConfig::describe(self, visit);
-        visit(types::Field{"timeout", "s", "that a ping waits for the sample that belongs to it, in the samples' time",
-                           0, 1e6},
+        visit(types::Field{"timeout", "s", "max wait of a ping for its matching sample, in the samples' time", 0, 1e6},
               self.timeout);
     }
-    /** As for any pictures; the two together are at least twice as wide as one. */
+    /** Checks also that both pictures together have at least twice the min width. */
     void check(types::Diagnostics& diagnostics) const {
         PictureConfig::check(diagnostics);
         if (width < 512)
@@ -29,7 +28,7 @@ struct PairConfig : PictureConfig {
     }
 };
 
-/** What the tasks have in common that show a ping beside what a sample of another port says of it. */
+/** Base of tasks that show a ping next to a picture made with a sample of another port. */
 template <class Config, class Picture>
 class PairPictureTask : public PictureTask {
 public:
@@ -49,7 +48,7 @@ protected:
     }
 
     Picture* picture_ = nullptr;        ///< The painter.
-    framework::StreamAligner aligner_;  ///< Of the ports of who derives.
+    framework::StreamAligner aligner_;  ///< Aligns the ports of the derived class.
 
 private:
     const PictureConfig& pictureConfig() const override { return *config; }

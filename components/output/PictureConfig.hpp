@@ -12,10 +12,10 @@ namespace insonify::output {
 /** Colours from the weakest to the strongest echo. */
 enum class ColourMap { Amber, Copper, Turbo, Viridis, Inferno, Gray };
 
-/** What the bins hold: linear intensities, levels in dB, or codes. */
+/** The content of bins: linear intensities, levels in dB, or codes. */
 enum class BinScale { Linear, Decibel, Code };
 
-/** How a picture looks. */
+/** The appearance of a picture. */
 struct DisplayConfig {
     uint32_t width = 1024;
     double dynamic_range_db = 40;
@@ -29,24 +29,27 @@ struct DisplayConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
-              self.width);
+        visit(
+            Field{"width", "1",
+                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
+            self.width);
         visit(Field{"dynamic_range_db", "dB", "between the darkest and the brightest colour", 1, 300},
               self.dynamic_range_db);
         visit(Field{"reference_db", "dB",
                     "level of the brightest colour, 10 log10 of a bin; absent: follows the echoes", -3000, 3000},
               self.reference_db);
         visit(Field{"colour_map", "", "colours from weak to strong"}, self.colour_map);
-        visit(Field{"scale", "",
-                    "what the bins hold: linear intensities, decibel, or code, shown as it is from 0 to the largest"},
-              self.scale);
-        visit(Field{"code_bits", "1", "of the largest code, where scale is code", 1, 32}, self.code_bits);
+        visit(
+            Field{"scale", "",
+                  "content of the bins: linear intensities, decibel, or code, shown unchanged from 0 to the max code"},
+            self.scale);
+        visit(Field{"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
     }
-    /** A code has no reference level. */
+    /** Reports a reference level of codes, which have none. */
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Which files are written; names are relative to the output folder. */
+/** The files to write; names are relative to the output folder. */
 struct RecordingConfig {
     std::optional<std::string> file;
     std::optional<std::string> video;
@@ -60,7 +63,7 @@ struct RecordingConfig {
         visit(Field{"video_rate", "Hz", "pictures a second in the video; absent: that of the pings", 0.01, 1000},
               self.video_rate);
     }
-    /** The number in `file` and the kind of `video` must be such as can be written. */
+    /** Reports an invalid pattern in `file` and an unknown kind of `video`. */
     void check(types::Diagnostics& diagnostics) const;
 };
 
@@ -71,7 +74,7 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         RecordingConfig::describe(self, visit);
-        visit(types::Field{"every", "1", "one picture for so many pings", 1, 1e6}, self.every);
+        visit(types::Field{"every", "1", "number of pings for each picture", 1, 1e6}, self.every);
         DisplayConfig::describe(self, visit);
     }
     void check(types::Diagnostics& diagnostics) const {

@@ -41,7 +41,7 @@ struct Close {
     throw std::runtime_error("cannot write " + file.string() + ": " + reason);
 }
 
-/** Throws where a picture's mode is not known, or its pixels are not as it says. */
+/** Returns the format. Throws if the picture's mode is unknown, or its pixels do not match it. */
 png_uint_32 pngFormat(const std::filesystem::path& file, const types::Image& picture) {
     const bool grey = picture.frame_mode == types::ImageMode::Grayscale;
     const bool rgb = picture.frame_mode == types::ImageMode::Rgb;
@@ -61,7 +61,7 @@ bool isKnownVideo(const std::string& name) {
 void DisplayConfig::check(types::Diagnostics& diagnostics) const {
     if (scale == BinScale::Code && reference_db)
         diagnostics.push_back(
-            {"reference_db", "is given where bins are codes; the brightest colour is the largest code of code_bits"});
+            {"reference_db", "is given, but bins are codes; the brightest colour is the max code of code_bits"});
 }
 
 void RecordingConfig::check(types::Diagnostics& diagnostics) const {
@@ -87,7 +87,7 @@ void writePng(const std::filesystem::path& file, const types::Image& picture) {
         std::fflush(stream.get()) == 0)
         return;
     const std::string reason = errno ? std::strerror(errno) : png.message;
-    std::error_code kept;  // half of a picture helps nobody
+    std::error_code kept;  // removes an incomplete picture
     if (std::filesystem::is_regular_file(file, kept)) std::filesystem::remove(file, kept);
     fail(file, reason);
 }

@@ -10,10 +10,11 @@
 
 namespace insonify::output {
 
-/** A file name with a number in it, written as for printf: "fan_%06d.png". */
+/** A file name with a number, in printf's notation: "fan_%06d.png". */
 class FilePattern {
 public:
-    /** Nothing unless there is exactly one `%`, of the form %d, %Nd or %0Nd with N up to 99, before a final ".png". */
+    /** Returns none unless there is exactly one `%`, of the form %d, %Nd or %0Nd with N up to 99, before a final
+     *  ".png". */
     static std::optional<FilePattern> parse(const std::string& pattern);
 
     std::string name(uint64_t number) const;
@@ -24,18 +25,18 @@ private:
     char filler_ = ' ';
 };
 
-/** Writes a grey, RGB or BGR picture of 8 bits a channel as a PNG file. @throws std::runtime_error with the name of the
+/** Writes a grey, RGB or BGR picture of 8 bits a channel as a PNG file. Throws std::runtime_error with the name of the
  *  file. */
 void writePng(const std::filesystem::path& file, const types::Image& picture);
 
-/** The files of a stream of pictures: numbered PNG files, a video, or both. Makes the folders that they need. */
+/** Writes a stream of pictures as numbered PNG files, a video, or both. Makes the folders that they need. */
 class PictureFiles {
 public:
-    /** Names are relative to `folder`. */
+    /** @param folder base of relative names */
     PictureFiles(const RecordingConfig& config, const std::filesystem::path& folder);
 
     void write(const types::Image& picture);
-    void skip() { ++number_; }  ///< Leaves out the next picture's number.
+    void skip() { ++number_; }  ///< Skips a picture's number.
     void close();
 
 private:

@@ -45,10 +45,10 @@ void PictureTask::take(const types::Sonar& sample) {
 
 std::string PictureTask::indivisible() const {
     const PictureConfig& config = pictureConfig();
-    if (!showsOne()) return "its pictures show pings of before as well; make them of the joined log";
-    if (config.video) return "video: is one file of all pictures; make it of the joined log";
+    if (!showsOne()) return "its pictures also show earlier pings; make them from the joined log";
+    if (config.video) return "video: is one file of all pictures; make it from the joined log";
     if (config.scale != BinScale::Code && !config.reference_db)
-        return "reference_db: is absent, and the brightest colour follows the echoes from ping to ping; give it";
+        return "reference_db: is absent, so the brightest colour follows the echoes from ping to ping; set it";
     return {};
 }
 
@@ -81,9 +81,9 @@ void registerTasks(framework::Registry& registry) {
     registry.add<RangeImageTask>("output::RangeImageTask", "shows the ranges of a 3-D sonar by direction");
     registry.add<XtfTask>("output::XtfTask", "writes the lines of a side-scan sonar as an XTF file");
     registry.add<ScanMosaicTask>("output::ScanMosaicTask",
-                                 "shows the pings of a moving scanning sonar where they belong, beside the disc");
+                                 "shows the pings of a moving scanning sonar on a map, next to the disc");
     registry.add<TruthImageTask>("output::TruthImageTask",
-                                 "shows pings as fans, and beside them which objects they show");
+                                 "shows pings as fans, next to the same fans coloured by object");
 }
 
 }  // namespace insonify::output

@@ -19,15 +19,15 @@
 
 namespace insonify::output {
 
-/** What the tasks that show pings have in common: ping in, picture out, on a port and in files.
+/** Base of tasks that show pings: ping in, picture out, on a port and in files.
  *
- *  A picture is made only when somebody is connected to `image` or a file is configured, and of one ping in `every`;
- *  it carries the ping's time. */
+ *  A picture is made only if `image` is connected or a file is configured, and for one ping in `every`. It has the
+ *  ping's time. */
 class PictureTask : public RecordingTask, public framework::Divisible {
 public:
     using RecordingTask::RecordingTask;
 
-    framework::InputPort<types::SonarPtr> ping{this, "ping", "what is shown"};
+    framework::InputPort<types::SonarPtr> ping{this, "ping", "pings to show"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
     std::string indivisible() const override;
@@ -37,13 +37,13 @@ protected:
     bool startHook() override;
     void updateHook() override;
     void cleanupHook() override;
-    /** Makes the picture of a ping, or lets the painter take note of it. */
+    /** Makes the picture of a ping, or lets the painter skip it. */
     void take(const types::Sonar& sample);
 
 private:
     virtual const PictureConfig& pictureConfig() const = 0;
     virtual std::unique_ptr<Painter> makePainter() = 0;
-    /** Whether a picture shows its own ping alone. */
+    /** Returns whether a picture shows only its own ping. */
     virtual bool showsOne() const { return false; }
     void show(const types::Sonar& sample);
     void paint(const types::Sonar& sample, types::Image& picture);
@@ -53,7 +53,7 @@ private:
     uint64_t pings_ = 0;
 };
 
-/** Shows pings as the Picture does, which is a Painter that needs nothing but them. */
+/** Shows pings with a Picture: a Painter that needs only pings. */
 template <class Picture>
 class PingPictureTask final : public PictureTask {
 public:
@@ -70,7 +70,7 @@ using FanImageTask = PingPictureTask<FanImage>;
 using DiscImageTask = PingPictureTask<DiscImage>;
 using WaterfallImageTask = PingPictureTask<WaterfallImage>;
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder for deployments. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::output

@@ -4,7 +4,7 @@ namespace insonify::output {
 
 std::vector<std::string> PictureHealth::notices() const {
     if (lost == 0) return {};
-    return {"Warning: " + std::to_string(lost) + " pictures are in no file; the last: " + failure};
+    return {"Warning: " + std::to_string(lost) + " pictures are in no file; the last reason: " + failure};
 }
 
 PictureWriter::PictureWriter(PictureFiles files, AtPictureFailure at_failure)

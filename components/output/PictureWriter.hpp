@@ -11,42 +11,43 @@
 
 namespace insonify::output {
 
-/** What a writer does with pictures that cannot be written. */
+/** What a writer does if a picture cannot be written. */
 enum class AtPictureFailure {
-    Throw,  ///< It writes no more, and throws.
-    Count   ///< It counts them, and tries the next one.
+    Throw,  ///< Stops writing, and throws.
+    Count   ///< Counts the picture, and tries the next.
 };
 
-/** How a writer that counts fares. */
+/** The state of a writer that counts. */
 struct PictureHealth {
     uint64_t lost = 0;    ///< Pictures that are in no file [1].
-    bool fails = false;   ///< The last one is not.
+    bool fails = false;   ///< Whether the last picture could not be written.
     std::string failure;  ///< The last reason.
 
-    /** A warning where pictures are lost. */
+    /** Returns a warning if pictures are lost. */
     std::vector<std::string> notices() const;
 };
 
-/** Writes pictures to files on a thread of its own. A few may wait; then the giver waits too, so none is lost. */
+/** Writes pictures to files on a separate thread. The queue is short; when it is full, the caller waits, so no picture
+ *  is lost. */
 class PictureWriter {
 public:
     explicit PictureWriter(PictureFiles files, AtPictureFailure at_failure = AtPictureFailure::Throw);
-    /** Writes what waits; errors are not told any more. */
+    /** Writes the queue; errors are no longer reported. */
     ~PictureWriter();
     PictureWriter(const PictureWriter&) = delete;
     PictureWriter& operator=(const PictureWriter&) = delete;
 
-    /** Takes hold of the picture until it is written. Throws what an earlier picture met. */
+    /** Keeps the picture until it is written. Throws the error of an earlier picture. */
     void write(types::ImagePtr picture);
-    /** Leaves out the next picture's number; before the first of write(). */
+    /** Skips a picture's number; before the first write(). */
     void skip();
-    /** Writes what waits and ends the files. Throws what any picture met. */
+    /** Writes the queue and ends the files. Throws the error of any picture. */
     void close();
     PictureHealth health();
 
 private:
     void loop();
-    /** Writes a picture or, without one, ends the files. */
+    /** Writes a picture; null ends the files. */
     void put(const types::Image* picture);
     void end();
 

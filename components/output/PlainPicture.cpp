@@ -13,7 +13,7 @@ namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
 
-/** The picture's width and height of a fan of unit radius, {half the width, what lies behind the sonar}. */
+/** Returns width and height of the picture of a fan of unit radius, as {half the width, height behind the sonar}. */
 std::pair<double, double> reachOf(const FanShape& shape) {
     const double half_angle = FanShape::halfAngle(shape.right, shape.left, 1e-3);
     if (half_angle < quarter_turn) return {std::sin(half_angle), 0};
@@ -22,8 +22,8 @@ std::pair<double, double> reachOf(const FanShape& shape) {
 
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 
-/** The level that 0.2 % of those that are finite exceed; 0 without any [dB]. In double precision, so that other
- *  processors, whose logarithms differ in the last bit, show the same. */
+/** Returns the level that 0.2 % of the finite levels exceed; 0 if there are none [dB]. In double precision, because
+ *  processors' logarithms differ in the last bit. */
 double strongLevel(std::vector<double> levels) {
     std::erase_if(levels, [](double level) { return !std::isfinite(level); });
     if (levels.empty()) return 0;
@@ -34,7 +34,7 @@ double strongLevel(std::vector<double> levels) {
 
 bool isToPort(const types::Angle& bearing) { return bearing.rad >= 0; }
 
-/** The first of the lines that a ping holds one after the other. */
+/** Returns the first of the lines that a ping contains one after the other. */
 types::Sonar firstLine(const types::Sonar& ping) {
     types::Sonar line;
     line.bin_count = ping.bin_count, line.bin_duration = ping.bin_duration, line.speed_of_sound = ping.speed_of_sound;
@@ -57,10 +57,10 @@ DisplayConfig PlainConfig::display() const {
 
 void PlainPicture::take(const types::Sonar& ping) {
     if (!ping.wellShaped() || ping.bin_count == 0 || ping.beam_count == 0)
-        throw std::runtime_error("a ping without bins, or with other numbers than it says, is no picture");
+        throw std::runtime_error("a ping without bins, or whose lists do not match its counts, cannot be a picture");
     const bool is_waterfall = config_.shape == PlainShape::Waterfall;
     shape_ = FanShape::of(is_waterfall ? firstLine(ping) : ping);
-    if (shape_.beams.empty()) throw std::runtime_error("a ping without known bearings is no picture");
+    if (shape_.beams.empty()) throw std::runtime_error("a ping without known bearings cannot be a picture");
     time_ = ping.time;
     bins_per_cell_ = (ping.bin_count + config_.height - 1) / config_.height;
     cells_ = (ping.bin_count + bins_per_cell_ - 1) / bins_per_cell_;
@@ -73,7 +73,7 @@ void PlainPicture::take(const types::Sonar& ping) {
         case PlainShape::Fan: buildFan(); break;
         case PlainShape::Polar: buildPolar(); break;
         case PlainShape::Waterfall: buildWaterfall(ping); break;
-        case PlainShape::Range: throw std::runtime_error("a ping is no range image");
+        case PlainShape::Range: throw std::runtime_error("a ping is not a range image");
     }
     findLevels(ping);
 }
@@ -132,7 +132,7 @@ void PlainPicture::buildPolar() {
 
 void PlainPicture::buildWaterfall(const types::Sonar& ping) {
     line_of_.clear();
-    bool has_side[2] = {}, is_there[2] = {};  // starboard, port; of all lines, of this one
+    bool has_side[2] = {}, is_there[2] = {};  // starboard, port; of all lines, of this line
     uint32_t lines = 1;
     for (const types::Angle& bearing : ping.bearings) {
         bool& side = is_there[isToPort(bearing)];
@@ -165,7 +165,7 @@ void PlainPicture::findLevels(const types::Sonar& ping) {
     const double step = codes ? 255 / config_.display().largestCode() : 255 / config_.dynamic_range_db;
     const double black = codes ? 0 : reference_db_ - config_.dynamic_range_db;
     levels_.clear();
-    for (const double level : shown)  // of what is not known, and of nothing: 0
+    for (const double level : shown)  // unknown levels and no echo: 0
         levels_.push_back(level > black ? static_cast<uint8_t>(std::lround(std::min((level - black) * step, 255.0)))
                                         : 0);
 }

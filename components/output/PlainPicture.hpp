@@ -12,7 +12,7 @@ namespace insonify::output {
 
 enum class PlainShape { Fan, Polar, Waterfall, Range };
 
-/** How a plain picture looks. */
+/** The appearance of a plain picture. */
 struct PlainConfig {
     PlainShape shape = PlainShape::Fan;
     uint32_t height = 512;
@@ -27,61 +27,61 @@ struct PlainConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"shape", "",
-                    "fan: as it was in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
+                    "fan: as in the water, ahead is up; polar: a column for each beam; waterfall: a row for "
                     "each line of "
                     "a side-scan, the newest on top, port left; range: a pixel for each beam of a 3-D sonar, nearest "
                     "brightest"},
               self.shape);
-        visit(Field{"height", "1", "pixels that the range takes, at most; a pixel is never longer than bins make it",
-                    16, 8192},
+        visit(Field{"height", "1", "max number of pixels over the range; a pixel covers at least one bin", 16, 8192},
               self.height);
         visit(Field{"dynamic_range_db", "dB", "between black and white", 1, 300}, self.dynamic_range_db);
         visit(Field{"reference_db", "dB",
-                    "level of white, 10 log10 of a bin; absent: what 0.2 % of the picture's bins exceed", -3000, 3000},
+                    "level of white, 10 log10 of a bin; absent: the level that 0.2 % of the picture's bins exceed",
+                    -3000, 3000},
               self.reference_db);
-        visit(Field{"scale", "", "what the bins hold: linear intensities, decibel, or code"}, self.scale);
-        visit(Field{"code_bits", "1", "of the largest code, where scale is code", 1, 32}, self.code_bits);
+        visit(Field{"scale", "", "content of the bins: linear intensities, decibel, or code"}, self.scale);
+        visit(Field{"code_bits", "1", "bits of a code, if scale is code", 1, 32}, self.code_bits);
     }
     void check(types::Diagnostics& diagnostics) const { display().check(diagnostics); }
 };
 
-/** A ping as grey levels and nothing else, for programs that learn from it: no rings, no text, no bars. Port is left,
- *  what is far is on top. Each pixel shows one cell: a beam between two ranges, of one bin or several; so that what is
- *  known of cells is known of pixels. Each ping has its own scale, whatever came before it. */
+/** Draws a ping in grey levels, without rings, text or bars, for machine learning. Port is left, far ranges are on top.
+ *  Each pixel shows one cell: one or several bins of a beam. So labels of cells are labels of pixels. Each ping is
+ *  scaled independently of earlier pings. */
 class PlainPicture {
 public:
     explicit PlainPicture(const PlainConfig& config) : config_(config) {}
 
-    /** Takes a ping with one bearing for each beam; of a waterfall all lines as one ping, line by line. A line has a
-     *  beam to port, which is one of a bearing that is not negative, or one to starboard, or both. */
+    /** Takes a ping with one bearing for each beam. A waterfall is one ping of all lines, line by line. A line has a
+     *  beam to port (its bearing is not negative), a beam to starboard, or both. */
     void take(const types::Sonar& ping);
-    /** Takes a range image as if each of its cells were a beam of one bin, row by row: grey levels from 1 at
-     * `range_max` [m] to 255 at the sonar, 0 without a return. */
+    /** Takes a range image as if each of its cells were a beam of one bin, row by row. Grey levels are from 1 at
+     *  `range_max` [m] to 255 at the sonar, 0 without a return. */
     void take(const types::DepthMap& map, double range_max);
 
     uint32_t width() const { return width_; }    ///< [px]
     uint32_t height() const { return height_; }  ///< [px]
-    /** Bins in each cell of a beam but the last, which may have fewer. */
+    /** Bins in each cell of a beam; the last cell may have fewer. */
     uint32_t binsPerCell() const { return bins_per_cell_; }
     uint32_t cellsPerBeam() const { return cells_; }
-    /** Of each pixel, row by row from the top, its cell: beam * cellsPerBeam() + number of the cell; -1: no water. */
+    /** The cell of each pixel, row by row from the top: beam * cellsPerBeam() + number of the cell; -1: no water. */
     const std::vector<int32_t>& cells() const { return cell_of_; }
-    /** Of each cell from black, 0, to white, 255. */
+    /** The level of each cell from black, 0, to white, 255. */
     const std::vector<uint8_t>& levels() const { return levels_; }
-    /** The ping's beams from starboard to port; of a waterfall those of its first line, of a range image
-     *  its columns. */
+    /** The ping's beams from starboard to port; for a waterfall those of the first line, for a range image the
+     *  columns. */
     const types::BeamArc& arc() const { return shape_; }
-    /** Bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
+    /** Returns the bearing of a beam on that arc, which exceeds pi across +-180 degrees; NaN: unknown [rad]. */
     double bearing(uint32_t beam) const { return bearing_of_[beam]; }
-    /** The pixel nearest to the middle of a cell, {column, row}; inside of the picture. */
+    /** Returns the pixel nearest to the middle of a cell, {column, row}; inside the picture. */
     cv::Point pixelOf(uint32_t beam, uint32_t cell) const;
-    /** Numbers from 1 of groups of chosen cells that touch: of one beam or of neighbours in the picture, the corners of
-     *  cells included; 0 for a cell that is not chosen. The order of the beams in the ping changes no group.
-     *  @param chosen one for each cell, 0: it is not */
+    /** Returns the group of each cell: chosen cells that touch, in one beam or in neighbouring beams of the picture,
+     *  also at corners. Groups are numbered from 1; 0 is a cell that is not chosen. Independent of the order of beams
+     *  in the ping.
+     *  @param chosen one number for each cell, 0: not chosen */
     std::vector<int32_t> groupsOf(const std::vector<uint8_t>& chosen) const;
-    /** The level of white [dB]; 0 where bins are codes. */
+    /** Returns the level of white [dB]; 0 if bins are codes. */
     double referenceDb() const { return reference_db_; }
-    /** The picture. */
     types::Image image() const;
 
 private:
@@ -93,13 +93,13 @@ private:
 
     PlainConfig config_;
     FanShape shape_;
-    std::vector<double> bearing_of_;   ///< The bearing of each of the ping's beams, on the arc [rad].
-    std::vector<uint32_t> column_of_;  ///< Of each beam in a polar picture.
+    std::vector<double> bearing_of_;   ///< The bearing of each beam of the ping, on the arc [rad].
+    std::vector<uint32_t> column_of_;  ///< The column of each beam in a polar picture.
     std::vector<uint32_t> line_of_;    ///< The line of each beam in a waterfall, from the oldest.
-    uint32_t port_cells_ = 0;          ///< Pixels of a row of a waterfall that are to port, left [px].
+    uint32_t port_cells_ = 0;          ///< Pixels to port (left) in a row of a waterfall [px].
     uint32_t bins_per_cell_ = 1, cells_ = 0, width_ = 0, height_ = 0;
-    cv::Point2d origin_{};  ///< The sonar in a fan [px].
-    double radius_ = 0;     ///< Of a fan [px].
+    cv::Point2d origin_{};  ///< The sonar's place in a fan [px].
+    double radius_ = 0;     ///< Radius of a fan [px].
     double reference_db_ = 0;
     types::Time time_;
     std::vector<int32_t> cell_of_;

@@ -7,8 +7,8 @@
 
 namespace insonify::output {
 
-/** A map of distances as it is seen from the sonar: port is left, up is up, the nearest return brightest; black where
- *  there is none. Cells are square and as large as fit; labels give the angles of the outermost. */
+/** Draws a distance map as seen from the sonar: port is left, up is up, the nearest return is brightest; black without
+ *  a return. Cells are square and as large as possible; labels give the outermost angles. */
 class RangeImage {
 public:
     using Sample = types::DepthMapPtr;
@@ -17,8 +17,8 @@ public:
     RangeImage(uint32_t width, ColourMap colour_map) : chart_(width, colour_map) {}
 
     void add(const types::DepthMapPtr& map) { map_ = map; }
-    /** @param picture becomes a BGR image, 8 bits a channel, with the map's time. Its memory is used again.
-     *  Throws std::runtime_error for a map that has other numbers of distances than it says. */
+    /** @param picture becomes a BGR image, 8 bits a channel, with the map's time; its memory is reused
+     *  Throws std::runtime_error for a map whose lists do not match its counts. */
     void paint(types::Image& picture);
     void clear() { map_.reset(); }
 
@@ -26,7 +26,7 @@ public:
     const cv::Rect& cells() const { return chart_.area(); }
 
 private:
-    /** Of the returns [m]; equal without any. */
+    /** Min and max of the returns [m]; equal without returns. */
     struct Span {
         float nearest = 0, farthest = 0;
     };

@@ -20,18 +20,20 @@ struct SamplePictureConfig : RecordingConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         RecordingConfig::describe(self, visit);
-        visit(Field{"every", "1", "one picture for so many samples, after so many", 1, 1e6}, self.every);
-        visit(Field{"width", "1", "of the picture in pixels; an odd one is made even; the height follows", 256, 8192},
-              self.width);
+        visit(Field{"every", "1", "number of samples for each picture, including the first", 1, 1e6}, self.every);
+        visit(
+            Field{"width", "1",
+                  "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},
+            self.width);
         visit(Field{"colour_map", "", "colours from the deepest to the highest, or from the farthest to the nearest"},
               self.colour_map);
     }
 };
 
-/** Shows samples that are no pings, as Picture does.
+/** Shows samples that are not pings, with a Picture.
  *
- *  In: a port named by Picture::port. Out: `image` and files, as PictureTask has them, the first picture after `every`
- *  samples. */
+ *  In: a port named by Picture::port. Out: `image` and files, as in PictureTask; the first picture is made after
+ *  `every` samples. */
 template <class Picture>
 class SamplePictureTask final : public RecordingTask {
 public:
@@ -39,7 +41,7 @@ public:
     using Sample = typename Picture::Sample;
 
     framework::Properties<SamplePictureConfig> config{this};
-    framework::InputPort<Sample> input{this, Picture::port, "what is shown"};
+    framework::InputPort<Sample> input{this, Picture::port, "samples to show"};
     framework::OutputPort<types::ImagePtr> image{this, "image", "picture, BGR with 8 bits a channel"};
 
 private:

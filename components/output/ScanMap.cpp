@@ -12,9 +12,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double farthest = 1e9;  ///< [m]
-constexpr double edge_on = 0.02;  ///< Share of the sonar's plane that is seen from above, below which it is not laid.
+constexpr double edge_on = 0.02;  ///< Min share of the sonar's plane seen from above; below it no ping is shown.
 
-/** Axes of the sonar's plane as seen from above. */
+/** Returns the axes of the sonar's plane as seen from above. */
 glm::dmat2 planeOf(const types::Pose& sonar) { return glm::dmat2(glm::mat3_cast(glm::normalize(sonar.orientation))); }
 
 glm::dvec2 towards(double bearing) { return {std::cos(bearing), std::sin(bearing)}; }
@@ -49,7 +49,7 @@ void ScanMap::lay(const types::Sonar& ping, const types::Pose& sonar) {
     }
 }
 
-/** Keeps what stays in sight. */
+/** Moves the map and keeps the cells that stay within it. */
 void ScanMap::moveTo(const glm::dvec2& place) {
     const glm::dvec2 steps = glm::round((place - middle_) / cell_);  // north, west
     if (steps == glm::dvec2(0)) return;
@@ -86,7 +86,7 @@ cv::Rect ScanMap::reach(double bearing, double half_width) const {
         low = {std::min(low.x, end.x), std::min(low.y, end.y)};
         high = {std::max(high.x, end.x), std::max(high.y, end.y)};
     }
-    const double bulge = 2 + 0.002 * radius_;  // of an arc of 0.1 rad beyond its chord
+    const double bulge = 2 + 0.002 * radius_;  // height of an arc of 0.1 rad above its chord
     const cv::Rect box(cv::Point(cvFloor(low.x - bulge), cvFloor(low.y - bulge)),
                        cv::Point(cvCeil(high.x + bulge) + 1, cvCeil(high.y + bulge) + 1));
     return box & cv::Rect({}, cells_.size());

@@ -6,7 +6,7 @@
 namespace insonify::output {
 namespace {
 
-const std::string disc_caption = "as the head hears it, ahead up";
+const std::string disc_caption = "as the head receives it, ahead up";
 const cv::Point colour_bar{14, FanLayout::title_height + 18};
 
 DisplayConfig halved(DisplayConfig config) {

@@ -7,26 +7,26 @@
 
 namespace insonify::output {
 
-/** The pings of a scanning sonar twice, side by side: to the left on the disc of DiscImage, as a head that stands still
- *  would have heard them; to the right on a ScanMap, each where the sonar was and looked when it sounded, north up and
- *  the sonar in the middle. A ping of other bins or range starts both anew. */
+/** Draws the pings of a scanning sonar twice, side by side. Left: on the disc of DiscImage, as if the head did not
+ *  move. Right: on a ScanMap, each at the sonar's pose at its time, north up and the sonar in the middle. A ping with
+ *  other bins or range restarts both. */
 class ScanMosaic final : public Painter {
 public:
-    /** The width is that of both together. */
+    /** The width is that of both pictures together. */
     explicit ScanMosaic(const DisplayConfig& config);
 
-    /** Where the sonar is in the world at the next ping; nothing: not known, and the map leaves that ping out. False
-     *  when there is a pose that ScanMap does not show. */
+    /** Sets the sonar's pose in the world at the next ping; none if unknown: the map omits that ping. Returns false for
+     *  a pose that ScanMap cannot show. */
     bool place(const std::optional<types::Pose>& sonar);
-    /** A line of text below the map. */
+    /** Sets the line of text below the map. */
     void setCaption(const std::string& caption) { caption_ = caption; }
 
     void paint(const types::Sonar& ping, types::Image& picture) override;
     void skip(const types::Sonar& ping) override;
 
-    /** Of either half. There must have been a picture. */
+    /** Returns the layout of either half. A picture must have been drawn. */
     const FanLayout& layout() const { return disc_.layout(); }
-    /** Pixel of the whole picture that shows a place in the world. There must have been a picture. */
+    /** Returns the pixel of the whole picture that shows a place in the world. A picture must have been drawn. */
     cv::Point2d pixel(const glm::dvec2& place) const;
 
 private:
@@ -40,7 +40,7 @@ private:
     LevelScale scale_;
     Title title_;
     std::string caption_;
-    std::optional<types::Pose> sonar_;  ///< At the ping to come.
+    std::optional<types::Pose> sonar_;  ///< Pose at the next ping.
 
     uint32_t bin_count_ = 0;
     double range_ = 0;

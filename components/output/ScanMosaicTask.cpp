@@ -51,7 +51,7 @@ void ScanMosaicTask::describeMap(std::string& text) const {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "each ping at its pose, north up: {} pings", laid_);
     if (held_ > 0) fmt::format_to(out, ", {} at a pose held for up to {:.3g} s", held_, held_for_);
-    if (left_out_ > 0) fmt::format_to(out, ", {} not shown for want of a pose that can be used", left_out_);
+    if (left_out_ > 0) fmt::format_to(out, ", {} not shown because they have no usable pose", left_out_);
 }
 
 std::vector<std::string> ScanMosaicTask::notices() const {

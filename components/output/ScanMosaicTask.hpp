@@ -18,14 +18,13 @@ struct MosaicConfig : PairConfig {
     }
 };
 
-/** Shows the pings of a moving scanning sonar as they were heard, and beside that where they belong: see ScanMosaic.
+/** Shows the pings of a moving scanning sonar on a disc, and next to it on a map: see ScanMosaic.
  *
- *  In: `pose`, body in the world, at its own rate; `ping`. Each ping is laid at the pose interpolated between the pose
- *  before it and the one after it, which it waits for. Where one of the two does not come within `timeout`, or before
- *  the task stops, the ping is laid at the other one: the picture and notices() tell how many and how far off in time.
- *  A pose that is not finite is none. A ping without any pose, or with one that the map cannot show, is left out of it,
- *  which is told as well.
- *  Out: `image`, both pictures side by side, at the ping's time. */
+ *  In: `pose`, body in the world, at its own rate; `ping`. Each ping waits for the next pose and is shown at the
+ *  interpolated pose. If the previous or the next pose is missing after `timeout`, or when the task stops, the other
+ *  pose is used. The picture and notices() report the number of these pings and the max time to the pose. A pose that
+ *  is not finite is ignored. The map omits a ping without a pose, or at a pose that it cannot show; these are reported
+ *  too. Out: `image`, both pictures side by side, at the ping's time. */
 class ScanMosaicTask final : public PairPictureTask<MosaicConfig, ScanMosaic> {
 public:
     using PairPictureTask::PairPictureTask;
@@ -38,16 +37,16 @@ private:
     bool startHook() override;
     void keep(const types::Pose& body);
     void show(const types::Sonar& sample);
-    /** The body at a time between the pose before and the one after it. */
+    /** Returns the body's pose at a time between the previous and the next pose. */
     std::optional<types::Pose> bodyAt(types::Time time);
     types::Pose held(const types::Pose& nearest, types::Time time);
-    /** How the map has come about, and what is amiss with it; keeps the text's memory. */
+    /** Describes the map and its defects; reuses the text's memory. */
     void describeMap(std::string& text) const;
 
     std::string caption_;
     std::optional<types::Pose> before_;
     uint64_t laid_ = 0, held_ = 0, left_out_ = 0;
-    double held_for_ = 0;  ///< The longest time to a pose that was held [s].
+    double held_for_ = 0;  ///< Max time to a pose that was used without interpolation [s].
 
     framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& body) { keep(body); }};
     framework::AlignedPort<types::SonarPtr> pings_{aligner_, ping,

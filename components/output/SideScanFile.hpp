@@ -9,18 +9,18 @@
 
 namespace insonify::output {
 
-/** A ping of a recording and what its record states next to its lines. */
+/** A ping of a recording and further values of its record. */
 struct SideScanLine {
-    types::Sonar ping;  ///< Beams to starboard and to port, nearest bin first, as sonar::SideScanTask has them.
+    types::Sonar ping;  ///< Beams to starboard and to port, nearest bin first, as in sonar::SideScanTask.
     XtfPing record;
     double frequency_khz = 0;  ///< 0: unknown.
 };
 
-/** A recording of a side-scan, read ping by ping. */
+/** Reads a recording of a side-scan ping by ping. */
 class SideScanFile : public RecordedFile {
 public:
-    /** The next ping; none: the file is at its end. Throws types::ConfigError with the byte at which it is damaged. A
-     *  packet that the end of the file cuts off is no damage. */
+    /** Returns the next ping; none at the end of the file. Throws types::ConfigError with the byte of damage. A packet
+     *  truncated by the end of the file is not damage. */
     virtual std::optional<SideScanLine> next() = 0;
 
 protected:
@@ -41,7 +41,7 @@ protected:
     }
 };
 
-/** Opens a recording by its content; null for a file that is no recording of a side-scan. */
+/** Opens a recording by its content; returns null for a file that is not a recording of a side-scan. */
 std::unique_ptr<SideScanFile> openSideScan(const std::filesystem::path& path);
 
 }  // namespace insonify::output

@@ -13,13 +13,13 @@ namespace {
 
 constexpr float blank = std::numeric_limits<float>::quiet_NaN();
 
-/** The bins of the first beam on a side, +1 for port; null where there is none. */
+/** Returns the bins of the first beam on a side, +1 for port; null if there is none. */
 const float* binsOf(const types::Sonar& ping, int side) {
     const auto beam = firstBeamOn(ping, side);
     return beam ? ping.bins.data() + size_t{*beam} * ping.bin_count : nullptr;
 }
 
-/** Mean of the bins between two places, counted in bins; at least the one that holds the first of them. */
+/** Returns the mean of the bins between two places, counted in bins; at least the bin at `from`. */
 float meanOf(const float* bins, uint32_t count, double from, double to) {
     const auto first = static_cast<uint32_t>(std::clamp(from, 0.0, count - 1.0));
     const auto last = static_cast<uint32_t>(std::clamp(std::ceil(to), first + 1.0, static_cast<double>(count)));

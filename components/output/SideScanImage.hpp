@@ -7,7 +7,7 @@
 
 namespace insonify::output {
 
-/** What turns slant range into range along a flat bottom. */
+/** Parameters of the conversion from slant range to range along a flat bottom. */
 struct GroundRangeConfig {
     std::optional<double> altitude;
     double threshold_db = -20;
@@ -15,11 +15,13 @@ struct GroundRangeConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"altitude", "m", "height above the bottom; absent: that of port altitude, else the first return", 0,
-                    1e5},
-              self.altitude);
-        visit(Field{"threshold_db", "dB", "what is the first return, relative to the ping's strongest bin", -300, 0},
-              self.threshold_db);
+        visit(
+            Field{"altitude", "m",
+                  "height above the bottom; absent: that of port altitude, else the range of the first return", 0, 1e5},
+            self.altitude);
+        visit(
+            Field{"threshold_db", "dB", "min level of the first return, relative to the ping's strongest bin", -300, 0},
+            self.threshold_db);
     }
 };
 
@@ -36,13 +38,13 @@ struct SideScanPictureConfig : PictureConfig {
     }
 };
 
-/** Lines of a side-scan: every ping is a row, the newest on top, port to the left and starboard to the right of the
- *  middle. The side of a beam is that of its bearing; of several on one side the first counts. */
+/** Draws the lines of a side-scan: every ping is a row, the newest on top, port to the left and starboard to the right
+ *  of the middle. The bearing of a beam gives its side; the first of several beams on a side counts. */
 class SideScanImage final : public WaterfallImage {
 public:
     explicit SideScanImage(const SideScanPictureConfig& config);
 
-    /** Height above the bottom from now on, as measured [m]; not finite: unknown. */
+    /** Sets the measured height above the bottom for the following pings [m]; not finite: unknown. */
     void setAltitude(double altitude) { altitude_ = altitude; }
 
 private:

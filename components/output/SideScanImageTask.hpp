@@ -6,14 +6,14 @@
 
 namespace insonify::output {
 
-/** Shows the pings of a side-scan sonar: see SideScanImage. In beside the ping: `altitude`, of an altimeter. Each ping
- *  has the last altitude that is not later than itself, or else the first that came. */
+/** Shows the pings of a side-scan sonar: see SideScanImage. In, in addition to the ping: `altitude`, of an altimeter. A
+ *  ping uses the last altitude that is not later than it, else the first altitude received. */
 class SideScanImageTask final : public PictureTask {
 public:
     using PictureTask::PictureTask;
 
     framework::Properties<SideScanPictureConfig> config{this};
-    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest counts",
+    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest is used",
                                                 framework::Need::Optional};
 
 private:
@@ -35,7 +35,7 @@ private:
     void keepAltitudes() {
         constexpr size_t max_kept = 1024;
         for (types::Range measured; altitude.connected() && altitude.readNew(measured);) {
-            const bool is_back = !altitudes_.empty() && measured.time < altitudes_.back().time;  // of a log, again
+            const bool is_back = !altitudes_.empty() && measured.time < altitudes_.back().time;  // a replayed log
             if (is_back) altitudes_.clear();
             if (altitudes_.size() == max_kept) altitudes_.pop_front();
             altitudes_.push_back(measured);
@@ -43,7 +43,7 @@ private:
     }
 
     SideScanImage* painter_ = nullptr;
-    std::deque<types::Range> altitudes_;  ///< The one that holds, and later ones.
+    std::deque<types::Range> altitudes_;  ///< The altitude in use, and later altitudes.
 };
 
 }  // namespace insonify::output

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double white = 255;
 
-/** 8 bits a bin, as 64-bit floats; neighbouring rows are neighbouring beams. */
+/** Returns the levels of 8 bits as 64-bit floats; neighbouring rows are neighbouring beams. */
 cv::Mat levelsOf(const types::Sonar& ping, LevelScale& scale) {
     const cv::Mat bins(static_cast<int>(ping.beam_count), static_cast<int>(ping.bin_count), CV_32F,
                        const_cast<float*>(ping.bins.data()));

@@ -9,7 +9,7 @@
 namespace insonify::output {
 namespace {
 
-constexpr double tallest = 1.5;  // of a chart [of its width]
+constexpr double tallest = 1.5;  // max height of a chart [of its width]
 
 bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -63,7 +63,7 @@ void SoundingMap::paint(types::Image& picture) {
 
 void SoundingMap::drawPoints(cv::Mat& canvas, const Bounds& bounds) const {
     const double relief = std::max(bounds.high.z - bounds.low.z, 1e-6);
-    // Somewhat larger than the room that a point has to itself, so that a swath has few holes and keeps its detail.
+    // Points are slightly larger than the area per point, so that a swath has few holes and keeps its detail.
     const double room = static_cast<double>(chart_.area().area()) / (1.0 + static_cast<double>(bounds.points));
     const int size = std::clamp(cvRound(1.6 * std::sqrt(room)), 1, 9);
     forEachPoint(clouds_, [&](const glm::dvec3& point) {

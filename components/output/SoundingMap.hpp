@@ -8,9 +8,9 @@
 
 namespace insonify::output {
 
-/** Chart of soundings from above: north up, west to the left, coloured by height, the highest brightest.
+/** Draws a chart of soundings from above: north up, west to the left, coloured by height, the highest brightest.
  *
- *  Shows the points of the last `history` clouds, and fits itself to them. */
+ *  Shows the points of the last `history` clouds, and fits its scale to them. */
 class SoundingMap {
 public:
     using Sample = types::PointCloudPtr;
@@ -18,33 +18,33 @@ public:
 
     SoundingMap(uint32_t width, ColourMap colour_map) : chart_(width, colour_map) {}
 
-    /** Takes note of the points of a ping; those that are not finite are none. */
+    /** Adds the points of a ping; points that are not finite are ignored. */
     void add(const types::PointCloudPtr& cloud);
-    /** @param picture becomes a BGR image, 8 bits a channel, with the newest cloud's time. Its memory is used again. */
+    /** @param picture becomes a BGR image, 8 bits a channel, with the newest cloud's time; its memory is reused */
     void paint(types::Image& picture);
     void clear() { clouds_.clear(), next_ = 0; }
 
-    static constexpr size_t history = 2000;  ///< Clouds that are shown.
+    static constexpr size_t history = 2000;  ///< Max number of clouds shown.
 
-    /** Pixel of a place in the last picture. */
+    /** Returns the pixel of a place in the last picture. */
     cv::Point pixel(double x, double y) const;
 
 private:
-    /** The box that holds all points [m]. */
+    /** The bounding box of all points [m]. */
     struct Bounds {
         glm::dvec3 low{0}, high{0};
         size_t points = 0;
     };
     Bounds bounds() const;
-    /** The scale at which they fit in, and the rows that this takes. */
+    /** Chooses the scale at which the points fit; returns the rows needed. */
     int fit(const Bounds& bounds);
     void drawPoints(cv::Mat& canvas, const Bounds& bounds) const;
     void drawLabels(cv::Mat& canvas, const Bounds& bounds) const;
 
     Chart chart_;
-    std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring, whose memory is used again.
-    size_t next_ = 0;                              ///< Place of the next in it.
-    types::Time time_;                             ///< Of the newest.
+    std::vector<std::vector<glm::dvec3>> clouds_;  ///< A ring buffer, whose memory is reused.
+    size_t next_ = 0;                              ///< Index of the next cloud.
+    types::Time time_;                             ///< Time of the newest cloud.
     cv::Point2d centre_;                           ///< x north, y west of the middle of the chart [m].
     double pixels_per_m_ = 1;
 };

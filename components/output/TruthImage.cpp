@@ -11,18 +11,18 @@
 namespace insonify::output {
 namespace {
 
-const std::string fan_caption = "what is heard", truth_caption = "what it is of; dark blue: in shadow";
+const std::string fan_caption = "echoes", truth_caption = "objects; dark blue: in shadow";
 constexpr double font_scale = 0.42;
 constexpr int line_height = 15, swatch = 10, margin = 12, legend_width = 118;
-constexpr int bar_width = 84, bar_height = 160;  ///< Of the levels' bar of the fan, in whose place the names are.
-constexpr double dimmest = 0.35;                 ///< Of an object whose echo is below the dynamic range.
+constexpr int bar_width = 84, bar_height = 160;  ///< Size of the fan's colour bar; the names are shown in its place.
+constexpr double dimmest = 0.35;                 ///< Brightness of an object whose echo is below the dynamic range.
 
 DisplayConfig halved(DisplayConfig config) {
     config.width /= 2;
     return config;
 }
 
-/** Red, green or blue of a hue in turns, at full saturation. */
+/** Returns red, green or blue of a hue in turns, at full saturation. */
 double component(double hue, double offset) {
     const double turn = std::fmod(hue + offset, 1.0);
     return std::clamp(std::abs(6 * turn - 3) - 1, 0.0, 1.0);
@@ -33,7 +33,7 @@ uint8_t brightest(const cv::Vec3b& pixel) { return std::max({pixel[0], pixel[1],
 }  // namespace
 
 cv::Vec3b TruthImage::colourOf(int32_t object) {
-    constexpr double golden = 0.6180339887498949;  // hues of neighbouring numbers lie far apart, and none comes again
+    constexpr double golden = 0.6180339887498949;  // hues of neighbouring numbers differ strongly, and none repeats
     const double hue = std::fmod(0.08 + golden * object, 1.0), pale = object % 3 == 2 ? 0.45 : 0.12;
     const auto level = [&](double offset) {
         return static_cast<uint8_t>(255 * (pale + (1 - pale) * component(hue, offset)));
@@ -46,8 +46,8 @@ TruthImage::TruthImage(const DisplayConfig& config) : fan_(halved(config)) {}
 void TruthImage::paint(const types::Sonar& ping, types::Image& picture) {
     if (truth_->beam_count != ping.beam_count || truth_->bin_count != ping.bin_count)
         throw std::runtime_error(
-            fmt::format("a ping of {} x {} bins does not fit a truth of {} x {}: they are not of "
-                        "one sonar",
+            fmt::format("a ping of {} x {} bins does not fit a truth of {} x {}: they are not of the "
+                        "same sonar",
                         ping.beam_count, ping.bin_count, truth_->beam_count, truth_->bin_count));
     fan_.paint(ping, fan_picture_);
     if (tables_ != fan_.tablesBuilt()) build(ping);

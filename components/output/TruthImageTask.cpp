@@ -30,7 +30,8 @@ void TruthImageTask::show(const types::Sonar& sample) {
 std::vector<std::string> TruthImageTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
     std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
-    if (left_out_ > 0) notices.push_back(fmt::format("Warning: {} pings not shown for want of their truth", left_out_));
+    if (left_out_ > 0)
+        notices.push_back(fmt::format("Warning: {} pings not shown because their truth is missing", left_out_));
     return notices;
 }
 

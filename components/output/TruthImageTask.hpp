@@ -8,17 +8,17 @@ struct TruthImageConfig : PairConfig {
     TruthImageConfig() { colour_map = ColourMap::Gray; }
 };
 
-/** Shows pings as fans, and beside each the same fan with what its bins show: see TruthImage.
+/** Shows pings as fans, next to the same fans coloured by object: see TruthImage.
  *
- *  In: `ping`, as it left the sonar or what came after it; `truth`, of the same sonar. Each ping is shown with the
- *  truth of its time; one whose truth does not come within `timeout`, or before the task stops, is left out, which
- *  notices() tells. A ping and a truth of other beams or bins end the task in Exception.
- *  Out: `image`, both pictures side by side, at the ping's time. */
+ *  In: `ping`, from the sonar or a later task; `truth`, of the same sonar. Each ping is shown with the truth of its
+ *  time. A ping whose truth is missing after `timeout`, or when the task stops, is omitted, which notices() reports. A
+ *  ping and a truth that differ in beams or bins end the task in Exception. Out: `image`, both pictures side by side,
+ *  at the ping's time. */
 class TruthImageTask final : public PairPictureTask<TruthImageConfig, TruthImage> {
 public:
     using PairPictureTask::PairPictureTask;
 
-    framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "what the pings' bins show"};
+    framework::InputPort<types::SonarTruthPtr> truth{this, "truth", "objects in the pings' bins"};
 
     std::vector<std::string> notices() const override;
 
@@ -28,7 +28,7 @@ private:
     void show(const types::Sonar& sample);
 
     types::SonarTruthPtr last_;
-    uint64_t left_out_ = 0;  ///< Pings [1].
+    uint64_t left_out_ = 0;  ///< Number of pings [1].
 
     framework::AlignedPort<types::SonarTruthPtr> truths_{
         aligner_, truth, [this](const types::SonarTruthPtr& sample) { last_ = sample; }, 16};

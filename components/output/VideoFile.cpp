@@ -57,7 +57,7 @@ void VideoFile::write(const types::Image& picture) {
 
 void VideoFile::open(double rate) {
     encoder_ = openVideo(file_, rate_.value_or(rate), first_.size());
-    if (!encoder_) fail(file_, "no such folder, no room, or no encoder");
+    if (!encoder_) fail(file_, "no such folder, no space left, or no encoder");
     encoder_->write(first_);
 }
 

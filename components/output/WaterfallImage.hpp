@@ -10,9 +10,9 @@
 
 namespace insonify::output {
 
-/** Range against time: every ping is a row, the newest on top, range from left to right. A row is the mean intensity
- *  over the ping's beams. Labels give range in metres and each row's age in seconds. A ping of other bins or range
- *  starts anew. */
+/** Draws range against time: every ping is a row, the newest on top, range from left to right. A row is the mean
+ *  intensity over the ping's beams. Labels give range in metres and each row's age in seconds. A ping with other bins
+ *  or range restarts the picture. */
 class WaterfallImage : public Painter {
 public:
     explicit WaterfallImage(const DisplayConfig& config);
@@ -20,13 +20,13 @@ public:
     void paint(const types::Sonar& ping, types::Image& picture) override;
     void skip(const types::Sonar& ping) override;
 
-    static constexpr int history = 480;  ///< Pings that are shown, a row of pixels each.
+    static constexpr int history = 480;  ///< Max number of pings, a row of pixels each.
 
-    /** The part of the picture that shows echoes. */
+    /** Returns the part of the picture that shows echoes. */
     cv::Rect water() const;
 
 protected:
-    /** Makes the row of a ping, as wide as water(). */
+    /** Fills the row of a ping, as wide as water(). */
     virtual void fillRow(const types::Sonar& ping, cv::Mat& row);
     /** Labels the lower edge of water() for pings of this range [m]. */
     virtual void addRanges(Overlay& overlay, double range) const;

@@ -17,7 +17,7 @@
 namespace insonify::output {
 namespace {
 
-/** Places in a block of zeros; offsets are those of the format's tables. */
+/** A block of zeros with fields; offsets are those of the format's tables. */
 class Block {
 public:
     Block(std::vector<char>& bytes, size_t size) : bytes_(bytes), at_(bytes.size()) { bytes.resize(at_ + size); }
@@ -45,7 +45,7 @@ void putChannelInfo(Block& header, size_t channel, const XtfFormat& format, cons
     header.put(at + info::correction, slant_range);
     header.put(at + info::unipolar, unipolar);
     header.put(at + info::sample_bytes, static_cast<uint16_t>(sizeOf(format.samples)));
-    header.put(at + info::sample_count, uint32_t{1024});  // what programs of old expect there
+    header.put(at + info::sample_count, uint32_t{1024});  // expected by old programs
     header.putText(at + info::name, channel == 0 ? "Port" : "Starboard", 16);
     header.putFloat(at + info::frequency, format.frequency_khz);
     header.putFloat(at + info::beam_width, ping.beam_width.isUnknown() ? 0 : ping.beam_width.deg());
@@ -143,7 +143,7 @@ std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping) {
     header.put(fields::format, fields::mark);
     header.put(fields::system, uint8_t{1});
     header.putText(fields::program, "Insonify", 8);
-    header.putText(fields::program_version, "223", 8);  // programs of old ask for at least this
+    header.putText(fields::program_version, "223", 8);  // min version that old programs require
     header.putText(fields::sonar, "Insonify", 16);
     header.putText(fields::name, format.name, 63);
     header.put(fields::nav_units, fields::metres);
@@ -154,7 +154,7 @@ std::vector<char> xtfHeader(const XtfFormat& format, const types::Sonar& ping) {
 }
 
 void appendXtfPing(const XtfFormat& format, const types::Sonar& ping, const XtfPing& more, std::vector<char>& bytes) {
-    if (!ping.wellShaped()) throw std::invalid_argument("the lists of a ping are not as long as its counts say");
+    if (!ping.wellShaped()) throw std::invalid_argument("the lists of a ping do not match its counts");
     const size_t lines = 2 * (xtf::channel_header::size + ping.bin_count * sizeOf(format.samples));
     const size_t unit = xtf::packet::unit, size = (xtf::ping_header::size + lines + unit - 1) / unit * unit;
     const size_t begin = bytes.size();

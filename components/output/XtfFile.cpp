@@ -14,7 +14,7 @@ namespace {
 
 double floatAt(std::span<const char> bytes, size_t at) { return static_cast<double>(field<float>(bytes, at)); }
 
-/** Bytes of a sample; 0: none of a format that is known. */
+/** Returns the bytes of a sample; 0 for an unknown format. */
 size_t sampleBytes(uint8_t format, uint16_t legacy_bytes) {
     switch (format) {
         case xtf::channel_info::int8: return 1;
@@ -29,7 +29,7 @@ size_t sampleBytes(uint8_t format, uint16_t legacy_bytes) {
 
 bool isSide(uint8_t type) { return type == xtf::channel_info::port || type == xtf::channel_info::starboard; }
 
-/** An opening of a beam as it is stated; 0 is unknown. */
+/** Returns a stated beam width; 0 is unknown. */
 types::Angle angleAt(std::span<const char> bytes, size_t at) {
     const double deg = floatAt(bytes, at);
     return deg > 0 && deg <= 360 ? types::Angle{types::radians(deg)} : types::Angle{};
@@ -174,7 +174,7 @@ double XtfFile::speedOfSound() const {
     double speed = floatAt(packet_, fields::sound_speed);
     if (speed == 0) speed = floatAt(packet_, fields::computed_sound_speed);
     if (speed == 0) return 1500;
-    if (speed >= 500 && speed < 1000) return 2 * speed;  // many programs write the range in a second of two-way time
+    if (speed >= 500 && speed < 1000) return 2 * speed;  // many programs write the range per second of two-way time
     if (!(speed >= 1000 && speed <= 2000))
         fail(
             at_ + fields::sound_speed,
@@ -194,7 +194,7 @@ types::Time XtfFile::time() const {
     date.tm_sec = byte(fields::day_time + 2);
     const int hundredths = byte(fields::day_time + 3);
     const std::tm stated = date;
-    const int64_t seconds = timegm(&date);  // corrects what is no date
+    const int64_t seconds = timegm(&date);  // normalises an invalid date
     const bool is_date = date.tm_mday == stated.tm_mday && date.tm_hour == stated.tm_hour &&
                          date.tm_min == stated.tm_min && date.tm_mon == stated.tm_mon;
     if (!is_date || stated.tm_sec > 60 || hundredths > 99 || seconds <= 0 || stated.tm_year > 300)

@@ -11,15 +11,16 @@
 
 namespace insonify::output {
 
-/** Reads the side-scan pings of an XTF file, those of others too: the first channel to port and the first to starboard.
+/** Reads the side-scan pings of an XTF file, also of other programs: the first channel to port and the first to
+ *  starboard.
  *
- *  Samples are the file's: whole numbers, or floats; times 2^-weight where a channel has a weight. A
- *  ping without a position of the sonar has that of the ship. */
+ *  Samples are the file's: integers, or floats; times 2^-weight if a channel has a weight. A ping without a position of
+ *  the sonar has the ship's. */
 class XtfFile final : public SideScanFile {
 public:
-    /** Whether a file begins as one. */
+    /** Returns whether a file begins like an XTF file. */
     static bool isOne(const std::filesystem::path& path);
-    /** Throws types::ConfigError for a file that cannot be read or is none. */
+    /** Throws types::ConfigError for a file that cannot be read or is not an XTF file. */
     explicit XtfFile(const std::filesystem::path& path);
 
     std::optional<SideScanLine> next() override;
@@ -29,15 +30,15 @@ private:
     struct Channel {
         uint8_t type = 0, format = 0;
         size_t sample_bytes = 0;
-        uint32_t sample_count = 0;  ///< Where a ping states none.
+        uint32_t sample_count = 0;  ///< Used if a ping states none.
         types::Angle beam_width, beam_height;
         double frequency_khz = 0;
     };
-    /** A channel of a ping. */
+    /** One channel of a ping. */
     struct Side {
         const Channel* channel = nullptr;
         std::span<const char> header, samples;
-        uint64_t at = 0;  ///< Where the header begins in the file [B].
+        uint64_t at = 0;  ///< Offset of the header in the file [B].
         uint32_t count = 0;
         double range = 0;  ///< [m]
         double resolution() const { return range / count; }

@@ -1,6 +1,6 @@
 #pragma once
-// Where the fields of an XTF file are (eXtended Triton Format, Triton Imaging, revision 41), in bytes from the start of
-// their block. Numbers are little endian.
+// Offsets of the fields of an XTF file (eXtended Triton Format, Triton Imaging, revision 41), in bytes from the start
+// of their block. Numbers are little endian.
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,24 +14,24 @@ static_assert(std::endian::native == std::endian::little,
 namespace file_header {
 inline constexpr size_t size = 1024, format = 0, system = 1, program = 2, program_version = 10, sonar = 18, name = 100,
                         nav_units = 164, channel_count = 166, bathymetry_count = 168, channel_infos = 256;
-inline constexpr uint8_t mark = 0x7B;               ///< As `format`.
-inline constexpr uint16_t metres = 0, degrees = 3;  ///< As `nav_units`.
+inline constexpr uint8_t mark = 0x7B;               ///< Values of `format`.
+inline constexpr uint16_t metres = 0, degrees = 3;  ///< Values of `nav_units`.
 }  // namespace file_header
 
-/** What the file header states of a channel. */
+/** A channel in the file header. */
 namespace channel_info {
 inline constexpr size_t size = 128, type = 0, correction = 2, unipolar = 4, sample_bytes = 6, sample_count = 8,
                         name = 12, frequency = 32, beam_width = 36, beam_height = 44, sample_format = 74;
-inline constexpr uint8_t port = 1, starboard = 2;  ///< As `type`.
-/** As `sample_format`. Legacy: whole numbers of `sample_bytes`. */
+inline constexpr uint8_t port = 1, starboard = 2;  ///< Values of `type`.
+/** Values of `sample_format`. Legacy: integers of `sample_bytes`. */
 inline constexpr uint8_t legacy = 0, int32 = 2, int16 = 3, float32 = 5, int8 = 8;
 }  // namespace channel_info
 
-/** How every packet begins. */
+/** The start of every packet. */
 namespace packet {
 inline constexpr size_t size = 14, mark = 0, type = 2, channel_count = 4, bytes = 10, unit = 64;
 inline constexpr uint16_t magic = 0xFACE;
-inline constexpr uint8_t sonar = 0;  ///< As `type`.
+inline constexpr uint8_t sonar = 0;  ///< Values of `type`.
 }  // namespace packet
 
 /** The header of a packet of a side-scan. `ship` and `sonar` are each y (north, latitude) and x (east, longitude). */
@@ -42,7 +42,7 @@ inline constexpr size_t size = 256, year = 14, month = 16, day = 17, day_time = 
                         roll = 208, heading = 212, computer_time = 236;
 }  // namespace ping_header
 
-/** The header of a channel of such a packet, which its samples follow. */
+/** The header of a channel in a side-scan packet; its samples follow. */
 namespace channel_header {
 inline constexpr size_t size = 64, channel = 0, slant_range = 4, duration = 16, since_last = 20, frequency = 26,
                         sample_count = 42, weight = 58;

@@ -48,7 +48,7 @@ void XtfTask::put() {
         file_->append(bytes_);
     } catch (const std::exception& failure) {
         if (!framework::mayLose(environment())) throw;
-        // What half a ping has left would spoil what comes after it.
+        // The remains of an incomplete ping would corrupt later pings.
         file_.reset();
         ++lost_;
         failure_ = failure.what();

@@ -22,27 +22,27 @@ struct XtfConfig {
         using types::Field;
         visit(Field{"file", "", "name, relative to the output folder"}, self.file);
         visit(Field{"samples", "",
-                    "uint16: whole numbers from 0 to 65535, as a receiver's codes of 16 bits are; float32: the bins"},
+                    "uint16: integers from 0 to 65535, such as a receiver's codes of 16 bits; float32: the bins"},
               self.samples);
-        visit(Field{"frequency_khz", "kHz", "of the sonar; 0: unknown", 0, 65535}, self.frequency_khz);
-        visit(Field{"timeout", "s", "that a ping waits for its pose, in the samples' time", 0, 1e6}, self.timeout);
+        visit(Field{"frequency_khz", "kHz", "frequency of the sonar; 0: unknown", 0, 65535}, self.frequency_khz);
+        visit(Field{"timeout", "s", "max wait of a ping for its pose, in the samples' time", 0, 1e6}, self.timeout);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
 /** Writes the lines of a side-scan sonar as an XTF file: see Xtf.hpp.
  *
- *  In: `ping`; `pose`, the sonar in the world, of which the one at the ping's time counts, or the last before it;
- *  `altitude`, of an altimeter, the newest. A ping that comes before any pose has none in the file, and is counted. In
- *  realtime a file that cannot be written ends there: RunTimeError, and pings are counted. */
+ *  In: `ping`; `pose`, the sonar in the world: the pose at the ping's time is used, or the last before it; `altitude`,
+ *  of an altimeter, the newest. A ping before the first pose has none in the file, and is counted. In realtime a file
+ *  that cannot be written ends: RunTimeError, and lost pings are counted. */
 class XtfTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
     framework::Properties<XtfConfig> config{this};
-    framework::InputPort<types::Pose> pose{this, "pose", "the sonar in the world, as sonars tell it"};
+    framework::InputPort<types::Pose> pose{this, "pose", "the sonar in the world, as published by sonars"};
     framework::InputPort<types::SonarPtr> ping{this, "ping", "lines to port and starboard"};
-    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest counts",
+    framework::InputPort<types::Range> altitude{this, "altitude", "height above the bottom, the newest is used",
                                                 framework::Need::Optional};
 
     std::vector<std::string> notices() const override;

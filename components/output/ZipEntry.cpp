@@ -29,10 +29,10 @@ struct ZipEntry::Source {
     uint16_t method = 0;
     bool has_sizes = false;
     uint32_t checksum = 0;
-    uint64_t packed_left = 0;  ///< Bytes of the entry that are not read yet, where sizes are known.
+    uint64_t packed_left = 0;  ///< Unread bytes of the entry, if sizes are known.
 
     std::vector<char> packed, window;
-    size_t begin = 0;  ///< Where in `window` the next byte is.
+    size_t begin = 0;  ///< Offset of the next byte in `window`.
     uint64_t at = 0;
     bool ended = false;
     uLong sum = crc32(0, nullptr, 0);
@@ -40,7 +40,7 @@ struct ZipEntry::Source {
 
     ~Source() { inflateEnd(&stream); }
 
-    /** Reads the header at the file's place; false: there is none. */
+    /** Reads the header at the file's position; returns false if there is none. */
     bool readHeader() {
         char bytes[zip::header];
         if (!file.read(bytes, sizeof bytes) || field<uint32_t>(bytes, 0) != zip::magic) return false;
@@ -73,7 +73,7 @@ struct ZipEntry::Source {
         if (ended && has_sizes && diagnostic.empty() && sum != checksum)
             diagnostic = "its checksum is wrong: some of its bytes are";
     }
-    /** The next packed bytes; none: the archive or the entry is at its end. */
+    /** Returns the next packed bytes; none at the end of the archive or the entry. */
     size_t readPacked(char* to, size_t size) {
         if (has_sizes) size = static_cast<size_t>(std::min<uint64_t>(size, packed_left));
         file.read(to, static_cast<std::streamsize>(size));
@@ -129,11 +129,11 @@ ZipEntry::ZipEntry(const std::filesystem::path& path, const std::string& ending)
             inflateInit2(&source.stream, -MAX_WBITS);  // without a header of zlib's
             return;
         }
-        if (!source.has_sizes) source.fail("has no size in the archive, so that no file behind it is found");
+        if (!source.has_sizes) source.fail("has no size in the archive, so files behind it cannot be found");
         source.file.seekg(static_cast<std::streamoff>(source.packed_left), std::ios::cur);
     }
     source.name.clear();
-    source.fail(fmt::format("is an archive without a file *{}", ending));
+    source.fail(fmt::format("is an archive without a file whose name ends in {}", ending));
 }
 
 ZipEntry::~ZipEntry() = default;

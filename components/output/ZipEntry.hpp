@@ -7,27 +7,27 @@
 
 namespace insonify::output {
 
-/** A file in a zip archive, read from its begin to its end. The archive's directory is not needed, so that an archive
- *  that was cut off, which libraries refuse, is read up to there. */
+/** Reads a file in a zip archive from beginning to end. The archive's directory is not needed, so that a truncated
+ *  archive, which libraries refuse, can be read up to its end. */
 class ZipEntry {
 public:
-    /** Whether a file begins as an archive. */
+    /** Returns whether a file begins like an archive. */
     static bool isArchive(const std::filesystem::path& path);
-    /** Opens the first file whose name ends so. Throws types::ConfigError where there is none, and for methods other
-     *  than stored and deflated. */
+    /** Opens the first file whose name ends in `ending`. Throws types::ConfigError if there is none, and for methods
+     *  other than stored and deflated. */
     ZipEntry(const std::filesystem::path& path, const std::string& ending);
     ~ZipEntry();
     ZipEntry(const ZipEntry&) = delete;
     ZipEntry& operator=(const ZipEntry&) = delete;
 
     const std::string& name() const;
-    /** The bytes from at() on, `size` of them, fewer at the end. They stay until the next call. */
+    /** Returns the `size` bytes from at() on, fewer at the end. They are valid until the next call. */
     std::span<const char> peek(size_t size);
-    /** Passes over bytes that were seen. */
+    /** Skips bytes that were peeked. */
     void skip(size_t size);
-    /** Where in the file the next byte is [B]. */
+    /** Returns the offset of the next byte in the file [B]. */
     uint64_t at() const;
-    /** Why the file ended early, or what is wrong with its bytes; empty: nothing. */
+    /** Returns why the file ended early, or what is wrong with its bytes; empty if nothing is. */
     const std::string& diagnostic() const;
 
 private:

@@ -11,12 +11,12 @@
 
 namespace insonify::pose {
 
-/** A base of tasks that write the poses which others send; for `schedule: realtime`.
+/** Base of tasks that write the poses which other programs send; for `schedule: realtime`.
  *
- *  `list` is the member of the configuration that has an entry for each body, with the `port` by which its poses go.
- *  Ports: an output for each of them: body in the world, Rock's axes (x north, y west, z up). Refused are lockstep,
- *  whose time does not wait for messages, and an entry from whose port no connection leads. `Kept` is what the task
- *  keeps with a port, see DynamicPorts.hpp. */
+ *  `list` is the member of the configuration with an entry for each body, which names the `port` of its poses. Each
+ *  entry has an output: body in the world, Rock's axes (x north, y west, z up). check() reports lockstep, whose time
+ *  does not wait for messages, and entries whose port has no connection. `Kept` is data that the task keeps with a
+ *  port, see DynamicPorts.hpp. */
 template <class Config, auto list, template <class> class Kept = framework::KeepsNothing>
 class ListenerTask : public framework::TaskContext {
 public:
@@ -31,7 +31,7 @@ public:
     void check(types::Diagnostics& diagnostics) const final {
         if (environment().lockstep)
             diagnostics.push_back({"",
-                                   "messages come on the wall clock's time, for which lockstep does not wait; set "
+                                   "messages arrive by the wall clock, for which lockstep does not wait; set "
                                    "schedule: realtime"});
         for (size_t i = 0; i < entries().size(); ++i) {
             const std::string& port = entries()[i].port;
@@ -45,18 +45,18 @@ public:
     bool reachesOutside() const final { return true; }
 
 protected:
-    /** Of an output; null: none has that port. */
+    /** Returns the entry of a port; null when there is none. */
     const auto* entryOf(const std::string& port) const {
         const auto found = std::ranges::find_if(entries(), [&](const auto& entry) { return entry.port == port; });
         return found == entries().end() ? nullptr : &*found;
     }
 
-    framework::Event arrived_{this};  ///< A message; outlives what raises it.
+    framework::Event arrived_{this};  ///< A message has arrived; must outlive its sender.
     framework::DynamicOutputs<std::tuple<types::Pose>, Kept> outputs_{this};
 
 private:
     const auto& entries() const { return (*config).*list; }
-    /** The name of the list in files. */
+    /** Returns the name of the list in files. */
     std::string key() const {
         std::string found;
         const auto compare = [&](const types::Field& field, const auto& value) {

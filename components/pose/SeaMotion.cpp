@@ -16,14 +16,14 @@ using std::numbers::pi;
 /** Exponent of Pierson and Moskowitz' spectrum about its peak, x = frequency / peak: x^-5 exp(-1.25 x^-4). */
 constexpr double peak_exponent = 1.25;
 
-/** JONSWAP's mean spectrum over x, not to scale: peak enhancement 3.3, widths 0.07 and 0.09. */
+/** Returns JONSWAP's mean spectrum over x, not to scale: peak enhancement 3.3, widths 0.07 and 0.09. */
 double jonswapDensity(double x) {
     const double width = x <= 1 ? 0.07 : 0.09;
     const double peak = std::exp(-0.5 * std::pow((x - 1) / width, 2));
     return std::pow(x, -5) * std::exp(-peak_exponent * std::pow(x, -4)) * std::pow(3.3, peak);
 }
 
-/** Shares of JONSWAP's energy below points of x, evenly spaced; beyond the last one the tail is as x^-5. */
+/** Shares of JONSWAP's energy below evenly spaced points of x. Beyond the last point the density falls as x^-5. */
 struct JonswapShares {
     static constexpr double low = 0.3, high = 12, step = 1e-3;
     std::vector<double> below{0};
@@ -90,7 +90,7 @@ void SeaMotion::move(double time, types::Pose& pose) const {
     const glm::dquat turn =
         glm::angleAxis(pitch.value, glm::dvec3(0, 1, 0)) * glm::angleAxis(roll.value, glm::dvec3(1, 0, 0));
     pose.orientation = glm::normalize(pose.orientation * turn);
-    // The rate of Ry(pitch) Rx(roll) in the body that it has turned.
+    // The rate of Ry(pitch) Rx(roll) in the rotated body.
     const glm::dvec3 own(roll.rate, pitch.rate * std::cos(roll.value), -pitch.rate * std::sin(roll.value));
     pose.angular_velocity = glm::conjugate(turn) * pose.angular_velocity + own;
 }

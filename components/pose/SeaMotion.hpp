@@ -8,7 +8,7 @@
 
 namespace insonify::pose {
 
-/** Shape of a spectrum of waves over frequency. */
+/** Shape of a spectrum of sea waves over frequency. */
 enum class SeaSpectrum { PiersonMoskowitz, Jonswap };
 
 /** Heave, roll and pitch of a carrier on waves: root mean squares, and the period of the spectrum's peak. */
@@ -34,13 +34,13 @@ struct SeaMotionConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A motion of given root mean square and spectrum: a sum of sinusoids of equal amplitudes, whose frequencies share the
- *  spectrum's energy evenly, and of random phases. A function of time alone. */
+/** A motion of given root mean square and spectrum, which depends only on time. It is a sum of sinusoids of equal
+ *  amplitudes and random phases, whose frequencies divide the spectrum into equal energies. */
 class WaveSum {
 public:
     static constexpr size_t components = 64;
     struct Value {
-        double value = 0, rate = 0;  ///< The rate is the derivative by time [1/s].
+        double value = 0, rate = 0;  ///< The rate is the time derivative [1/s].
     };
 
     WaveSum(double rms, double period, SeaSpectrum spectrum, uint64_t seed);
@@ -53,20 +53,21 @@ private:
     std::vector<double> frequencies_, phases_;
 };
 
-/** Moves poses as waves move their carrier. Immutable: the same time gives the same motion. */
+/** Adds the motion of a carrier on waves to poses. Immutable: the same time gives the same motion. */
 class SeaMotion {
 public:
     explicit SeaMotion(const SeaMotionConfig& config);
 
-    /** Adds heave to the position, turns the body by pitch and then by roll, and adds the rates of all three to its
-     *  velocities. @param time since the start of the run [s] */
+    /** Adds heave to the position, rotates the body by pitch and then by roll, and adds the rates of all three to its
+     *  velocities.
+     *  @param time since the start of the run [s] */
     void move(double time, types::Pose& pose) const;
 
 private:
     WaveSum heave_, roll_, pitch_;
 };
 
-/** Angular frequency below which a share of a spectrum's energy lies [rad/s]; `share` is above 0 and below 1. */
+/** Returns the angular frequency below which a spectrum has a share of its energy [rad/s]; 0 < `share` < 1. */
 double frequencyOfShare(SeaSpectrum spectrum, double peak_frequency, double share);
 
 }  // namespace insonify::pose

@@ -12,7 +12,7 @@
 namespace insonify::pose {
 namespace {
 
-/** Second derivatives of one column at its knots: a tridiagonal system, zero at both ends. */
+/** Returns the second derivatives of one column at its knots: a tridiagonal system, zero at both ends. */
 std::vector<double> curvaturesOf(const std::vector<double>& times, const std::vector<Spline::Row>& rows,
                                  size_t column) {
     const size_t count = times.size();
@@ -35,7 +35,7 @@ std::vector<Trajectory::Stamp> stampsOf(const std::vector<Waypoint>& waypoints) 
     return stamps;
 }
 
-/** Body rate that turns `from` into `to` in `seconds`, the shorter way [rad/s]. */
+/** Returns the body rate that rotates `from` into `to` in `seconds`, the shorter way [rad/s]. */
 glm::dvec3 angularVelocity(const glm::dquat& from, const glm::dquat& to, double seconds) {
     glm::dquat turn = glm::conjugate(from) * to;
     if (turn.w < 0) turn = -turn;
@@ -44,7 +44,7 @@ glm::dvec3 angularVelocity(const glm::dquat& from, const glm::dquat& to, double 
     return sine == 0 ? glm::dvec3(0) : half * (2 * std::atan2(sine, turn.w) / (sine * seconds));
 }
 
-/** The spline through stamps, each quaternion of the sign that is nearer to the one before. */
+/** Returns the spline through stamps. Each quaternion gets the sign that is nearer to the previous quaternion. */
 Spline splineThrough(const std::vector<Trajectory::Stamp>& stamps) {
     std::vector<double> times;
     std::vector<Spline::Row> rows;
@@ -105,13 +105,14 @@ glm::dquat Waypoint::orientation() const {
 }
 
 void TrajectoryConfig::check(types::Diagnostics& diagnostics) const {
-    if (file && !waypoints.empty()) diagnostics.push_back({"waypoints", "given besides file; only one of them may be"});
+    if (file && !waypoints.empty())
+        diagnostics.push_back({"waypoints", "is given together with file; give one of the two"});
     if (!file && waypoints.empty())
         diagnostics.push_back({"file", "is not given; give a file or at least one waypoint"});
     for (size_t i = 1; i < waypoints.size(); ++i)
         if (!(waypoints[i].time > waypoints[i - 1].time))
-            diagnostics.push_back(
-                {"waypoints[" + std::to_string(i) + "].time", "is not after the one before; times must increase"});
+            diagnostics.push_back({"waypoints[" + std::to_string(i) + "].time",
+                                   "is not after the previous waypoint; times must increase"});
 }
 
 Trajectory::Trajectory(std::vector<Stamp> stamps, bool smooth) : stamps_(std::move(stamps)) {

@@ -13,7 +13,7 @@
 
 namespace insonify::pose {
 
-/** Where the body is at one time. R = Rz(yaw) Ry(pitch) Rx(roll), right-handed about the axes of the z-up world:
+/** The pose of the body at one time. R = Rz(yaw) Ry(pitch) Rx(roll), right-handed about the axes of the z-up world:
  *  positive pitch looks down, positive yaw turns to port. */
 struct Waypoint {
     double time = 0;
@@ -22,7 +22,7 @@ struct Waypoint {
     double pitch_deg = 0;
     double yaw_deg = 0;
 
-    /** Unit quaternion that turns body vectors into the world. */
+    /** Returns the unit quaternion that rotates vectors of the body into the world. */
     glm::dquat orientation() const;
 
     template <class Self, class V>
@@ -36,7 +36,7 @@ struct Waypoint {
     }
 };
 
-/** Where a trajectory comes from: a file or waypoints, exactly one of them. */
+/** The source of a trajectory: either a file or waypoints. */
 struct TrajectoryConfig {
     std::optional<std::string> file;
     std::vector<Waypoint> waypoints;
@@ -49,35 +49,37 @@ struct TrajectoryConfig {
         using types::Field;
         visit(Field{"file", "", "CSV with header time,x,y,z,qw,qx,qy,qz in [s], [m], [1]"}, self.file);
         visit(Field{"waypoints", "", "instead of a file; a single one is a fixed pose"}, self.waypoints);
-        visit(Field{"loop", "", "at its last stamp it goes on from the first, for ever; else it ends there"},
-              self.loop);
+        visit(
+            Field{"loop", "", "whether the trajectory restarts at its first stamp after the last; else it ends there"},
+            self.loop);
         visit(Field{"smooth", "",
-                    "a natural cubic spline through the stamps, so that accelerations are those of a body; else "
-                    "straight lines, whose corners are none"},
+                    "a natural cubic spline through the stamps, whose accelerations do not jump; else straight lines "
+                    "with corners"},
               self.smooth);
         visit(
             Field{"motion", "", "heave, roll and pitch of a carrier on waves, on top of the trajectory; absent: none"},
             self.motion);
     }
-    /** Exactly one source; the waypoints' times increase. */
+    /** Requires exactly one source, and increasing times of waypoints. */
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A natural cubic spline: the curve through its knots whose second derivatives do not jump and are zero at its ends.
+/** A natural cubic spline: a curve through its knots whose second derivatives do not jump and are zero at its ends.
  *  Source: Press et al., "Numerical Recipes", 3rd edition, section 3.3. */
 class Spline {
 public:
     static constexpr size_t columns = 7;
     using Row = std::array<double, columns>;
-    /** A point of the curve, and its derivative by time. */
+    /** A point of the curve, and its time derivative. */
     struct Point {
         Row value{}, rate{};
     };
 
-    /** @param times strictly increasing [s], as many as rows, at least two. */
+    /** @param times strictly increasing [s], at least two
+     *  @param rows one per time */
     Spline(std::vector<double> times, std::vector<Row> rows);
 
-    /** In the segment that ends with a knot, 1 to the last; `time` within it [s]. */
+    /** Returns the point at `time` [s] in the segment that ends with knot number `knot`, 1 to the last. */
     Point at(size_t knot, double time) const;
 
 private:
@@ -86,9 +88,9 @@ private:
     std::vector<Row> curvatures_;  ///< Second derivatives at the knots.
 };
 
-/** A path through the world: position linear between stamps, orientation by slerp the shorter way; before the first
- *  stamp and after the last it holds still. A smooth one is a natural cubic spline through the stamps, of positions and
- *  of the parts of quaternions, which are made unit. Immutable. */
+/** A path through the world. Between stamps the position is linear and the orientation a slerp along the shorter way;
+ *  outside the stamps both stay constant. A smooth trajectory is a natural cubic spline through the stamps, of
+ *  positions and of the components of quaternions, which are normalised. Immutable. */
 class Trajectory {
 public:
     struct Stamp {
@@ -97,26 +99,28 @@ public:
         glm::dquat orientation{1, 0, 0, 0};  ///< Unit quaternion, body to world [1].
     };
 
-    /** @param stamps at least one, at strictly increasing times; else std::invalid_argument. */
+    /** @param stamps at least one, at strictly increasing times
+     *  @throws std::invalid_argument for other stamps. */
     explicit Trajectory(std::vector<Stamp> stamps, bool smooth = false);
     explicit Trajectory(const std::vector<Waypoint>& waypoints, bool smooth = false);
 
-    /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`; quaternions are made unit, blank lines skipped.
-     *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, too many or no
-     *  finite number, a time that does not increase, a quaternion shorter than 1e-6. */
+    /** Reads a CSV with header `time,x,y,z,qw,qx,qy,qz`. Normalises quaternions and skips blank lines.
+     *  @throws types::ConfigError with line and column of every diagnostic: a field that is missing, superfluous or not
+     *  a finite number, a time that does not increase, a quaternion shorter than 1e-6. */
     static Trajectory fromCsv(const std::filesystem::path& file, bool smooth = false);
 
-    /** Body "body" in frame "world" at `time` [s] since the start of the run, with velocity [m/s] in the world and
-     *  angular velocity [rad/s] in the body, both zero where the trajectory holds still. Pose::time is left null. */
+    /** Returns the pose of "body" in frame "world" at `time` [s] since the start of the run. It has a velocity in the
+     *  world [m/s] and an angular velocity in the body [rad/s], both zero outside the stamps. Does not set
+     *  Pose::time. */
     types::Pose at(double time) const;
-    /** The time of the trajectory that a time of the run is, when it goes on from the first stamp wherever it has come
-     *  to the last [s]: the same before the first stamp, else from the first up to the last. */
+    /** Returns the time of a looped trajectory for a time of the run [s]: unchanged before the first stamp, else from
+     *  the first stamp up to the last. */
     double inLoop(double time) const;
 
     const std::vector<Stamp>& stamps() const { return stamps_; }
 
 private:
-    /** Place and velocities on the spline, within the segment that ends with a stamp. */
+    /** Sets pose and velocities on the spline, in the segment that ends with stamp number `stamp`. */
     void placeOnSpline(size_t stamp, double time, types::Pose& pose) const;
 
     std::vector<Stamp> stamps_;

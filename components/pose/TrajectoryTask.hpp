@@ -11,13 +11,13 @@
 
 namespace insonify::pose {
 
-/** Moves the vehicle along a prescribed trajectory: a source, to be run by a periodic activity.
+/** Moves the vehicle along a prescribed trajectory. Needs a periodic activity.
  *
- *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. It has finished once
- *  the next pose would lie beyond the last stamp (a single waypoint: after one pose), and holds its end if it goes on
- *  running. With `loop` it goes on from the first stamp, as often as it comes to the last, and has never finished. With
- * `motion` waves move the body about the trajectory, by the time of the run, and at its ends too. A file that is not
- * right refuses configure. */
+ *  Each cycle writes the pose at now(); the trajectory's times count from the start of the run. The task is finished
+ *  once the next pose would be beyond the last stamp (with a single waypoint: after one pose). If it keeps running, it
+ *  holds the last pose. With `loop` it restarts at the first stamp after each last stamp, and is never finished. With
+ *  `motion` waves move the body about the trajectory, by the time of the run, also outside the stamps. An invalid file
+ *  is a diagnostic of configure. */
 class TrajectoryTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -27,9 +27,10 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
-    /** The path of its properties, configured or not. Throws types::ConfigError as Trajectory::fromCsv. */
+    /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
+     *  Trajectory::fromCsv. */
     Trajectory trajectory() const;
-    /** Time of the last stamp; 0 before it is configured [s]. */
+    /** Returns the time of the last stamp [s]; 0 before the task is configured. */
     double duration() const { return trajectory_ ? trajectory_->stamps().back().time : 0; }
 
 private:
@@ -37,7 +38,7 @@ private:
     bool startHook() override;
     void updateHook() override;
     void cleanupHook() override;
-    /** Whether no later pose of this period lies on the trajectory. */
+    /** Returns whether the next pose of this period would be beyond the trajectory. */
     bool isLast(types::Time elapsed);
 
     std::optional<Trajectory> trajectory_;
@@ -45,7 +46,7 @@ private:
     std::atomic<bool> finished_{false};
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::pose

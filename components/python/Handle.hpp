@@ -6,16 +6,16 @@
 
 namespace insonify::python {
 
-/** Numbers that belong to a handle, row by row. */
+/** Numbers owned by a handle, row by row. */
 struct Array {
     const char* name;
-    const char* type;  ///< As numpy writes it: "f4".
+    const char* type;  ///< In numpy's notation: "f4".
     const void* numbers;
     uint64_t shape[3];
     uint32_t dimensions;
 };
 
-/** What Python holds of a thing: facts and arrays. */
+/** An object held by Python: facts and arrays. */
 class Handle {
 public:
     virtual ~Handle() = default;

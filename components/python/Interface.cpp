@@ -52,7 +52,7 @@ public:
 
     std::shared_ptr<log::Reader> log;
     std::vector<std::vector<log::SampleRef>> samples;  ///< By stream.
-    std::mutex reading;                                ///< Python's threads call side by side; the reader is for one.
+    std::mutex reading;  ///< Python's threads may call at the same time; the reader is for one thread.
 
 private:
     std::vector<std::vector<double>> times_;
@@ -71,7 +71,7 @@ void keepError(const char* kind, const std::exception& error, const types::Diagn
     keep({{"kind", kind}, {"message", error.what()}, {"diagnostics", all}});
 }
 
-/** What `work` gives; `failed` where it throws. */
+/** Returns the result of `work`; `failed` if it throws. */
 template <class Work>
 auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
     try {
@@ -92,7 +92,7 @@ auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
     return failed;
 }
 
-/** A name of an enumeration as its value. */
+/** Returns the value of an enumerator's name. */
 template <class Enum>
 Enum valueOf(const std::string& name, const char* what) {
     const auto& names = types::EnumNames<Enum>::names;

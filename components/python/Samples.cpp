@@ -178,7 +178,7 @@ std::unique_ptr<Handle> pictureHandle(const types::Image& picture) {
     return handle;
 }
 
-/** Handles of the samples that stand in a variant of pointers. */
+/** Makes handles of the samples in a variant of pointers. */
 struct MakeHandle {
     std::unique_ptr<Handle> operator()(const types::Pose* pose) const {
         auto handle = std::make_unique<PoseHandle>();

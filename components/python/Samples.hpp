@@ -10,20 +10,19 @@
 
 namespace insonify::python {
 
-/** Facts `{kind: ping, time, ...}`, arrays `bins` [beams, bins], `bearings` [rad] and `ranges` [m], which is the slant
- *  range at the middle of each bin.
+/** Makes a handle of a ping: facts `{kind: ping, time, ...}`, arrays `bins` [beams, bins], `bearings` [rad] and
+ *  `ranges` [m], which is the slant range at the middle of each bin.
  *  @param truth null: none; otherwise its arrays are there as well, and its `objects` among the facts. */
 std::unique_ptr<Handle> pingHandle(types::SonarPtr ping, types::SonarTruthPtr truth);
-/** Pings of one shape as one: arrays `bins` [pings, beams, bins], `times` [s] of each, `bearings` and `ranges` of the
- *  first.
- *  @param truths empty: none; otherwise one for each, arrays of the shape of `bins`. */
+/** Joins pings of one shape: arrays `bins` [pings, beams, bins], `times` [s] of each, `bearings` and `ranges` of the
+ *  first. */
 std::unique_ptr<Handle> pingsHandle(const std::vector<types::SonarPtr>& pings,
                                     const std::vector<types::SonarTruthPtr>& truths);
-/** The ping of such a handle as a fan. Throws types::ConfigError for what no picture can be. */
+/** Renders the ping of a handle from pingHandle() as a fan. Throws types::ConfigError for an impossible picture. */
 std::unique_ptr<Handle> fanHandle(const Handle& ping, const output::DisplayConfig& display);
 
-/** A sample of a log; its kind is ping, truth, pose, picture, number, integer or text. Throws UnreadableType for
- * others. */
+/** Reads a sample of a log; its kind is ping, truth, pose, picture, number, integer or text. Throws UnreadableType for
+ *  others. */
 std::unique_ptr<Handle> sampleHandle(log::Reader& log, const log::SampleRef& at);
 
 class UnreadableType : public std::runtime_error {

@@ -9,7 +9,7 @@ void followLevel(const AutomaticGainConfig& config, std::span<const double> mean
                  double bin_ms, std::span<double> gains_db) {
     const auto shareOf = [&](double time_ms) { return time_ms > 0 ? -std::expm1(-bin_ms / time_ms) : 1.0; };
     const double attack = shareOf(config.attack_ms), release = shareOf(config.release_ms);
-    double level = -1;  // of the echoes so far; below 0 before the first
+    double level = -1;  // smoothed level of the bins so far; below 0 before the first
     for (size_t k = 0; k < means.size(); ++k) {
         const bool is_heard = k >= first && means[k] >= 0;
         if (is_heard && level < 0) level = means[k];

@@ -15,7 +15,7 @@ namespace insonify::receiver {
 namespace {
 
 constexpr float floor_db = -3000;
-constexpr double nearest = 1e-3;  ///< Gain is that of this range where bins are nearer [m].
+constexpr double nearest = 1e-3;  ///< Min range for the gain; nearer bins have the gain of this range [m].
 
 INSONIFY_VECTOR_CLONES
 void amplify(const float* __restrict in, const double* __restrict factor, double ceiling, float* __restrict out,
@@ -45,14 +45,14 @@ void clip(float* values, float ceiling, size_t count) {
     for (size_t i = 0; i < count; ++i) values[i] = values[i] > ceiling ? ceiling : values[i];
 }
 
-/** Values to the power of gamma. */
+/** Raises values to the power of gamma. */
 void bend(float* values, double gamma, size_t count) {
     if (gamma == 1) return;
     if (gamma == 0.5) return takeRoots(values, count);
     for (size_t i = 0; i < count; ++i) values[i] = std::pow(values[i], static_cast<float>(gamma));
 }
 
-/** The nearest whole numbers from 0 to `most`; of NaN 0. */
+/** Rounds to whole numbers from 0 to `most`; NaN becomes 0. */
 INSONIFY_VECTOR_CLONES
 void quantise(float* values, float per_unit, float zero, float most, size_t count) {
     for (size_t i = 0; i < count; ++i) {
@@ -65,7 +65,7 @@ void quantise(float* values, float per_unit, float zero, float most, size_t coun
 
 double powerOf(double decibels) { return std::pow(10.0, decibels / 10); }
 
-/** What the echo of a cell of medium sand, face on, is short of 1: the level of mu w dR / r^3 [dB]. */
+/** Returns the level of the echo of a cell of medium sand at normal incidence: 10 log10(mu w dR / r^3) [dB]. */
 double sandLevelDb(const types::Sonar& ping, double r) {
     const double cell = ping.beam_width.rad * (ping.binStart(1) - ping.binStart(0));
     return types::Material{}.lambert_db + 10 * std::log10(cell) - 30 * std::log10(r);
@@ -85,7 +85,7 @@ void ReceiverConfig::check(types::Diagnostics& diagnostics) const {
     if (brightness && saturation_db)
         diagnostics.push_back({"saturation_db", "is given with brightness, which ends at 1; give one of the two"});
     if (!brightness) return;
-    if (tvg) diagnostics.push_back({"brightness", "is given with tvg; it makes up for spreading itself"});
+    if (tvg) diagnostics.push_back({"brightness", "is given with tvg; it compensates for spreading itself"});
     if (output != Output::Intensity)
         diagnostics.push_back({"brightness", "is given with another output; it scales output: intensity"});
 }
@@ -131,7 +131,7 @@ double Receiver::gainDb(const types::Sonar& ping, double r) const {
 
 void Receiver::makeTables(const types::Sonar& ping) {
     const Axis axis{ping.bin_count, ping.bin_duration.microseconds, ping.speed_of_sound,
-                    std::isnan(ping.beam_width.rad) ? -1 : ping.beam_width.rad};  // an unknown one is itself
+                    std::isnan(ping.beam_width.rad) ? -1 : ping.beam_width.rad};  // NaN does not equal itself
     if (axis == axis_) return;
     axis_ = axis;
     range_max_ = ping.binStart(ping.bin_count);
@@ -263,7 +263,7 @@ std::vector<std::string> Receiver::notices() const {
         all.push_back(
             fmt::format("tvg reaches its max_db of {:g} dB at {:.4g} m and stays there", config_.tvg->max_db, *r));
     if (config_.code && config_.output != Output::Code)
-        all.push_back("code is configured, and used by output: code alone");
+        all.push_back("code is configured, but only output: code uses it");
     return all;
 }
 

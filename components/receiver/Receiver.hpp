@@ -9,18 +9,18 @@
 
 namespace insonify::receiver {
 
-/** Gain at slant range r [m] before the clamp [dB]. */
+/** Returns the gain at slant range r [m] before the clamp [dB]. */
 double unclampedTvgDb(const TvgConfig& tvg, double r);
-/** Gain at slant range r [m], at most max_db [dB]. */
+/** Returns the gain at slant range r [m], at most max_db [dB]. */
 double tvgDb(const TvgConfig& tvg, double r);
-/** Slant range at which the gain reaches max_db, none when it does not up to `range_max` [m]. */
+/** Returns the slant range at which the gain reaches max_db; none when that is beyond `range_max` [m]. */
 std::optional<double> clampRange(const TvgConfig& tvg, double range_max);
 
-/** Makes of the intensities that reach a receiver what it gives out: time-varied gain, gain, blanking, and a law.
+/** Turns the intensities that reach a receiver into its output: time-varied gain, gain, blanking, and an output law.
  *
- *  The gain of a bin is that of its middle, on the range axis of the ping. Intensities and amplitudes have a ceiling of
- *  the largest float, levels a floor of -3000 dB, codes both their ends; no echo is 0, or the floor. NaN stays NaN, but
- *  in codes, where it is 0.
+ *  The gain of a bin is that of the bin's middle, on the range axis of the ping. Intensities and amplitudes are clamped
+ *  at the max float, levels at -3000 dB below, codes at both ends. A bin without an echo is 0, or -3000 dB. NaN stays
+ *  NaN, except in codes, where it becomes 0.
  *
  *      Receiver receiver(config);
  *      receiver.receive(intensities, ping); */
@@ -28,27 +28,28 @@ class Receiver {
 public:
     explicit Receiver(const ReceiverConfig& config);
 
-    /** Gives `received` everything of `intensities`, and the bins that the receiver makes of its bins. Allocates
-     *  nothing when both had these shapes before. */
+    /** Copies `intensities` to `received` with the bins as the receiver outputs them. Allocates nothing when both had
+     *  these shapes before. */
     void receive(const types::Sonar& intensities, types::Sonar& received);
-    /** What leaves nothing to be seen in a ping that was received last. */
+    /** The reasons why a received ping shows nothing. */
     struct Flaws {
-        bool blanked = false;   ///< Every bin is silenced.
-        double saturated = 0;   ///< Share of the bins heard that have the largest code [1].
-        bool all_zero = false;  ///< Every code is 0, and some bin that is heard has an intensity.
+        bool blanked = false;   ///< Every bin is blanked.
+        double saturated = 0;   ///< Share of the bins after blanking that have the max code [1].
+        bool all_zero = false;  ///< Every code is 0, although some bin after blanking has an intensity.
         bool any() const { return blanked || all_zero || saturated > max_saturated; }
     };
-    static constexpr double max_saturated = 0.1;  ///< Of the bins: more are told of [1].
+    static constexpr double max_saturated = 0.1;  ///< Share of saturated bins above which a warning is due [1].
+    /** Returns the flaws of the ping that was received last. */
     Flaws flawsOf(const types::Sonar& intensities, const types::Sonar& received) const;
-    /** Of flaws: which, with numbers, and what helps. */
+    /** Returns the most important flaw as a message, with numbers and a remedy. */
     std::string text(const Flaws& flaws, const types::Sonar& intensities) const;
-    /** Whether every ping comes out as it came in. */
+    /** Returns whether the receiver leaves every ping unchanged. */
     bool isNeutral() const;
-    /** What a user should know: where the gain is clamped, what is configured without use. */
+    /** Returns notices for the user: the range of the gain's clamp, and configuration without effect. */
     std::vector<std::string> notices() const;
 
 private:
-    /** Of a ping: what the tables depend on. */
+    /** The properties of a ping that the tables depend on. */
     struct Axis {
         uint32_t bin_count = 0;
         int64_t bin_duration_us = 0;
@@ -57,29 +58,29 @@ private:
         bool operator==(const Axis&) const = default;
     };
     void makeTables(const types::Sonar& ping);
-    /** Puts the automatic gain of a ping on top of the tables. */
+    /** Adds the automatic gain of a ping to the tables. */
     void followLevel(const types::Sonar& ping);
-    /** What the tables add to a level with all gain included: the outputs' own scales [dB]. */
+    /** Returns the offset of the output's own scale, which the tables add to a level with all gain included [dB]. */
     double scaleDb() const;
-    double saturation() const;  ///< On the scale of the tables [1].
+    double saturation() const;  ///< Max intensity on the scale of the tables [1].
     double gainDb(const types::Sonar& ping, double r) const;
     bool isLevel() const;
     void receiveBeam(const float* intensities, float* received) const;
     void encode(float* received) const;
     float largestCode() const { return static_cast<float>((1 << code_.bits) - 1); }
-    /** Level of the loudest bin that is heard, all gain included, relative to full_scale_db [dB]. */
+    /** Returns the level of the loudest bin after blanking, all gain included, relative to full_scale_db [dB]. */
     double loudestDb(const types::Sonar& intensities) const;
-    /** Level relative to full_scale_db from which a code is not 0 [dB]. */
+    /** Returns the level relative to full_scale_db above which codes are not 0 [dB]. */
     double lowestDb() const;
 
     ReceiverConfig config_;
     CodeConfig code_;
     Axis axis_;
-    size_t silent_ = 0;                                    ///< Bins of a beam, from the first on.
-    double range_max_ = 0;                                 ///< Of the last ping [m].
-    std::vector<double> factor_;                           ///< Of each bin [1],
-    std::vector<float> offset_db_;                         ///< or for levels [dB].
-    std::vector<double> fixed_db_, means_, automatic_db_;  ///< With automatic gain: gain and levels of each bin.
+    size_t silent_ = 0;                                    ///< Number of blanked bins at the start of each beam.
+    double range_max_ = 0;                                 ///< Range of the last ping [m].
+    std::vector<double> factor_;                           ///< Gain of each bin as a factor [1].
+    std::vector<float> offset_db_;                         ///< Gain of each bin as a level [dB].
+    std::vector<double> fixed_db_, means_, automatic_db_;  ///< With automatic gain: gain and mean of each bin.
 };
 
 }  // namespace insonify::receiver

@@ -6,10 +6,10 @@
 
 namespace insonify::receiver {
 
-/** What the bins of a ping become. */
+/** The unit and scale of the bins that the receiver outputs. */
 enum class Output { Intensity, Amplitude, LevelDb, ReceivedLevelDb, Code };
 enum class CodeLaw { Linear, Sqrt, Log };
-/** What the sonar's bins are. */
+/** The acoustic model of the sonar, which determines the scale of its bins. */
 enum class Model { Physical, Cerqueira2017 };
 
 /** Time-varied gain: log_coefficient log10(r) + 2 db_per_m r [dB], at most max_db; r in metres. */
@@ -22,9 +22,9 @@ struct TvgConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"log_coefficient", "dB", "gain per decade of range", 0, 1000}, self.log_coefficient);
-        visit(Field{"db_per_m", "dB/m", "one-way absorption made up for, twice per metre of range", 0, 1000},
+        visit(Field{"db_per_m", "dB/m", "one-way absorption to compensate, twice per metre of range", 0, 1000},
               self.db_per_m);
-        visit(Field{"max_db", "dB", "the gain is clamped here", -1000, 1000}, self.max_db);
+        visit(Field{"max_db", "dB", "max gain", -1000, 1000}, self.max_db);
     }
 };
 
@@ -48,25 +48,25 @@ struct CodeConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"bits", "1", "of a code: the largest is 2^bits - 1", 8, 16}, self.bits);
-        visit(Field{"law", "", "the code goes as intensity, as its root, or as its level"}, self.law);
-        visit(Field{"full_scale_db", "dB", "level, all gain included, of the largest code", -1000, 1000},
+        visit(Field{"bits", "1", "of a code: the max code is 2^bits - 1", 8, 16}, self.bits);
+        visit(Field{"law", "", "the code is proportional to intensity, to its root, or to its level"}, self.law);
+        visit(Field{"full_scale_db", "dB", "level of the max code, all gain included", -1000, 1000},
               self.full_scale_db);
-        visit(Field{"dynamic_range_db", "dB", "law log: below full_scale_db, the level of code 0", 0.1, 3000},
+        visit(Field{"dynamic_range_db", "dB", "law log: level of code 0 below full_scale_db", 0.1, 3000},
               self.dynamic_range_db);
         visit(
             Field{"gamma", "1",
-                  "law linear or sqrt: the code goes as the law's value to this power, as on instruments that brighten "
-                  "weak echoes so",
+                  "law linear or sqrt: the code is proportional to the law's value to this power; below 1 it brightens "
+                  "weak echoes",
                   0.05, 5},
             self.gamma);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** The brightness of the simulator of Rock, from 0 to 1: bins between 0 and 1 for a display, whatever the range.
- *  `cerqueira2017`: the bin times 2 gain. `physical`: E/S0 times 2 gain r^3 / (mu w dR), in which mu is that of medium
- *  sand, w the width of a beam [rad] and dR of a bin [m]: at 0.5 a cell of such sand, seen face on, is 1. */
+/** The brightness of the simulator of Rock: scales bins to 0 to 1 for a display, at any range. `cerqueira2017`: the bin
+ *  times 2 gain. `physical`: E/S0 times 2 gain r^3 / (mu w dR), where mu is that of medium sand, w the width of a beam
+ *  [rad] and dR that of a bin [m]. With gain 0.5, a cell of medium sand at normal incidence is 1. */
 struct BrightnessConfig {
     double gain = 0.5;
     Model model = Model::Physical;
@@ -74,10 +74,10 @@ struct BrightnessConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"gain", "1", "bins are twice this times what they are relative to medium sand face on, at most 1",
-                    0, 1},
-              self.gain);
-        visit(Field{"model", "", "the sonar's"}, self.model);
+        visit(
+            Field{"gain", "1", "a bin is twice this times its value relative to medium sand face on, at most 1", 0, 1},
+            self.gain);
+        visit(Field{"model", "", "`model` of the connected sonar"}, self.model);
     }
 };
 
@@ -90,16 +90,15 @@ struct AutomaticGainConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"target_db", "dB", "mean level over the beams, all gain included, that it aims at", -1000, 1000},
+        visit(Field{"target_db", "dB", "target of the mean level over the beams, all gain included", -1000, 1000},
               self.target_db);
-        visit(Field{"attack_ms", "ms", "time in which it follows a level that rises, to 1 - 1/e", 0, 1e6},
-              self.attack_ms);
-        visit(Field{"release_ms", "ms", "the same of a level that falls", 0, 1e6}, self.release_ms);
-        visit(Field{"max_db", "dB", "its gain is this at most, up or down", 0, 1000}, self.max_db);
+        visit(Field{"attack_ms", "ms", "time to follow a rising level, to 1 - 1/e", 0, 1e6}, self.attack_ms);
+        visit(Field{"release_ms", "ms", "the same for a falling level", 0, 1e6}, self.release_ms);
+        visit(Field{"max_db", "dB", "max magnitude of this gain, up or down", 0, 1000}, self.max_db);
     }
 };
 
-/** What a receiver does: a block that is absent is not done. */
+/** The configuration of a receiver. An absent block is not applied. */
 struct ReceiverConfig {
     std::optional<TvgConfig> tvg;
     double gain_db = 0;
@@ -116,8 +115,7 @@ struct ReceiverConfig {
         using types::Field;
         visit(Field{"tvg", "", "time-varied gain: log_coefficient log10(r) + 2 db_per_m r; absent: none"}, self.tvg);
         visit(Field{"gain_db", "dB", "gain at every range", -1000, 1000}, self.gain_db);
-        visit(Field{"blanking", "", "silences what is near, and unveils nothing behind it; absent: none"},
-              self.blanking);
+        visit(Field{"blanking", "", "silences near bins, whose shadows remain; absent: none"}, self.blanking);
         visit(Field{"output", "",
                     "intensity; amplitude, its root; level_db, 10 log10 of it; received_level_db, the same plus "
                     "source_level_db; code, whole numbers by `code`"},
@@ -127,9 +125,9 @@ struct ReceiverConfig {
         visit(Field{"code", "", "used by output code"}, self.code);
         visit(Field{"automatic_gain", "", "gain that follows the level along each ping; absent: none"},
               self.automatic_gain);
-        visit(Field{"saturation_db", "dB", "level, all gain included, that nothing exceeds; absent: none", -1000, 1000},
+        visit(Field{"saturation_db", "dB", "max level of a bin, all gain included; absent: none", -1000, 1000},
               self.saturation_db);
-        visit(Field{"brightness", "", "in place of tvg, bins for a display; absent: none"}, self.brightness);
+        visit(Field{"brightness", "", "instead of tvg: scales bins for a display; absent: none"}, self.brightness);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

@@ -49,7 +49,7 @@ void ReceiverTask::judge(const types::Sonar& intensities, const types::Sonar& re
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<ReceiverTask>("receiver::ReceiverTask", "amplifies pings (TVG, gain) and gives them out by a law");
+    registry.add<ReceiverTask>("receiver::ReceiverTask", "amplifies pings (TVG, gain) and outputs them by a law");
 }
 
 }  // namespace insonify::receiver

@@ -14,13 +14,13 @@
 
 namespace insonify::receiver {
 
-/** A sonar's receiver: amplifies what reaches it, echoes and noise alike, and gives it out by a law: one ping out for
- *  each ping in, with its time unchanged.
+/** A sonar's receiver: amplifies echoes and noise alike, and outputs them by a law. One ping out for each ping in, with
+ *  its time unchanged.
  *
- *  It comes after the noise. A ping whose bins are below 0, and so no intensities, leads to RunTimeError, from which
- *  the next good one recovers. With nothing to do the ping itself is passed on, not a copy. Properties that are set
- *  hold from the next ping on. Pings that are silenced whole, saturate, or are all code 0 are told of: once, and
- *  again only after they have been good. */
+ *  The task belongs after the noise. A ping with bins below 0, which are no intensities, leads to RunTimeError; the
+ *  next valid ping recovers from it. A receiver without effect passes on the ping itself, not a copy. Changed
+ *  properties apply from the next ping. A warning reports pings that are blanked completely, saturate, or contain only
+ *  code 0: once, and again only after good pings. */
 class ReceiverTask final : public framework::TaskContext, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -28,11 +28,11 @@ public:
     framework::Properties<ReceiverConfig> config{this};
     framework::InputPort<types::SonarPtr> intensity{this, "intensity", "linear intensities, with their noise",
                                                     framework::Need::Required, types::reaching_receiver};
-    framework::OutputPort<types::SonarPtr> ping{this, "ping", "the same ping as the receiver gives it out",
+    framework::OutputPort<types::SonarPtr> ping{this, "ping", "the ping as the receiver outputs it",
                                                 types::left_receiver};
 
     framework::InputPort<types::SonarSettings> settings{
-        this, "settings", "whose gain_db this receiver takes over, from the next ping on", framework::Need::Optional};
+        this, "settings", "settings whose gain_db applies from the next ping", framework::Need::Optional};
 
     std::vector<std::string> notices() const override;
 
@@ -51,7 +51,7 @@ private:
     framework::SamplePool<types::Sonar> pool_;
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::receiver

@@ -10,17 +10,17 @@
 namespace insonify::replay {
 namespace {
 
-/** From the first sample to the latest [s]. */
+/** Returns the time from the first sample to the latest [s]. */
 double spanOf(const log::Reader& log) {
     const auto& samples = log.samples();
     if (samples.empty()) return 0;
     return (std::ranges::max(samples, {}, &log::SampleRef::time).time - samples.front().time).seconds();
 }
 
-/** Whether Rock's beams or scans are in a stream, which are pings as well. */
+/** Whether a stream has Rock's beams or scans, which are also pings. */
 bool isOlderPing(const log::Stream& stream) { return log::holdsPings(stream) && !stream.holds<types::Sonar>(); }
 
-/** @param shift by which its stamps are moved. */
+/** @param shift added to its stamps */
 template <class Output>
 void publish(Output& output, log::Reader& log, const log::SampleRef& at, types::Time shift) {
     using T = typename Output::Sample;
@@ -91,7 +91,7 @@ std::vector<std::string> ReplayTask::notices() const {
 }
 
 std::optional<types::Time> ReplayTask::nextTime() const {
-    if (log_ && next_ == log_->samples().size()) return std::nullopt;  // unread, it is not known to have none
+    if (log_ && next_ == log_->samples().size()) return std::nullopt;  // its length is unknown until it is opened
     return next_time_;
 }
 
@@ -184,7 +184,7 @@ std::string ReplayTask::modelOf(const std::string& port) const {
 
 bool ReplayTask::configureHook() {
     open();
-    // Lockstep asks for nextTime(); the wall clock knows only periods.
+    // Lockstep calls nextTime(); the wall clock needs a period.
     if (!environment().lockstep && !activity().settings().periodic()) {
         framework::ActivitySettings settings = activity().settings();
         settings.period = 0.001;
@@ -216,7 +216,7 @@ void ReplayTask::noteInstant() {
 void ReplayTask::setPaused(bool on) {
     if (!wall_ || !isRunning())
         throw std::runtime_error(
-            "the log's time can be paused while the replay runs in realtime; in lockstep the deployment's can");
+            "the log's time can be paused while the replay runs in realtime; in lockstep pause the deployment");
     std::lock_guard lock(clock_mutex_);
     if (on == (paused_us_ != 0)) return;
     const int64_t wall = wall_().microseconds;
@@ -252,7 +252,7 @@ void ReplayTask::play(types::Time until) {
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<ReplayTask>("replay::ReplayTask", "publishes the streams of a pocolog file on ports");
+    registry.add<ReplayTask>("replay::ReplayTask", "publishes the streams of a log on ports");
 }
 
 }  // namespace insonify::replay

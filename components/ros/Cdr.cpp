@@ -40,7 +40,7 @@ void CdrReader::text(std::string& item) {
     const uint32_t size = count(1);
     item.assign(bytes_.data() + at_, size);
     at_ += size;
-    if (size == 0) return;  // some writers give an empty text no NUL
+    if (size == 0) return;  // some writers send an empty text without NUL
     if (item.back() != '\0') throw CdrError(at_ - 1, "a text does not end in NUL");
     item.pop_back();
 }

@@ -1,8 +1,8 @@
 #pragma once
-// How a message stands on the wire: XCDR1, little endian, after four bytes that say so (00 01 00 00).
+// The encoding of messages: XCDR1, little endian, after four bytes that name it (00 01 00 00).
 //
-// Every number is aligned to its size, counted from the end of those four bytes. A string is a u32 length that counts a
-// final NUL, and the characters; a sequence is a u32 count and the elements; a fixed array is the elements alone.
+// Every number is aligned to its size, counted from the end of those four bytes. A string is a u32 length that includes
+// a final NUL, then the characters. A sequence is a u32 count, then the elements. A fixed array is the elements alone.
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -15,18 +15,18 @@ namespace insonify::ros {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied in host order");
 
-/** Bytes that are no message: where, counted from the first of the buffer, and why. */
+/** Reports bytes that are not a valid message: the offset from the first byte of the buffer, and the reason. */
 struct CdrError : std::runtime_error {
     CdrError(size_t at, const std::string& what)
         : std::runtime_error("byte " + std::to_string(at) + ": " + what), byte(at) {}
     size_t byte;
 };
 
-/** Elements that stand on the wire as they stand in memory. */
+/** Elements whose bytes are the same in memory and in the message. */
 template <class T>
 concept Block = Primitive<T> && !std::is_same_v<T, bool>;
 
-/** The fewest bytes that a T takes on the wire [B]. */
+/** Returns the min size of an encoded T [B]. */
 template <class T>
 size_t minimumSize() {
     if constexpr (Message<T>) {
@@ -89,10 +89,11 @@ private:
     }
 
     std::vector<char>& bytes_;
-    size_t start_;  ///< From which alignment counts.
+    size_t start_;  ///< Origin of the alignment.
 };
 
-/** Takes a message from a buffer; throws CdrError where the bytes are none. No count is believed beyond the bytes. */
+/** Decodes a message from a buffer. Throws CdrError for invalid bytes. Counts are checked against the bytes that are
+ *  left. */
 class CdrReader {
 public:
     explicit CdrReader(std::span<const char> bytes);
@@ -147,7 +148,7 @@ void encode(const T& message, std::vector<char>& bytes) {
     CdrWriter(bytes).value(message);
 }
 
-/** Fills `message`, whose memory is used again. Throws CdrError unless `bytes` is exactly one message. */
+/** Fills `message` and reuses its memory. Throws CdrError unless `bytes` is exactly one message. */
 template <Message T>
 void decode(std::span<const char> bytes, T& message) {
     CdrReader reader(bytes);

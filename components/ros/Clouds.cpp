@@ -15,10 +15,10 @@ namespace {
 
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
-/** One field of the points of a cloud. */
+/** Reads one field of a cloud's points. */
 class FieldReader {
 public:
-    /** Throws std::invalid_argument for a field that is not there or not of 32 or 64 bits. */
+    /** Throws std::invalid_argument if the cloud lacks the field, or it does not have 32 or 64 bits. */
     FieldReader(const PointCloud2& cloud, const char* name) : cloud_(cloud) {
         const auto field =
             std::ranges::find_if(cloud.fields, [&](const PointField& candidate) { return candidate.name == name; });

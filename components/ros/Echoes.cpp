@@ -23,7 +23,7 @@ float binAt(double level_db, BinScale scale) {
     return static_cast<float>(scale == BinScale::Decibel ? level_db : std::pow(10, level_db / 10));
 }
 
-/** Calls `put(place, bin)` for each bin of the ping, places rising. */
+/** Calls `put(place, bin)` for each bin of the ping, in ascending order of places. */
 template <class Put>
 void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
     if (order == ImageOrder::BeamMajor) {
@@ -35,8 +35,9 @@ void inOrder(const types::Sonar& ping, ImageOrder order, Put&& put) {
         for (size_t beam = 0; beam < ping.beam_count; ++beam) put(place++, ping.bins[beam * ping.bin_count + bin]);
 }
 
-/** Levels of eight bits, 255 + (level - reference) * per_db rounded. Linear bins are not given a logarithm each: the
- *  least bin of every level is, and the first 16 bits of a float tell where among these to begin. */
+/** Quantises bins to levels of eight bits: 255 + (level - reference) * per_db, rounded. To avoid a logarithm per linear
+ *  bin, it compares with the min bin of every level. The first 16 bits of a float give the level at which the search
+ *  starts. */
 class LevelQuantiser {
 public:
     LevelQuantiser(const types::Sonar& ping, const SonarOptions& options)
@@ -59,7 +60,7 @@ public:
 
 private:
     static uint32_t cellOf(float bin) { return std::bit_cast<uint32_t>(bin) >> 16; }
-    /** The level of a bin that has this level at least. */
+    /** Returns the level of a bin whose level is at least `level`. */
     uint8_t above(uint8_t level, float bin) const {
         while (level < 255 && bin >= least_[level + 1u]) ++level;
         return level;
@@ -72,9 +73,10 @@ private:
 
     BinScale scale_;
     double reference_, per_db_;
-    std::array<float, 256> least_{};    ///< Bin of each level; rising.
-    uint32_t first_ = 0, last_ = 0;     ///< Cells of positive floats that have several levels: 16 bits [1].
-    std::array<uint8_t, 32768> begin_;  ///< Level of the least float in each of these cells.
+    std::array<float, 256> least_{};  ///< Min bin of each level; ascending.
+    uint32_t first_ = 0, last_ = 0;  ///< Range of cells that contain several levels. A cell is the positive floats with
+                                     ///< the same first 16 bits.
+    std::array<uint8_t, 32768> begin_;  ///< Level of the min float in each cell.
 };
 
 }  // namespace

@@ -8,18 +8,18 @@
 
 namespace insonify::ros {
 
-/** Of bin k of a ping [m]. */
+/** Returns the range of the centre of bin k of a ping [m]. */
 inline float binCentre(const types::Sonar& ping, uint32_t k) { return static_cast<float>(ping.binStart(k + 0.5)); }
 
-/** Unit vector at a bearing (positive to port) in the plane of the fan. */
+/** Returns the unit vector at a bearing (positive to port) in the plane of the fan. */
 Vector3 directionOf(double bearing_rad, SensorFrame frame);
 
-/** What is a return of one ping: a threshold on its bins. */
+/** Decides which bins of one ping are returns, by a threshold. */
 class DetectionThreshold {
 public:
     DetectionThreshold(const types::Sonar& ping, const SonarOptions& options);
     bool isReturn(float bin) const { return bin >= least_; }
-    /** The first bin of a beam that is a return. */
+    /** Returns the first bin of a beam that is a return. */
     std::optional<uint32_t> firstOf(uint32_t beam) const;
 
 private:
@@ -27,7 +27,7 @@ private:
     float least_;
 };
 
-/** Writes the bins in the order and the numbers of the options. */
+/** Writes the bins in the order and type of the options. */
 void fillImage(const types::Sonar& ping, const SonarOptions& options, SonarImageData& image);
 
 }  // namespace insonify::ros

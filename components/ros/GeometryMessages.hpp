@@ -1,8 +1,8 @@
 #pragma once
 // ROS 2 messages of builtin_interfaces, std_msgs, rosgraph_msgs, geometry_msgs, nav_msgs and tf2_msgs, field for field.
 //
-// Each is described once (see types/Describe.hpp); its CDR bytes and its schema text follow from that. `type_hash` is
-// the RIHS01 hash of the type, as ROS 2 announces it to other nodes.
+// Each message is described once (see types/Describe.hpp); its CDR bytes and its schema text follow from the
+// description. `type_hash` is the RIHS01 hash of the type, as ROS 2 announces it to other nodes.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -125,7 +125,7 @@ struct PoseStamped {
     }
 };
 
-/** Rows and columns of a covariance: x, y, z, then the rotations about them; row by row. */
+/** A covariance of x, y, z and the rotations about them, row by row. */
 using Covariance = std::array<double, 36>;
 
 struct PoseWithCovariance {

@@ -23,7 +23,7 @@ requires(!std::is_same_v<From, To> && requires(const From& from, To& to) {
     for (size_t i = 0; i < from.size(); ++i) assign(from[i], to[i]);
 }
 
-/** Hands on every field that both sides describe by the same name. */
+/** Copies every field that both sides describe by the same name. */
 template <class From, class To>
 void copyFieldsByName(const From& from, To& to) {
     auto take = [&](const Field& wanted, auto& target) {
@@ -32,7 +32,7 @@ void copyFieldsByName(const From& from, To& to) {
             if constexpr (requires { assign(value, target); })
                 assign(value, target);
             else
-                assert(!"fields of one name are of types that are one another's");
+                assert(!"fields of the same name have types that do not match");
         };
         From::describe(from, give);
     };

@@ -1,5 +1,5 @@
 #pragma once
-// insonify_msgs: messages of our own, for what ROS 2 has none, and the samples that they are. See GeometryMessages.hpp.
+// insonify_msgs: messages that ROS 2 lacks, and their conversions from samples. See GeometryMessages.hpp.
 #include <string>
 #include <vector>
 
@@ -11,12 +11,11 @@
 
 namespace insonify::ros {
 
-/** What the bins of a ping show. Lists of numbers are beam-first: that of bin k of beam b stands at b * bin_count + k.
- */
+/** The ground truth of a ping's bins. Lists are beam-first: bin k of beam b is at b * bin_count + k. */
 struct SonarTruth {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarTruth";
     static constexpr const char* summary =
-        "What the bins of a ping show. Lists of numbers are beam-first: bin k of beam b is at b * bin_count + k.";
+        "The ground truth of a ping's bins. Lists are beam-first: bin k of beam b is at b * bin_count + k.";
     static constexpr const char* type_hash = "RIHS01_82a4e12b239a23aa77bc5f78474dcd49c5fb906d7be1576282b6c1400131ecc5";
     Header header;
     int64_t bin_duration_us = 0;
@@ -49,15 +48,15 @@ struct SonarTruth {
         visit(Field{"path", "1",
                     "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall"},
               self.path);
-        visit(Field{"shadow", "", "1: nothing heard though nearer than the last echo"}, self.shadow);
+        visit(Field{"shadow", "", "1: no echo, although nearer than the last echo"}, self.shadow);
     }
 };
 
-/** Where the beams of a ping are met: a number for each beam; NaN: there is none. */
+/** The first and the strongest return of each beam of a ping; NaN if the beam has none. */
 struct SonarReturns {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarReturns";
     static constexpr const char* summary =
-        "Where the beams of a ping meet something: a number for each beam, NaN where nothing is met.";
+        "The first and the strongest return of each beam of a ping; NaN if the beam has none.";
     static constexpr const char* type_hash = "RIHS01_886f7d15e37c56383d9cf3ff5d14971d9f7b1f4966719de81bed57380e1a6c41";
     Header header;
     std::vector<double> bearings;
@@ -82,8 +81,8 @@ struct SonarReturns {
     }
 };
 
-/** What the elements of a straight array heard of a ping, as complex baseband: sample i of element m stands at [m *
- * sample_count + i]. */
+/** The signals of a straight array's elements for one ping, as complex baseband: sample i of element m is at [m *
+ *  sample_count + i]. */
 struct SonarElements {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarElements";
     static constexpr const char* summary =
@@ -116,11 +115,11 @@ struct SonarElements {
     }
 };
 
-/** What a driver asks of a sonar. What is NaN, or 0 of a count, stays as it is. */
+/** Settings that a driver requests from a sonar. NaN, or a count of 0, leaves a setting unchanged. */
 struct SonarSettings {
     static constexpr const char* type_name = "insonify_msgs/msg/SonarSettings";
     static constexpr const char* summary =
-        "What a driver asks of a sonar. NaN, or 0 of a count, leaves a setting as it is.";
+        "Settings that a driver requests from a sonar. NaN, or a count of 0, leaves a setting unchanged.";
     static constexpr const char* type_hash = "RIHS01_9825b87f8b15ebda7ee51d90fbeca98dc442c3244fa4a81f841a6f71c4c44fb0";
     Header header;
     double range = 0;
@@ -149,7 +148,7 @@ struct SonarSettings {
     }
 };
 
-// Samples as messages and back, number for number. Throw std::out_of_range for a time that ROS cannot hold, and
+// Convert samples to messages and back without loss. Throw std::out_of_range for a time that ROS cannot represent, and
 // std::invalid_argument for lists of unequal lengths.
 
 void convert(const types::SonarTruth& truth, const std::string& frame_id, SonarTruth& message);

@@ -1,5 +1,5 @@
 #pragma once
-// All messages, in one place.
+// The list of all messages.
 #include <tuple>
 #include <type_traits>
 

@@ -17,7 +17,7 @@ using Covariance3 = std::array<double, 9>;
 Vector3 vectorOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 glm::dvec3 fromRos(const Vector3& v) { return {v.x, v.y, v.z}; }
 
-/** By rows; -1 first where the value itself is not known. */
+/** Returns the covariance by rows. The first element is -1 if the value itself is unknown. */
 Covariance3 rowsOf(const glm::dmat3& covariance, bool value_known, double unknown) {
     Covariance3 rows;
     for (int row = 0; row < 3; ++row)
@@ -36,7 +36,7 @@ glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
     return rows[0] == -1 || rows == none ? types::Pose::unknownMatrix() : matrix;
 }
 
-/** A vector of the body, and its covariance. */
+/** Writes a vector of the body, and its covariance. */
 void tell(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& told, Covariance3& rows) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
     told = isUnknown(value) ? Vector3{} : vectorOf(body(value));
@@ -49,7 +49,7 @@ void read(const Vector3& told, const Covariance3& rows, WorldFrame frame, glm::d
     covariance = both(matrixOf(rows, 0), body);
 }
 
-/** From the axes of an instrument that are ours, z up, to those with z where it looks, and back. */
+/** Converts from axes with z up to an instrument's axes, whose z is its look direction, and back. */
 glm::dvec3 turnedOver(glm::dvec3 v) { return {v.x, -v.y, -v.z}; }
 
 void tellBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {

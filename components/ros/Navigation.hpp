@@ -1,6 +1,6 @@
 #pragma once
-// What an inertial unit, a Doppler log and a pressure gauge measure as ROS 2 messages, and back. All throw
-// std::out_of_range for a time that ROS cannot hold.
+// Conversions of the measurements of inertial units, Doppler logs and pressure gauges to ROS 2 messages and back. All
+// throw std::out_of_range for a time that ROS cannot represent.
 #include <string>
 
 #include "components/ros/Options.hpp"
@@ -12,24 +12,24 @@
 
 namespace insonify::ros {
 
-/** Attitude and readings in the axes of `frame`: those of the world for the attitude, those of its body for the rest.
- *  What is unknown becomes 0, and an attitude the unit one, with -1 as the first element of its covariance; an unknown
- *  covariance becomes zeros. The covariance of the attitude is about the axes of the world. */
+/** Converts attitude and readings to the axes of `frame`: the attitude to the world's, the readings to the body's. An
+ *  unknown reading becomes 0 and an unknown attitude the identity, with -1 as the first element of the covariance. An
+ *  unknown covariance becomes zeros. The attitude's covariance is about the axes of the world. */
 void convert(const types::Imu& imu, WorldFrame frame, const std::string& frame_id, Imu& message);
 void convert(const Imu& message, WorldFrame frame, types::Imu& imu);
 
-/** The same without an attitude. There is no place for a magnetic field. */
+/** Converts the same readings without an attitude. The message has no field for a magnetic field. */
 void convert(const types::ImuSensors& sensors, WorldFrame frame, const std::string& frame_id, Imu& message);
 void convert(const Imu& message, WorldFrame frame, types::ImuSensors& sensors);
 
-/** In the message's axes: x forward, y to starboard, z down. A velocity that is not known stays NaN, so that nobody
- *  takes it for standing still, with -1 in its covariance; so do ranges and velocities of lost beams.
- *  `beam_velocities_valid` tells whether there is bottom lock, as drivers of instruments have it. Velocities and
- *  variances of beams have 32 bits. std::invalid_argument for more than four beams. */
+/** Converts to the message's axes: x forward, y to starboard, z down. An unknown velocity stays NaN, so that it is not
+ *  mistaken for standing still, with -1 in its covariance. Ranges and velocities of lost beams are NaN too.
+ *  `beam_velocities_valid` states whether there is bottom lock, as in drivers of instruments. Velocities and variances
+ *  of beams have 32 bits. Throws std::invalid_argument for more than four beams. */
 void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message);
 void convert(const Dvl& message, types::Dvl& dvl);
 
-/** Its variance stays unknown. */
+/** Leaves the variance unknown. */
 void convert(const types::Pressure& pressure, const std::string& frame_id, FluidPressure& message);
 void convert(const FluidPressure& message, types::Pressure& pressure);
 

@@ -8,24 +8,24 @@
 
 namespace insonify::ros {
 
-/** Which neighbour of an echo follows it in an image: the same bin of the next beam (sonar_image_proc and the drivers
- *  have it so), or the next bin of the same beam (as the text of marine_acoustic_msgs has it). */
+/** The order of an image's echoes. RangeMajor: the same bin of the next beam follows (as in sonar_image_proc and
+ *  drivers). BeamMajor: the next bin of the same beam follows (as in the text of marine_acoustic_msgs). */
 enum class ImageOrder { RangeMajor, BeamMajor };
 
-/** Numbers of an image: levels in eight bits, or the bins as they are. */
+/** The type of an image's numbers: levels in eight bits, or the bins unchanged. */
 enum class ImageType { Uint8, Float32 };
 
-/** Axes of what a sonar measures: z ahead, x up, y to starboard (marine_acoustic_msgs), or x ahead, y to port, z up
- *  (Rock, REP 103). */
+/** The axes of a sonar's measurements: z ahead, x up, y to starboard (marine_acoustic_msgs), or x ahead, y to port, z
+ *  up (Rock, REP 103). */
 enum class SensorFrame { ZForward, XForward };
 
-/** What the bins of a ping hold: linear intensities, or levels in dB. */
+/** The content of a ping's bins: linear intensities, or levels in dB. */
 enum class BinScale { Linear, Decibel };
 
 using types::WorldFrame;
 
-/** How a ping becomes messages. The defaults lose nothing of what it holds in its bins, in logs and on the wire alike.
- *  A level is 10 log10 of a bin [dB]. */
+/** Options for converting pings to messages. The defaults keep the bins without loss, in logs and on the wire alike. A
+ *  level is 10 log10 of a bin [dB]. */
 struct SonarOptions {
     ImageOrder order = ImageOrder::RangeMajor;
     ImageType dtype = ImageType::Float32;
@@ -40,26 +40,27 @@ struct SonarOptions {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"order", "", "of an image's echoes: all beams of a bin together, or all bins of a beam"},
+        visit(Field{"order", "", "order of an image's echoes: all beams of a bin together, or all bins of a beam"},
               self.order);
-        visit(Field{"dtype", "", "of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
+        visit(Field{"dtype", "", "type of an image's echoes: uint8 levels, or the bins as float32"}, self.dtype);
         visit(Field{"frame", "",
                     "axes of directions in marine_acoustic_msgs: z ahead and x up, or x ahead and z up as in all of "
                     "sensor_msgs"},
               self.frame);
-        visit(Field{"scale", "", "what the bins hold: linear intensities, or decibel"}, self.scale);
-        visit(Field{"dynamic_range_db", "dB", "uint8: 0 lies so far below the reference, which is 255", 1, 300},
+        visit(Field{"scale", "", "content of the bins: linear intensities, or decibel"}, self.scale);
+        visit(Field{"dynamic_range_db", "dB", "range of uint8: 255 is the reference, 0 is this far below it", 1, 300},
               self.dynamic_range_db);
         visit(Field{"reference_db", "dB", "level of the strongest echo; absent: that of each ping", -3000, 3000},
               self.reference_db);
-        visit(Field{"threshold_db", "dB", "what is a return, relative to the reference", -300, 0}, self.threshold_db);
-        visit(Field{"frequency_khz", "kHz", "of the device; 0: that of the sonar, where it is known", 0, 1e5},
+        visit(Field{"threshold_db", "dB", "min level of a return, relative to the reference", -300, 0},
+              self.threshold_db);
+        visit(Field{"frequency_khz", "kHz", "frequency of the device; 0: that of the sonar, if known", 0, 1e5},
               self.frequency_khz);
         visit(Field{"frame_id", "", "name of the sonar's frame"}, self.frame_id);
     }
 };
 
-/** How samples become messages and are read back. */
+/** Options for converting samples to messages and back. */
 struct MessageOptions : SonarOptions {
     WorldFrame world_frame = WorldFrame::Enu;
 

@@ -6,11 +6,11 @@
 
 namespace insonify::ros {
 
-/** A picture of pixels as sensor_msgs/Image: grey of 8 or 16 bits, RGB, BGR. Throws std::invalid_argument for others
- *  and for one that does not hold the pixels that it announces. */
+/** Converts a picture to sensor_msgs/Image: grey of 8 or 16 bits, RGB, BGR. Throws std::invalid_argument for other
+ *  modes, and for a picture without the pixels that it announces. */
 void convert(const types::Image& picture, const std::string& frame_id, Image& message);
 
-/** The reverse, for the same encodings. */
+/** Converts back, for the same encodings. */
 void convert(const Image& message, types::Image& picture);
 
 }  // namespace insonify::ros

@@ -37,7 +37,7 @@ void fillDirections(const types::Sonar& ping, SensorFrame frame, std::vector<Vec
         directions[beam] = directionOf(ping.bearings[beam].rad, frame);
 }
 
-/** Of each beam after the ping's stamp; zeros where the beams have no stamps of their own [s]. */
+/** Fills the delay of each beam after the ping's stamp; zeros if the beams have no stamps [s]. */
 void fillDelays(const types::Sonar& ping, std::vector<float>& delays) {
     delays.resize(ping.beam_count);
     for (uint32_t beam = 0; beam < ping.beam_count; ++beam)
@@ -46,14 +46,14 @@ void fillDelays(const types::Sonar& ping, std::vector<float>& delays) {
 
 double stepTo(const types::BeamArc& arc, size_t place) { return arc.bearings[place] - arc.bearings[place - 1]; }
 
-/** The smallest angle between two neighbouring beams; 0 for fewer than two beams [rad]. */
+/** Returns the min angle between two neighbouring beams; 0 for fewer than two beams [rad]. */
 double smallestStep(const types::BeamArc& arc) {
     double smallest = arc.beams.size() > 1 ? stepTo(arc, 1) : 0;
     for (size_t place = 2; place < arc.beams.size(); ++place) smallest = std::min(smallest, stepTo(arc, place));
     return smallest;
 }
 
-/** The ray of a LaserScan that is the beam at a place, when the beam before it is ray `before`. */
+/** Returns the LaserScan's ray for the beam at `place`, if the preceding beam is ray `before`. */
 size_t rayOf(const types::BeamArc& arc, size_t place, double smallest, size_t before) {
     constexpr double tolerance = 1e-3, max_rays = 16384;
     const double step = stepTo(arc, place), steps = std::round(step / smallest);
@@ -86,7 +86,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, RawSonarImag
     message.tx_angles.assign(ping.beam_count, 0);
     message.rx_angles.resize(ping.beam_count);
     for (size_t beam = 0; beam < ping.beam_count; ++beam)
-        message.rx_angles[beam] = static_cast<float>(-ping.bearings[beam].rad);  // ours are positive to port
+        message.rx_angles[beam] = static_cast<float>(-ping.bearings[beam].rad);  // Rock's are positive to port
     fillImage(ping, options, message.image);
 }
 
@@ -127,7 +127,7 @@ void convert(const types::Sonar& ping, const SonarOptions& options, PointCloud2&
 
 void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& message) {
     fillHeader(ping, options, message.header);
-    static thread_local types::BeamArc arc;  // its memory is used again
+    static thread_local types::BeamArc arc;  // reuses its memory
     arc.take(ping);
     const double smallest = smallestStep(arc);
     const DetectionThreshold rule(ping, options);
@@ -179,7 +179,7 @@ void checkShape(const ProjectedSonarImage& message) {
                " bytes a number");
 }
 
-/** Width of the bins whose centres the ranges are [m]. */
+/** Returns the width of the bins whose centres are the ranges [m]. */
 double binWidth(const std::vector<float>& ranges) {
     const double width = static_cast<double>(ranges.back()) / (static_cast<double>(ranges.size()) - 0.5);
     for (size_t k = 0; k < ranges.size(); ++k) {

@@ -17,7 +17,7 @@ Xyz known(glm::dvec3 v) {
     return {v.x, v.y, v.z};
 }
 
-/** Block 0 or 1 of the diagonal. */
+/** Sets block 0 or 1 of the diagonal. */
 void setBlock(size_t block, bool value_known, const glm::dmat3& covariance, Covariance& all) {
     for (size_t row = 0; row < 3; ++row)
         for (size_t column = 0; column < 3; ++column)

@@ -11,34 +11,34 @@
 
 namespace insonify::ros {
 
-/** A vector of the world in the axes of a frame, and back. */
+/** Converts a vector of the world from Rock's axes to those of a frame, and back. */
 glm::dvec3 worldFromRock(WorldFrame frame, glm::dvec3 v);
 glm::dvec3 rockFromWorld(WorldFrame frame, glm::dvec3 v);
 
-/** Rock's pose in the axes of ROS. Names of frames are kept: target_frame is header.frame_id.
+/** Converts Rock's pose to the axes of ROS. Frame names are kept: target_frame is header.frame_id.
  *
- *  Odometry gives velocities and their covariances in the body; Rock has the velocity in the world, and the covariance
- *  of the orientation in the body, where Odometry has it in the world. What is unknown (NaN) becomes 0, with -1 in its
- *  covariance, as in sensor_msgs/Imu; an unknown covariance becomes zeros.
- *  All throw std::out_of_range for a time that ROS cannot hold. */
+ *  Odometry has velocities and their covariances in the body; Rock has the velocity in the world. Odometry has the
+ *  covariance of the orientation in the world; Rock has it in the body. Unknown values (NaN) become 0, with -1 in their
+ *  covariance, as in sensor_msgs/Imu; an unknown covariance becomes zeros. All throw std::out_of_range for a time that
+ *  ROS cannot represent. */
 void convert(const types::Pose& pose, WorldFrame frame, PoseStamped& message);
 void convert(const types::Pose& pose, WorldFrame frame, Odometry& message);
-/** One transform: that of the body in the world. */
+/** Writes one transform: from the body to the world. */
 void convert(const types::Pose& pose, WorldFrame frame, TFMessage& message);
 
-/** Where a sensor sits in the body, whose axes are those of `frame`; the sensor's are as `axes` says. */
+/** Returns the mount of a sensor on the body, whose axes are those of `frame`. `axes` gives the sensor's axes. */
 Transform toTransform(const types::Mount& mount, WorldFrame frame, SensorFrame axes);
 
-/** The reverse. What the message does not tell is unknown. */
+/** Converts back. Values that the message lacks are unknown. */
 void convert(const PoseStamped& message, WorldFrame frame, types::Pose& pose);
 void convert(const Odometry& message, WorldFrame frame, types::Pose& pose);
 
-// What poses and readings share: what is not known of them, and covariances in other axes.
+// Helpers for poses and readings: unknown values, and covariances in other axes.
 
 inline bool isUnknown(glm::dvec3 v) { return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z); }
 inline bool isUnknown(const glm::dmat3& m) { return isUnknown(m[0]) || isUnknown(m[1]) || isUnknown(m[2]); }
 
-/** A covariance, whose columns are vectors, where `turn` turns a vector: C becomes A C A^T. */
+/** Turns a covariance by `turn`, which turns vectors: C becomes A C A^T. */
 template <class Turn>
 glm::dmat3 both(const glm::dmat3& covariance, Turn&& turn) {
     const auto columns = [&](const glm::dmat3& m) { return glm::dmat3(turn(m[0]), turn(m[1]), turn(m[2])); };

@@ -1,5 +1,5 @@
 #pragma once
-// Which messages a sample can be, and back: MCAP files, DDS and the viewer's channels read it here.
+// The messages of each type of sample, and conversions both ways. Used by MCAP files, DDS and the viewer's channels.
 #include <tuple>
 #include <type_traits>
 
@@ -16,7 +16,8 @@
 
 namespace insonify::ros {
 
-/** `type`: the messages that a T can be, the first of them the one in logs; `read_as`: what that is read back as. */
+/** `type`: the messages that a T can become; the first is used in logs. `read_as`: the type that this message is read
+ *  back as. */
 template <class T>
 struct MessagesOf;
 template <class T, class... Message>
@@ -27,7 +28,7 @@ struct Messages {
 template <>
 struct MessagesOf<types::Sonar>
     : Messages<types::Sonar, ProjectedSonarImage, RawSonarImage, SonarRanges, PointCloud2, LaserScan, Clock> {};
-/** Rock's older sonar samples are pings as messages. */
+/** Rock's older sonar samples become the messages of pings. */
 template <>
 struct MessagesOf<types::SonarBeam> : MessagesOf<types::Sonar> {};
 template <>
@@ -78,7 +79,7 @@ struct MessagesOf<std::string> : Messages<std::string, String> {};
 template <class T>
 using LoggedMessage = std::tuple_element_t<0, typename MessagesOf<T>::type>;
 
-/** Calls `use(std::type_identity<Message>{})` for each message that a T can be. */
+/** Calls `use(std::type_identity<Message>{})` for each message that a T can become. */
 template <class T, class Use>
 void forEachMessageOf(Use&& use) {
     [&]<class... Message>(std::type_identity<std::tuple<Message...>>) {
@@ -86,7 +87,8 @@ void forEachMessageOf(Use&& use) {
     }(std::type_identity<typename MessagesOf<T>::type>{});
 }
 
-// A sample as a message. std::invalid_argument and std::out_of_range tell what the message cannot hold.
+// Convert a sample to a message. Throw std::invalid_argument or std::out_of_range with a diagnostic if the message
+// cannot represent the sample.
 
 template <class Message>
 auto toMessage(const types::Sonar& ping, const MessageOptions& options, Message& message)
@@ -154,7 +156,8 @@ auto toMessage(const T& value, const MessageOptions&, Message& message)
     message.data = value;
 }
 
-// And back, for messages that tell all of it. Throw std::invalid_argument for one that is no such sample.
+// Convert back, for messages that represent all of the sample. Throw std::invalid_argument for a message that is not
+// such a sample.
 
 inline void toSample(const ProjectedSonarImage& message, const MessageOptions& options, types::Sonar& ping) {
     convert(message, {options.order, options.frame}, ping);
@@ -206,7 +209,7 @@ concept ReadFrom = requires(const Message& message, const MessageOptions& option
     toSample(message, options, sample);
 };
 
-/** A message that says nothing of its kind is never taken for these: it is a plain number, a plain cloud, or an IMU
+/** Types that a message without a named type is never read as. It is read as a plain number, a plain cloud, or an IMU
  *  with an attitude. */
 template <class T>
 constexpr bool only_by_name =

@@ -1,5 +1,5 @@
 #pragma once
-// The text of a message's definition, as MCAP's schema encoding "ros2msg" has it, from the description of the message.
+// The definition of a message as text, in MCAP's schema encoding "ros2msg", made from the message's description.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace insonify::ros {
 
-/** "std_msgs/Header" of "std_msgs/msg/Header". */
+/** Shortens "std_msgs/msg/Header" to "std_msgs/Header". */
 inline std::string shortName(const std::string& type_name) {
     const size_t middle = type_name.find("/msg/");
     return type_name.substr(0, middle) + type_name.substr(middle + 4);
@@ -32,7 +32,7 @@ std::string fieldType() {
         return (std::is_signed_v<T> ? "int" : "uint") + std::to_string(8 * sizeof(T));
 }
 
-/** The lines of one message: its constants, then its fields. */
+/** Returns the lines of one message: its constants, then its fields. */
 template <Message T>
 std::string definitionOf() {
     std::string text;
@@ -43,7 +43,7 @@ std::string definitionOf() {
     return text;
 }
 
-/** The text of a `.msg` file: what the message is, and its fields with their units and meanings. */
+/** Returns the text of a `.msg` file: the summary, and the fields with units and meanings. */
 template <Message T>
 std::string fileOf() {
     std::string text = "# " + std::string(T::summary) + "\n# Made by ros_messages from components/ros.\n";
@@ -57,7 +57,7 @@ std::string fileOf() {
     return text;
 }
 
-/** Definitions that others need, each once, in the order in which they are met. */
+/** Collects the definitions of nested messages, each once, in the order of first use. */
 class Definitions {
 public:
     template <class T>
@@ -70,7 +70,7 @@ public:
             T::describe(value, add);
         }
     }
-    /** With a separator and a line `MSG: pkg/Type` before each. */
+    /** Returns the definitions, each after a separator and a line `MSG: pkg/Type`. */
     const std::string& text() const { return text_; }
 
 private:
@@ -92,7 +92,7 @@ private:
     std::string text_;
 };
 
-/** The whole schema of a message: its own definition, and those of all messages in it. */
+/** Returns the whole schema of a message: its definition and those of all nested messages. */
 template <Message T>
 std::string schemaOf() {
     Definitions parts;

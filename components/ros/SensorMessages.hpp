@@ -104,7 +104,7 @@ struct PointCloud2 {
     }
 };
 
-/** As of ROS 2 Iron and later; Humble's has no variance, and reads the rest. */
+/** As in ROS 2 Iron and later. Humble's lacks the variance and can read the rest. */
 struct Range {
     static constexpr const char* type_name = "sensor_msgs/msg/Range";
     static constexpr const char* type_hash = "RIHS01_b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a";
@@ -130,7 +130,7 @@ struct Range {
     }
 };
 
-/** Covariances by rows; a first element of -1: what they are of is not measured; zeros: unknown. */
+/** Covariances by rows. A first element of -1 marks a value that is not measured; zeros are an unknown covariance. */
 struct Imu {
     static constexpr const char* type_name = "sensor_msgs/msg/Imu";
     static constexpr const char* type_hash = "RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b";

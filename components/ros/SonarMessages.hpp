@@ -71,7 +71,7 @@ struct ProjectedSonarImage {
     }
 };
 
-/** Sample i lies at (i + sample0) * sound_speed / (2 * sample_rate). */
+/** Sample i is at the range (i + sample0) * sound_speed / (2 * sample_rate). */
 struct RawSonarImage {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/RawSonarImage";
     static constexpr const char* type_hash = "RIHS01_668954b8ea9854ec5c25c3ebdbdd9d53452169c7e1e365cad5baf0dc56ac9607";
@@ -139,7 +139,7 @@ struct SonarRanges {
     }
 };
 
-/** Axes: x forward, z where the instrument looks. */
+/** Axes: x forward, z along the instrument's look direction. */
 struct Dvl {
     static constexpr const char* type_name = "marine_acoustic_msgs/msg/Dvl";
     static constexpr const char* type_hash = "RIHS01_77604ba1b113d1a39148d095ac2cb21540de83cff2bbc5443e06e25208afd421";

@@ -1,5 +1,5 @@
 #pragma once
-// Times of samples as stamps of messages and back. Samples count whole microseconds, as Rock's do; messages count
+// Conversions of times to stamps of messages and back. Samples count whole microseconds, as Rock's do; messages count
 // nanoseconds.
 #include <array>
 #include <atomic>
@@ -13,7 +13,8 @@
 
 namespace insonify::ros {
 
-/** Throws std::out_of_range for what 32 bits of seconds cannot hold: years before 1901 and after 2038. */
+/** Converts to a stamp. Throws std::out_of_range for times beyond 32 bits of seconds: years before 1901 and after
+ *  2038. */
 inline Time toRos(types::Time time) {
     const int64_t rest = (time.microseconds % 1'000'000 + 1'000'000) % 1'000'000;
     const int64_t seconds = (time.microseconds - rest) / 1'000'000;
@@ -23,21 +24,21 @@ inline Time toRos(types::Time time) {
     return {static_cast<int32_t>(seconds), static_cast<uint32_t>(rest * 1000)};
 }
 
-/** To the microsecond below. */
+/** Truncates to microseconds. */
 inline types::Time fromRos(Time time) { return {time.sec * int64_t{1'000'000} + time.nanosec / 1000}; }
 
 inline Clock toClock(types::Time time) { return {toRos(time)}; }
 
-/** Keeps what stamps of messages had beyond the microseconds of their samples, so that what is made of these samples
- *  bears the whole stamp again: a ping that of its pose. Of the last few thousand stamps; of two within one microsecond
- *  the later. For any thread, and without waiting. */
+/** Keeps the nanoseconds of read stamps, which samples lack, so that derived messages have the full stamp: a ping that
+ *  of its pose. Holds the last few thousand stamps; of two in the same microsecond, the later. Thread-safe and
+ *  lock-free. */
 class FineStamps {
 public:
     void note(Time stamp) {
         const int64_t all = nanoseconds(stamp);
         at(all / 1000).store(all, std::memory_order_relaxed);
     }
-    /** The stamp that came with the microsecond of `stamp`, else `stamp`. */
+    /** Returns the full stamp in the microsecond of `stamp`, else `stamp`. */
     Time exact(Time stamp) const {
         const int64_t all = nanoseconds(stamp), kept = at(all / 1000).load(std::memory_order_relaxed);
         if (all < 0 || all % 1000 != 0 || kept / 1000 != all / 1000) return stamp;
@@ -54,19 +55,19 @@ private:
     std::array<std::atomic<int64_t>, 4099> kept_{};  ///< [ns]; a prime, since periods are round numbers.
 };
 
-/** Those of this process: a pose comes by one task, and its ping goes by another. */
+/** Returns the stamps of this process, shared by tasks: one task reads a pose, another sends its ping. */
 inline FineStamps& fineStamps() {
     static FineStamps stamps;
     return stamps;
 }
 
-/** Notes the stamp of a message that was read. */
+/** Keeps the stamp of a message that was read. */
 template <class Message>
 void noteStamp(const Message& message) {
     if constexpr (requires { message.header.stamp; }) fineStamps().note(message.header.stamp);
 }
 
-/** Gives a message that was made of a sample its whole stamps. */
+/** Restores the full stamps of a message made from a sample. */
 template <class Message>
 void restoreStamps(Message& message) {
     if constexpr (requires { message.header.stamp; })

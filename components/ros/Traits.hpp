@@ -13,7 +13,7 @@ concept Message = types::Described<T> && requires {
     T::type_hash;
 };
 
-/** What ROS calls a sequence, and an array of fixed length. */
+/** Whether T is a sequence or an array of fixed length in ROS. */
 template <class T>
 struct IsSequence : std::false_type {};
 template <class T>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t longest_name = 255;
 
-/** As tf2 has it: "/map" is "map". */
+/** Strips a leading slash, as tf2 does: "/map" is "map". */
 std::string nameOf(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
 
 types::Pose poseOf(const Transform& transform) {
@@ -28,20 +28,19 @@ std::string TransformTree::diagnosticOf(const TransformStamped& transform, bool 
                                         types::Time now) const {
     const std::string child = nameOf(transform.child_frame_id), parent = nameOf(transform.header.frame_id);
     if (child.empty() || parent.empty()) return "a transform without the name of its frame or of its parent";
-    if (std::max(child.size(), parent.size()) > longest_name) return "a name of more than 255 letters";
+    if (std::max(child.size(), parent.size()) > longest_name) return "a name of more than 255 characters";
     if (child == parent) return child + " is its own parent";
     if (!types::isUsable(poseOf(transform.transform)))
         return child + ": translation and rotation are not finite, or the rotation has no length";
-    if (!is_static && stamp - now > max_ahead)
-        return child + ": the stamp lies more than ten seconds ahead of the clock";
+    if (!is_static && stamp - now > max_ahead) return child + ": the stamp is more than ten seconds ahead of the clock";
     const auto found = links_.find(child);
     if (found == links_.end()) return links_.size() < max_frames ? "" : "more frames than are kept";
     const Link& link = found->second;
     if (link.is_static && is_static) return "";
     if (!link.is_static && types::elapsed(link.came, now) > max_silence) return "";
-    if (link.is_static != is_static) return child + " comes by /tf and by /tf_static";
+    if (link.is_static != is_static) return child + " is published on /tf and on /tf_static";
     if (link.parent != parent) return child + " has two parents, " + link.parent + " and " + parent;
-    return stamp < link.samples.back().time ? child + ": the stamp lies before the one before" : "";
+    return stamp < link.samples.back().time ? child + ": the stamp is before the previous stamp" : "";
 }
 
 std::string TransformTree::add(const TransformStamped& transform, bool is_static, types::Time stamp, types::Time now) {
@@ -55,7 +54,7 @@ std::string TransformTree::add(const TransformStamped& transform, bool is_static
     link.parent = parent;
     link.is_static = is_static;
     link.came = now;
-    if (!link.samples.empty() && link.samples.back().time == stamp) return "";  // told twice
+    if (!link.samples.empty() && link.samples.back().time == stamp) return "";  // a repeated transform
     const types::Pose pose = poseOf(transform.transform);
     link.samples.push_back({stamp, pose.position, glm::normalize(pose.orientation)});
     while (link.samples.size() > max_kept || stamp - link.samples.front().time > memory) link.samples.pop_front();
@@ -67,7 +66,7 @@ std::optional<TransformTree::Chain> TransformTree::chainOf(const std::string& fr
     for (auto link = links_.find(frame); link != links_.end(); link = links_.find(link->second.parent)) {
         chain.push_back(&*link);
         if (chain.size() > links_.size()) {
-            diagnostic = "the parents of " + frame + " go in a circle";
+            diagnostic = "the parents of " + frame + " form a circle";
             return std::nullopt;
         }
     }
@@ -116,12 +115,12 @@ TransformTree::Found TransformTree::newest(const std::string& world, const std::
     }
     const auto* oldest = oldestOf(*up, *down);
     if (oldest && types::elapsed(oldest->second.came, now) > max_silence)
-        diagnostic = oldest->first + " in " + oldest->second.parent + " has not come for a second";
+        diagnostic = oldest->first + " in " + oldest->second.parent + " was not published for a second";
     const types::Time time = oldest ? oldest->second.samples.back().time : types::Time{};
     const auto of_frame = at(*up, time), of_world = at(*down, time);
     if ((!of_frame || !of_world) && diagnostic.empty())
         diagnostic =
-            oldest->first + " in " + oldest->second.parent + " is stamped before all that is kept of the others";
+            oldest->first + " in " + oldest->second.parent + " is stamped before all kept transforms of the others";
     if (!of_frame || !of_world) return {{}, diagnostic};
     const glm::dquat world_from_root = glm::conjugate(of_world->orientation);
     return {Placed{time, world_from_root * (of_frame->position - of_world->position),

@@ -12,36 +12,37 @@
 
 namespace insonify::ros {
 
-/** Where frames lie in each other, as /tf and /tf_static tell, and chains of them.
+/** Transforms between frames, from /tf and /tf_static, and chains of them.
  *
- *  A frame has one parent. Transforms of /tf are kept for `memory` and interpolated between their stamps, position
- *  linearly and rotation by slerp the shorter way; those of /tf_static hold for ever. Everything is bounded: whoever
- *  sends names without end fills no memory. */
+ *  A frame has one parent. Transforms of /tf are kept for `memory` and interpolated between their stamps: position
+ *  linearly, rotation by slerp the shorter way. Transforms of /tf_static hold for ever. Memory is bounded even if a
+ *  sender invents names without end. */
 class TransformTree {
 public:
     static constexpr size_t max_frames = 1000, max_kept = 1000;
     static constexpr types::Time memory{10'000'000};
-    static constexpr types::Time max_ahead{10'000'000};   ///< Of the clock: localisation stamps ahead on purpose.
-    static constexpr types::Time max_silence{1'000'000};  ///< After it others may tell of a frame, and begin anew.
+    static constexpr types::Time max_ahead{10'000'000};   ///< Ahead of the clock: localisation stamps ahead on purpose.
+    static constexpr types::Time max_silence{1'000'000};  ///< After it another sender may take over a frame.
 
-    /** Takes a transform of that stamp. Empty, or why it is refused: names that are none, numbers that are not finite,
-     * a stamp far ahead or before the one before, a frame that another parent or the other topic has told of. The last
-     *  two hold until nothing has come of the frame for `max_silence`. */
+    /** Adds a transform with the given stamp. Returns why it is refused, or an empty text. Refused are: invalid names,
+     *  numbers that are not finite, stamps far ahead or before the previous stamp, and frames that have another parent
+     *  or come on the other topic. The last two hold until the frame has been silent for `max_silence`. */
     std::string add(const TransformStamped& transform, bool is_static, types::Time stamp, types::Time now);
 
-    /** One frame in another. */
+    /** The pose of one frame in another. */
     struct Placed {
-        types::Time time;  ///< For which all of the chain is known; 0 where all of it is static.
+        types::Time time;  ///< The time for which the whole chain is known; 0 for a static chain.
         glm::dvec3 position{0};
         glm::dquat orientation{1, 0, 0, 0};
     };
     struct Found {
         std::optional<Placed> placed;
-        std::string diagnostic;  ///< Why there is none, or which transform it waits for.
+        std::string diagnostic;  ///< Why there is no pose, or which transform it waits for.
     };
-    /** Where `frame` lies in `world`, in their own axes, at the newest time for which all between them is known. */
+    /** Returns the pose of `frame` in `world`, in their own axes, at the newest time for which all transforms between
+     *  them are known. */
     Found newest(const std::string& world, const std::string& frame, types::Time now) const;
-    /** Counts up where a frame has begun anew: then newest() may go back. */
+    /** Increases whenever a frame begins anew; newest() may then go back in time. */
     uint64_t lives() const { return lives_; }
 
 private:
@@ -50,21 +51,21 @@ private:
         glm::dvec3 position;
         glm::dquat orientation;
     };
-    /** A frame in its parent. */
+    /** A frame's transforms to its parent. */
     struct Link {
         std::string parent;
         bool is_static = false;
-        std::deque<Sample> samples;  ///< By time.
+        std::deque<Sample> samples;  ///< Sorted by time.
         types::Time came;
     };
     using Links = std::map<std::string, Link>;
-    using Chain = std::vector<const Links::value_type*>;  ///< From a frame up.
+    using Chain = std::vector<const Links::value_type*>;  ///< Transforms from a frame upwards.
 
     std::string diagnosticOf(const TransformStamped& transform, bool is_static, types::Time stamp,
                              types::Time now) const;
-    /** Empty, with `diagnostic`: it goes in a circle. */
+    /** Returns the chain from a frame to its root; none, with a `diagnostic`, for a circle. */
     std::optional<Chain> chainOf(const std::string& frame, std::string& diagnostic) const;
-    /** Whose newest stamp is the oldest; null: all are static. */
+    /** Returns the transform whose newest stamp is the oldest; null if all are static. */
     static const Links::value_type* oldestOf(const Chain& up, const Chain& down);
     static std::optional<Sample> at(const Chain& chain, types::Time time);
 

@@ -24,7 +24,7 @@ struct SeabedRow {
     double lambert_db;  ///< Lambert parameter, 10 log10(mu) [dB].
 };
 constexpr SeabedRow seabeds[] = {
-    // Fitted to APL-UW TR 9407 at 100 kHz, but for rough rock, which is held below 1/pi.
+    // Fitted to APL-UW TR 9407 at 100 kHz, except for rough rock, which is kept below 1/pi.
     {Sediment::RoughRock, -5.0},
     {Sediment::Rock, -3.7},
     {Sediment::Cobble, -8.1},
@@ -44,7 +44,7 @@ constexpr SeabedRow seabeds[] = {
     {Sediment::Mackenzie, -27.0},
 };
 
-/** Whether there is a row for each name of an enum, in its order. */
+/** Checks that there is a row for each name of an enum, in its order. */
 template <class E, class Rows>
 constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
     size_t next = 0;
@@ -54,21 +54,21 @@ constexpr bool isInOrder(const Rows& rows, E std::remove_extent_t<Rows>::*key) {
 }
 static_assert(isInOrder(seabeds, &SeabedRow::sediment));
 
-/** A fluid of that name; none where it is water or air. */
+/** Returns the fluid of that name; none for water and air. */
 std::optional<acoustics::MatterProperties> fluidOf(Fill fill) {
     if (fill == Fill::Sand) return acoustics::propertiesOf(Matter::Sand);
     if (fill == Fill::Mud) return acoustics::propertiesOf(Matter::Mud);
     if (fill != Fill::Oil) return {};
-    acoustics::MatterProperties oil{};  // light mineral oil, Selfridge 1985, who has no loss
+    acoustics::MatterProperties oil{};  // light mineral oil, Selfridge 1985, who gives no loss
     oil.density = 825;
     oil.sound_speed = 1440;
     return oil;
 }
 
-/** Lambert parameter with which a rigid sphere of radius a has its target strength of a^2 / 4: 3 / (8 pi) [dB]. */
+/** Lambert parameter that gives a rigid sphere of radius a its target strength of a^2 / 4: 3 / (8 pi) [dB]. */
 constexpr double convex_body_db = -9.23;
 
-/** Fills a described struct from values by key; collects what is wrong. */
+/** Fills a described struct from values by key, and collects errors. */
 class ValueReader {
 public:
     ValueReader(const AcousticValues& values, types::Diagnostics& diagnostics)
@@ -146,11 +146,11 @@ private:
 
     const AcousticValues& values_;
     types::Diagnostics& diagnostics_;
-    std::string block_;  ///< "shell.", within that block.
+    std::string block_;  ///< "shell." in that block.
     std::vector<std::string> known_;
 };
 
-/** True when the name belongs to a material. */
+/** Replaces values of the material of that name. Returns whether there is one. */
 bool overrideMaterial(types::Geometry& geometry, const std::string& name, const Acoustics& acoustics) {
     bool found = false;
     for (types::Material& material : geometry.materials)
@@ -161,7 +161,7 @@ bool overrideMaterial(types::Geometry& geometry, const std::string& name, const 
     return found;
 }
 
-/** Gives an object a mesh of its own whose materials are its own as well. */
+/** Gives an object its own mesh with its own materials, and replaces their values. */
 void overrideObject(types::Geometry& geometry, types::Object& object, const Acoustics& acoustics) {
     types::Mesh mesh = std::as_const(geometry.meshes)[static_cast<size_t>(object.mesh)];
     std::map<int, int> own;
@@ -210,7 +210,7 @@ void Acoustics::readTable(const std::filesystem::path& folder, types::Diagnostic
 
 namespace {
 
-/** Takes away the laws that given values replace. */
+/** Removes the laws that given values replace. */
 void clearLaws(const Acoustics& given, types::Material& target) {
     const bool has_scattering = given.sediment || given.material || given.lambert_db || given.table || given.shell;
     if (has_scattering) {
@@ -279,7 +279,7 @@ void ShellAcoustics::checkFill(types::Diagnostics& diagnostics) const {
     const bool has_fluid = fill_density || fill_sound_speed || fill_loss;
     if (has_fluid && fill == Fill::Air)
         diagnostics.push_back({"fill",
-                               "is air, which nothing passes into; leave out fill_density, fill_sound_speed and "
+                               "is air, which no sound passes into; omit fill_density, fill_sound_speed and "
                                "fill_loss"});
     else if (has_fluid && !(fill && fluidOf(*fill)) && !(fill_density && fill_sound_speed))
         diagnostics.push_back({"fill_density",
@@ -305,10 +305,10 @@ types::Shell ShellAcoustics::shell() const {
 
 void Acoustics::check(types::Diagnostics& diagnostics) const {
     if (shell && (sediment || material || table))
-        diagnostics.push_back({"shell", "stands beside `sediment`, `material` or `table`; give one of them"});
-    if (sediment && material) diagnostics.push_back({"material", "stands beside `sediment`; give one of the two"});
+        diagnostics.push_back({"shell", "is given with `sediment`, `material` or `table`; give one of them"});
+    if (sediment && material) diagnostics.push_back({"material", "is given with `sediment`; give one of the two"});
     if (table && (sediment || lambert_db))
-        diagnostics.push_back({"table", "stands beside `sediment` or `lambert_db`; give one of them"});
+        diagnostics.push_back({"table", "is given with `sediment` or `lambert_db`; give one of them"});
 }
 
 Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,

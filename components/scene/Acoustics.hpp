@@ -42,10 +42,10 @@ double reflection(Matter matter);     ///< Signed pressure reflection coefficien
  *  ACOUSTICS.md 3.3. */
 double lambertDb(Matter matter);
 
-/** What is behind a shell (ACOUSTICS.md 5.26). */
+/** The medium behind a shell (ACOUSTICS.md 5.26). */
 enum class Fill { Water, Air, Oil, Sand, Mud };
 
-/** A thin wall of a solid, by name or by numbers beside it. */
+/** A thin wall of a solid, given by name or by numbers. A number replaces the value of the named matter. */
 struct ShellAcoustics {
     std::optional<double> thickness_mm;
     std::optional<Matter> material;
@@ -54,7 +54,7 @@ struct ShellAcoustics {
     std::optional<double> fill_density, fill_sound_speed, fill_loss;
 
     void check(types::Diagnostics& diagnostics) const;
-    /** Returns the shell. check() must find nothing wrong. */
+    /** Returns the shell. Requires that check() reports nothing. */
     types::Shell shell() const;
 
     template <class Self, class V>
@@ -67,10 +67,10 @@ struct ShellAcoustics {
         visit(Field{"sound_speed", "m/s", "of its longitudinal waves", 100, 20000}, self.sound_speed);
         visit(Field{"shear_speed", "m/s", "of its shear waves; 0: it has none", 0, 10000}, self.shear_speed);
         visit(Field{"loss", "1", "imaginary over real part of its wave numbers", 0, 1}, self.loss);
-        visit(Field{"fill", "", "what is behind it"}, self.fill);
-        visit(Field{"fill_density", "kg/m^3", "of what is behind it, in place of that of `fill`", 10, 20000},
+        visit(Field{"fill", "", "medium behind the wall"}, self.fill);
+        visit(Field{"fill_density", "kg/m^3", "of the medium behind the wall, in place of that of `fill`", 10, 20000},
               self.fill_density);
-        visit(Field{"fill_sound_speed", "m/s", "of what is behind it, in place of that of `fill`", 200, 6000},
+        visit(Field{"fill_sound_speed", "m/s", "of the medium behind the wall, in place of that of `fill`", 200, 6000},
               self.fill_sound_speed);
         visit(Field{"fill_loss", "1", "imaginary over real part of its wave number", 0, 1}, self.fill_loss);
     }
@@ -79,11 +79,11 @@ private:
     void checkFill(types::Diagnostics& diagnostics) const;
 };
 
-/** The acoustic values that a file or a property gives to a material. What is absent stays as it was.
+/** The acoustic values that a file or a property gives to a material. An absent value does not change the material.
  *
- *  A `shell` makes the surface a thin wall, whose echo is that of a rigid body times the reflection of the wall.
- *  A `sediment` sets the seabed and lambert_db; a `material` sets the matter, reflection and lambert_db; numbers with
- *  them refine, a `lambert_db` by Lambert's law, a `table` by what was measured. A `lambert_db`, `reflection` or
+ *  A `shell` makes the surface a thin wall: its echo is that of a rigid body times the reflection of the wall. A
+ *  `sediment` sets the seabed and lambert_db. A `material` sets the matter, reflection and lambert_db. Numbers next to
+ *  either refine it: a `lambert_db` by Lambert's law, a `table` by measurements. A `lambert_db`, `reflection` or
  *  `roughness_slope` replaces the law of the matter. */
 struct Acoustics {
     std::optional<Sediment> sediment;
@@ -92,9 +92,9 @@ struct Acoustics {
     std::optional<bool> mirror;
     std::optional<std::string> table;
     std::optional<ShellAcoustics> shell;
-    std::vector<glm::dvec2> measured;  ///< What stands in `table`, once it is read [deg, dB].
+    std::vector<glm::dvec2> measured;  ///< Contents of `table` after it was read [deg, dB].
 
-    /** Reads `table`, whose path is relative to `folder`; what is wrong with it goes to `diagnostics`. */
+    /** Reads `table`, whose path is relative to `folder`. Adds errors to `diagnostics`. */
     void readTable(const std::filesystem::path& folder, types::Diagnostics& diagnostics);
     void applyTo(types::Material& target) const;
     void check(types::Diagnostics& diagnostics) const;
@@ -118,22 +118,22 @@ struct Acoustics {
               self.mirror);
         visit(Field{"reflectivity", "1", "factor of cerqueira2017", 0, 1}, self.reflectivity);
         visit(Field{"table", "", "instead: CSV file with grazing_deg,strength_db"}, self.table);
-        visit(Field{"shell", "", "the surface is a thin wall, which sound goes through"}, self.shell);
+        visit(Field{"shell", "", "the surface is a thin wall, which sound passes through"}, self.shell);
     }
 };
 
-/** What a file gives to a key: a number, a text, a yes or no, or neither; "shell.density" for a key of a block. */
+/** The value of a key in a file: a number, a text, a boolean, or none of them. The key "shell.density" is in a
+ *  block. */
 using AcousticValue = std::variant<std::monostate, double, std::string, bool>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
-/** Acoustics from the keys and values of a file that lies in `folder`; what is wrong with them goes to `diagnostics`.
- */
+/** Returns the acoustics given by the keys and values of a file in `folder`. Adds errors to `diagnostics`. */
 Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
                         types::Diagnostics& diagnostics);
 
-/** The geometry of `scene` with acoustic values replaced by name of a material, or of a node with all below it, which
- *  goes before the material. Nothing is copied when there is nothing to replace. A name that is neither is a diagnostic
- *  at path `materials.<name>`. */
+/** Returns the geometry of `scene` with acoustic values replaced by name. A name is that of a material, or of a node
+ *  and all nodes below it; a node takes precedence over a material. Copies nothing when there is nothing to replace. An
+ *  unknown name is a diagnostic at path `materials.<name>`. */
 types::GeometryPtr overrideMaterials(const Scene& scene, const std::map<std::string, Acoustics>& materials,
                                      types::Diagnostics& diagnostics);
 

@@ -15,14 +15,14 @@ namespace insonify::scene {
 namespace {
 
 constexpr const char* floor_name = "bathymetry";  ///< Name of the object and of its material.
-constexpr double max_posts = 4096;                ///< Posts of a window along each side [1].
+constexpr double max_posts = 4096;                ///< Max posts of a window along each side [1].
 
 int wholeDown(double value) { return static_cast<int>(std::clamp(std::floor(value), -1e9, 1e9)); }
 
-/** The next multiple of `step` at or below a number. */
+/** Returns the largest multiple of `step` that is not above a number. */
 int multipleDown(int value, int step) { return wholeDown(double(value) / step) * step; }
 
-/** Triangles between posts that have a value, seen from above anticlockwise where `is_turned` is false. */
+/** Adds triangles between posts that have a value, counterclockwise from above if `is_turned` is false. */
 void addTriangles(const std::vector<float>& values, const PostWindow& posts, bool is_turned, Surface& surface) {
     const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
         if (std::isfinite(values[a] + values[b] + values[c]))
@@ -35,7 +35,7 @@ void addTriangles(const std::vector<float>& values, const PostWindow& posts, boo
                 });
 }
 
-/** The part of a window that a survey has. */
+/** Returns the part of a window that is in a survey. */
 PostWindow clipped(PostWindow posts, const Survey& survey) {
     const int end_column = std::min(posts.column + posts.columns, survey.columns());
     const int end_row = std::min(posts.row + posts.rows, survey.rows());
@@ -54,7 +54,7 @@ void checkUnit(const Survey& survey, const std::filesystem::path& file) {
             "has elevations in " + survey.unit() + "; may be metres: gdal_calc.py -A IN --calc=A*0.3048 of feet");
 }
 
-/** `tile`: what a tile of the survey measures [m]. */
+/** @param tile size of a tile of the survey [m]. */
 void checkTexels(const Survey& mosaic, const std::filesystem::path& file, const glm::dvec2& tile) {
     const glm::dvec2 texels = tile / glm::abs(mosaic.spacing());
     if (std::max(texels.x, texels.y) > max_posts)
@@ -113,7 +113,7 @@ void Bathymetry::addMaterials(Scene& scene, const BathymetryConfig& config) {
     scene.geometry = std::move(geometry);
 }
 
-/** Posts between which the floor reaches as far as it is to. The world's x is north of its zero, y west. */
+/** Returns the posts that enclose the floor within reach. The world's x is north of its origin, y west. */
 PostWindow Bathymetry::postsAbout(const glm::dvec3& place) const {
     const glm::dvec2 middle = survey_->postAt(zero_ + glm::dvec2(-place.y, place.x));
     const glm::dvec2 half = config_.reach / glm::abs(survey_->spacing());

@@ -19,70 +19,74 @@
 
 namespace insonify::scene {
 
-/** The part of a surveyed sea floor around the vehicle: objects "bathymetry" of that material, one for each tile of
- *  posts, in the axes of the world, after those of the scene. Tiles are read by a thread of its own. Those that the
- *  vehicle may need next are read before it comes to them; a tile that is needed earlier is waited for, so that the
- *  floor about a place does not depend on time. */
+/** The part of a surveyed sea floor around the vehicle.
+ *
+ *  The floor consists of objects named "bathymetry", one per tile of posts, in the axes of the world. They follow the
+ *  objects of the scene and have the material "bathymetry". A separate thread reads the tiles, beginning before the
+ *  vehicle needs them. A tile that is needed earlier is waited for, so that the floor around a place does not depend on
+ *  time. */
 class Bathymetry {
 public:
-    /** `map`: file of the mosaic on it, where the configuration has one. Throws types::ConfigError for whatever is
-     * wrong with the files, or when `reach` holds too many posts. */
+    /** @param map file of the mosaic on the floor, if the configuration has one.
+     *
+     *  Throws types::ConfigError for any error in the files, or when `reach` covers too many posts. */
     Bathymetry(const BathymetryConfig& config, const std::filesystem::path& file,
                const std::filesystem::path& map = {});
     ~Bathymetry();
     Bathymetry(const Bathymetry&) = delete;
     Bathymetry& operator=(const Bathymetry&) = delete;
 
-    /** `rest` and the floor about a place in the world: the one of the call before as long as that reaches far enough
-     *  on all sides, else one of whole tiles, of which those that both have are the same meshes. `rest` alone where the
-     *  survey has nothing. Throws SurveyError where the file cannot be read on. */
+    /** Returns `rest` together with the floor around a place in the world. The floor of the previous call is reused
+     *  while it reaches far enough on all sides. Otherwise the floor is made anew of whole tiles; tiles that both
+     *  floors have keep their meshes. Returns `rest` alone where the survey has no values. Throws SurveyError when the
+     *  file cannot be read any further. */
     types::GeometryPtr about(const glm::dvec3& place, const types::GeometryPtr& rest);
-    /** Meshes of tiles around the floor of the last call that have been read by now. */
+    /** Returns the meshes of tiles around the floor of the last call that have already been read. */
     std::shared_ptr<const std::vector<types::MeshPtr>> ahead();
 
-    /** Begins anew: what is there next follows from the place alone. */
+    /** Forgets the previous floor: the next one follows from the place alone. */
     void forget() { window_.reset(); }
 
-    /** Gives a scene the material that the floor has there, and those of the classes of its mosaic. Throws
-     *  types::ConfigError for one that has an object of the floor's name, or for a class that is no material. */
+    /** Adds the floor's material and the materials of its mosaic's classes to a scene. Throws types::ConfigError if an
+     *  object of the scene has the floor's name, or if a class is not a material. */
     static void addMaterials(Scene& scene, const BathymetryConfig& config);
 
 private:
-    /** Column and row of the tile among all tiles of the survey. */
+    /** Column and row of a tile among all tiles of the survey. */
     using Tile = std::pair<int, int>;
-    /** What has been read of a tile. */
+    /** The result of reading a tile. */
     struct Read {
         bool done = false;
-        types::MeshPtr mesh;         ///< Null where nothing was surveyed.
-        std::exception_ptr failure;  ///< Why there is none.
+        types::MeshPtr mesh;         ///< Null where the survey has no values.
+        std::exception_ptr failure;  ///< The reason why there is no mesh.
     };
     PostWindow postsAbout(const glm::dvec3& place) const;
     PostWindow wholeTiles(const PostWindow& posts) const;
     std::vector<Tile> tilesOf(const PostWindow& posts) const;
     types::MeshPtr meshOf(const Tile& tile, const std::vector<int>& materials) const;
-    /** Lays the mosaic on a tile, whose positions are those of posts. */
+    /** Maps the mosaic onto a tile, whose positions are those of posts. */
     void addMap(const PostWindow& posts, const std::vector<int>& materials, Surface& surface, types::Mesh& mesh) const;
-    /** Asks for tiles that are neither there nor asked for, before or after all others that are. */
+    /** Queues the tiles that are neither read nor queued, before or after all others in the queue. */
     void ask(const std::vector<Tile>& tiles, bool first);
-    /** Forgets all tiles but these. */
+    /** Forgets all other tiles. */
     void keep(const std::vector<Tile>& tiles);
-    /** Waits for a tile that was asked for. Throws why it cannot be read; it may then be asked for again. */
+    /** Waits for a queued tile. Throws the error if the tile cannot be read; the tile may then be queued again. */
     types::MeshPtr wait(const Tile& tile);
     void work();
 
     BathymetryConfig config_;
-    std::unique_ptr<const Survey> survey_, mosaic_;  ///< Read by the worker alone; null: there is no mosaic.
-    glm::dvec2 zero_;                                ///< Easting and northing of the world's zero [m].
+    std::unique_ptr<const Survey> survey_, mosaic_;  ///< Read by the worker alone; null: no mosaic.
+    glm::dvec2 zero_;                                ///< Easting and northing of the world's origin [m].
     std::optional<PostWindow> window_;
-    types::GeometryPtr geometry_, rest_;  ///< Of the window, and what it was made with.
-    std::vector<Tile> around_;            ///< Tiles that the next window may have beside those of this one.
+    types::GeometryPtr geometry_, rest_;  ///< The geometry of `window_`, and the rest that it was made with.
+    std::vector<Tile> around_;            ///< Tiles that the next window may have in addition to the tiles of this one.
     std::shared_ptr<const std::vector<types::MeshPtr>> ahead_;
 
     std::mutex mutex_;
     std::condition_variable asked_, read_;
     std::map<Tile, Read> tiles_;
     std::deque<Tile> queue_;
-    std::vector<int> materials_{0};  ///< Of the floor and of the classes of its mosaic, in `rest`.
+    std::vector<int> materials_{0};  ///< Indices in `rest` of the materials of the floor and of its mosaic's classes.
     bool quit_ = false;
     std::thread worker_;
 };

@@ -34,19 +34,19 @@ struct Box {
     }
 };
 
-/** How many sizes of patches, each 4 times as large as the one before, are smaller than so many triangles. */
+/** Returns the number of patch sizes below a number of triangles; each size is 4 times the one before. */
 int patchSizesBelow(size_t triangles) {
     int count = 0;
     for (size_t size = min_node_triangles; size < triangles; size *= 4) ++count;
     return count;
 }
 
-/** Splits a mesh in which `clusters` and `patches` are being made anew. */
+/** Splits a mesh whose `clusters` and `patches` are being rebuilt. */
 class Splitter {
 public:
     explicit Splitter(types::Mesh& mesh) : mesh_(mesh) {}
 
-    /** One patch of `triangles`, with patches and clusters below it. */
+    /** Adds one patch of `triangles`, with the patches and clusters below it. */
     void addPatch(std::span<Triangle> triangles, const types::Cluster& run) {
         const size_t node = mesh_.cluster_nodes.size();
         mesh_.cluster_nodes.push_back({.first_cluster = static_cast<uint32_t>(mesh_.clusters.size())});
@@ -57,8 +57,8 @@ public:
     }
 
 private:
-    /** Halves `triangles` at the median of the longest axis until each part is small enough for a cluster; what is
-     *  the first to be small enough for a size of patch is one. */
+    /** Halves `triangles` at the median of the longest axis until each part is small enough for a cluster. The first
+     *  part that is small enough for a patch size becomes a patch. */
     void split(std::span<Triangle> triangles, types::Cluster cluster) {
         if (triangles.size() <= cluster_triangles) {
             cluster.index_count = static_cast<uint32_t>(3 * triangles.size());
@@ -108,7 +108,7 @@ void remap(std::vector<T>& values, const std::vector<uint32_t>& new_place, size_
     values = std::move(placed);
 }
 
-/** Makes one vertex of those in one place, which files have apart for light's normals and textures. */
+/** Merges vertices at the same place, which files keep separate for light's normals and textures. */
 void weld(types::Mesh& mesh) {
     std::vector<uint32_t> new_place(mesh.positions.size());
     const size_t count = meshopt_generateVertexRemap(new_place.data(), mesh.indices.data(), mesh.indices.size(),
@@ -117,7 +117,8 @@ void weld(types::Mesh& mesh) {
     remap(mesh.positions, new_place, count);
 }
 
-/** Orders triangles that are drawn as one for the vertex cache, at a cost that is theirs and not their mesh's. */
+/** Orders triangles that are rasterised together for the vertex cache, at a cost that depends on their number and not
+ *  on their mesh's. */
 void orderTriangles(std::span<uint32_t> indices) {
     std::vector<uint32_t> vertices(indices.begin(), indices.end());
     std::ranges::sort(vertices);
@@ -148,7 +149,7 @@ std::span<const uint32_t> trianglesOf(const types::Mesh& mesh, const types::Clus
     return std::span(mesh.indices).subspan(first.first_index, last.first_index + last.index_count - first.first_index);
 }
 
-/** Indices in which vertices in one place are one. */
+/** Returns indices in which vertices at the same place are one. */
 Indices welded(const types::Mesh& mesh) {
     Indices indices(mesh.indices.size());
     meshopt_generateShadowIndexBuffer(indices.data(), mesh.indices.data(), mesh.indices.size(), mesh.positions.data(),
@@ -156,7 +157,7 @@ Indices welded(const types::Mesh& mesh) {
     return indices;
 }
 
-/** Whether every edge is there once in either direction. */
+/** Returns whether every edge occurs once in either direction. */
 bool isWatertight(const Indices& indices) {
     std::vector<uint64_t> there, back;
     for (size_t i = 0; i < indices.size(); ++i) {
@@ -169,7 +170,8 @@ bool isWatertight(const Indices& indices) {
     return std::ranges::adjacent_find(there) == there.end() && there == back;
 }
 
-/** Volume that each piece encloses, positive where it is wound outward; 0 for vertices that name no piece [m^3]. */
+/** Returns the volume of each connected piece, positive if it is wound outward; 0 for vertices that represent no piece
+ *  [m^3]. */
 std::vector<double> volumes(const types::Mesh& mesh, const Indices& indices) {
     Indices piece(mesh.positions.size());
     std::iota(piece.begin(), piece.end(), 0u);
@@ -193,13 +195,13 @@ bool isClosed(const types::Mesh& mesh) {
     return isWatertight(indices) && std::ranges::none_of(volumes(mesh, indices), [](double v) { return v < 0; });
 }
 
-/** Finds `coarse_indices` of a mesh: of each patch that is part of no other, so many triangles at most. */
+/** Sets `coarse_indices` of a mesh: at most this number of triangles for each patch that is part of no other. */
 void findCoarseMesh(types::Mesh& mesh) {
     mesh.coarse_indices.clear();
     for (size_t root = 0; root < mesh.cluster_nodes.size(); root = mesh.cluster_nodes[root].next) {
         const std::span<const uint32_t> fine = trianglesOf(mesh, mesh.cluster_nodes[root]);
         std::vector<uint32_t> coarse(fine.begin(), fine.end());
-        if (fine.size() > 3 * max_coarse_triangles)  // meshoptimizer aborts where it is asked for more than there are
+        if (fine.size() > 3 * max_coarse_triangles)  // meshoptimizer aborts if asked for more than there are
             coarse.resize(meshopt_simplifySloppy(coarse.data(), fine.data(), fine.size(), &mesh.positions[0].x,
                                                  mesh.positions.size(), sizeof(glm::vec3), 3 * max_coarse_triangles,
                                                  1.0f, nullptr));
@@ -207,8 +209,9 @@ void findCoarseMesh(types::Mesh& mesh) {
     }
 }
 
-/** Gives the clusters of a closed mesh the cones from which only their backs are seen: behind its front, which hides
- *  them. Closed: every edge joins two triangles of opposite winding, and every piece encloses a positive volume. */
+/** Sets the cones of a closed mesh's clusters. From inside a cone only a cluster's back is visible, hidden by the
+ *  mesh's front. Closed: every edge joins two triangles of opposite winding, and every piece encloses a positive
+ *  volume. */
 void findCones(types::Mesh& mesh) {
     if (!isClosed(mesh)) return;
     for (types::Cluster& cluster : mesh.clusters) {

@@ -7,13 +7,14 @@
 
 namespace insonify::scene {
 
-/** Meshes of more triangles than this are split into compact clusters, so that parts out of view can be culled [1]. */
+/** Meshes with more triangles than this are split into compact clusters, so that parts out of view can be culled
+ *  [1]. */
 constexpr size_t clustered_from = 10'000;
-/** Largest cluster of such a mesh; most have half as many at least [triangles]. */
+/** Max triangles of a cluster of a split mesh. Most clusters have at least half of it. */
 constexpr size_t cluster_triangles = 250;
-/** Smallest kind of patch, which has half as many at least; each larger kind has 4 times as many [triangles]. */
+/** Max triangles of the smallest kind of patch, which has at least half of it. Each larger kind has 4 times as many. */
 constexpr size_t min_node_triangles = 1000;
-/** Triangles of a mesh's outline, at most, for each run of one material [triangles]. */
+/** Max triangles of a mesh's outline, for each run of one material. */
 constexpr size_t max_coarse_triangles = 4000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material; on return each has its

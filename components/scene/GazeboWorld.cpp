@@ -15,7 +15,7 @@ std::atomic<WorldReader>& givenReader() {
     return reader;
 }
 
-/** That of the component library. */
+/** The reader of the component library. */
 WorldReader worldReader() {
     if (const WorldReader given = givenReader()) return given;
     return loader::load("gazebo").entry<void(const GazeboConfig&, const std::filesystem::path&, Scene&)>(

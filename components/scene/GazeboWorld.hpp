@@ -10,7 +10,7 @@
 
 namespace insonify::scene {
 
-/** A world that Gazebo runs, whose models are the scene. */
+/** A world in Gazebo, whose models are the scene. */
 struct GazeboConfig {
     std::string world, partition;
     double timeout = 5;
@@ -26,13 +26,13 @@ struct GazeboConfig {
     bool operator==(const GazeboConfig&) const = default;
 };
 
-/** Asks Gazebo for the models of a world, by the component library gazebo. Tasks that hold the scene of one world at
- *  the same time share it. Relative paths of meshes start at `folder`. Throws types::ConfigError, with the key of
- *  GazeboConfig for its path, where there is no answer or nothing in it. */
+/** Returns the models of a world, which the component library gazebo requests from Gazebo. Tasks that hold the scene of
+ *  one world at the same time share it. Relative paths of meshes start at `folder`. Throws types::ConfigError with the
+ *  key of GazeboConfig as its path if Gazebo does not answer or the world is empty. */
 std::shared_ptr<const Scene> sharedWorld(const GazeboConfig& config, const std::filesystem::path& folder);
 
 using WorldReader = void (*)(const GazeboConfig& config, const std::filesystem::path& folder, Scene& scene);
-/** Makes sharedWorld() ask by another function: for programs that are linked with the reader. */
+/** Replaces the reader that sharedWorld() uses, for programs that are linked with their reader. */
 void setWorldReader(WorldReader reader);
 
 }  // namespace insonify::scene

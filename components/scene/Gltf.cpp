@@ -26,7 +26,7 @@
 namespace insonify::scene {
 namespace {
 
-/** Instances and nodes together may be this many. */
+/** Max number of instances and nodes together. */
 constexpr size_t max_objects = 1'000'000;
 
 /** A node whose mesh has a skin or morph targets. */
@@ -37,7 +37,7 @@ struct DeformingNode {
     std::string path;
 };
 
-/** Walks the nodes of one file's scene and collects objects. */
+/** Visits the nodes of one file's scene and collects objects. */
 class GltfReader {
 public:
     explicit GltfReader(const std::filesystem::path& file)
@@ -79,7 +79,7 @@ private:
         return roots;
     }
 
-    /** Depth first without recursion, so that a deep file cannot overflow the stack. */
+    /** Visits nodes depth first without recursion, so that a deep file cannot overflow the stack. */
     void walk(const std::vector<int>& roots) {
         std::vector<Visit> waiting;
         const auto add = [&waiting](const std::vector<int>& nodes, int parent, const glm::dmat4& world_from_parent) {

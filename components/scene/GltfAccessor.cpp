@@ -68,7 +68,7 @@ bool isIndexType(int type) {
 
 }  // namespace
 
-/** Where elements lie; `data` is null for zeros. */
+/** The place of elements in memory; `data` is null for zeros. */
 struct GltfAccessors::Layout {
     const uint8_t* data = nullptr;
     size_t element_size = 0;
@@ -130,7 +130,7 @@ GltfAccessors::Layout GltfAccessors::layout(const tinygltf::Accessor& accessor, 
     return layout;
 }
 
-/** Calls store(element, bytes) for each element that has data, sparse ones last. */
+/** Calls store(element, bytes) for each element that has data, sparse elements last. */
 template <class Store>
 void GltfAccessors::forEach(const tinygltf::Accessor& accessor, const Layout& base, const std::string& path,
                             Store store) const {

@@ -18,7 +18,7 @@ class GltfAccessors {
 public:
     GltfAccessors(const tinygltf::Model& model, std::string file) : model_(model), file_(std::move(file)) {}
 
-    /** Vectors of as many components as Vector has; integers are scaled to [-1, 1] where `normalized` says so. */
+    /** Returns vectors; Vector sets the number of components. Integers are scaled to [-1, 1] if `normalized` is set. */
     template <class Vector>
     std::vector<Vector> vectors(int accessor) const;
     std::vector<uint32_t> indices(int accessor) const;
@@ -28,7 +28,7 @@ public:
     int componentType(int accessor) const;
     /** Bytes [begin, end) of a bufferView. */
     std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;
-    /** Largest value of the accessor's component type: the index that restarts a strip. */
+    /** Returns the max value of the accessor's component type: the index that restarts a strip. */
     uint32_t restartIndex(int accessor) const;
 
 private:

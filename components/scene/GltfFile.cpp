@@ -13,12 +13,12 @@
 namespace insonify::scene {
 namespace {
 
-/** Deeper JSON would overflow the stack of the parser, which is recursive. */
+/** Max nesting of JSON: deeper JSON would overflow the stack of the recursive parser. */
 constexpr int max_nesting = 200;
 /** tinygltf and .glb count bytes in 32 bits; its sizes are cast to int. */
 constexpr uintmax_t max_bytes = 0x7fffffff;
 
-/** What a file may require: read, or without influence on shape. */
+/** Extensions that a file may require: supported, or without influence on shape. */
 constexpr std::string_view supported_extensions[] = {"KHR_mesh_quantization",
                                                      "KHR_texture_transform",
                                                      "EXT_mesh_gpu_instancing",
@@ -52,8 +52,8 @@ std::string readBytes(const std::filesystem::path& file) {
     return bytes;
 }
 
-/** Callbacks of tinygltf: it would look in the working folder as well, expand shell variables in names, and allocate
- *  what a folder claims as its size. */
+/** Replaces callbacks of tinygltf, which would search the working folder as well, expand shell variables in names, and
+ *  allocate the size that a folder reports. */
 bool fileExists(const std::string& file, void* folder) {
     std::error_code error;
     return file.starts_with(*static_cast<const std::string*>(folder)) && std::filesystem::is_regular_file(file, error);
@@ -70,7 +70,7 @@ bool readWhole(std::vector<unsigned char>* bytes, std::string* error, const std:
 
 bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-/** Since 2.9 tinygltf asks for sizes as well, and takes all callbacks or none. */
+/** Sets all callbacks: tinygltf from 2.9 on also asks for sizes, and accepts either all callbacks or none. */
 template <class Callbacks>
 Callbacks callbacksIn(std::string& folder) {
     Callbacks callbacks{};
@@ -89,7 +89,7 @@ Callbacks callbacksIn(std::string& folder) {
     return callbacks;
 }
 
-/** Keeps an image as it is. Those in a bufferView are left there: its bounds are not checked at this point. */
+/** Keeps an image encoded. Images in a bufferView stay there: its bounds are not checked yet. */
 bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
     if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
@@ -98,7 +98,7 @@ bool keepEncoded(tinygltf::Image* image, const int, std::string*, std::string*, 
 
 bool isBinary(std::string_view bytes) { return bytes.starts_with("glTF"); }
 
-/** The JSON in a .gltf, or in the first chunk of a .glb, as far as it is there. */
+/** Returns the JSON of a .gltf, or of the first chunk of a .glb, possibly truncated. */
 std::string_view jsonPart(std::string_view bytes) {
     if (!isBinary(bytes)) return bytes;
     if (bytes.size() < 20) return {};
@@ -107,7 +107,7 @@ std::string_view jsonPart(std::string_view bytes) {
     return bytes.substr(20, length);
 }
 
-/** Deepest nesting of arrays and objects, without recursion. */
+/** Returns the max nesting of arrays and objects, without recursion. */
 int nesting(std::string_view json) {
     int depth = 0, deepest = 0;
     bool in_string = false;
@@ -162,7 +162,8 @@ void checkExtensions(GltfFile& gltf) {
             gltf.notices.push_back(fmt::format("extension {} is not read; its fallback is used", name));
 }
 
-/** False with `errors` filled when tinygltf refuses; whatever it throws on bad input becomes such an error. */
+/** Returns false and fills `errors` when tinygltf refuses the file. Exceptions that it throws on bad input are
+ *  converted to errors. */
 bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::string& errors) try {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(keepEncoded, nullptr);
@@ -178,8 +179,8 @@ bool parse(GltfFile& gltf, const std::string& bytes, std::string folder, std::st
     return false;
 }
 
-/** First line of tinygltf's errors, which may be silent about what it refuses; without the kind of exception that its
- *  parser of JSON puts before them. */
+/** Returns the first line of tinygltf's errors, without the kind of exception that its JSON parser puts before them.
+ *  The errors may be empty. */
 std::string reason(const std::string& errors) {
     size_t begin = errors.find_first_not_of(" \n");
     if (begin == std::string::npos) return "a required property is missing or of the wrong type";

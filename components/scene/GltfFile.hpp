@@ -14,8 +14,9 @@ struct GltfFile {
     std::vector<std::string> notices;
 };
 
-/** Reads a .gltf or .glb and what it refers to. Nothing in the model is checked but its extensions.
- *  Throws types::ConfigError for a file that is missing, no glTF, nested too deeply, or needs what we cannot read. */
+/** Reads a .gltf or .glb and the files that it refers to. In the model, only the extensions are checked.
+ *  Throws types::ConfigError if the file is missing, is no glTF, is nested too deeply, or needs an unsupported
+ *  extension. */
 GltfFile readGltfFile(const std::filesystem::path& file);
 
 }  // namespace insonify::scene

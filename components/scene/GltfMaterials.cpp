@@ -20,10 +20,10 @@
 namespace insonify::scene {
 namespace {
 
-/** Larger images are refused before they are decoded [pixels a side]. */
+/** Max size of images, checked before they are decoded [pixels a side]. */
 constexpr int max_image_side = 8192;
 
-/** Adds the values of a JSON object by key, those of an object in it by "name.key". */
+/** Adds the values of a JSON object by key, and the values of a nested object by "name.key". */
 void addValues(const tinygltf::Value& object, const std::string& prefix, AcousticValues& values) {
     for (const std::string& key : object.Keys()) {
         const tinygltf::Value& json = object.Get(key);
@@ -50,18 +50,18 @@ void readExtras(const tinygltf::Value& extras, const std::filesystem::path& fold
     readAcoustics(values, folder, diagnostics).applyTo(material);
 }
 
-/** Bytes of an encoded image; empty when its file was not found. */
+/** Returns the bytes of an encoded image; empty if its file was not found. */
 std::pair<const uint8_t*, const uint8_t*> encoded(const tinygltf::Image& image, int index,
                                                   const GltfAccessors& accessors) {
     if (image.bufferView >= 0) return accessors.bytes(image.bufferView, fmt::format("images[{}]", index));
     return {image.image.data(), image.image.data() + image.image.size()};
 }
 
-/** Pixels of an image with as many channels as are asked for: 8 bits each, or 16 where the image has them. */
+/** Pixels of an image with the requested number of channels: 8 bits each, or 16 if the image has them. */
 struct Pixels {
     int width = 0, height = 0;
     std::vector<uint8_t> bytes;
-    std::vector<uint16_t> words;  ///< In place of bytes.
+    std::vector<uint16_t> words;  ///< Used for 16 bits, instead of bytes.
 };
 
 Pixels decode(std::pair<const uint8_t*, const uint8_t*> encoded, int channels, bool wide) {
@@ -90,7 +90,7 @@ Pixels decode(std::pair<const uint8_t*, const uint8_t*> encoded, int channels, b
     return pixels;
 }
 
-/** Item of a list of the file. */
+/** Returns an item of a list of the file. */
 template <class T>
 const T& itemOf(const GltfFile& gltf, const std::vector<T>& items, int index, const char* what) {
     if (index < 0 || static_cast<size_t>(index) >= items.size())
@@ -99,7 +99,7 @@ const T& itemOf(const GltfFile& gltf, const std::vector<T>& items, int index, co
     return items[static_cast<size_t>(index)];
 }
 
-/** The image of a texture, and whether it repeats. */
+/** Returns the image of a texture, and sets whether it repeats. */
 Pixels readTexture(const GltfFile& gltf, const GltfAccessors& accessors, int index, int channels, bool wide,
                    bool& repeat_u, bool& repeat_v) {
     const tinygltf::Texture& texture = itemOf(gltf, gltf.model.textures, index, "textures");
@@ -120,7 +120,7 @@ public:
     NormalMaps(const GltfFile& gltf, const GltfAccessors& accessors, types::Geometry& geometry)
         : gltf_(gltf), accessors_(accessors), geometry_(geometry) {}
 
-    /** Index of a texture's map, or -1 with a notice. */
+    /** Returns the index of a texture's map, or -1 after a notice. */
     int find(int texture, const std::string& material) {
         const auto [known, is_new] = indices_.try_emplace(texture, -1);
         if (is_new) try {
@@ -156,8 +156,8 @@ glm::vec2 pairOf(const tinygltf::Value& object, const char* key, glm::vec2 other
     return {static_cast<float>(array.Get(0).GetNumberAsDouble()), static_cast<float>(array.Get(1).GetNumberAsDouble())};
 }
 
-/** KHR_texture_transform: scaled, then turned counter-clockwise as seen, where v points down, then shifted. The listing
- *  in the specification turns the other way (KhronosGroup/glTF issue 1563). */
+/** Returns the transform of KHR_texture_transform: scaled, then turned counter-clockwise as seen with v pointing down,
+ *  then shifted. The listing in the specification turns the other way (KhronosGroup/glTF issue 1563). */
 template <class TextureInfo>
 NormalMapping mapping(const TextureInfo& texture) {
     NormalMapping result{texture.texCoord};
@@ -250,7 +250,7 @@ private:
         for (const types::Diagnostic& each : found) refuse(each.path, each.message);
         return meaning;
     }
-    /** The picture that the map names, else the texture of the material's base colour. */
+    /** Loads the picture that the map names, else the texture of the material's base colour. */
     types::SurfaceMap load(const tinygltf::Value& map, const tinygltf::Material& from, const MapValues& meaning,
                            std::vector<int> classes, NormalMapping& on_surface) {
         bool repeat_u = true, repeat_v = true;
@@ -302,7 +302,7 @@ private:
     const GltfAccessors& accessors_;
     types::Geometry& geometry_;
     types::Diagnostics& diagnostics_;
-    std::string path_;  ///< Of the map at hand.
+    std::string path_;  ///< Path of the current map.
 };
 
 }  // namespace

@@ -10,22 +10,22 @@
 
 namespace insonify::scene {
 
-/** Which texture coordinates a material's map takes, and the transform of KHR_texture_transform on them. */
+/** The set of texture coordinates of a material's map, and the transform of KHR_texture_transform on them. */
 struct NormalMapping {
     int uv_set = 0;
     glm::mat3x2 transform{1, 0, 0, 1, 0, 0};  ///< map uv = transform * (u, v, 1)
 };
 
-/** The maps of a material, and how they lie on meshes. */
+/** The maps of a material, and how they are placed on meshes. */
 struct MaterialMaps {
-    std::optional<NormalMapping> normals;  ///< None: it has no normal map.
+    std::optional<NormalMapping> normals;  ///< None: no normal map.
     NormalMapping on_surface;
-    std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: it has none.
+    std::shared_ptr<const types::SurfaceMap> surface;  ///< Null: no surface map.
 };
 
-/** Adds the file's materials, in its order, then those of classes of surface maps, and normal maps to `geometry`; a
- *  normal map that cannot be read is a notice. Returns the maps of each material of the file. `extras.acoustics` that
- * is wrong, and a surface map that cannot be read, are a ConfigError. */
+/** Adds the file's materials in their order, then the materials of surface maps' classes, and normal maps to
+ *  `geometry`. Returns the maps of each material of the file. A normal map that cannot be read is a notice. A wrong
+ *  `extras.acoustics` and a surface map that cannot be read are a ConfigError. */
 std::vector<MaterialMaps> readMaterials(const GltfFile& gltf, const GltfAccessors& accessors,
                                         types::Geometry& geometry);
 

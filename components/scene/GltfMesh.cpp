@@ -14,10 +14,10 @@
 namespace insonify::scene {
 namespace {
 
-/** A small file may refer to the same data any number of times; this many vertices and indices end it. */
+/** Max vertices and indices of a file: a small file may refer to the same data any number of times. */
 constexpr size_t max_elements = 200'000'000;
 
-/** Corners of triangles from corners of a list, strip or fan; `restart` ends a strip or fan. */
+/** Returns the corners of triangles from the corners of a list, strip or fan. `restart` ends a strip or fan. */
 std::vector<uint32_t> triangulate(const std::vector<uint32_t>& corners, int mode, uint32_t restart) {
     std::vector<uint32_t> triangles;
     size_t first = 0;
@@ -102,7 +102,7 @@ struct GltfMeshes::Attributes {
     std::string path;
     size_t count;
 
-    /** Empty when the primitive has no such attribute. */
+    /** Returns an attribute; empty if the primitive does not have it. */
     template <class Vector>
     std::vector<Vector> read(const std::string& name) const {
         const auto found = primitive.attributes.find(name);
@@ -118,7 +118,7 @@ struct GltfMeshes::Attributes {
         for (glm::vec2& uv : uvs) uv = mapping.transform * glm::vec3(uv, 1);
         return uvs;
     }
-    /** What a normal map needs. */
+    /** Reads the attributes that a normal map needs. */
     void readMapped(const NormalMapping& mapping, Surface& surface) const {
         surface.uvs = uvs(mapping);
         if (surface.uvs.empty()) return;

@@ -12,7 +12,7 @@
 
 namespace insonify::scene {
 
-/** What was left out of the meshes of a file. */
+/** The parts of a file's meshes that were omitted. */
 struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
@@ -20,7 +20,7 @@ struct Omissions {
     size_t unweighted_vertices = 0;  ///< Of skins: they follow no joint.
 };
 
-/** Turns the meshes of a file into ours, one at a time. */
+/** Converts the meshes of a file to types::Mesh, one at a time. */
 class GltfMeshes {
 public:
     /** `geometry` holds the file's materials; a default material is added when a primitive has none. */
@@ -28,8 +28,8 @@ public:
                types::Geometry& geometry)
         : gltf_(gltf), accessors_(accessors), maps_(std::move(maps)), geometry_(geometry) {}
 
-    /** One mesh of the file with a cluster for each of its primitives; it may end up without triangles.
-     *  Wrong indices are a types::ConfigError. */
+    /** Returns a mesh of the file with one cluster per primitive; the mesh may have no triangles.
+     *  Throws types::ConfigError for wrong indices. */
     types::Mesh read(size_t mesh);
     /** The same of a mesh that deforms, in clusters, with its types::Deformation.
      *  @param joints  of its skin; 0: it has none */
@@ -40,7 +40,8 @@ private:
     void append(const tinygltf::Primitive& primitive, const std::string& path, types::Mesh& mesh);
     int material(const tinygltf::Primitive& primitive, const std::string& path);
     Surface surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path);
-    /** Gives a surface what the maps of its material need, and the mesh the map; returns the material. */
+    /** Adds what the maps of a primitive's material need to the surface, and the map to the mesh. Returns the
+     *  material. */
     int mapped(const tinygltf::Primitive& primitive, const std::string& path, Surface& surface, types::Mesh& mesh);
     int withoutMap(int material, bool of_surface);
     const MaterialMaps* mapsOf(int material) const {

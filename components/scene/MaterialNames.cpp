@@ -11,7 +11,7 @@
 namespace insonify::scene {
 namespace {
 
-/** Another word for a matter or a sediment. */
+/** A synonym of a matter or a sediment. */
 struct Synonym {
     std::string_view word, name;
 };
@@ -53,7 +53,7 @@ constexpr Synonym synonyms[] = {
 
 bool is(int (*kind)(int), char c) { return kind(static_cast<unsigned char>(c)) != 0; }
 
-/** Lower-case words of letters; "castIron" has two. */
+/** Splits a name into lower-case words of letters; "castIron" has two. */
 std::vector<std::string> wordsOf(const std::string& name) {
     std::vector<std::string> words(1);
     for (size_t i = 0; i < name.size(); ++i) {
@@ -64,7 +64,7 @@ std::vector<std::string> wordsOf(const std::string& name) {
     return words;
 }
 
-/** Names of a sediment are tried after those of matter, so that "rock" is matter; "sand" is the sediment. */
+/** Returns the matter or else the sediment of that name: "rock" is matter, "sand" is the sediment. */
 std::string_view nameOf(std::string_view words) {
     const auto* synonym = std::ranges::find(synonyms, words, &Synonym::word);
     if (synonym != std::end(synonyms)) return synonym->name;
@@ -83,7 +83,7 @@ Acoustics acousticsOf(std::string_view name) {
     return acoustics;
 }
 
-/** At most this many, for a notice is one line. */
+/** Joins texts up to a max number, because a notice is one line. */
 std::string listed(const std::vector<std::string>& texts) {
     constexpr size_t max_shown = 20;
     const size_t shown = std::min(texts.size(), max_shown);

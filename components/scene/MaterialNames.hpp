@@ -9,13 +9,14 @@
 
 namespace insonify::scene {
 
-/** Returns the names of matter and sediments that the name of a material contains, as modellers write it: "Steel.001",
- *  "M_Rusty-Steel", "Material_Aluminium" and "castIron 2". Each once, in the order of the name. */
+/** Returns the names of matter and sediments in the name of a material, as modellers write it: "Steel.001",
+ *  "M_Rusty-Steel", "Material_Aluminium" and "castIron 2". Each name occurs once, in the order of the material's
+ *  name. */
 std::vector<std::string_view> matterIn(const std::string& name);
 
-/** Returns the geometry in which materials without acoustic values have those of the one matter or sediment that their
- *  names contain. One notice lists them, and those whose names contain several, which keep the default. Returns the
- *  same pointer where no name contains any. */
+/** Returns a geometry in which materials without acoustic values take those of the matter or sediment in their names.
+ *  One notice lists these materials, and those whose names contain several, which keep the default. Returns the same
+ *  pointer if no name contains any. */
 types::GeometryPtr takeNames(const types::GeometryPtr& geometry);
 
 }  // namespace insonify::scene

@@ -13,7 +13,7 @@
 namespace insonify::scene {
 namespace {
 
-/** The turn that takes an axis of the file to z. */
+/** Returns the rotation that turns an axis of the file to z. */
 glm::dmat4 turnTo(UpAxis up) {
     switch (up) {
         case UpAxis::X: return {0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1};
@@ -33,7 +33,7 @@ glm::dmat4 worldFromZUp(const Placement& placement) {
     return glm::rotate(moved, types::radians(placement.yaw_deg), {0, 0, 1}) * glm::dmat4(frame);
 }
 
-/** "x", "-z", or the direction's numbers where it is along no axis. */
+/** Returns "x" or "-z", or the numbers of a direction that is along no axis. */
 std::string nameOf(const glm::dvec3& direction) {
     constexpr double near = 1 - 1e-9;
     for (int axis = 0; axis < 3; ++axis)

@@ -13,7 +13,7 @@ namespace insonify::scene {
 /** The axis of a file that points up. */
 enum class UpAxis { X, Y, Z };
 
-/** Where a scene lies in the world of the poses: x north, y west, z up. */
+/** The place of a scene in the world of the poses: x north, y west, z up. */
 struct Placement {
     glm::dvec3 position{0};
     double yaw_deg = 0;
@@ -38,16 +38,16 @@ struct Placement {
     }
 };
 
-/** The scene at another place. Meshes are shared; nodes that poses move are affected by `up` alone. */
+/** Returns the scene at another place. Meshes are shared. Nodes that poses move are affected by `up` alone. */
 Scene placed(const Scene& scene, const Placement& placement);
 
-/** The scene with some nodes, and what is below them, larger or smaller about their origins, which stay. Meshes are
- *  shared.
+/** Returns the scene with some nodes, and the nodes below them, scaled about their origins, which stay in place. Meshes
+ *  are shared.
  *  @param factors by name of a node, above 0. Names that no node has are added to `diagnostics` as `scale.<name>`. */
 Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, types::Diagnostics& diagnostics);
 
-/** How a scene lies, in words: "the file's x is north, its -z west, its y up". `poses`: the axes of the poses as they
- * are sent, of which x is named where they are not the world's. */
+/** Describes a scene's orientation: "the file's x is north, its -z west, its y up". `poses`: the axes of the poses as
+ *  they are sent; the direction of their x is added if these axes are not the world's. */
 std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses);
 
 }  // namespace insonify::scene

@@ -21,8 +21,8 @@
 namespace insonify::scene {
 namespace {
 
-/** What is left of a transform when its rotation is taken away: scale and shear, in the axes of the node.
- *  A mirroring matrix keeps its mirror in x; with a scale given, the signs are those of the scale. */
+/** Returns a transform without its rotation: scale and shear, in the axes of the node. A mirroring matrix keeps its
+ *  mirror in x. With a given scale, the signs are those of the scale. */
 glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
     glm::dmat3 rotation;
     rotation[0] = glm::normalize(matrix[0]) * glm::sign(scale.x);
@@ -35,7 +35,7 @@ glm::dmat3 withoutRotation(const glm::dmat3& matrix, glm::dvec3 scale) {
     return glm::transpose(rotation) * matrix;
 }
 
-/** Names of scenes in a folder. */
+/** Returns the names of scenes in a folder. */
 std::vector<std::string> scenesIn(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code unreadable;
@@ -70,14 +70,14 @@ Formats& formats() {
     return formats;
 }
 
-/** Null for a format that was not added. */
+/** Returns the reader of an extension; null for a format that was not added. */
 SceneReader readerOf(const std::string& extension) {
     const std::lock_guard alone(formats().mutex);
     const auto found = formats().readers.find(extension);
     return found == formats().readers.end() ? nullptr : found->second;
 }
 
-/** A node in the axes of one at or above it; -1 is the world. */
+/** Returns the transform from a node to a node at or above it; -1 is the world. */
 glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     glm::dmat4 above_from_node(1);
     for (int i = node; i != above; i = scene.nodes[static_cast<size_t>(i)].parent)
@@ -122,7 +122,7 @@ std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file) {
     using Key = std::tuple<std::filesystem::path, std::filesystem::file_time_type, uintmax_t>;
     static std::mutex mutex;
     static std::map<Key, std::weak_ptr<const Scene>> scenes;
-    std::error_code none;  // what is wrong with a file is readScene()'s to find
+    std::error_code none;  // readScene() reports errors of the file
     const Key key(std::filesystem::weakly_canonical(file, none), std::filesystem::last_write_time(file, none),
                   std::filesystem::file_size(file, none));
     const std::lock_guard alone(mutex);

@@ -14,15 +14,15 @@ struct Node {
     std::string name;                ///< Unique: the file's, else its mesh's, else "node_3".
     int parent = -1;                 ///< Index of a node, -1 at the root.
     glm::dmat4 parent_from_node{1};  ///< At the root: world_from_node, with the turn to z-up.
-    glm::dvec3 scale{1};             ///< As given beside translation and rotation; 1 with a matrix.
+    glm::dvec3 scale{1};             ///< The scale given with translation and rotation; 1 for a matrix.
 };
 
-/** A scene file: immutable geometry, and the tree that says which objects move together. */
+/** A scene file: immutable geometry, and the tree of nodes that defines which objects move together. */
 struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
     std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
-    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 but for instances and the visuals of SDF.
+    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 except for instances and visuals.
     glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
     std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
 };
@@ -33,28 +33,28 @@ struct Part {
     glm::dmat4 body_from_object{1};  ///< Body: the node without its rotation, axes turned like the world's, scale kept.
 };
 
-/** Reads a scene: .gltf or .glb, whose y-up is turned to z-up, (x, y, z) of the file being (x, -z, y) of the world;
- *  .world or .sdf, which is z-up, by the component library sdf.
- *  Throws types::ConfigError for whatever is wrong with the file; what was left out is in Geometry::notices. */
+/** Reads a scene. .gltf or .glb is y-up and is turned to z-up: (x, y, z) of the file is (x, -z, y) of the world.
+ *  .world, .sdf or .urdf is z-up and is read by the component library sdf.
+ *  Throws types::ConfigError for any error in the file. Geometry::notices lists what was omitted. */
 Scene readScene(const std::filesystem::path& file);
 
 using SceneReader = Scene (*)(const std::filesystem::path& file);
-/** Makes readScene know files of an extension, ".sdf": for programs that are linked with a reader. */
+/** Adds a format by its extension, such as ".sdf", to readScene(): for programs that are linked with a reader. */
 void addFormat(const std::string& extension, SceneReader reader);
 
-/** The same, of which all who hold the scene of a file have one, unless the file has changed meanwhile. */
+/** Reads a scene like readScene(). All holders of a file's scene share one, unless the file has changed in between. */
 std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file);
 
-/** ".glb" of "Harbour.GLB". */
+/** Returns the extension in lower case: ".glb" for "Harbour.GLB". */
 std::string extensionOf(const std::filesystem::path& file);
 
-/** The geometry of `readScene`. */
+/** Returns the geometry of readScene(). */
 types::GeometryPtr loadScene(const std::filesystem::path& file);
 
-/** True when each of its numbers is. */
+/** Returns true if all numbers of the matrix are finite. */
 bool isFinite(const glm::dmat4& matrix);
 
-/** Index of the node of that name, -1 for none. */
+/** Returns the index of the node with that name, -1 if there is none. */
 int findNode(const Scene& scene, const std::string& name);
 
 /** What a body that has the node's place makes of the node: scale, shear, and the turn to z-up. */
@@ -63,9 +63,9 @@ glm::dmat4 bodyFromNode(const Scene& scene, int node);
 /** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
 
-/** Where a point of a node is in the axes of a body: of `body`, an index of a node at or above it, or of the world for
- *  -1. The point is given in the node's axes, which are the body's where neither is turned, without scale [m]. Not
- *  finite where the node is scaled to nothing and the point is not its origin. */
+/** Returns a point of a node in the axes of a body. `body` is the index of a node at or above `node`, or -1 for the
+ *  world. The point is given in the node's axes, without scale [m]; they are the body's axes where neither is turned.
+ *  The result is not finite if the node is scaled to zero and the point is not its origin. */
 glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point);
 /** The same of a node that is where a matrix has it. */
 glm::dvec3 placeIn(const Scene& scene, int node, const glm::dmat4& body_from_node, const glm::dvec3& point);

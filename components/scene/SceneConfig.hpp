@@ -15,7 +15,7 @@ namespace insonify::scene {
 
 using types::Mount;
 
-/** A point target: what gives an echo and is too small to be resolved, fixed in the world or on a node. */
+/** A point target: an object that gives an echo and is too small to be resolved, fixed in the world or on a node. */
 struct TargetConfig {
     std::string name;
     std::optional<glm::dvec3> position;
@@ -25,13 +25,13 @@ struct TargetConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"name", "", "of the target, which no other has"}, self.name);
+        visit(Field{"name", "", "of the target, unique"}, self.name);
         visit(Field{"position", "m",
                     "in the world; with attached_to in the node's axes, which are the world's where the node is not "
                     "turned, absent: the node's origin",
                     -1e7, 1e7},
               self.position);
-        visit(Field{"attached_to", "", "node with which the target moves; absent: it stands still"}, self.attached_to);
+        visit(Field{"attached_to", "", "node with which the target moves; absent: it is fixed"}, self.attached_to);
         visit(Field{"strength_db", "dB re 1 m^2", "target strength, the same from all sides", -3000, 200},
               self.strength_db);
     }
@@ -56,7 +56,7 @@ struct MosaicConfig {
     bool operator==(const MosaicConfig&) const = default;
 };
 
-/** The sea floor of a survey, read as the vehicle comes. */
+/** The sea floor of a survey, read around the vehicle as it moves. */
 struct BathymetryConfig {
     std::string file;
     std::optional<double> easting, northing;
@@ -78,15 +78,11 @@ struct BathymetryConfig {
               self.northing);
         visit(Field{"band", "1", "of the file", 1, 1000}, self.band);
         visit(Field{"positive_down", "", "true: the file has depths; false: elevations"}, self.positive_down);
-        visit(Field{"reach", "m", "how far about the vehicle the floor is there at least: the sonar's range", 1, 1e5},
+        visit(Field{"reach", "m", "min distance around the vehicle to which the floor reaches: the sonar's range", 1,
+                    1e5},
               self.reach);
-        visit(Field{"tile", "1", "posts by which the part that is there grows on each side when it is read anew", 1,
-                    2048},
-              self.tile);
-        visit(Field{"map", "",
-                    "how strong the floor's echo is, or of what it is, from place to place; absent: everywhere "
-                    "the same"},
-              self.map);
+        visit(Field{"tile", "1", "posts of a tile along each side: the floor is read by tiles", 1, 2048}, self.tile);
+        visit(Field{"map", "", "map of the floor's echo strength or material; absent: the same everywhere"}, self.map);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
@@ -107,39 +103,34 @@ struct SceneConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(
-            Field{
-                "file", "",
-                "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent beside gazebo or "
-                "bathymetry"},
-            self.file);
+        visit(Field{"file", "",
+                    "scene: .gltf, .glb, .world, .sdf or .urdf, relative to the deployment; may be absent with gazebo "
+                    "or bathymetry"},
+              self.file);
         visit(
             Field{"gazebo", "",
                   "a world that Gazebo runs, whose models are the scene, in the place of file; absent: what file has"},
             self.gazebo);
-        visit(Field{"bathymetry", "",
-                    "the sea floor of a survey, of which the part around the vehicle is there; absent: "
-                    "what file has"},
+        visit(Field{"bathymetry", "", "the sea floor of a survey, read around the vehicle; absent: what file has"},
               self.bathymetry);
-        visit(Field{"placement", "", "where the scene of file or gazebo lies in the world; absent: as it has itself"},
+        visit(Field{"placement", "", "place of the scene of file or gazebo in the world; absent: the scene's own"},
               self.placement);
         visit(Field{"scale", "1",
-                    "by name of a node: how many times as large it and what is below it are, about its origin", 1e-3,
+                    "by name of a node: factor of the size of the node and of what is below it, about its origin", 1e-3,
                     1e3},
               self.scale);
         visit(Field{"mount", "", "the sonar in the body"}, self.mount);
         visit(Field{"water_surface", "m", "z of the water surface in the world; absent: none"}, self.water_surface);
         visit(Field{"pose_timeout", "s",
-                    "age of the newest pose, of the body and of each node that has a connection, from which there is "
-                    "none; absent: 1 in realtime, else none",
+                    "max age of the newest pose, of the body and of each connected node; absent: 1 in realtime, else "
+                    "no limit",
                     1e-3, 1e6},
               self.pose_timeout);
-        visit(
-            Field{"extrapolate", "s",
-                  "how far a sonar carries its pose on by its velocities to the time of its ping, at most; absent: it "
-                  "is used as it is",
-                  1e-3, 10},
-            self.extrapolate);
+        visit(Field{"extrapolate", "s",
+                    "max time by which a sonar extrapolates its pose with its velocities to its ping; absent: the pose "
+                    "is used as it is",
+                    1e-3, 10},
+              self.extrapolate);
         visit(Field{"materials", "", "acoustic values by name of a material or model, over those of the file"},
               self.materials);
         visit(Field{"materials_by_name", "",

@@ -23,7 +23,7 @@ constexpr std::string_view time_ending = ".time";
 constexpr const char* unusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
-/** The sonar's velocities, of those of the body that carries it. */
+/** Sets the sonar's velocities from the velocities of the body that carries it. */
 void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) {
     const glm::dvec3& turn = body.angular_velocity;
     sonar.velocity = body.velocity + glm::normalize(body.orientation) * glm::cross(turn, mount.position);
@@ -119,7 +119,7 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     try {
         if (findNode(*load(), node) < 0) return nullptr;
     } catch (const types::ConfigError&) {
-        // check() tells what is wrong with the file; the port may well be right
+        // check() reports the errors of the file; the port may be valid
     }
     const std::string doc = "place of " + node + " in the world";
     auto made = std::make_unique<framework::InputPort<types::Pose>>(this, port, doc, framework::Need::Optional);
@@ -179,7 +179,8 @@ std::vector<std::string> SceneTask::notices() const {
     return all;
 }
 
-/** How the scene lies, for poses of others, whose frame may be another, and for a scene that is placed. */
+/** Describes the scene's orientation if a connected task has its own world frame for the poses, or if the scene is
+ *  placed. */
 std::string SceneTask::layText(const Scene& scene) const {
     const auto given = framework::upstreamValue(pose, {"world_frame"});
     const std::string* const name = given ? std::get_if<std::string>(&*given) : nullptr;
@@ -263,10 +264,10 @@ double SceneTask::poseTimeout() const {
     return config->pose_timeout.value_or(on_wall ? 1 : std::numeric_limits<double>::infinity());
 }
 
-/** A quarter of the timeout: so much later than it is, it is noticed at most. */
+/** Returns a quarter of the timeout, the max delay until the timeout is noticed [s]. */
 double SceneTask::wakeAfter() const { return std::isfinite(poseTimeout()) ? poseTimeout() / 4 : 0; }
 
-/** Stale as well: a stamp far ahead, as after the clock was set back. */
+/** A stamp far ahead of the clock, as after the clock was set back, is stale too. */
 std::string SceneTask::staleness() const {
     const auto stale = [this](types::Time newest) {
         const double age = (now() - newest).seconds();
@@ -275,12 +276,11 @@ std::string SceneTask::staleness() const {
     const auto text = [this](const auto& port, types::Time newest, types::Time arrived) {
         const double behind = (arrived - newest).seconds();
         const bool comes = (now() - arrived).seconds() <= poseTimeout();
-        return fmt::format("{}: no pose of the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
-                           comes
-                               ? fmt::format("; those that come have stamps {:.3g} s {} this clock; where they are of "
-                                             "another clock, set `stamp: arrival` in the task that reads them",
-                                             std::abs(behind), behind > 0 ? "behind" : "ahead of")
-                               : "");
+        return fmt::format("{}: no pose in the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
+                           comes ? fmt::format("; the poses that arrive have stamps {:.3g} s {} this clock; if they "
+                                               "are of another clock, set `stamp: arrival` in the task that reads them",
+                                               std::abs(behind), behind > 0 ? "behind" : "ahead of")
+                                 : "");
     };
     if (stale(newest_)) return text(pose, newest_, arrived_);
     for (const Movable& movable : movables_)
@@ -331,7 +331,7 @@ void SceneTask::updateHook() try {
     error(failure.what());
 }
 
-/** Takes the newest pose of each movable; false when one was unusable, which leaves that node where it was. */
+/** Takes the newest pose of each movable. Returns false if one was unusable, which leaves that node at its place. */
 bool SceneTask::readMovables() {
     bool good = true;
     types::Pose sample;
@@ -427,7 +427,8 @@ void SceneTask::cleanupHook() {
 }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<SceneTask>("scene::SceneTask", "holds a scene and says what the sonar has before it at each pose");
+    registry.add<SceneTask>("scene::SceneTask",
+                            "holds a scene and publishes what is in front of the sonar at each pose");
 }
 
 }  // namespace insonify::scene

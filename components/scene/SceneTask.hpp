@@ -23,24 +23,28 @@
 
 namespace insonify::scene {
 
-/** Holds a scene and says, for each pose of the vehicle, what the sonar has before it.
+/** Holds a scene and publishes, for each pose of the vehicle, a snapshot of what the sonar has in front of it.
  *
  *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
  *  In: `<animation>.time` for any animation of the file that a connection names: time within the animation [s], in
  *  place of the time since the start of the run. The newest is taken; it does not trigger.
  *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
- *  the node's place in the world, instead of its translation and rotation in the file; axes turned like the world's,
- *  scale kept, nodes below move along. The newest is taken; it does not trigger. Before the first the node is where the
- *  file has it. Out: `snapshot`, sonar in the world (body times `mount`), shared geometry, moved objects,
- *  point targets where they are by then: one on a node moves with it.
+ *  the node's place in the world, which replaces its translation and rotation in the file. Its axes are turned like
+ *  the world's; its scale stays; nodes below it move along. The newest pose is taken; it does not trigger. Before the
+ *  first pose the node is at its place in the file.
+ *  Out: `snapshot`, with the sonar in the world (body times `mount`), shared geometry, moved objects, and point targets
+ *  at their current places. A target on a node moves with the node.
  *
- *  A pose that is not finite, or whose orientation has no length, is dropped: RunTimeError until the next good one. So
- *  it is when no pose of the body, or of a node that a connection names, comes for `pose_timeout`, by their stamps, or
- *  one comes that is as old or far ahead of the clock: there is no snapshot then. A run that ends so has not failed:
- *  who sent the poses may have gone home. Waiting for the body's first pose is no error: it is told once. In realtime
- * on the wall clock a timeout that is not given is 1 s; otherwise there is none. With `extrapolate` the snapshot has
- * the sonar's velocities, by which the sonar's task carries it on to its ping. With `bathymetry` the geometry has the
- *  floor about the sonar, and is another one each time that more of it is read. */
+ *  A pose that is not finite, or whose orientation has zero length, is dropped; the task is in RunTimeError until the
+ *  next valid pose. The task is also in RunTimeError, and writes no snapshot, when the newest pose of the body or of a
+ *  connected node is older than `pose_timeout` by its stamp, or its stamp is as far ahead of the clock (at least 1 s).
+ *  A run that ends in this state has not failed: the sender of the poses may have stopped. Waiting for the body's first
+ *  pose is no error; it is reported once. The default timeout is 1 s in realtime on the wall clock, otherwise there is
+ *  none.
+ *
+ *  With `extrapolate` the snapshot has the sonar's velocities, with which the sonar's task extrapolates the pose to the
+ *  time of its ping. With `bathymetry` the geometry includes the floor around the sonar, and is replaced when more of
+ *  it is read. */
 class SceneTask final : public framework::TaskContext, public framework::Waits, public framework::Divisible {
 public:
     using TaskContext::TaskContext;
@@ -63,9 +67,9 @@ private:
     void errorHook() override { updateHook(); }
     void cleanupHook() override;
 
-    /** Why there is no pose to go by, empty when there is one. */
+    /** Returns why there is no usable pose, or an empty string if there is one. */
     std::string staleness() const;
-    /** Without a pose of late: tells that it waits for the first, or is in error. */
+    /** Handles a missing pose: reports once that the task waits for the first one, or enters the error state. */
     void lackPose(const std::string& why);
     double poseTimeout() const;  ///< [s]; infinite: none.
 
@@ -76,7 +80,7 @@ private:
         int node = -1;  ///< Index into Scene::nodes.
         std::vector<Part> parts;
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
-        types::Time newest;                         ///< Stamp of that pose; the start before the first.
+        types::Time newest;                         ///< Stamp of that pose; the start time before the first.
         types::Time arrived;                        ///< When that pose came; the start before the first.
         glm::dmat4 rate{0};                         ///< Of world_from_body, by the pose or the one before [1/s].
     };
@@ -89,13 +93,13 @@ private:
     };
 
     std::shared_ptr<const Scene> load() const;
-    /** What file or Gazebo have, placed and scaled; null without them. */
+    /** Returns the models of the file or of Gazebo, placed and scaled; null if neither is configured. */
     std::shared_ptr<const Scene> loadModels() const;
-    /** Asks Gazebo anew where it has not answered before. */
+    /** Loads the scene again if Gazebo has not answered before. */
     std::shared_ptr<const Scene> loadToRun();
     std::string layText(const Scene& scene) const;
     std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
-    /** Those of the configuration, their tables read; what is wrong with them goes to `diagnostics`. */
+    /** Returns the configured materials with their tables read. Adds errors to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
     bool readMovables();
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
@@ -111,12 +115,12 @@ private:
     mutable std::string scene_file_;
     mutable std::optional<GazeboConfig> scene_gazebo_;
     mutable std::optional<types::ConfigError>
-        gazebo_failure_;  ///< Why scene_gazebo_ is not there; kept, for it has cost a wait.
+        gazebo_failure_;  ///< Why scene_gazebo_ could not be loaded. It is kept because asking again would wait again.
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
-    std::string lay_;                                ///< How the scene lies; empty: as everywhere.
-    mutable bool scene_has_survey_ = false;          ///< Whether the floor's material is in it.
-    mutable std::optional<MosaicConfig> scene_map_;  ///< The classes of its mosaic are among the materials.
+    std::string lay_;                                ///< How the scene is oriented; empty if it need not be reported.
+    mutable bool scene_has_survey_ = false;          ///< Whether scene_ has the floor's material.
+    mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;       ///< Outer nodes before inner ones, once configured.
@@ -130,13 +134,13 @@ private:
     framework::SamplePool<types::Snapshot> pool_;
     types::Time newest_;                      ///< Stamp of the newest usable pose; the start before the first.
     types::Time arrived_;                     ///< When that pose came; the start before the first.
-    types::RecurringDiagnostic odd_lengths_;  ///< Of the body's quaternions.
+    types::RecurringDiagnostic odd_lengths_;  ///< Reports quaternions of the body that are not of unit length.
     bool newest_came_ = false;                ///< A pose of the body has come since the start.
-    bool waiting_is_told_ = false;            ///< That none has.
-    std::atomic<bool> is_stale_ = false;      ///< In error for want of poses, not for what is wrong with one.
+    bool waiting_is_told_ = false;            ///< Whether waiting for the first pose has been reported.
+    std::atomic<bool> is_stale_ = false;      ///< In error because no pose came, not because a pose was invalid.
 };
 
-/** Makes the tasks of this folder known to deployments. */
+/** Registers the tasks of this folder for deployments. */
 void registerTasks(framework::Registry& registry);
 
 }  // namespace insonify::scene

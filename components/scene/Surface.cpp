@@ -9,14 +9,14 @@
 namespace insonify::scene {
 namespace {
 
-/** Coordinates beyond are taken for damage: their squares leave the range of float [m]. */
+/** Max coordinate: larger values are treated as damage, because their squares exceed the range of float [m]. */
 constexpr float max_coordinate = 1e15f;
 
 bool isUsable(glm::vec3 p) {
     return std::abs(p.x) < max_coordinate && std::abs(p.y) < max_coordinate && std::abs(p.z) < max_coordinate;
 }
 
-/** `to` grows to `size` with `filler`, then takes `from`; nothing happens while both are empty. */
+/** Extends `to` to `size` with `filler`, then appends `from`. Does nothing while both are empty. */
 template <class T>
 void appendFilled(std::vector<T>& to, const std::vector<T>& from, size_t size, T filler) {
     if (to.empty() && from.empty()) return;
@@ -24,14 +24,14 @@ void appendFilled(std::vector<T>& to, const std::vector<T>& from, size_t size, T
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/** Twice the signed area of a triangle in uv, negative where the map is mirrored. */
+/** Returns twice the signed area of a triangle in uv, negative if the map is mirrored. */
 float uvArea(const Surface& surface, const uint32_t* corner) {
     const glm::vec2 a = surface.uvs[corner[1]] - surface.uvs[corner[0]];
     const glm::vec2 b = surface.uvs[corner[2]] - surface.uvs[corner[0]];
     return a.x * b.y - a.y * b.x;
 }
 
-/** dP/du of a triangle times the size of its uv area, so that large triangles weigh more. */
+/** Returns dP/du of a triangle times the size of its uv area, so that large triangles have more weight. */
 glm::vec3 alongU(const Surface& surface, const uint32_t* corner) {
     const glm::vec3 edge_a = surface.positions[corner[1]] - surface.positions[corner[0]];
     const glm::vec3 edge_b = surface.positions[corner[2]] - surface.positions[corner[0]];
@@ -41,7 +41,7 @@ glm::vec3 alongU(const Surface& surface, const uint32_t* corner) {
     return uvArea(surface, corner) < 0 ? -along : along;
 }
 
-/** Doubles vertices used by mirrored and unmirrored triangles; returns which vertices are mirrored. */
+/** Duplicates vertices used by both mirrored and unmirrored triangles. Returns which vertices are mirrored. */
 std::vector<bool> separateMirrored(Surface& surface) {
     const size_t count = surface.positions.size();
     constexpr uint32_t none = ~0u;
@@ -71,7 +71,8 @@ std::vector<bool> separateMirrored(Surface& surface) {
     return mirrored;
 }
 
-/** The part of `along` at right angles to the normal, or any such direction when there is none. */
+/** Returns the part of `along` that is perpendicular to the normal, or any perpendicular direction if that part is
+ *  zero. */
 glm::vec3 tangentOf(glm::vec3 along, glm::vec3 normal) {
     const glm::vec3 flat = along - normal * glm::dot(normal, along);
     const float length = glm::length(flat);

@@ -9,7 +9,7 @@
 
 namespace insonify::scene {
 
-/** Triangles of one material, as they come from a file: three vertices each, in parallel arrays. */
+/** Triangles of one material as read from a file: three vertices each, in parallel arrays. */
 struct Surface {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
@@ -20,10 +20,10 @@ struct Surface {
     std::vector<uint32_t> indices;
 };
 
-/** How many triangles were left out of surfaces, and why. */
+/** Numbers of triangles that were dropped, by reason. */
 struct DroppedTriangles {
-    size_t bad = 0;    ///< With a vertex that is not a finite number.
-    size_t empty = 0;  ///< Of no area.
+    size_t bad = 0;    ///< Triangles with a vertex that is not a finite number.
+    size_t empty = 0;  ///< Triangles without area.
 
     void addTo(std::vector<std::string>& notices) const;
 };
@@ -32,8 +32,8 @@ struct DroppedTriangles {
  *  Triangles without area stay where the surface has `numbers`, for a pose may open them. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
-/** Calls `use(a, b, c, d)` for each cell of a grid whose vertices stand row by row: a and b are of one row, c and d
- *  those beyond them in the next. */
+/** Calls `use(a, b, c, d)` for each cell of a grid whose vertices are stored row by row. a and b are neighbours in one
+ *  row, c and d the vertices opposite them in the next row. */
 template <class Use>
 void forEachCell(size_t columns, size_t rows, Use&& use) {
     const auto stride = static_cast<uint32_t>(columns);
@@ -44,20 +44,20 @@ void forEachCell(size_t columns, size_t rows, Use&& use) {
         }
 }
 
-/** Adds a surface to a mesh as one more cluster, still without bounds. */
+/** Adds a surface to a mesh as one more cluster, without bounds yet. */
 void appendSurface(const Surface& surface, int material, types::Mesh& mesh);
 
-/** Fills the arrays that only some surfaces of a mesh have up to the number of its positions. */
+/** Extends the arrays that only some surfaces of a mesh have to the number of its positions. */
 void fillAttributes(types::Mesh& mesh);
 
-/** "<what>: <number>" where there are any. */
+/** Adds "<what>: <number>" to the notices unless the number is 0. */
 void addCount(size_t number, const char* what, std::vector<std::string>& notices);
 
-/** Gives every triangle its own three vertices with the normal of its plane. */
+/** Gives each triangle three vertices of its own with the normal of its plane. */
 void makeFlatNormals(Surface& surface);
 
-/** Tangents along growing u from positions, normals and uvs; w says that -dP/dv is w cross(normal, tangent), as glTF
- *  means it. A vertex between triangles whose uvs are mirrored is doubled. */
+/** Makes tangents along increasing u from positions, normals and uvs. As in glTF, -dP/dv is w cross(normal, tangent). A
+ *  vertex between triangles whose uvs are mirrored is duplicated. */
 void makeTangents(Surface& surface);
 
 }  // namespace insonify::scene

@@ -13,12 +13,12 @@
 namespace insonify::scene {
 namespace {
 
-/** A class as it is written; none where it is not a whole number from 0 to 254. */
+/** Returns the class of a text; none if it is not a whole number from 0 to 254. */
 std::optional<uint8_t> valueOf(const std::string& text) {
     int value = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 254 ||
-        text != std::to_string(value))  // 1 and 01 would be one class
+        text != std::to_string(value))  // 1 and 01 would be the same class
         return {};
     return static_cast<uint8_t>(value);
 }
@@ -76,7 +76,7 @@ types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int hei
     map.materials = std::move(materials);
     map.classes.reserve(values.size());
     for (const float value : values) {
-        const auto known = std::isnan(value) ? numbers.end() : numbers.find(value);  // NaN is equal to any key
+        const auto known = std::isnan(value) ? numbers.end() : numbers.find(value);  // NaN equals any key
         map.classes.push_back(known == numbers.end() ? types::SurfaceMap::no_class : known->second);
     }
     return map;

@@ -11,14 +11,14 @@
 
 namespace insonify::scene {
 
-/** What the values of a map on a surface mean: decibels, between two values of which it is linear, or classes. */
+/** The meaning of a surface map's values: decibels, interpolated linearly between two values, or classes. */
 struct MapValues {
-    static constexpr double max_db = 40;  ///< Of a map, above its surface's material [dB].
+    static constexpr double max_db = 40;  ///< Max of a map, above the material of its surface [dB].
     static constexpr size_t max_classes = 16;
 
-    std::vector<double> decibels;                ///< At the two `values` [dB].
-    std::vector<double> values{0, 255};          ///< Beyond them it is as at them.
-    std::map<std::string, std::string> classes;  ///< Names of sediments, matter or materials by whole values.
+    std::vector<double> decibels;                ///< Strengths at the two `values` [dB].
+    std::vector<double> values{0, 255};          ///< The strength is constant beyond them.
+    std::map<std::string, std::string> classes;  ///< Names of sediments, matter or materials by integer value.
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -33,20 +33,20 @@ struct MapValues {
               self.classes);
     }
     void check(types::Diagnostics& diagnostics) const;
-    /** Factor of the intensity at a value; 1 where that is NaN [1]. */
+    /** Returns the factor of the intensity at a value [1]; 1 for NaN. */
     float strengthAt(double value) const;
-    /** Largest factor that a map of these has [1]. */
+    /** Returns the max factor of a map with this meaning [1]. */
     float maxStrength() const;
     bool operator==(const MapValues&) const = default;
 };
 
-/** A map of `width` x `height` values, rows from the top; NaN: of the surface's own material. `materials`: of each
- * class, in the order of MapValues::classes. */
+/** Returns a map of `width` x `height` values in rows from the top; NaN stands for the surface's own material.
+ *  @param materials of each class, in the order of MapValues::classes. */
 types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int height, const MapValues& meaning,
                                std::vector<int> materials);
 
-/** The material of each class: that of the geometry of this name, or else one that is added, of the sediment or matter.
- *  A name that is none of these is a diagnostic at `path` and the class. */
+/** Returns the index of each class's material. A name refers to a material of the geometry, or else to a sediment or
+ *  matter, for which a material is added. Any other name is a diagnostic at `path` and the class. */
 std::vector<int> materialsOf(const MapValues& meaning, const std::string& path, types::Geometry& geometry,
                              types::Diagnostics& diagnostics);
 

@@ -13,7 +13,7 @@ std::atomic<SurveyOpener>& opener() {
     return opener;
 }
 
-/** That of the component library. */
+/** Returns the opener of the component library. */
 auto* libraryOpener(const std::filesystem::path& file) try {
     return loader::load("survey").entry<Survey*(const std::filesystem::path&, int)>("insonify_open_survey");
 } catch (const types::ConfigError& error) {

@@ -20,31 +20,32 @@ struct PostWindow {
     friend bool operator==(const PostWindow&, const PostWindow&) = default;
 };
 
-/** Why a survey cannot be read on. */
+/** The reason why a survey cannot be read any further. */
 class SurveyError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/** A sea floor as it was surveyed: elevations at posts of a grid on a map, in a file that is read by blocks. Only what
- * is asked for is read, so a file, or the files that a mosaic names, may be larger than memory. */
+/** A surveyed sea floor: elevations at posts of a grid on a map, in a file that is read by blocks. Only the requested
+ *  windows are read, so a file, or the files of a mosaic, may be larger than memory. */
 class Survey {
 public:
     virtual ~Survey() = default;
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    /** From one post to the next, east and north; north is negative where rows go south, as they mostly do [m]. */
+    /** Returns the distance from one post to the next, east and north [m]. North is usually negative: most files store
+     *  rows from north to south. */
     glm::dvec2 spacing() const { return spacing_; }
-    /** Unit of its values, as the file names it; empty: it names none. */
+    /** Returns the unit of the values as the file names it; empty if the file names none. */
     const std::string& unit() const { return unit_; }
-    /** Easting and northing of a post, whose numbers need not be whole [m]. */
+    /** Returns the easting and northing of a post [m]. Column and row may be fractions. */
     glm::dvec2 place(double column, double row) const { return first_ + spacing_ * glm::dvec2(column, row); }
-    /** Column and row of an easting and northing. */
+    /** Returns the column and row at an easting and northing. */
     glm::dvec2 postAt(const glm::dvec2& place) const { return (place - first_) / spacing_; }
 
-    /** Values of a window, row by row, as the file has them [m]; NaN where it has none. Throws SurveyError with the
-     *  reason. */
+    /** Returns the values of a window, row by row, as they are in the file [m]; NaN where the file has none. Throws
+     *  SurveyError with the reason. */
     virtual std::vector<float> read(const PostWindow& window) const = 0;
 
 protected:
@@ -55,11 +56,11 @@ protected:
 
 using SurveyOpener = std::unique_ptr<Survey> (*)(const std::filesystem::path& file, int band);
 
-/** Opens a band of a file, by the component library survey. Throws types::ConfigError when that is absent, or the file
- * is none, lies in degrees, or is turned against north. */
+/** Opens a band of a file by the component library survey. Throws types::ConfigError if the library is absent, or if
+ *  the file is not a survey, is in degrees, or is rotated against north. */
 std::unique_ptr<Survey> openSurvey(const std::filesystem::path& file, int band);
 
-/** Makes openSurvey do so by another function: for programs that are linked with it. */
+/** Replaces the opener that openSurvey() uses, for programs that are linked with their opener. */
 void setSurveyOpener(SurveyOpener opener);
 
 }  // namespace insonify::scene

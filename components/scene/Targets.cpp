@@ -26,7 +26,7 @@ std::string unknown(const Scene& scene, const std::string& node) {
 
 bool isFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/** The target on a node, or why it cannot be there. */
+/** Places the target on a node, or returns why it cannot be there. */
 std::string attach(const Scene& scene, const TargetConfig& config, const std::vector<int>& moving,
                    PlacedTarget& target) {
     const int node = findNode(scene, config.attached_to);
@@ -40,8 +40,7 @@ std::string attach(const Scene& scene, const TargetConfig& config, const std::ve
     const bool placed = isFinite(target.in_world) &&
                         std::ranges::all_of(target.carriers, [](const auto& one) { return isFinite(one.place); });
     return placed ? ""
-                  : fmt::format("is {}, which is scaled to nothing and has no axes; leave position out",
-                                config.attached_to);
+                  : fmt::format("is {}, which is scaled to nothing and has no axes; omit position", config.attached_to);
 }
 
 }  // namespace

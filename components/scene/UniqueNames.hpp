@@ -7,7 +7,7 @@
 
 namespace insonify::scene {
 
-/** Names of which no two are the same: the second "buoy" is "buoy_2". */
+/** Makes names unique: the second "buoy" becomes "buoy_2". */
 class UniqueNames {
 public:
     std::string add(const std::string& name) {

@@ -1,4 +1,4 @@
-// The component library sdf: what a scene loads whose file is in SDF.
+// The component library sdf: reads scenes from SDF files.
 #include "components/loader/Interface.hpp"
 #include "components/sdf/Sdf.hpp"
 

@@ -52,7 +52,7 @@ AcousticValue valueOf(const std::string& text) {
     return text;
 }
 
-/** The link or nested model of `model` that holds what is called `name` there; empty when there is none. */
+/** Returns the link or nested model of `model` that contains the entity `name`; empty if there is none. */
 std::string partOf(const ::sdf::Model& model, const std::string& name) {
     for (uint64_t i = 0; i < model.LinkCount(); ++i)
         if (model.LinkByIndex(i)->Name() == name) return name;  // names of old worlds may hold "::"
@@ -62,7 +62,7 @@ std::string partOf(const ::sdf::Model& model, const std::string& name) {
     return "";
 }
 
-/** For links and nested models that a joint moves: the name in `model` of the link that they hang on. */
+/** Returns, for links and nested models that a joint moves, the name in `model` of the link that carries them. */
 std::map<std::string, std::string> carriersOf(const ::sdf::Model& model) {
     std::map<std::string, std::string> carriers;
     for (uint64_t i = 0; i < model.JointCount(); ++i) {
@@ -117,7 +117,7 @@ public:
         else
             addModel(*root.Model(), "", -1, glm::dmat4(1));
         if (!diagnostics_.empty()) throw types::ConfigError(std::move(diagnostics_));
-        addCount(root.WorldCount() > 1 ? root.WorldCount() - 1 : 0, "worlds left out, the first of the file is read",
+        addCount(root.WorldCount() > 1 ? root.WorldCount() - 1 : 0, "worlds omitted, the first of the file is read",
                  builder_.notices());
         return builder_.take();
     }
@@ -125,12 +125,12 @@ public:
 private:
     void addWorld(const ::sdf::World& world) {
         for (uint64_t i = 0; i < world.ModelCount(); ++i) addModel(*world.ModelByIndex(i), "", -1, glm::dmat4(1));
-        addCount(world.ActorCount(), "actors left out", builder_.notices());
+        addCount(world.ActorCount(), "actors omitted", builder_.notices());
         if (world.Element()->HasElement("state"))
-            builder_.notice("the poses of <state> are not taken, those of the models are");
+            builder_.notice("the poses of <state> are not used, the poses of the models are");
     }
 
-    /** `scope` is the name of what holds the model, with "::" behind it. */
+    /** Adds a model. `scope` is the name of its container, followed by "::". */
     void addModel(const ::sdf::Model& model, const std::string& scope, int parent, const glm::dmat4& world_from_scope) {
         const std::string name = scope + model.Name();
         const glm::dmat4 world_from_model = world_from_scope * poseOf(model, name);
@@ -143,7 +143,7 @@ private:
             if (const auto carrier = carriers.find(part); carrier != carriers.end()) {
                 addPart(partOf(model, carrier->second));
                 const auto known = nodes_.find(name + "::" + carrier->second);
-                if (known != nodes_.end()) below = known->second;  // else it hangs on itself in a circle
+                if (known != nodes_.end()) below = known->second;  // else the attachment is circular
             }
             for (uint64_t i = 0; i < model.LinkCount(); ++i)
                 if (model.LinkByIndex(i)->Name() == part)
@@ -174,7 +174,7 @@ private:
         }
     }
 
-    /** In the frame of what holds it. */
+    /** Returns the pose of a part in the frame of its container. */
     template <class Part>
     glm::dmat4 poseOf(const Part& part, const std::string& name) {
         ignition::math::Pose3d pose;
@@ -219,7 +219,7 @@ private:
     std::filesystem::path file_;
     meshes::WorldBuilder builder_;
     std::map<std::string, int> nodes_;  ///< By name in the file.
-    Urdf urdf_;                         ///< Empty where the file is in SDF.
+    Urdf urdf_;                         ///< Empty if the file is SDF.
     types::Diagnostics diagnostics_;
 };
 

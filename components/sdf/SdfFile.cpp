@@ -22,17 +22,17 @@
 namespace insonify::sdf {
 namespace {
 
-/** More work is refused. One is what libsdformat has with an element, about half a millisecond; besides it compares
- *  what stands in one element with each other, 2000 pairs in the same time. What is included counts each time. */
+/** Max work for one file. One unit is the time that libsdformat takes for an element, about half a millisecond. It also
+ *  compares the children of an element with each other, 2000 pairs per unit. Each include of a file counts. */
 constexpr size_t max_sdf_work = 100'000;
 
-/** Models that include each other deeper are refused. */
+/** Max depth of models that include each other. */
 constexpr size_t max_sdf_depth = 50;
 
-/** Larger files are refused, whatever is in them [bytes]. */
+/** Max size of a file [bytes]. */
 constexpr size_t max_sdf_bytes = size_t{64} << 20;
 
-/** Counts what libsdformat will have to do with a file, and gathers the uris of its includes. */
+/** Counts the work of libsdformat for a file, and collects the uris of its includes. */
 class Work final : public tinyxml2::XMLVisitor {
 public:
     explicit Work(const std::string& xml) {
@@ -58,7 +58,7 @@ class Includes {
 public:
     explicit Includes(const meshes::ModelPaths& paths) : paths_(paths) {}
 
-    /** With a file and all that it includes. */
+    /** Returns the work for a file and all its includes. */
     size_t workOf(const std::filesystem::path& file) {
         if (const auto known = work_.find(file); known != work_.end()) return known->second;
         if (open_.size() == max_sdf_depth)
@@ -77,7 +77,7 @@ public:
 private:
     size_t workOfInclude(const std::string& uri, const std::filesystem::path& from) {
         const auto found = paths_.find(uri, from);
-        size_t most = 0;  // of a model's versions one is read
+        size_t most = 0;  // only one of a model's versions is read
         for (const std::filesystem::path& included : found ? filesOf(*found) : std::vector<std::filesystem::path>()) {
             if (std::ranges::count(open_, included) > 0)
                 throw types::ConfigError(
@@ -102,8 +102,8 @@ private:
     std::map<std::filesystem::path, size_t> work_;
 };
 
-/** Follows the includes of an SDF file, and throws types::ConfigError where libsdformat would follow them until its
- *  stack or its user's patience ends: at a model that includes itself, and at more than may be read. */
+/** Follows the includes of an SDF file. Throws types::ConfigError where libsdformat would overflow its stack or run for
+ *  minutes: at a model that includes itself, and beyond the max work. */
 void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& paths) {
     if (Includes(paths).workOf(std::filesystem::canonical(file)) <= max_sdf_work) return;
     throw types::ConfigError(file.string(), "",
@@ -111,13 +111,13 @@ void checkIncludes(const std::filesystem::path& file, const meshes::ModelPaths& 
                              "14000 in one; divide it, or make one mesh of many shapes");
 }
 
-/** Puts our search into libsdformat's global configuration, the only one that nested includes see. */
+/** Installs the file search in libsdformat's global configuration, the only one that nested includes use. */
 class SearchConfig {
 public:
     SearchConfig(const std::filesystem::path& world, const meshes::ModelPaths& paths,
                  const std::set<std::string>& unreadable)
         : before_(global()) {
-        if (unreadable.empty())  // these come before libsdformat's own search, the callback after it
+        if (unreadable.empty())  // these paths precede libsdformat's own search, the callback follows it
             for (const std::filesystem::path& folder : paths.folders()) global().AddURIPath("model://", folder);
         global().SetFindCallback([&](const std::string& uri) {
             const auto found = paths.find(uri, world);
@@ -136,7 +136,7 @@ private:
     ::sdf::ParserConfig before_;
 };
 
-/** On one line, with one space between words. */
+/** Returns the text in one line, with one space between words. */
 std::string joined(const std::string& text) {
     std::istringstream words(text);
     std::string line;
@@ -144,8 +144,8 @@ std::string joined(const std::string& text) {
     return line;
 }
 
-/** Loads `file`, or `text` in its place where there is one. Libsdformat throws what is no std::exception, and more than
- *  it documents: returns the reason, empty when there is none. */
+/** Loads `file`, or `text` instead if it is not empty. Returns the reason of a failure, empty if there is none.
+ *  Libsdformat may throw objects that are not a std::exception, and more than it documents. */
 std::string load(::sdf::Root& root, const std::filesystem::path& file, const std::string& text, ::sdf::Errors& errors) {
     const ::sdf::ParserConfig& config = ::sdf::ParserConfig::GlobalConfig();
     try {
@@ -160,7 +160,7 @@ std::string load(::sdf::Root& root, const std::filesystem::path& file, const std
     }
 }
 
-/** The file with "__" in the place of each "::"; empty when there is none. */
+/** Returns the file with "__" for each "::"; empty if it has none. */
 std::string withoutColons(const std::filesystem::path& file) {
     std::string text = textOf(file);
     size_t at = text.find("::");
@@ -169,7 +169,7 @@ std::string withoutColons(const std::filesystem::path& file) {
     return text;
 }
 
-/** "Error parsing XML in file [...]: Error=XML_ERROR_PARSING_TEXT ... XMLElement name=pose" in plain words. */
+/** Rewrites "Error parsing XML in file [...]: Error=XML_ERROR_PARSING_TEXT ... XMLElement name=pose" in plain words. */
 std::string plain(const std::string& message) {
     if (!message.starts_with("Error parsing XML")) return message;
     const auto wordAfter = [&message](const std::string& key) {
@@ -195,8 +195,8 @@ std::string withoutColours(std::string line) {
     return line;
 }
 
-/** "Error Code 13: [/sdf/world[...]/uri:a.world:L43]: Msg: Unable to..." or "Error [Param.cc:598]  The value..."; of
- *  other lines, warnings among them, the message stays empty. */
+/** Parses "Error Code 13: [/sdf/world[...]/uri:a.world:L43]: Msg: Unable to..." or "Error [Param.cc:598]  The
+ *  value...". For other lines, warnings among them, the message is empty. */
 types::Diagnostic readLine(const std::string& line) {
     types::Diagnostic diagnostic;
     const auto after = [&line](size_t at) {
@@ -217,7 +217,7 @@ types::Diagnostic readLine(const std::string& line) {
     return diagnostic;
 }
 
-/** Adds a diagnostic that says more than those that are known: not the same again, nor that of an element around. */
+/** Adds a diagnostic unless it repeats a known diagnostic or is that of an enclosing element. */
 void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
     diagnostic.message = plain(diagnostic.message);
     const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
@@ -231,7 +231,7 @@ void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
     if (!diagnostic.message.empty() && std::ranges::none_of(diagnostics, tellsAll)) diagnostics.push_back(diagnostic);
 }
 
-/** Adds what libsdformat printed and what it returned. */
+/** Adds the diagnostics that libsdformat printed and those that it returned. */
 void add(const std::string& console, const ::sdf::Errors& errors, types::Diagnostics& diagnostics) {
     std::istringstream lines(console);
     for (std::string line; std::getline(lines, line);) add(readLine(withoutColours(line)), diagnostics);
@@ -241,7 +241,7 @@ void add(const std::string& console, const ::sdf::Errors& errors, types::Diagnos
             diagnostics);
 }
 
-/** Adds the files of "Unable to read file[/models/vase/model.sdf]". */
+/** Adds the files named in "Unable to read file[/models/vase/model.sdf]". */
 void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>& unreadable) {
     constexpr std::string_view text = "Unable to read file[";
     for (const types::Diagnostic& diagnostic : diagnostics)
@@ -249,7 +249,7 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
             unreadable.insert(diagnostic.message.substr(text.size(), diagnostic.message.rfind(']') - text.size()));
 }
 
-/** Joins those without a place, which say what is wrong, to the first with one, which says where. */
+/** Joins diagnostics without a place, which give the reason, to the first with a place, and throws them. */
 [[noreturn]] void refuse(const std::filesystem::path& file, types::Diagnostics diagnostics) {
     if (diagnostics.empty()) diagnostics.push_back({"", "holds neither a world nor a model of SDF"});
     const auto placed =
@@ -265,19 +265,20 @@ void findUnreadable(const types::Diagnostics& diagnostics, std::set<std::string>
     throw types::ConfigError(std::move(diagnostics));
 }
 
-/** The diagnostics of a world that is read all the same. Gazebo's `model://sun` is a light, and missed by no sonar. */
+/** Adds the diagnostics of a world that was read nevertheless. Gazebo's `model://sun` is a light and does not matter to
+ *  a sonar. */
 void noteDiagnostics(const types::Diagnostics& diagnostics, std::vector<std::string>& notices) {
     bool looked_for_models = false;
     for (const types::Diagnostic& diagnostic : diagnostics) {
         const std::string text = diagnostic.text();
         if (text.find("Unable to find uri[model://sun]") != text.npos) continue;
-        notices.push_back(text + (diagnostic.path.ends_with("/uri") ? "; left out" : ""));
+        notices.push_back(text + (diagnostic.path.ends_with("/uri") ? "; omitted" : ""));
         looked_for_models |= text.find("Unable to find uri[model://") != text.npos;
     }
     if (looked_for_models)
         notices.push_back(
-            "models are looked for next to the world, and in the folders of INSONIFY_MODEL_PATH, which names those "
-            "that hold the folders of the models");
+            "models are searched next to the world, and in the folders of INSONIFY_MODEL_PATH, which contain the "
+            "folders of the models");
 }
 
 }  // namespace
@@ -324,7 +325,7 @@ std::string CerrCapture::take() {
             if (renamed != text) notices.push_back("names are read with \"__\" for \"::\", which libsdformat refuses");
             return root;
         }
-        if (unreadable.size() > known) continue;  // again without the include that costs the whole world
+        if (unreadable.size() > known) continue;  // tries again without the include that prevents reading the world
         if (!renamed.empty() || (renamed = withoutColons(file)).empty()) refuse(file, std::move(diagnostics));
     }
 }

@@ -11,15 +11,15 @@
 
 namespace insonify::sdf {
 
-/** Takes what is written to std::cerr while it lives: libsdformat complains there, and not only on its console.
- *  One at a time; others wait. */
+/** Captures the text written to std::cerr while it exists: libsdformat prints errors there, not only on its console.
+ *  Only one capture exists at a time; the constructor waits for the others. */
 class CerrCapture {
 public:
     CerrCapture();
     ~CerrCapture();
     CerrCapture(const CerrCapture&) = delete;
     CerrCapture& operator=(const CerrCapture&) = delete;
-    /** What came since the last call. */
+    /** Returns the text since the last call. */
     std::string take();
 
 private:
@@ -29,12 +29,12 @@ private:
     std::streambuf* before_;
 };
 
-/** The bytes of a file. Throws types::ConfigError for one that is too large. */
+/** Returns the bytes of a file. Throws types::ConfigError for a file that is too large. */
 std::string textOf(const std::filesystem::path& file);
 
-/** Loads an SDF file with what it includes, or `text` in its place unless that is empty. What libsdformat finds wrong
- * goes to `notices` when there is a world or a model nevertheless, and is thrown as types::ConfigError when there is
- * none. An include that is not found or cannot be read is left out. */
+/** Loads an SDF file with its includes, or `text` instead of the file unless `text` is empty. Diagnostics of
+ *  libsdformat are added to `notices` if there is still a world or a model, otherwise they are thrown as
+ *  types::ConfigError. An include that is missing or unreadable is omitted. */
 ::sdf::Root readSdfFile(const std::filesystem::path& file, const meshes::ModelPaths& paths, CerrCapture& console,
                         std::vector<std::string>& notices, const std::string& text = {});
 

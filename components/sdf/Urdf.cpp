@@ -34,7 +34,8 @@ void addInertia(XMLElement& link) {
     for (const char* const product : {"ixy", "ixz", "iyz"}) inertia->SetAttribute(product, 0);
 }
 
-/** Each link keeps its name and its place: else what is fixed to another becomes part of it. */
+/** Keeps fixed joints, so that each link keeps its name and place: libsdformat would merge links joined by a fixed
+ *  joint. */
 void keepFixedJoints(XMLElement& robot) {
     std::vector<std::string> fixed;
     for (const XMLElement* joint = robot.FirstChildElement("joint"); joint; joint = joint->NextSiblingElement("joint"))

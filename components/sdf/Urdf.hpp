@@ -6,17 +6,18 @@
 
 namespace insonify::sdf {
 
-/** A robot in URDF, as libsdformat takes it. */
+/** A robot in URDF, prepared for libsdformat. */
 struct Urdf {
-    std::string text;  ///< With an inertia for each link that has none, for libsdformat leaves such links out; fixed
-                       ///< joints stay.
-    std::map<std::string, std::vector<std::string>> materials;  ///< Of each link's visuals, by the name of the link.
+    std::string text;  ///< With an inertia for each link that has none, as libsdformat omits links without inertia;
+                       ///< fixed joints stay.
+    std::map<std::string, std::vector<std::string>> materials;  ///< Per link, of its visuals.
 };
 
-/** Whether a file is one of URDF, by its extension. */
+/** Returns whether a file is URDF, by its extension. */
 bool isUrdf(const std::filesystem::path& file);
 
-/** Reads a robot. Throws types::ConfigError for what is no XML, no robot, or a macro file that xacro has to expand. */
+/** Reads a robot. Throws types::ConfigError for text that is not XML, has no robot, or is a macro file that xacro has
+ *  to expand. */
 Urdf readUrdf(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace insonify::sdf

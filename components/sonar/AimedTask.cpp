@@ -15,7 +15,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Makes a pose's quaternion one of unit length. Returns why the pose cannot be used, null where it can. */
+/** Normalises a pose's quaternion. Returns why the pose cannot be used, null where it can. */
 const char* normalisePose(types::Pose& pose) {
     const glm::dvec3& p = pose.position;
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return "the sonar's position is not finite";
@@ -49,7 +49,7 @@ void AimedTask::followSnapshot(const types::Snapshot& scene) {
     if (jumps_.isDue(jumped_))
         warn(
             fmt::format("the sonar has moved {:.4g} m in {:.4g} s, faster than a tenth of the speed of sound, {:.4g} "
-                        "m/s: it is taken as put there, at rest unless its pose has a velocity",
+                        "m/s: it counts as repositioned, at rest unless its pose has a velocity",
                         way, seconds, fastest));
 }
 

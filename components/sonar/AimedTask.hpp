@@ -16,20 +16,22 @@
 
 namespace insonify::sonar {
 
-/** Decides of what the next ping is: when it is, and where the sonar is in which scene.
+/** Takes the scene, the sonar pose and the time of each ping.
  *
- *  There is a ping for each snapshot, at its time and sonar pose; in realtime for the newest. With `given_pose`
- *  connected there is one for each of these poses, in the newest snapshot's scene.
+ *  Each snapshot gives one ping, at its time and sonar pose; in realtime only the newest snapshot does. With
+ *  `given_pose` connected, each pose received there gives one ping, in the newest snapshot's scene.
  *
- *  With `settings` connected there is a ping for each of them, and none else, as the driver of a device asks for it, at
- *  the time of asking in the newest snapshot's scene; they wait for the first snapshot. In realtime the newest of those
- *  that wait counts, and there is no ping for the others. What they name becomes the value of the property of that
- *  name, and stays. Settings that the sonar cannot have lead to RunTimeError, and to no ping.
+ *  With `settings` connected, each sample received there gives one ping and snapshots give none, as the driver of a
+ *  device requests pings. The ping is at the time of the request, in the newest snapshot's scene. Requests wait for the
+ *  first snapshot. In realtime only the newest waiting request is used; the others give no ping. Values in the request
+ *  become the values of the properties with the same names, and stay. Settings that the sonar cannot have lead to
+ *  RunTimeError and no ping.
  *
- *  Refused are a pose that cannot be used (not finite, a quaternion of no length), a snapshot without geometry or one
- *  that moves an object beyond it, and in realtime one whose time is a second ahead of the clock. A quaternion that is
- *  not of unit length is normalised. A sonar that only more than a tenth of the speed of sound takes to its new place
- *  has been put there: a warning reports it, and the ping is made without a velocity from that way. */
+ *  Refuses a pose that cannot be used (not finite, a quaternion of no length), a snapshot without geometry, and a
+ *  snapshot that moves an object outside its geometry. In realtime it also refuses a snapshot whose time is more than a
+ *  second ahead of the clock. A quaternion that is not of unit length is normalised. A sonar that moved faster than a
+ *  tenth of the speed of sound since the last snapshot counts as repositioned. A warning reports it, and the ping gets
+ *  no velocity from that displacement. */
 class AimedTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -37,51 +39,54 @@ public:
     framework::InputPort<types::SnapshotPtr> snapshot{this, "snapshot", "sonar pose and scene at one instant"};
     framework::InputPort<types::Pose> given_pose{
         this, "given_pose",
-        "drives the task in place of snapshots: the sonar in the world for each ping, as `pose` told it",
+        "drives the task in place of snapshots: the sonar in the world for each ping, as recorded from `pose`",
         framework::Need::Optional};
-    framework::InputPort<types::SonarSettings> settings{
-        this, "settings",
-        "drives the task in place of snapshots: one ping for each of these, as it asks, in the newest snapshot's scene",
-        framework::Need::Optional};
-    /** The sonar to render, as configured. */
+    framework::InputPort<types::SonarSettings> settings{this, "settings",
+                                                        "drives the task in place of snapshots: one ping for each "
+                                                        "request, with its settings, in the newest snapshot's scene",
+                                                        framework::Need::Optional};
+    /** Returns the configuration of the sonar to render. */
     virtual SonarConfig sonarConfig() const = 0;
 
 protected:
-    /** Whether the way from the snapshot before is no motion: faster than a tenth of the speed of sound. */
+    /** Returns whether the sonar moved faster than a tenth of the speed of sound since the snapshot before. */
     bool jumped() const { return jumped_; }
     const BinGrid& grid() const { return grid_; }
-    double binWidth() const { return grid_.bin_width; }  ///< Exact, where `bin_duration` of a ping is rounded [m].
+    double binWidth() const { return grid_.bin_width; }  ///< Exact; `bin_duration` of a ping is rounded [m].
     double echoTime() const { return 2 * grid_.range_max / grid_.speed_of_sound; }  ///< To the range and back [s].
-    /** The shortest time between two snapshots so far [s]; infinite before the second. */
+    /** Returns the shortest time between two snapshots so far [s]; infinite before the second. */
     double shortestPeriod() const { return shortest_; }
-    /** The period of the pings in realtime; 0: not known, or not in realtime [s]. */
+    /** Returns the period of the pings in realtime [s]; 0 where it is not known, or not in realtime. */
     double realtimePeriod() const;
 
-    /** Of settings what differs from the configuration: names and YAML of properties, as a fan of beams has them. */
+    /** Returns the settings that differ from the configuration: names and YAML of properties, named as for a fan of
+     *  beams. */
     virtual std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const;
-    /** Where a turning head is to look from the next ping on. */
+    /** Sets the bearing of a turning head from the next ping on. */
     virtual void turnHead(types::Angle /*bearing*/) {}
-    /** Last changes to a snapshot with a valid pose before it is rendered; a reason refuses it. */
+    /** Makes the last changes to a snapshot with a valid pose before it is rendered. Returns the reason for refusing
+     *  it, or null. */
     virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
 
-    /** Forgets all snapshots, for a sonar with another grid. */
+    /** Forgets all snapshots and computes the grid of the current configuration. */
     void resetAim();
-    /** Takes what the next ping is of, if anything is there: aimed(), usedPose() and begun() are of it. */
+    /** Takes the input of the next ping, if there is one, into aimed(), usedPose() and begun(). Returns whether there
+     *  was one. */
     bool takeNext();
-    /** Evaluates it; why it is refused, null where it is not. */
+    /** Evaluates the input of the next ping. Returns the reason for refusing it, or null. */
     const char* refusal();
     types::Snapshot& aimed() { return taken_.scene; }
     const types::Snapshot& aimed() const { return taken_.scene; }
-    const types::Pose& usedPose() const { return taken_.used; }  ///< The sonar in aimed(), as it came.
-    types::Time begun() const { return taken_.begun; }           ///< When it was taken.
-    /** What a ping is of. */
+    const types::Pose& usedPose() const { return taken_.used; }  ///< Pose before normalisation.
+    types::Time begun() const { return taken_.begun; }           ///< Time at which the input was taken.
+    /** Input of one ping. */
     struct Taken {
         types::Snapshot scene;
         types::Pose used;
         types::Time begun;
     };
     const Taken& taken() const { return taken_; }
-    /** Swaps what the next ping is of with another, for a ping that is rendered later than it is taken. */
+    /** Swaps the input of the next ping with another, for a ping that is rendered later than it is taken. */
     void swapTaken(Taken& other) { std::swap(taken_, other); }
 
     void stopHook() override { before_.reset(); }
@@ -92,14 +97,16 @@ private:
         types::Time time;
         glm::dvec3 position;
     };
-    /** Evaluates the time and way since the snapshot before. */
+    /** Updates the periods, and evaluates the displacement since the snapshot before. */
     void followSnapshot(const types::Snapshot& scene);
-    /** The next of `given_pose`, in the newest snapshot's scene. */
+    /** Takes the next pose of `given_pose`, in the newest snapshot's scene. */
     bool takeGiven();
-    /** Takes the scene of a snapshot, in realtime with its sonar where it is by now, as far as it may be carried on. */
+    /** Takes the scene of a snapshot. In realtime its sonar pose is extrapolated to now, within its
+     *  `max_extrapolation`. */
     void takeScene(const types::Snapshot& scene);
     void applySettings(const types::SonarSettings& asked);
-    /** The next settings, in realtime the newest, in the newest snapshot's scene; they wait until there is one. */
+    /** Takes the next settings (in realtime the newest), in the newest snapshot's scene. They wait until there is a
+     *  snapshot. */
     bool takeAsked();
 
     BinGrid grid_;

@@ -6,7 +6,7 @@
 
 namespace insonify::sonar {
 
-/** One beam, and what its first return is. */
+/** One beam, and the detection of its first return. */
 struct AltimeterConfig {
     SonarConfig sonar;
     DetectionConfig detection;
@@ -15,7 +15,7 @@ struct AltimeterConfig {
         sonar.beam_width_deg = sonar.beam_height_deg = 25;
         detection.threshold_db = -20;
     }
-    /** The sonar of one beam, straight ahead. */
+    /** Returns the sonar with its one beam at bearing 0. */
     SonarConfig beam() const;
 
     template <class Self, class V>
@@ -26,11 +26,11 @@ struct AltimeterConfig {
     void check(types::Diagnostics& diagnostics) const { beam().checkBeam(diagnostics); }
 };
 
-/** An altimeter, or an echo sounder: one beam, and how far its first return is.
+/** An altimeter, or an echo sounder: one beam, and the range to its first return.
  *
- *  The beam looks along x of the sonar frame, `beam_width_deg` wide about z and `beam_height_deg` about y: a mount with
- *  `pitch_deg: 90` looks straight down. Out, beside the ping: `range`, that of the first bin that reaches the
- *  threshold, at its middle, in the noiseless ping; NaN where none does. */
+ *  The beam looks along x of the sonar frame. It is `beam_width_deg` wide about z and `beam_height_deg` about y: a
+ *  mount with `pitch_deg: 90` looks straight down. In addition to the ping it writes `range`: the middle of the first
+ *  bin that reaches the threshold, in the noiseless ping; NaN where no bin does. */
 class AltimeterTask final : public PingTask {
 public:
     using PingTask::PingTask;

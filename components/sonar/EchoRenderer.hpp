@@ -17,7 +17,7 @@ class EchoField;
 class PingEffects;
 class RayPaths;
 
-/** Time that a ping spent in a stage: cull, draw, read, deposit, beams. */
+/** Time that a ping spent in one stage [s]. */
 struct Stage {
     const char* name;
     double seconds;
@@ -35,21 +35,21 @@ public:
     /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
      *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
-    /** Switches to the geometry of `meshes`, whose objects deform, and takes their shapes in each ping from now on;
-     *  null: to `geometry`, in which none does. Renderers that draw leave meshes as they are. */
+    /** Switches to the geometry of `meshes`, whose objects deform, and takes their shapes in each ping from then on;
+     *  null: to `geometry`, in which no object deforms. Rasterising renderers ignore deformation. */
     virtual void deform(DeformedMeshes* /*meshes*/, types::GeometryPtr /*geometry*/) {}
-    /** Poses the meshes by a snapshot, before anything of a ping reads them. */
+    /** Poses the meshes by a snapshot, before any part of a ping reads them. */
     virtual void takeShapes(const types::Snapshot& /*snapshot*/) {}
-    /** Forgets all pings, as if it had just been made, with effects that have just been made. Returns false where it
-     *  has to be made again. */
+    /** Forgets all pings, as if the renderer and the effects had just been made. Returns false where a new renderer is
+     *  needed. */
     virtual bool forget() { return false; }
     /** Fills ping.bins, which have their size; adds to `stages`. Allocates nothing after the first ping. */
     virtual void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) = 0;
-    /** Sets the truth that the next pings fill, in their own grid, which it has; null: no truth is recorded. */
+    /** Sets the truth that the next pings fill; its grid is theirs already. Null: no truth is recorded. */
     virtual void setTruth(types::SonarTruth* truth) = 0;
-    /** Returns the field of the last ping, which is to be squared into its bins; null where energies are summed. */
+    /** Returns the field of the last ping, still to be squared into its bins; null where energies are summed. */
     virtual EchoField* field() { return nullptr; }
-    /** Returns the ways of sound in the last ping; null where all are straight. */
+    /** Returns the bent sound paths of the last ping; null where all paths are straight. */
     virtual const RayPaths* bent() const { return nullptr; }
     /** Returns whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
@@ -57,19 +57,19 @@ public:
     virtual std::vector<LeftOut> culled() const { return {}; }
     /** Returns the device: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
-    /** Returns what a user should know of the device; may be empty. */
+    /** Returns a notice about the device for the user; may be empty. */
     virtual std::string notice() const { return {}; }
 };
 
-/** Whether this build has rays. */
+/** Returns whether this build can trace rays. */
 bool haveRays();
 
-/** Ray-traced pings, on the processor, without OpenGL. Threads take beams as they come free. One thread casts a beam's
- *  rays, deposits them and fills its bins, while they are in its cache. Throws std::runtime_error where the build has
- *  no rays, or Embree refuses the scene. */
+/** Makes a renderer that traces rays on the processor, without OpenGL. Threads take beams as they become free. One
+ *  thread traces a beam's rays, deposits them and fills its bins, while they are in its cache. Throws
+ *  std::runtime_error where the build has no rays, or Embree refuses the scene. */
 std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
 
-/** Pings rasterised by OpenGL. Make it, use it and destroy it on one thread, under
+/** Makes a renderer that rasterises pings by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
 std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
                                               const PingEffects& effects);

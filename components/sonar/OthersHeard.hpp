@@ -6,17 +6,17 @@
 
 namespace insonify::sonar {
 
-/** The pulses of other sonars that one sonar has been sent, for as long as they may reach it. */
+/** The pulses of other sonars that one sonar has received messages of, kept while they may arrive at it. */
 class OthersHeard {
 public:
-    static constexpr double memory = 10;  ///< For which a pulse is kept, sound's way over 15 km [s].
+    static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
 
     void add(types::TransmissionPtr sent) {
         if (sent && sent->radiation) sent_.push_back(std::move(sent));
     }
     void clear() { sent_.clear(); }
 
-    /** Gives a snapshot the pulses of which anything may arrive within the range of its sonar, and forgets old ones.
+    /** Gives a snapshot the pulses from which sound may arrive within the range of its sonar, and forgets old pulses.
      *  @param range  of the sonar [m]
      *  @param speed_of_sound  [m/s] */
     void give(types::Snapshot& scene, double range, double speed_of_sound) {

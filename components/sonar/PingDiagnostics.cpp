@@ -15,7 +15,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Without digits of rounding. */
+/** Returns a vector as text, without rounding noise. */
 std::string text(const glm::dvec3& v) {
     const glm::dvec3 rounded = glm::round(v * 1e6) / 1e6 + 0.0;
     return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", rounded.x, rounded.y, rounded.z);
@@ -29,14 +29,14 @@ glm::dvec3 inSonar(const types::Snapshot& scene, const glm::dvec3& point) {
     return glm::conjugate(scene.sonar.orientation) * (point - scene.sonar.position);
 }
 
-/** "heading 90 deg (0: north, positive to the west), 12 deg down" of a direction in the world. */
+/** Returns the look direction in the world as text, "looks towards [0, 1, 0] (yaw 90 deg, 12 deg down)". */
 std::string directionText(const glm::dvec3& ahead) {
     const double down = degrees(std::asin(std::clamp(-ahead.z, -1.0, 1.0)));
     return fmt::format("looks towards {} (yaw {:.4g} deg, {:.4g} deg {})", text(ahead),
                        degrees(std::atan2(ahead.y, ahead.x)), std::abs(down), down >= 0 ? "down" : "up");
 }
 
-/** What a sonar listens to. */
+/** The range, aperture and fan of a sonar. */
 struct Coverage {
     const RenderPlan& plan;
     bool all_round;
@@ -60,7 +60,7 @@ std::string asideText(const RenderPlan& plan, double bearing_deg) {
                        side(high), std::abs(low), side(low));
 }
 
-/** What keeps the sonar from hearing a point, given in its own frame; empty when nothing does that is known here. */
+/** Returns why the sonar receives no echo from a point, given in its own frame; empty when no reason is known here. */
 std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
     const RenderPlan& plan = coverage.plan;
     const double range = glm::length(point);
@@ -74,9 +74,9 @@ std::string hindranceText(const Coverage& coverage, const glm::dvec3& point) {
     return asideText(plan, degrees(angles.azimuth));
 }
 
-/** That no material of an object gives anything back; empty where one does. */
+/** Returns that the material of an object returns no echo; empty where it does. */
 std::string materialText(const SonarConfig& config, const types::Geometry& geometry, uint32_t object) {
-    constexpr float nothing_db = -110;  // under a quantum of the sums in which it is heard
+    constexpr float nothing_db = -110;  // below a quantum of the sums of echoes
     const bool means = config.model == Model::Cerqueira2017;
     std::string name;
     for (const types::Cluster& run : geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)].clusters) {
@@ -87,23 +87,23 @@ std::string materialText(const SonarConfig& config, const types::Geometry& geome
         name = material.name;
         if (!means) name += fmt::format("', of lambert_db {:g}", material.lambert_db);
     }
-    return means ? fmt::format("its material '{}' has reflectivity 0 and gives nothing back", name)
-                 : fmt::format("its material '{} dB, gives nothing back that could be heard", name);
+    return means ? fmt::format("its material '{}' has reflectivity 0 and returns no echo", name)
+                 : fmt::format("its material '{} dB, returns no detectable echo", name);
 }
 
-/** "; its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5 m" */
+/** Returns "; its nearest point 10 m away at [10, 0, 0] of wall: beyond the range of 5 m". */
 std::string surfaceText(const Coverage& coverage, const types::Snapshot& scene) {
     const types::Extent extent = types::extentOf(scene);
     if (extent.isEmpty()) return "; the scene has no triangles";
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     std::string hindrance = hindranceText(coverage, inSonar(scene, nearest.point));
     if (hindrance.empty()) hindrance = materialText(coverage.plan.config, *scene.geometry, nearest.object);
-    return fmt::format("; the scene lies from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}",
+    return fmt::format("; the scene extends from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}",
                        text(extent.low), text(extent.high), nearest.distance, text(nearest.point),
                        scene.geometry->objects[nearest.object].name, hindrance.empty() ? "" : ": ", hindrance);
 }
 
-/** The same of the nearest point target; empty where there is none. */
+/** Returns the same for the nearest point target; empty where there is none. */
 std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
     if (scene.targets.empty() || coverage.plan.config.model != Model::Physical) return "";
     const glm::dvec3& place = scene.sonar.position;
@@ -116,7 +116,7 @@ std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
                        hindrance.empty() ? "hidden, or below floor_db" : hindrance);
 }
 
-/** S of what gives nothing back, and its rounding, in `cerqueira2017` (ACOUSTICS.md 8.1) [1]. */
+/** Max S of a surface without echo, because of rounding, in `cerqueira2017` (ACOUSTICS.md 8.1) [1]. */
 constexpr float min_mean = 6.2e-6f;
 
 bool isLoud(Model model, const types::Sonar& ping) {
@@ -124,25 +124,26 @@ bool isLoud(Model model, const types::Sonar& ping) {
     return std::ranges::any_of(ping.bins, [least](float bin) { return bin > least; });
 }
 
-/** Why a sonar may hear nothing, for who set it up: where it is, which way it looks, where the scene lies and how far
- *  its nearest point and its nearest point target are, and what keeps it from hearing these: range, aperture, fan, or a
- *  material that gives nothing back. Sidelobes count as far as the plan hears them. `all_round`: its head has turned.
+/** Returns why a sonar may receive no echo. The text states its place and look direction, the extent of the scene, and
+ *  the distances of its nearest point and nearest point target. It names what prevents their echoes: range, aperture,
+ *  fan, or a material without echo. Sidelobes count as far as the plan uses them. `all_round`: its head has turned.
  *  Takes time in proportion to the triangles of the scene. */
 std::string silenceText(const RenderPlan& plan, bool all_round, const types::Snapshot& scene) {
     const Coverage coverage{plan, all_round};
     const glm::dvec3 ahead = scene.sonar.orientation * glm::dvec3(1, 0, 0);
-    return fmt::format(
-        "{} {} and {}{}{}",
-        plan.fills_water ? "hears nothing but the water. The sonar is at" : "hears nothing. The sonar is at",
-        text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene), targetText(coverage, scene));
+    return fmt::format("{} {} and {}{}{}",
+                       plan.fills_water ? "receives no echo but that of the water. The sonar is at"
+                                        : "receives no echo. The sonar is at",
+                       text(scene.sonar.position), directionText(ahead), surfaceText(coverage, scene),
+                       targetText(coverage, scene));
 }
 
-/** That the sonar is inside of an object, with where it is and how far the object's nearest point. */
+/** Returns that the sonar is inside of an object, with its place and the distance to the object's nearest point. */
 std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     return fmt::format(
         "is inside of {}, which has its faces outward: the sonar is at {}, its nearest surface {:.4g} m away at {}, "
-        "and what is outside is hidden; move the sonar out of it, or turn its faces inward",
+        "and everything outside is hidden; move the sonar out of it, or turn its faces inward",
         scene.geometry->objects[object].name, text(scene.sonar.position), nearest.distance, text(nearest.point));
 }
 

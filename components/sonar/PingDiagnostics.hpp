@@ -9,27 +9,26 @@
 
 namespace insonify::sonar {
 
-/** Follows the pings of a sonar, and says why there is nothing in them: once, and again only after ten that were well.
- */
+/** Follows the pings of a sonar and explains why they are empty: once, and again only after ten pings with echoes. */
 class PingDiagnostics {
 public:
-    /** `geometry` must outlive it. `turn`: pings in which a head comes round [1]. */
+    /** `geometry` must outlive it. `turn`: pings of one revolution of a turning head [1]. */
     PingDiagnostics(const types::Geometry& geometry, int turn) : turn_(turn) { takeScene(geometry); }
-    /** Another geometry from the next ping on, which must outlive it. */
+    /** Switches to another geometry from the next ping on, which must outlive it. */
     void takeScene(const types::Geometry& geometry) { sightlines_.emplace(geometry); }
 
-    /** What is to be told of a ping; usually nothing, for which nothing is allocated. `heard`: it has an echo;
-     *  `coverage`: the plan of a sonar that looks where this one does. */
+    /** Returns the diagnostic of a ping: usually empty, and then nothing is allocated. `heard`: it has an echo;
+     *  `coverage`: returns the plan of a sonar that covers in one ping what this sonar covers. */
     std::string follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
                        const std::function<RenderPlan()>& coverage);
 
 private:
-    static constexpr unsigned between_looks = 16;  ///< Pings from one look at what is around the sonar to the next [1].
+    static constexpr unsigned between_looks = 16;  ///< Pings between checks of the sonar's surroundings [1].
 
     int turn_;
-    unsigned pings_ = 0;  ///< So far [1].
+    unsigned pings_ = 0;  ///< Pings so far [1].
     bool inside_ = false;
-    int silent_ = 0;  ///< Pings without any echo, one after the other [1].
+    int silent_ = 0;  ///< Successive pings without any echo [1].
     types::RecurringDiagnostic silence_, enclosure_;
     std::optional<Sightlines> sightlines_;
 };

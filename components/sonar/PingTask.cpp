@@ -18,7 +18,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A quality to begin with, until something is heard, where none is given. */
+/** Returns the configuration with the initial quality, until the first echo, where the quality is not given. */
 SonarConfig coarsest(SonarConfig config) {
     if (!config.choosesQuality()) return config;
     const Quality quality;
@@ -43,8 +43,8 @@ std::vector<std::string> PingTask::notices() const {
             "is rendered by itself",
             shortestPeriod(), echoTime(), grid().range_max));
     if (cut_off_ > 0)
-        all.push_back(fmt::format("the last {} listened when the run stopped: not written",
-                                  cut_off_ == 1 ? "ping that hears others" : "pings that hear others"));
+        all.push_back(fmt::format("the last {} for pulses of other sonars when the run stopped: not written",
+                                  cut_off_ == 1 ? "ping waited" : "pings waited"));
     return all;
 }
 
@@ -65,14 +65,14 @@ bool PingTask::configureHook() {
         throw types::ConfigError("", name() + ".water.profile", why);
     if (elements.connected() && !sonarConfig().elements)
         throw types::ConfigError("", name() + ".elements",
-                                 "is connected; the sonar has none: give it `elements`, or leave the connection out");
+                                 "is connected; the sonar has none: give it `elements`, or remove the connection");
     if (elements.connected() && !rendersOnce())
         throw types::ConfigError("", name() + ".elements",
-                                 "is connected; a sonar that renders a ping in many parts tells no signals");
+                                 "is connected; a sonar that renders a ping in many parts has no element signals");
     if (others.connected() && !sonarConfig().crosstalk)
-        throw types::ConfigError("", name() + ".others",
-                                 "is connected; the sonar does not hear other sonars: give it `crosstalk: {}`, or "
-                                 "leave the connection out");
+        throw types::ConfigError(
+            "", name() + ".others",
+            "is connected; the sonar does not receive other sonars: give it `crosstalk: {}`, or remove the connection");
     sonarConfig().requireDevice(name());
     transmitted_ = {};
     renderer_.reset();
@@ -140,7 +140,7 @@ void PingTask::listen() {
     hearOthers();
     if (listening_ && (now() - listening_->scene.time).seconds() >= echoTime()) endListening();
     if (!takeNext()) return;
-    if (listening_) endListening();  // the next ping cuts it off
+    if (listening_) endListening();  // the next ping ends it
     if (!begin()) return;
     if (!activity().realtime()) {
         listening_ = taken();
@@ -176,16 +176,15 @@ void PingTask::rehearse() {
 }
 
 std::string PingTask::indivisible() const {
-    if (others.connected()) return "others: pings of other sonars are heard, which a shard does not have";
+    if (others.connected()) return "others: the sonar receives pings of other sonars, which a shard does not have";
     if (!sonarConfig().choosesQuality()) return {};
     return "quality: is chosen from the pings before, which a shard does not have; give rows and columns_per_beam, "
-           "such "
-           "as a run of a few pings tells";
+           "such as a run of a few pings reports";
 }
 
 void PingTask::prepareRenderer() {
     if (renderer_ && geometry_ == aimed().geometry) return;
-    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // until nothing refers to it
+    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // kept until unused
     aimed().moved.reserve(geometry_->objects.size());
     if (renderer_) {
         diagnostics_->takeScene(*geometry_);

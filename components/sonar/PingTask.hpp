@@ -19,36 +19,36 @@
 
 namespace insonify::sonar {
 
-/** What the sonar tasks share: a ping of each scene that an AimedTask aims at.
+/** Base of the sonar tasks: renders one ping for each input that an AimedTask takes.
  *
- *  The renderer is made at the first ping, when the geometry is known. When the geometry changes it keeps its threads,
- *  its quality and what it has made of meshes that are still there. What cannot be rendered leads to RunTimeError, from
- *  which the next good ping recovers. In realtime a ping is written once the last echo of its range has come back:
- *  2 range / c after its snapshot's time on the deployment's clock, and after the task took it, whichever is later.
- *  Pings thus never overlap. One whose listening is cut off by the stop is not written. Pings closer in time than
- *  sound's way to the range and back are rendered, each by itself, and told of in the notices. The quality is given, or
- *  a QualityKeeper chooses and keeps it; in realtime the period of the pings is its budget where nothing is said, as
- *  their stamps tell it.
+ *  The renderer is made at the first ping, when the geometry is known. When the geometry changes, the renderer keeps
+ *  its threads, its quality and its data of meshes that are still in use. A scene that cannot be rendered leads to
+ *  RunTimeError, from which the next good ping recovers. In realtime a ping is written once the last echo of its range
+ *  has arrived. That is 2 range / c after its snapshot's time on the deployment's clock, or after the task took it,
+ *  whichever is later. Pings thus never overlap. A ping that is still waiting for echoes at the stop is not written.
+ *  Pings closer in time than the travel time to the range and back are rendered independently, and a notice reports
+ *  them. The quality is given, or a QualityKeeper chooses and keeps it. In realtime its default budget is the period of
+ *  the pings, from their time stamps.
  *
- *  `truth` and `returns` tell of each ping what its bins show, for as long as one of them is connected; nothing is
- *  computed for it otherwise, and the bins are the same either way. `elements` tells what each element of a straight
- *  array heard, of a sonar that is configured to have some. `pose` tells where each ping was rendered, carried on as it
- *  was, so that it renders the same pings again as `given_pose`.
+ *  `truth` and `returns` describe what the bins of each ping show, while one of them is connected. Otherwise nothing is
+ *  computed for them; the bins are the same either way. `elements` contains the signal of each element of a straight
+ *  array, for a sonar that is configured to have one. `pose` records where each ping was rendered, after extrapolation,
+ *  so that its values on `given_pose` render the same pings again.
  *
- *  With `others` connected a ping is rendered once its last echo could have come, with all pulses of other sonars that
- *  were sent until then. In lockstep that is at the first sample after it, or when the next ping begins; a ping that is
- *  still listened to at the stop is not written, and a notice counts it.
+ *  With `others` connected, a ping is rendered once its last echo could have arrived, with all pulses of other sonars
+ *  that were sent until then. In lockstep that is at the first sample after it, or when the next ping begins. A ping
+ *  that still waits for pulses at the stop is not written, and a notice counts it.
  *
- *  Of a run that is cut into shards every ping is that of the whole run; its quality is to be given, for what is chosen
- *  depends on the pings before. */
+ *  In a run that is divided into shards every ping is that of the whole run. Its quality has to be given, because a
+ *  chosen quality depends on the pings before. */
 class PingTask : public AimedTask, public framework::Planned, public framework::Divisible {
 public:
     using AimedTask::AimedTask;
-    /** Stops and cleans up: the renderer must go on the task's own thread. */
+    /** Stops and cleans up: the renderer must be destroyed on the task's own thread. */
     ~PingTask() override;
 
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "one ping, noiseless, at the time of its snapshot"};
-    framework::OutputPort<types::Pose> pose{this, "pose", "the sonar in the world as each ping had it, at its time"};
+    framework::OutputPort<types::Pose> pose{this, "pose", "the sonar in the world at each ping, at its time"};
 
     framework::OutputPort<types::SonarTruthPtr> truth{
         this, "truth", "which objects the bins show, from where and at which angle; computed only when connected"};
@@ -58,7 +58,7 @@ public:
     framework::OutputPort<types::TransmissionPtr> transmission{
         this, "transmission", "each ping as it is sent, for the port `others` of other sonars"};
     framework::InputPort<types::TransmissionPtr> others{
-        this, "others", "pings of other sonars, which a sonar with `crosstalk` hears; connect with a buffer",
+        this, "others", "pings of other sonars, which a sonar with `crosstalk` receives; connect with a buffer",
         framework::Need::Optional};
 
     framework::OutputPort<types::SonarElementsPtr> elements{
@@ -71,38 +71,38 @@ public:
 
     /** Sets the number of threads of the next renderer; 0: the number of cores. */
     void useThreads(int threads) { threads_ = threads; }
-    /** Cleans up and configures a stopped task, which then pings as if it had just been made. Keeps the renderer's
-     *  data of the scene if no ping depends on the pings before. */
+    /** Cleans up and configures a stopped task, which then pings as if it had just been made. Keeps the renderer's data
+     *  of the scene if no ping depends on the pings before. */
     framework::Outcome restart();
 
-    /** The sonar as configured, its files found from where the deployment is. */
+    /** Returns the configured sonar, with paths of files resolved against the deployment's folder. */
     SonarConfig locatedConfig() const;
 
 protected:
-    /** Whether a ping is one rendering. What each of several left out is not reported. */
+    /** Returns whether a ping is one rendering. The parts that each of several renderings omits are not reported. */
     virtual bool rendersOnce() const { return true; }
-    /** Where the time of the last ping went. */
+    /** Returns the time that the last ping spent in each stage. */
     virtual std::span<const Stage> renderStages(const SonarRenderer& renderer) const { return renderer.stages(); }
-    /** Makes the ping of `scene`, and its truth unless `truth_of_ping` is null; returns whether it has any echo. */
+    /** Makes the ping of `scene`, and its truth unless `truth_of_ping` is null. Returns whether it has any echo. */
     virtual bool renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
                             types::SonarTruth* truth_of_ping);
-    /** Whether somebody is connected who takes truth. */
+    /** Returns whether an output that needs truth is connected. */
     virtual bool wantsTruth() const { return truth.connected() || returns.connected(); }
-    /** Gives a truth the names of all objects. */
+    /** Copies the names of all objects into a truth. */
     void nameObjects(types::SonarTruth& truth_of_ping) const;
-    /** Last changes to a ping before it is written. */
+    /** Makes the last changes to a ping before it is written. */
     virtual void stampBearings(types::Sonar& /*sample*/) {}
-    /** A ping has been rendered or rehearsed: a head that turns goes on. */
+    /** Advances a turning head after a ping has been rendered or rehearsed. */
     virtual void goOn() {}
-    /** What else there is to tell of a ping that is about to be written, from where it was rendered. */
+    /** Writes the other outputs of a ping that is about to be written, from the pose where it was rendered. */
     virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
-    /** Of a sonar that looks where this one does in one ping, to tell why it hears nothing. */
+    /** Returns the plan of a sonar that covers in one ping what this sonar covers, to explain missing echoes. */
     virtual RenderPlan coverage(const types::Snapshot& scene) const;
-    /** Pings in which a turning head comes round [1]. */
+    /** Returns the pings of one revolution of a turning head [1]. */
     virtual int pingsPerTurn() const { return 1; }
 
     bool configureHook() override;
-    /** A property that is set holds from the next ping on. */
+    /** Applies a property that is set, from the next ping on. */
     bool propertiesHook() override { return configureHook(); }
     void updateHook() override;
     void errorHook() override { updateHook(); }
@@ -115,45 +115,45 @@ private:
     void prepareTransmission();
     /** Writes the pulse of the ping that begins. */
     void transmit();
-    /** Renders what has been begun, and goes on. */
+    /** Renders the ping that has begun, and advances. */
     void complete();
     void hearOthers();
     /** Takes pings whose rendering waits until all pulses of others have arrived. */
     void listen();
-    /** Renders the ping that is listened to, with what arrived meanwhile. */
+    /** Renders the ping that waits for pulses, with those that arrived meanwhile. */
     void endListening();
     void render();
-    /** Does what later pings depend on. */
+    /** Does only the work of a ping on which later pings depend. */
     void rehearse();
-    /** What the ping that is rendered next is to tell; null where nobody wants to know. */
+    /** Returns the truth that the next ping fills; null where no output needs it. */
     std::shared_ptr<types::SonarTruth> takeTruth();
     void writeElements(const types::Sonar& sample);
     void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
-    /** In realtime, when the last echo of this ping's range is back. */
+    /** Returns the time in realtime at which the last echo of this ping's range is back. */
     types::Time lastEcho() const;
-    /** In realtime, until then; false: the task is to stop. */
+    /** Waits in realtime until lastEcho(). Returns false if the task is to stop. */
     bool waitForLastEcho();
-    /** Makes the renderer, or gives it the geometry of the next ping. */
+    /** Makes the renderer, or switches it to the geometry of the next ping. */
     void prepareRenderer();
     void takePlan();
-    /** What is to be told of a ping in which there may be nothing. */
+    /** Returns the diagnostic of a ping that may be empty. */
     std::string diagnosticOf(bool heard, const types::Sonar& sample);
-    /** Looks after the quality once a ping has been rendered, in `ms`; may render it again. */
+    /** Updates the quality after a ping that took `ms` to render; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
     std::unique_ptr<SonarRenderer> renderer_;
     std::optional<QualityKeeper> quality_;  ///< None where the quality is given.
     std::optional<PingDiagnostics> diagnostics_;
-    bool culling_untold_ = false;      ///< Whether the plan does not say yet what the first ping's culling left out.
-    int threads_ = 0;                  ///< Of the renderer [1].
+    bool culling_untold_ = false;      ///< Whether the plan still lacks what the first ping's culling omitted.
+    int threads_ = 0;                  ///< Threads of the renderer [1].
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
-    bool plan_told_ = false;           ///< Whether the record has the plan as it is.
+    bool plan_told_ = false;           ///< Whether the record has the current plan.
     types::GeometryPtr geometry_;      ///< The renderer's.
-    types::Transmission transmitted_;  ///< All but time and place; made for the first ping.
+    types::Transmission transmitted_;  ///< Everything except time and pose; made for the first ping.
     OthersHeard others_heard_;
-    std::optional<Taken> listening_;  ///< The ping that is listened to.
+    std::optional<Taken> listening_;  ///< The ping that waits for pulses of others.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].
-    uint64_t cut_off_ = 0;            ///< Pings that were still listened to at the stop [1].
+    uint64_t cut_off_ = 0;            ///< Pings that still waited for pulses at the stop [1].
     framework::SamplePool<types::Sonar> pool_;
     framework::SamplePool<types::SonarTruth> truths_;
     framework::SamplePool<types::SonarReturns> all_returns_;

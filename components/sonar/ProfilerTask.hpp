@@ -6,7 +6,7 @@
 
 namespace insonify::sonar {
 
-/** A fan of thin beams, and how the sounding of each is found. */
+/** A fan of thin beams, and the detection of each beam's sounding. */
 struct ProfilerConfig {
     SonarConfig sonar;
     DetectionConfig detection;
@@ -21,11 +21,12 @@ struct ProfilerConfig {
     void check(types::Diagnostics& diagnostics) const { sonar.check(diagnostics); }
 };
 
-/** A profiling multibeam sonar: a fan of thin beams, of each of which the strongest return is one sounding.
+/** A profiling multibeam sonar: a fan of thin beams, where each beam's strongest return is one sounding.
  *
- *  The fan lies in the x-y plane of the sonar frame, about x: a mount with `pitch_deg: 90` looks straight down, with
- *  the fan across the track. Out, beside the ping: `soundings`, points in the world, at most one for each beam, with
- *  the intensity of the strongest bin of the return; found in the noiseless ping, only where somebody is connected. */
+ *  The fan is in the x-y plane of the sonar frame, about x: a mount with `pitch_deg: 90` looks straight down, with the
+ *  fan across the track. In addition to the ping it writes `soundings`: points in the world, at most one for each beam,
+ *  with the intensity of the strongest bin of the return. They are found in the noiseless ping, only while the port is
+ *  connected. */
 class ProfilerTask final : public PingTask {
 public:
     using PingTask::PingTask;

@@ -13,26 +13,26 @@ struct SideScanConfig {
         sonar.beam_width_deg = 0.5;
         sonar.beam_height_deg = 50;
     }
-    /** The same as a sonar that looks straight down with its fan across the track: what is height here is width there,
-     *  and elevation is azimuth. */
+    /** Returns this sonar as one that looks straight down with its fan across the track: height becomes width, and
+     *  elevation becomes azimuth. */
     SonarConfig acrossTrack() const;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         SonarConfig::describeBeam(self.sonar, visit);
-        visit(types::Field{"depression_deg", "deg", "of the axis of each beam below the horizontal", 0, 90},
+        visit(types::Field{"depression_deg", "deg", "angle of each beam's axis below the horizontal", 0, 90},
               self.depression_deg);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A side-scan sonar: one line a ping, of two beams that look abeam and down.
+/** A side-scan sonar: one line per ping, from two beams that look abeam and down.
  *
- *  The sonar frame is that of the vehicle, x ahead. `beam_width_deg` is the opening along the track, `beam_height_deg`
- *  that across it, about an axis `depression_deg` below the horizontal. Of `beam_pattern`, azimuth is along the track;
- *  across it there is one law, `receive.elevation`, two-way, about the axis of each beam. `quality.rows` are along the
- *  track and `columns_per_beam` across it; 8 and 2048 where nothing is said. In a ping beam 0 is starboard, at bearing
- *  -90 deg, and beam 1 is port. */
+ *  The sonar frame is that of the vehicle, x ahead. `beam_width_deg` is the opening along the track. `beam_height_deg`
+ *  is the opening across it, about an axis `depression_deg` below the horizontal. In `beam_pattern`, azimuth is along
+ *  the track. Across the track there is one law, `receive.elevation`, two-way, about the axis of each beam.
+ *  `quality.rows` are along the track and `columns_per_beam` across it; the defaults are 8 and 2048. In a ping beam 0
+ *  is starboard, at bearing -90 deg, and beam 1 is port. */
 class SideScanTask final : public PingTask {
 public:
     using PingTask::PingTask;

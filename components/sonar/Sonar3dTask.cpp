@@ -11,7 +11,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr int default_samples = 4;  // of one beam, each way
+constexpr int default_samples = 4;  // of one beam, in each direction
 constexpr int64_t max_beams = int64_t{1} << 18;
 
 }  // namespace
@@ -50,7 +50,7 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
     if (sonar.quality.target_error || sonar.quality.budget_ms || sonar.quality.max_samples)
         refuse("quality", "has a target; a 3-D sonar takes rows and columns_per_beam, of one beam");
     if (sonar.beam_pattern && sonar.beam_pattern->transmit.azimuth)
-        refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is taken to send alike in all its azimuths");
+        refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is assumed to transmit equally in all azimuths");
     if (diagnostics.empty()) upright().checkBeam(diagnostics);
 }
 
@@ -152,7 +152,7 @@ void Sonar3dTask::tellMore(const types::Sonar& sample, const types::Pose& sonar)
     if (!wantsReturns()) return;
     const float strongest = *std::max_element(map_.remissions.begin(), map_.remissions.end());
     const float least = strongest * static_cast<float>(std::pow(10, config->detection.threshold_db / 10));
-    for (size_t cell = 0; cell < map_.distances.size(); ++cell)  // weak beside the ping, if not beside their azimuth
+    for (size_t cell = 0; cell < map_.distances.size(); ++cell)  // weak in the ping, if not in their azimuth
         if (map_.remissions[cell] < least) {
             map_.distances[cell] = types::DepthMap::too_far;
             map_.remissions[cell] = 0;

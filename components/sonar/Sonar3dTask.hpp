@@ -15,7 +15,7 @@ struct BeamRow {
     int beam_count;
     double field_of_view_deg;
 
-    /** Centre of beam k [deg], from the lowest or from starboard on. */
+    /** Returns the centre of beam k [deg], counted from the lowest or from starboard. */
     double centreDeg(int k) const { return field_of_view_deg * ((k + 0.5) / beam_count - 0.5); }
     double spacingDeg() const { return field_of_view_deg / beam_count; }
 
@@ -23,7 +23,8 @@ struct BeamRow {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(Field{"beam_count", "1", "beams side by side", 1, 1024}, self.beam_count);
-        visit(Field{"field_of_view_deg", "deg", "covered by them, edge to edge", 0.01, 180}, self.field_of_view_deg);
+        visit(Field{"field_of_view_deg", "deg", "angle covered by the beams, edge to edge", 0.01, 180},
+              self.field_of_view_deg);
     }
 };
 
@@ -34,8 +35,8 @@ struct Sonar3dConfig {
     DetectionConfig detection;
 
     Sonar3dConfig();
-    /** The beams of one azimuth, as a fan that stands upright: its bearings are their elevations, what is height here
-     *  is width there, and elevation is azimuth. */
+    /** Returns the beams of one azimuth as an upright fan: its bearings are their elevations, height becomes width, and
+     *  elevation becomes azimuth. */
     SonarConfig upright() const;
     double beamWidthDeg() const { return sonar.beam_width_deg.value_or(horizontal.spacingDeg()); }
 
@@ -50,14 +51,16 @@ struct Sonar3dConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** A 3-D sonar: narrow beams in a grid of azimuth and elevation, of each of which the strongest return is told.
+/** A 3-D sonar: narrow beams in a grid of azimuth and elevation. It reports each beam's strongest return.
  *
  *  Beam (row, column) looks along (cos e cos a, cos e sin a, sin e) of the sonar frame. `beam_width_deg` is its opening
- *  in azimuth, the distance between two beams where it is not given, `beam_height_deg` that in elevation. The columns
- *  are rendered one after the other as upright fans, all at the time of the ping; `quality.rows` are over the width of
- *  one beam, `columns_per_beam` over its height, 4 and 4 where nothing is said. Out: `range_image`, of every beam the
- *  range and the intensity of the strongest bin; `range_truth`, what that bin shows; `soundings`, the same as points in
- *  the world; `ping`, of each azimuth the sum over all elevations, with its `truth`. */
+ *  in azimuth; the default is the spacing of the beams. `beam_height_deg` is its opening in elevation. The columns are
+ *  rendered one after the other as upright fans, all at the time of the ping. `quality.rows` are over the width of one
+ *  beam and `columns_per_beam` over its height; the defaults are 4 and 4.
+ *
+ *  It writes `range_image`: range and intensity of the strongest bin of each beam; `range_truth`: what that bin shows;
+ *  `soundings`: the same returns as points in the world; `ping`: for each azimuth the sum over all elevations, with its
+ *  `truth`. */
 class Sonar3dTask final : public PingTask {
 public:
     using PingTask::PingTask;
@@ -80,11 +83,11 @@ protected:
     bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
     RenderPlan coverage(const types::Snapshot& scene) const override;
     void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
-    /** `field_of_view` and `beam_count` are those of a row of beams side by side, `beam_height` is that of one beam. */
+    /** Applies `field_of_view` and `beam_count` to a row of beams side by side, and `beam_height` to one beam. */
     std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
 
 private:
-    /** Takes the returns of one upright fan into a column of the map, and their truth if there is one. */
+    /** Writes the returns of one upright fan into a column of the map, and their truth if there is one. */
     void detect(int column, bool with_truth);
     /** Adds one upright fan to its beam of the ping. */
     void addTo(types::Sonar& sample, int column) const;
@@ -93,12 +96,12 @@ private:
     void writeReturnTruth();
     bool wantsReturns() const { return range_image.connected() || soundings.connected() || range_truth.connected(); }
 
-    types::Sonar fan_;            ///< Of one azimuth.
-    sonar::Stages fan_stages_{};  ///< Of all azimuths of the last ping.
+    types::Sonar fan_;            ///< Beams of one azimuth.
+    sonar::Stages fan_stages_{};  ///< Sum over all azimuths of the last ping.
     types::DepthMap map_;
     GridTruth grid_truth_;
-    types::SonarTruth fan_truth_;     ///< Of one azimuth.
-    types::SonarTruth return_truth_;  ///< A bin for each cell of the map.
+    types::SonarTruth fan_truth_;     ///< Truth of one azimuth.
+    types::SonarTruth return_truth_;  ///< One bin for each cell of the map.
     framework::SamplePool<types::DepthMap> maps_;
     framework::SamplePool<types::PointCloud> clouds_;
     framework::SamplePool<types::SonarTruth> return_truths_;

@@ -38,8 +38,8 @@ struct SonarRenderer::Parts {
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
     const types::Sonar* told_ping = nullptr;
-    types::SonarTruth* truth = nullptr;  ///< Filled with that ping; null: none is.
-    std::optional<LineArray> array;      ///< From the first ping whose signals are taken on.
+    types::SonarTruth* truth = nullptr;  ///< Filled with `told_ping`; null: no truth.
+    std::optional<LineArray> array;      ///< Made at the first ping whose signals are taken.
 };
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options)
@@ -93,7 +93,7 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
         plan = makeRenderPlan(plan.config, *given, plan.options);
         effects = PingEffects(plan, *given);
     }
-    const types::GeometryPtr before = std::exchange(geometry, given);  // until nothing refers to it
+    const types::GeometryPtr before = std::exchange(geometry, given);  // kept until unused
     if (!echoes->takeScene(std::move(given), same_plan)) makeEchoes();
     if (!same_plan) describePlan();
     return !same_plan;

@@ -14,62 +14,61 @@
 
 namespace insonify::sonar {
 
-/** Renders what a sonar hears of a geometry, noiseless, by rays or by drawing. Make it, use it and destroy it on one
- *  thread; one that draws is to be destroyed before another one is made there.
+/** Renders the noiseless pings of a sonar in a geometry, ray-traced or rasterised. Make it, use it and destroy it on
+ *  one thread. Destroy a renderer that rasterises before making another on that thread.
  *
  *      SonarRenderer renderer(config, geometry);
  *      renderer.render(snapshot, ping);    // ping.bins[beam * bin_count + bin]
  *
- *  Throws gpu::GlError where it draws without OpenGL 4.5 or loses it, std::runtime_error where Embree refuses. */
+ *  Throws gpu::GlError where it rasterises without OpenGL 4.5 or loses it, std::runtime_error where Embree refuses. */
 class SonarRenderer {
 public:
     SonarRenderer(const SonarConfig& config, types::GeometryPtr geometry, const RenderOptions& options = {});
     ~SonarRenderer();
 
-    /** One ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole sample;
-     *  allocates nothing when `ping` has been filled by this renderer before. */
+    /** Renders one ping from snapshot.sonar (sonar frame in the world; orientation of unit length). Fills the whole
+     *  sample. Allocates nothing when this renderer has filled `ping` before. */
     void render(const types::Snapshot& snapshot, types::Sonar& ping);
 
-    /** Each time that `ping` is rendered from now on, `truth` is filled as well, with what its bins show
-     *  (types::SonarTruth; its list of names is left alone); null: no more. Other pings tell nothing, and nothing is
-     *  computed or kept for them. Of a beam that is formed from finer azimuth cells, the truth is that of the cells
-     *  within half its spacing to its neighbours: what it hears in its sidelobes is not told, nor what the pulse
-     *  spreads into a bin, nor what the water scatters. */
+    /** Makes each later rendering of `ping` fill `truth` with what its bins show (types::SonarTruth; its list of names
+     *  is left alone). Null: no more. Other pings have no truth, and nothing is computed or kept for them. A beam is
+     *  formed from finer azimuth cells; its truth covers the cells up to halfway to the neighbouring beams. Echoes that
+     *  arrive through sidelobes, that the pulse spreads into a bin, or that the water scatters have no truth. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
-    /** Of a sonar with `elements`: what they heard of `ping`, the last that was rendered. Takes some time and
-     *  allocates. Throws std::logic_error where the sonar has none. */
+    /** Fills `signals` with those of the array's elements in `ping`, which must be the last that was rendered. Takes
+     *  some time and allocates. Throws std::logic_error where the sonar has no `elements`. */
     void takeElements(const types::Sonar& ping, types::SonarElements& signals);
 
-    /** Forgets all pings, as if it had just been made. Returns false where another one has to be made: with motion in
-     *  a ping, bent rays, or where it draws. */
+    /** Forgets all pings, as if it had just been made. Returns false where a new renderer is needed: with motion in a
+     *  ping, with bent rays, or where it rasterises. */
     bool forget();
 
-    /** Renders another geometry from now on, at the quality in force. Threads, and with rays whatever is made of meshes
-     *  that both geometries have, are kept. Takes more time where materials change, or where it draws. Returns
-     *  whether the plan is another one. */
+    /** Switches to another geometry, at the current quality. Keeps threads and, with rays, the data of meshes that both
+     *  geometries have. Takes more time where materials change, or where it rasterises. Returns whether the plan has
+     *  changed. */
     bool setGeometry(types::GeometryPtr geometry);
 
-    /** Renders from now on with so many rows of samples and columns per beam [1]; allocates. */
+    /** Switches to this number of rows of samples and columns per beam [1]. Allocates memory. */
     void setQuality(int rows, int columns_per_beam);
 
-    /** Where the time of the last ping went. */
+    /** Returns the time that the last ping spent in each stage. */
     std::span<const Stage> stages() const;
     const RenderPlan& renderPlan() const;
-    /** The same in words, with the device. */
+    /** Returns the plan in words, with the device. */
     const types::Plan& plan() const;
-    /** Whether the last ping has any echo of a surface. */
+    /** Returns whether the last ping has any echo of a surface. */
     bool hasEchoes() const;
-    /** What the last ping left out: objects, triangles and pictures that were not drawn, point targets that are not
-     *  heard or not there, a water surface that does not reflect. */
+    /** Returns what the last ping omitted: objects, triangles and images that were not rasterised, point targets
+     *  without echo, or a water surface that does not reflect. */
     std::vector<LeftOut> leftOut() const;
-    /** Of how many things other than surfaces the last ping has an echo: point targets [1]. */
+    /** Returns the number of things other than surfaces, such as point targets, with an echo in the last ping [1]. */
     size_t othersHeard() const;
-    const std::string& device() const;  ///< What renders, with its driver.
+    const std::string& device() const;  ///< Name of the rendering device, with its driver.
 
 private:
     struct Parts;
-    /** What comes into the bins beside the echoes of surfaces. */
+    /** Adds what the bins contain in addition to the echoes of surfaces. */
     void finish(const types::Snapshot& snapshot, types::Sonar& ping);
     std::unique_ptr<Parts> parts_;
 };

@@ -7,18 +7,18 @@
 
 namespace insonify::sonar {
 
-/** A few threads that share out parts of one job. Running a job allocates nothing. */
+/** A few threads that share the parts of one job. Running a job allocates nothing. */
 class ThreadPool {
 public:
-    /** `threads` counts the caller; 0: as many as the machine has cores, at most 16. */
+    /** `threads` counts the caller; 0: the number of the machine's cores, at most 16. */
     explicit ThreadPool(int threads = 0);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     int size() const { return static_cast<int>(workers_.size()) + 1; }
-    /** Calls job(part, size()) once for each part in [0, size()), the caller doing part 0, a worker always the
-     *  same one; returns when all are done. Throws what a part threw, the caller's first. */
+    /** Calls job(part, size()) once for each part in [0, size()). The caller does part 0, and a worker always does the
+     *  same part. Returns when all are done. Throws what a part threw, the caller's first. */
     template <class Job>
     void run(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
@@ -27,8 +27,8 @@ public:
         if (thrown || other) std::rethrow_exception(thrown ? thrown : other);
     }
 
-    /** Calls job(part, size()) on the caller and on those workers that begin before the caller is done, each with a
-     *  number of its own: for jobs that whoever is there shares out. Nobody is waited for that has not begun. */
+    /** Calls job(part, size()) on the caller, and on the workers that begin before the caller is done, each with its
+     *  own number. It is for jobs that the available threads share. Does not wait for workers that have not begun. */
     template <class Job>
     void share(const Job& job) {
         start([](const void* context, int part, int parts) { (*static_cast<const Job*>(context))(part, parts); }, &job);
@@ -51,7 +51,7 @@ private:
     }
     void start(Call call, const void* context);
     std::exception_ptr wait();
-    /** Lets those go that have not begun. */
+    /** Releases the workers that have not begun. */
     void dismiss();
     void work(int part);
 
@@ -61,7 +61,7 @@ private:
     Call call_ = nullptr;
     const void* context_ = nullptr;
     uint64_t round_ = 0;
-    int busy_ = 0, waking_ = 0;  ///< Workers that are not done; of them, those that have not begun.
+    int busy_ = 0, waking_ = 0;  ///< Workers that are not done, and the part of these that has not begun.
     std::exception_ptr thrown_;
     bool quit_ = false;
 };

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/** The files that are named, and those in the folders that are. */
+/** Returns the named files, and the files of the named folders. */
 std::vector<fs::path> filesOf(const std::vector<std::string>& names) {
     std::vector<fs::path> files;
     for (const fs::path name : names) {
@@ -39,7 +39,7 @@ std::vector<CodedPing> pingsOfOculus(const fs::path& file) {
     return pings;
 }
 
-/** The law of codes with the bits that the largest of them takes. */
+/** Returns the law of codes with the bits of the max code. */
 receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types::Sonar>& pings) {
     float largest = 255;
     for (const types::Sonar& ping : pings)
@@ -60,7 +60,7 @@ std::vector<CodedPing> pingsOfSideScan(const fs::path& file, const receiver::Cod
         altitudes.push_back(line->record.altitude);
         lines.push_back(std::move(line->ping));
     }
-    if (lines.empty()) throw types::ConfigError(file.string(), "", "holds no ping of a side-scan");
+    if (lines.empty()) throw types::ConfigError(file.string(), "", "has no ping of a side-scan");
     std::vector<CodedPing> sides = codedLines(lines, withBits(law, lines), "recorded", placesOf(sonars, altitudes));
     for (CodedPing& side : sides) side.law_known = false, side.frequency_khz = frequency_khz;
     return sides;
@@ -77,7 +77,7 @@ std::vector<CodedPing> pingsOfFan(const fs::path& file, receiver::CodeConfig law
         pings.back().law_known = dynamic_range.has_value();
         pings.back().frequency_khz = frame->frequency_khz;
     }
-    if (pings.empty()) throw types::ConfigError(file.string(), "", "holds no ping of a sonar");
+    if (pings.empty()) throw types::ConfigError(file.string(), "", "has no ping of a sonar");
     return pings;
 }
 
@@ -98,11 +98,11 @@ std::vector<CodedPing> pingsOfLog(const LoggedPings& log, const receiver::CodeCo
     return pings;
 }
 
-/** A value of a line, where it is known. */
+/** Values of lines; none if unknown. */
 using Known = std::vector<std::optional<double>>;
 
-/** Each line's value: linear between lines at which it is new, and the same before the first and after the last of
- *  these. Empty where none is known. */
+/** Returns a value for each line: linear between lines at which the value changes, constant before the first and after
+ *  the last of these. Empty if no value is known. */
 std::vector<double> spread(const Known& known) {
     std::vector<size_t> fresh;
     for (size_t i = 0; i < known.size(); ++i)
@@ -117,7 +117,8 @@ std::vector<double> spread(const Known& known) {
     return values;
 }
 
-/** The way since the first line; beyond the places that are known it goes on as in the mean. */
+/** Returns the distance along the track since the first line; beyond the known places it is extrapolated by the
+ *  mean. */
 std::vector<double> alongOf(const std::vector<types::Pose>& sonars) {
     Known known(sonars.size());
     std::optional<glm::dvec3> before;

@@ -14,10 +14,10 @@ namespace insonify::study {
 namespace {
 
 constexpr int max_levels = 3;
-constexpr int finer = 8;   ///< Rows of the energies over those of the coarsest ping, and columns [1].
-constexpr double far = 1;  ///< Poses are so far from the scene's along x and y, at most [m].
+constexpr int finer = 8;   ///< Factor of rows and columns of the energies over those of the coarsest ping [1].
+constexpr double far = 1;  ///< Max offset of poses from the scene's along x and y [m].
 
-/** Means of a half of the poses. */
+/** Mean of one half of the poses. */
 using Half = std::vector<double>;
 using Halves = std::array<Half, 2>;
 
@@ -31,7 +31,7 @@ types::Snapshot at(const StudyScene& scene, int pose) {
     return snapshot;
 }
 
-/** Of poses by turns; times of all but the first [ms]. */
+/** Averages the poses alternately into two halves; adds the times of all poses except the first [ms]. */
 Halves meansOf(const StudyScene& scene, const sonar::SonarConfig& config, int poses, std::vector<double>* times,
                std::string& device) {
     sonar::SonarRenderer renderer(config, scene.snapshot.geometry);

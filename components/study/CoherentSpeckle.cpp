@@ -15,9 +15,9 @@ namespace {
 constexpr double speed_of_sound = 1000, frequency_khz = 500, wavelength = 0.002;  // [m/s, kHz, m]
 constexpr double beam_width_deg = 2, bin_width = 0.01, range = 12;                // [deg, m, m]
 constexpr int beams = 64, bins = 1200;
-constexpr double parts = 4;  ///< Bins in a resolution cell, and beams in a beam's width of lambda / L.
+constexpr double parts = 4;  ///< Bins per resolution cell, and beams per beam width lambda / L.
 
-/** Length of the aperture [wavelengths]. */
+/** Returns the length of the aperture [wavelengths]. */
 double aperture() {
     acoustics::BeamLaw law;
     law.weighting = acoustics::Weighting::Uniform;
@@ -25,8 +25,8 @@ double aperture() {
     return acoustics::BeamPattern(law).aperture();
 }
 
-/** A line without weighting that hears, an even transmitter, a chirp without window; bins and beams four times as dense
- *  as they are resolved. */
+/** Returns a sonar with an unweighted receiving line, a uniform transmitter, a chirp without window, and bins and beams
+ *  four times denser than the resolution. */
 sonar::SonarConfig denseFan() {
     sonar::SonarConfig config;
     config.speed_of_sound = speed_of_sound;
@@ -57,7 +57,7 @@ types::Snapshot bottomFrom(const glm::dvec3& position) {
     return lookingAt(ground, position);
 }
 
-/** One sonar over the bottom, and the mean of what it hears of any. */
+/** A sonar over the bottom, and the mean of its pings. */
 class Bottom {
 public:
     explicit Bottom(const sonar::SonarConfig& config) : renderer_(config, bottomFrom({}).geometry) {
@@ -65,7 +65,7 @@ public:
         even.speckle.reset();
         sonar::SonarRenderer(even, bottomFrom({}).geometry).render(bottomFrom({}), means_);
     }
-    /** Bins of slant ranges [from, to). */
+    /** Returns the bins of slant ranges [from, to). */
     SpeckleField heard(const glm::dvec3& position, double from = 6, double to = range) {
         types::Sonar ping;
         renderer_.render(bottomFrom(position), ping);
@@ -110,8 +110,8 @@ void addLaws(Bottom& bottom, std::vector<Claim>& claims) {
     }
 }
 
-/** Where the correlation is a half, of the sonar moved aside: by theory the square of the autocorrelation of the
- *  aperture at twice the way, (1 - 2 x / L)^2. */
+/** Measures the sideways distance at which the correlation is a half. Theory: the square of the autocorrelation of the
+ *  aperture at twice the distance, (1 - 2 x / L)^2. */
 void addLateral(Bottom& bottom, std::vector<Claim>& claims) {
     const double length = aperture() * wavelength, theory = 0.5 * length * (1 - std::sqrt(0.5));
     const SpeckleField still = bottom.heard({});
@@ -128,7 +128,7 @@ void addLateral(Bottom& bottom, std::vector<Claim>& claims) {
     claims.push_back({"coherent: way aside that halves the correlation, off theory by", offBy(at, theory), 0.1, true});
 }
 
-/** Of few scatterers in each cell: their number goes as the range, and so does the shape. */
+/** Tests few scatterers per cell: their number is proportional to the range, and so is the shape. */
 void addShapes(std::vector<Claim>& claims) {
     sonar::SonarConfig config = denseFan();
     config.speckle->scatterers_per_m2 = 400;

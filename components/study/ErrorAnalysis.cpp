@@ -22,12 +22,12 @@ const Measurement* find(const ErrorResult& result, const std::string& scene, Met
     return found == result.measurements.end() ? nullptr : &*found;
 }
 
-constexpr size_t slope_points = 4;  ///< A slope of fewer, and a time extrapolated from fewer, is open [1].
-/** What a ping may take to 1 %, of the time of the caster: both cast rays, and clocks are not quiet [1]. */
+constexpr size_t slope_points = 4;  ///< With fewer points a slope, or an extrapolated time, is open [1].
+/** Max time of a ping of 1 % error over that of the ray tracer. Both trace rays, and clocks are noisy [1]. */
 constexpr double as_fast_as_rays = 1.25;
-constexpr double farthest_extension = 30;  ///< Times the finest point's: farther is called "never" [1].
+constexpr double farthest_extension = 30;  ///< Relative to the finest point's time; beyond it is "never" [1].
 
-/** Says so when one of two times that are compared is no measured one. */
+/** Returns a remark if one of two compared times was not measured. */
 std::string marked(const ReachTime& a, const ReachTime& b) {
     const auto is = [&](ReachTime::Kind kind) { return a.kind == kind || b.kind == kind; };
     return is(ReachTime::Kind::Extrapolated) ? " (extrapolated)" : is(ReachTime::Kind::AtMost) ? " (a bound)" : "";
@@ -99,7 +99,7 @@ void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
     }
 }
 
-/** Of scenes with a closed form the coarsest that is chosen may be better than need be. */
+/** Checks predictions. In scenes with a closed form, the coarsest available quality may be better than required. */
 void judgePredictions(const ErrorResult& result, std::vector<Claim>& all) {
     for (const Prediction& p : result.predictions) {
         const auto reference = std::ranges::find(result.references, p.scene, &Reference::scene);
@@ -110,7 +110,7 @@ void judgePredictions(const ErrorResult& result, std::vector<Claim>& all) {
         all.push_back({text, p.error / p.target_error, 2, true, settled});
         const bool is_coarsest = sonar::Quality{p.rows, p.columns_per_beam} == sonar::Quality();
         if (reference->rays == 0 && !is_coarsest)
-            all.push_back({text, p.error / p.target_error, 0.1, false});  // no waste either
+            all.push_back({text, p.error / p.target_error, 0.1, false});  // not wasteful either
     }
 }
 
@@ -140,7 +140,7 @@ std::optional<double> slope(const std::vector<Measurement>& points, double refer
         n += 1, x += a, y += b, xx += a * a, xy += a * b;
     }
     const double spread = n * xx - x * x;
-    if (n < 2 || !(spread > 1e-9 * n * xx)) return std::nullopt;  // also where merging leaves as many cells
+    if (n < 2 || !(spread > 1e-9 * n * xx)) return std::nullopt;  // also if merging leaves cells unchanged
     return (n * xy - x * y) / spread;
 }
 

@@ -8,7 +8,7 @@
 namespace insonify::study {
 namespace {
 
-constexpr double frequency_khz = 100;  ///< The highest that TR 9407 is valid for.
+constexpr double frequency_khz = 100;  ///< The max frequency of TR 9407.
 
 acoustics::BeamLaw beamOf(acoustics::Weighting weighting, double width_deg) {
     acoustics::BeamLaw law;

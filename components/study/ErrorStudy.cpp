@@ -23,7 +23,7 @@ namespace insonify::study {
 namespace {
 
 constexpr int min_rows = 64;
-constexpr int max_computed_levels = 4;  ///< Without a closed form: the reference has to be finer still.
+constexpr int max_computed_levels = 4;  ///< Without a closed form: the reference must be finer still.
 
 double wallMs() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -35,7 +35,7 @@ double processorMs() {
     return static_cast<double>(spent.tv_sec) * 1e3 + static_cast<double>(spent.tv_nsec) * 1e-6;
 }
 
-/** What makes one ping, whatever the method. */
+/** Makes one ping, by any method. */
 using Ping = std::function<void(std::vector<float>& energies)>;
 
 void time(const Ping& ping, int pings, std::vector<float>& energies, Measurement& point) {
@@ -70,14 +70,14 @@ sonar::RenderOptions optionsOf(const Measurement& point) {
     return options;
 }
 
-/** Samples of one plane that rays make one cell of, at most; 1 where none are cast [1]. */
+/** Returns the max number of samples of one plane that rays merge to one cell; 1 if no rays are traced [1]. */
 int mergedBy(const sonar::RenderPlan& plan) {
     if (!plan.casts_rays) return 1;
     const sonar::AngularView view = sonar::makeAngularView(plan);
     return sonar::TileShape(view, plan.grid, view.beams).max_merged;
 }
 
-/** Casts so many tiles up and across each beam with a seed; adds to the number of rays [1]. */
+/** Traces `up` x `across` tiles in each beam with a seed; adds to the number of rays [1]. */
 using ReferenceCast = std::function<std::vector<double>(int up, int across, uint64_t seed, double& rays)>;
 
 template <class Caster>
@@ -94,7 +94,7 @@ ReferenceCast referenceOf(const StudyScene& scene) {
     return scene.config.multipath ? castBy<PathCaster>(scene) : castBy<PointCaster>(scene);
 }
 
-/** One scene under study: what measures a point of it, and its reference. */
+/** One scene under study: measures points, and makes the reference. */
 class SceneStudy {
 public:
     SceneStudy(const StudyScene& scene, const ErrorOptions& options, ErrorResult& result)
@@ -127,13 +127,13 @@ private:
 
     int levels() const { return scene_.truth ? options_.levels : std::min(options_.levels, max_computed_levels); }
 
-    /** Whether one perspective image can hold the fan, at all levels. */
+    /** Returns whether one perspective image can cover the fan, at all levels. */
     bool fitsOneFrustum() const {
         const int64_t columns = int64_t{base_columns_} << (levels() - 1);
         return scene_.config.fieldOfViewDeg() < 175 && columns * scene_.config.beam_count <= sonar::max_image_size;
     }
 
-    /** Other methods than the sonar's own know no more than surfaces, the caster a pattern in elevation as well. */
+    /** Other methods than the sonar's own handle only surfaces; the ray tracer also a pattern in elevation. */
     bool canRun(Method method) const {
         const sonar::SonarConfig& config = scene_.config;
         if (method == Method::Footprint) return true;
@@ -191,7 +191,7 @@ private:
         prediction_ = {scene_.name, chosen.rows, chosen.columns_per_beam, target, chosen.error, 0};
     }
 
-    /** Of a scene without a closed form a coarse one, which tells whether there is anything to hear. */
+    /** Without a closed form, makes a coarse reference, which shows whether there is any echo. */
     void makeReference() {
         reference_ = {scene_.name, "closed form", 0, 0, 0};
         if (scene_.truth) {
@@ -202,13 +202,13 @@ private:
         castReference(1);
         if (std::ranges::none_of(energies_, [](double energy) { return energy > 0; }))
             throw std::runtime_error(scene_.name +
-                                     ": the sonar hears nothing in this ping; choose another one with --ping");
+                                     ": the sonar receives no echo in this ping; choose another ping with --ping");
     }
 
     void refineReference() {
         int refinement = 1;
         while (reference_.error * reference_margin > smallestError() && 4 * reference_.rays <= options_.reference_rays)
-            castReference(refinement *= 2);  // 4 times the rays at most
+            castReference(refinement *= 2);  // at most 4 times the rays
     }
 
     double smallestError() const {
@@ -218,7 +218,7 @@ private:
         return smallest;
     }
 
-    /** The mean of two halves; each is as far from it as it may be from the truth. */
+    /** Computes the mean of two halves. The distance of each half from it is an estimate of its own error. */
     void castReference(int refinement) {
         const int up = min_rows / 4 * refinement, across = std::max(1, base_columns_ / 4) * refinement;
         double rays = 0;
@@ -247,7 +247,7 @@ private:
     Prediction prediction_{};
     std::vector<float> predicted_;
     Reference reference_;
-    std::vector<double> energies_;  ///< Of the reference.
+    std::vector<double> energies_;  ///< Energies of the reference.
 };
 
 }  // namespace

@@ -15,11 +15,11 @@
 namespace insonify::study {
 namespace {
 
-/** From ping to ping, and from line to line where the recording has no places [m]: far beyond the length of an
- * aperture. */
+/** Distance from ping to ping, and from line to line if the recording has no places [m]: far beyond the length of an
+ *  aperture. */
 constexpr double sideways = 0.37;
 
-/** Median distance of neighbouring beams [deg]. */
+/** Returns the median distance of neighbouring beams [deg]. */
 double spacingDeg(const std::vector<double>& bearings) {
     std::vector<double> steps;
     for (size_t i = 0; i + 1 < bearings.size(); ++i)
@@ -29,12 +29,12 @@ double spacingDeg(const std::vector<double>& bearings) {
     return *middle;
 }
 
-/** The beam of a side-scan's line that looks to this side. */
+/** Returns the beam of a side-scan's line on this side. */
 size_t beamOf(const types::Sonar& line, double side) {
     return line.beam_count > 1 && (line.bearings[0].rad > 0) != (side > 0) ? 1 : 0;
 }
 
-/** Lines of a side-scan as the beams of one sample. */
+/** Returns lines of a side-scan as the beams of one sample. */
 types::Sonar stacked(const std::vector<types::Sonar>& lines, double side) {
     types::Sonar all = lines.front();
     all.beam_count = static_cast<uint32_t>(lines.size());
@@ -47,7 +47,7 @@ types::Sonar stacked(const std::vector<types::Sonar>& lines, double side) {
     return all;
 }
 
-/** Orientation of the fan that takes the place of a side-scan: it looks straight down, across the track. */
+/** Returns the orientation of the fan that represents a side-scan: straight down, across the track. */
 glm::dquat abeam(double yaw, double pitch) {
     return glm::angleAxis(yaw, glm::dvec3(0, 0, 1)) * glm::angleAxis(pitch, glm::dvec3(0, 1, 0)) *
            glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
@@ -83,7 +83,7 @@ void layLines(const CodedPing& recorded, FitChain& chain) {
         throw types::ConfigError(
             "", "scene",
             fmt::format("has no floor below the last of {} lines, {:.0f} m ahead of the first; cut "
-                        "the recording (insonify log cut), or take a larger scene",
+                        "the recording (insonify log cut), or use a larger scene",
                         chain.lines.size(), glm::distance(chain.lines.front().position, chain.lines.back().position)));
 }
 

@@ -14,10 +14,10 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t first_slice = 3;        ///< Nearer, transmitters ring, and the gain changes within a slice.
-constexpr double huber_db = 3;           ///< Residuals beyond this count by their size, not their square.
-constexpr double uncut_deg = 110;        ///< Of a side-scan's beam, which ends nowhere but in its pattern [deg].
-constexpr double elevation_before = 15;  ///< Width of a beam in elevation of which nothing is known [deg].
+constexpr size_t first_slice = 3;  ///< Nearer, transmitters ring, and the gain changes within a slice.
+constexpr double huber_db = 3;     ///< Residuals beyond this count by their size, not their square.
+constexpr double uncut_deg = 110;  ///< Aperture of a side-scan's beam, which is limited only by its pattern [deg].
+constexpr double elevation_before = 15;  ///< Width of an unknown beam in elevation [deg].
 
 double medianLevel(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<long>(values.size() / 2);
@@ -37,7 +37,7 @@ private:
     std::function<double(const double*)> cost_;
 };
 
-/** The minimum from `x` on, with so large first steps; begun anew from there until it stays. */
+/** Finds the minimum from `x` on with the given first steps. Restarts there with halved steps in each round. */
 std::vector<double> minimum(std::vector<double> x, const std::vector<double>& steps, int evaluations, int rounds,
                             const std::function<double(const double*)>& cost) {
     const int n = static_cast<int>(x.size());
@@ -54,7 +54,7 @@ std::vector<double> minimum(std::vector<double> x, const std::vector<double>& st
     return x;
 }
 
-/** The same with a few of the beams, whose median is that of all. */
+/** Returns the chain with a subset of the beams, whose median is that of all. */
 FitChain thinned(FitChain chain) {
     if (chain.isSideScan()) return chain;
     constexpr size_t few = 32;
@@ -65,7 +65,7 @@ FitChain thinned(FitChain chain) {
     return chain;
 }
 
-/** What may be fitted: levels, then how the scene is looked at. */
+/** Parameters that may be fitted: levels, then the sonar's attitude over the scene. */
 enum Parameter : size_t {
     full_scale,
     noise_level,
@@ -83,7 +83,7 @@ using Chosen = std::vector<size_t>;  ///< Parameters.
 
 constexpr double water_deviation = 15;  ///< Deviation of a volume backscattering strength before the fit [dB].
 
-/** Levels of the blocks by the values, and how far they are from the recorded ones. */
+/** Models the levels of the blocks, and compares them with the recorded levels. */
 class LevelModel {
 public:
     LevelModel(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain, const LevelOptions& options)
@@ -116,13 +116,13 @@ public:
         if (fits_water_) all.push_back(water_strength);
         return all;
     }
-    /** How the scene is looked at, as far as it is fitted. */
+    /** Returns the fitted attitude parameters. */
     Chosen looks() const {
         if (!fits_scene_) return {};
         return chain_.isSideScan() ? Chosen{pitch, elevation} : Chosen{pitch, height, elevation};
     }
 
-    /** Values to begin with: full scale and noise from the loudest and faintest slices. */
+    /** Returns initial values: full scale and noise from the loudest and faintest slices. */
     Values start() const {
         Values values = before_;
         const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_);
@@ -137,7 +137,7 @@ public:
         values[noise_level] = floors[floors.size() / 16];
         return values;
     }
-    /** The same with the faintest ranges explained by the water, and noise far below. */
+    /** Returns initial values that explain the faintest ranges by the water, with noise far below. */
     Values startInWater() const {
         Values values = start();
         const std::vector<double> recorded = overBeams(recorded_), echoes = overBeams(echoes_),
@@ -152,10 +152,10 @@ public:
         return values;
     }
     bool fitsWater() const { return fits_water_; }
-    /** First steps of the simplex. */
+    /** Returns the first steps of the simplex. */
     Values steps() const { return {6, 6, 10, 10 / range_, 5 / range_, 6, 8, -0.1 * range_, 0.4}; }
 
-    /** Renders the scene as these values see it, where that is fitted. */
+    /** Renders the scene for these values, if its attitude is fitted. */
     void look(const Values& values) {
         if (fits_scene_) render(seen(values));
     }
@@ -169,7 +169,7 @@ public:
         setElevation(std::exp(values[elevation]), chain);
         return chain;
     }
-    /** Turns the beams of a side-scan down and makes them as wide across the track. */
+    /** Turns the beams of a side-scan down and sets their width across the track. */
     static void lookAcross(double down_deg, double width_deg, FitChain& chain) {
         for (double& bearing : chain.sonar.bearings_deg)
             bearing = std::copysign(std::clamp(std::abs(bearing) - down_deg, 5.0, 89.0), bearing);
@@ -197,7 +197,7 @@ public:
         return receiver::tvgDb(tvg, axis_ * range);
     }
 
-    /** What the codes of a block state, relative to the largest code [dB]. */
+    /** Returns the level that the codes of a block state, relative to the max code [dB]. */
     double stated(const Values& values, size_t block, size_t slice) const {
         const double r = recorded_.ranges[slice];
         double echo = toPower(echoes_.at(block, slice));
@@ -214,7 +214,7 @@ public:
         return blocks;
     }
 
-    /** Recorded less modelled levels, then how far the values are from those before in what is loosely known [dB]. */
+    /** Returns recorded minus modelled levels [dB]. */
     std::vector<double> residuals(const Values& values) const {
         std::vector<double> all;
         for (size_t slice = first_slice; slice < recorded_.slices; ++slice) {
@@ -227,7 +227,7 @@ public:
         }
         return all;
     }
-    /** Pulls of what is known before, in standard deviations. */
+    /** Returns the deviations from the priors, in standard deviations. */
     std::vector<double> pulls(const Values& values) const {
         std::vector<double> all{(values[log_coefficient] - before_[log_coefficient]) / 30,
                                 (values[tvg_slope] - before_[tvg_slope]) * 2 * range_ / 60,
@@ -252,24 +252,26 @@ public:
         return sum;
     }
     double range() const { return range_; }
-    /** Slices that count for a fit, of each block; neighbours are neighbours in `residuals`, or a block apart. */
+    /** Number of slices of each block in a fit. Neighbouring slices are one entry of `residuals` apart, or one
+     *  block. */
     size_t rows() const { return recorded_.slices - first_slice; }
     const FitChain& chain() const { return chain_; }
 
     double pullWeight() const { return pull_weight_; }
-    /** Weighs pulls as many deviations of the residuals, as far as those are independent: a scene that is not quite
-     *  the recorded one must not overrule what is known before. */
+    /** Weights the priors by the variance of independent residuals: a scene that differs slightly from the recorded
+     *  scene must not overrule the priors. */
     void weighPulls(double variance) { pull_weight_ = std::max(1.0, variance); }
 
 private:
     bool isOpenWater(size_t block, size_t slice) const { return echoes_.at(block, slice) <= silent_db; }
-    /** Recorded less modelled level; in the water before the floor that of the quieter side. */
+    /** Returns recorded minus modelled level; in the water before the floor, with the recorded level of the quieter
+     *  side. */
     double offOf(size_t block, size_t slice, double modelled) const {
         if (!chain_.isSideScan() || !isOpenWater(block, slice)) return recorded_.at(block, slice) - modelled;
         return is_loud_[block] ? 0 : (water_recorded_ ? *water_recorded_ : recorded_).at(block, slice) - modelled;
     }
-    /** Finds the blocks of a side-scan's lines whose water does not count. What a rough scene lacks there (fish, wakes,
-     *  other sonars) can only add: the quietest quarter of the blocks shows the floor of noise and water. */
+    /** Finds the blocks of a side-scan's lines whose water is ignored. Sources that a rough scene lacks (fish, wakes,
+     *  other sonars) only add energy, so the quietest quarter of the blocks shows noise and water. */
     void findLoudBlocks() {
         is_loud_.assign(recorded_.beam_blocks, false);
         if (!rough_ || !chain_.isSideScan()) return;
@@ -292,7 +294,7 @@ private:
         const double slices = static_cast<double>(recorded_.slices);
         axis_ = echoes.binStart(echoes.bin_count) / (recorded_.ranges.back() * slices / (slices - 0.5));
         if (!fits_water_) return;
-        constexpr double strength_db = -40;  // far above the rounding of what is taken off
+        constexpr double strength_db = -40;  // far above the rounding of the difference
         FitChain filled = thinned(chain);
         filled.sonar.volume.emplace_back().strength_db = strength_db;
         water_ = blocksOf(meanEchoes(filled));
@@ -317,14 +319,14 @@ private:
     double range_;
     std::vector<bool> is_loud_;  ///< One for each block, see findLoudBlocks().
     double pull_weight_ = 1;
-    double axis_ = 1;  ///< Ranges of a simulated sample, whose bins last whole microseconds, over true ones [1].
+    double axis_ = 1;  ///< Ranges of a simulated sample, with bins of whole microseconds, over true ranges [1].
     Values before_;
     LevelBlocks echoes_;
     LevelBlocks water_;  ///< Levels of water with 0 dB re 1/m, without absorption.
     std::vector<double> recorded_level_;
 };
 
-/** The values at which the cost is least when the chosen ones move. */
+/** Minimises the cost over the chosen values. */
 Values moving(const Chosen& chosen, const LevelModel& model, Values values, int evaluations, int rounds,
               const std::function<double(const Values&)>& cost) {
     const Values all_steps = model.steps();
@@ -339,14 +341,14 @@ Values moving(const Chosen& chosen, const LevelModel& model, Values values, int 
     return at(x.data());
 }
 
-/** The best level parameters for the scene as it is looked at. */
+/** Fits the level parameters at a fixed attitude. */
 Values fitInner(const LevelModel& model, const Values& values, int evaluations, int rounds) {
     return moving(model.levels(), model, values, evaluations, rounds,
                   [&](const Values& tried) { return model.cost(tried); });
 }
 
-/** Places of the sonar over its scene from which the fit of the scene may begin: pitch [deg] and height [m], both
- *  relative to the chain's. */
+/** Returns poses of the sonar from which the fit of the scene may begin: pitch [deg] and height [m], both relative to
+ *  the chain's. */
 std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double range) {
     std::vector<std::array<double, 2>> all{{0, 0}};
     if (chain.isSideScan()) return all;
@@ -359,7 +361,7 @@ std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double rang
     return all;
 }
 
-/** The best pitch, height and beam in elevation, each with the best level parameters. */
+/** Fits pitch, height and elevation width, each with the best level parameters. */
 Values fitScene(LevelModel& model, const Values& values, const std::function<void()>& progress) {
     Values best = values;
     double least = std::numeric_limits<double>::infinity();
@@ -390,8 +392,8 @@ Values fitScene(LevelModel& model, const Values& values, const std::function<voi
     return fitInner(model, best, 1500, 3);
 }
 
-/** How many neighbouring residuals say the same, from the correlation of those of neighbouring slices: the variance of
- *  a mean is so many times that of independent ones (of a first-order process; Priestley 1981). */
+/** Returns the factor by which correlation of neighbouring residuals raises the variance of their mean, for a
+ *  first-order process (Priestley 1981). */
 double alikeOf(const std::vector<double>& residuals, size_t stride) {
     double squares = 0, products = 0, pairs = 0;
     for (size_t i = 0; i < residuals.size(); ++i) {
@@ -403,7 +405,7 @@ double alikeOf(const std::vector<double>& residuals, size_t stride) {
     return (1 + correlation) / (1 - correlation);
 }
 
-/** Variance of a residual, as if all were independent [dB^2]. */
+/** Returns the variance of a residual as if all were independent [dB^2]. */
 double varianceOf(const LevelModel& model, const Values& at) {
     const std::vector<double> residuals = model.residuals(at);
     double sum = 0;
@@ -413,7 +415,7 @@ double varianceOf(const LevelModel& model, const Values& at) {
     return sum / freedom * alikeOf(residuals, residuals.size() / model.rows());
 }
 
-/** Derivatives of residuals and pulls by each chosen value; of how the scene is looked at by rendering anew. */
+/** Returns the derivatives of residuals and priors by each chosen value; for attitude by rendering again. */
 cv::Mat jacobian(LevelModel& model, const Values& at, const Chosen& chosen) {
     const auto all = [&](const Values& values) {
         std::vector<double> rows = model.residuals(values);
@@ -437,8 +439,8 @@ cv::Mat jacobian(LevelModel& model, const Values& at, const Chosen& chosen) {
     return derivatives;
 }
 
-/** The least cost near some values, by all chosen ones at a time: Levenberg and Marquardt's steps (Marquardt 1963) with
- *  the weights of cost(). A simplex in few of them, within which others are fitted only about, ends beside it. */
+/** Minimises the cost near some values over all chosen values at once: Levenberg and Marquardt's steps (Marquardt 1963)
+ *  with the weights of cost(). The nested simplex, whose inner fits are approximate, ends next to the minimum. */
 Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::function<void()>& progress) {
     constexpr int max_steps = 20;
     model.look(at);
@@ -478,7 +480,7 @@ Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::f
 
 Fitted around(double value, double deviation) { return {value, value - z_95 * deviation, value + z_95 * deviation}; }
 
-/** Values with their intervals. */
+/** Returns the values with their intervals. */
 LevelFit fitOf(LevelModel& model, const Values& at) {
     Chosen chosen = model.levels();
     for (const size_t i : model.looks()) chosen.push_back(i);

@@ -9,51 +9,54 @@
 
 namespace insonify::study {
 
-constexpr double z_95 = 1.96;  ///< Deviations of a normal law to either side of 95 %.
+constexpr double z_95 = 1.96;  ///< Standard deviations of a normal law on either side of the 95 % interval.
 
-/** A value that was found, and its interval of 95 %. */
+/** A fitted value and its interval of 95 %. */
 struct Fitted {
     double value = 0, low = 0, high = 0;
 
     double half() const { return 0.5 * (high - low); }
 };
 
-/** Which level belongs to which range: everything that changes levels alone. */
+/** The relation of level and range: all parameters that change only levels. */
 struct LevelFit {
-    Fitted full_scale_db = {};            ///< Level of the largest code, all gain included [dB].
+    Fitted full_scale_db = {};            ///< Level of the max code, including all gain [dB].
     Fitted noise_db = {};                 ///< Mean intensity of noise in a bin, relative to the source [dB].
-    Fitted log_coefficient = {};          ///< Time-varied gain, for each decade of range [dB].
+    Fitted log_coefficient = {};          ///< Time-varied gain, per decade of range [dB].
     Fitted db_per_m = {};                 ///< Time-varied gain, one way [dB/m].
-    Fitted absorption_db_per_m = {};      ///< In the water, one way [dB/m].
-    Fitted tvg_span_db = {};              ///< Gain at the end of the range above that at its tenth [dB].
+    Fitted absorption_db_per_m = {};      ///< Absorption in the water, one way [dB/m].
+    Fitted tvg_span_db = {};              ///< Gain at the end of the range minus that at a tenth of the range [dB].
     std::optional<Fitted> water_db = {};  ///< Volume backscattering strength, side-scans only [dB re 1/m].
-    /** The sonar over a rough scene, and its beam; a side-scan has no height. */
+    /** The sonar's attitude over a rough scene, and its beam; a side-scan has no height. */
     std::optional<Fitted> pitch_deg = {}, height_m = {}, elevation_deg = {};
-    LevelBlocks modelled = {};  ///< What the codes of each block state by these values.
-    double rms_db = 0;          ///< Levels left unexplained, root mean square [dB].
+    LevelBlocks modelled = {};  ///< Modelled levels of the codes of each block with these values.
+    double rms_db = 0;          ///< Residuals of levels, root mean square [dB].
 
-    /** The chain with these values. */
+    /** Returns the chain with these values. */
     FitChain applied(const FitChain& chain) const;
-    /** Share of echoes in the mean intensity of a bin of this level (relative to the largest code) at this range [1].
-     */
+    /** Returns the fraction of echoes in the mean intensity of a bin of this level (relative to the max code) at this
+     *  range [1]. */
     double echoShare(double level_db, double range) const;
 };
 
-/** How far the scene of a fit is to be trusted. */
+/** How far the scene of a fit can be trusted. */
 struct LevelOptions {
-    /** It is no more than a floor or walls of about the right kind. Medians over the beams count; of a side-scan, whose
-     *  lines know how high they are, each block of lines, and the strength of the water where the sonar has one. */
+    /** The scene is only approximate: a floor or walls of the right kind. Medians over the beams are compared. For a
+     *  side-scan, whose altitudes are known, each block of lines is compared, and the water's strength if the sonar has
+     *  water. */
     bool rough = false;
-    /** Levels that count in the water before the floor of a side-scan; none: the recorded ones. */
+    /** Levels to compare in the water before the floor of a side-scan; none: the recorded levels. */
     std::optional<LevelBlocks> water = {};
-    bool fits_scene = false;  ///< Pitch, height and the beam in elevation are fitted as well; of a rough one.
+    bool fits_scene = false;  ///< Whether pitch, height and elevation width of a rough scene are fitted too.
 };
 
 /** Fits levels by least squares with Huber's weights (Huber 1964), by the downhill simplex of Nelder and Mead (1965).
- *  Intervals follow from the residuals and the derivatives at the minimum. Values are held loosely by the chain's own
- *  (by 30 dB, and 60 dB over the range), so that what the recording does not determine stays there.
+ *  Intervals follow from the residuals and the derivatives at the minimum. The chain's values are weak priors (30 dB,
+ *  and 60 dB over the range), so that undetermined values stay there.
  *
- *  @param recorded blocks of the recording @param law of its codes @param progress is called now and then */
+ *  @param recorded blocks of the recording
+ *  @param law of its codes
+ *  @param progress called now and then */
 LevelFit fitLevels(const LevelBlocks& recorded, const CodedPing& law, const FitChain& chain,
                    const LevelOptions& options, const std::function<void()>& progress);
 

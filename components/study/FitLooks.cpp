@@ -8,11 +8,11 @@
 namespace insonify::study {
 namespace {
 
-constexpr double one_look = -0.15;    ///< T of one look is 0 and more; codes that are rounded take off less.
-constexpr double min_texture = 0.01;  ///< 1 / shape from which on the law is K.
+constexpr double one_look = -0.15;    ///< T of one look is at least 0; rounding of codes lowers it by less than this.
+constexpr double min_texture = 0.01;  ///< Min 1 / shape of the K law.
 constexpr double min_width = 0.3, max_width = 16;  ///< Bounds of a filter's width [bins].
 
-/** Sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
+/** Returns the sum of the first three lags of a filter's correlation of intensities, exp(-(lag / width)^2). */
 double correlationOf(double width) {
     double sum = 0;
     for (int lag = 1; lag <= 3; ++lag) sum += std::exp(-std::pow(lag / width, 2));
@@ -73,7 +73,7 @@ void AveragedSpeckle::addTo(std::vector<Finding>& findings) const {
                         "1",
                         {static_cast<double>(looks_), std::ceil(1 / (both + off)), 1e9},
                         true,
-                        "averaged in each bin: the fewest that explain how little intensities vary"});
+                        "averaged in each bin: the min number that explains the small variation of intensities"});
     const Fitted shape{1 / inverse_, 1 / (inverse_ + off), inverse_ > off ? 1 / (inverse_ - off) : 1e9};
     findings.push_back({"shape of K", "1", shape, isTextured() && shape.half() <= 0.5 * shape.value,
                         isTextured() ? fmt::format("of the texture beneath these looks, at {:.3g} m", recorded_.range)

@@ -5,38 +5,38 @@
 
 namespace insonify::study {
 
-/** Speckle of a device that averages several looks in each bin, as many side-scans do: its intensities vary less than
- *  those of one look, which fields of scatterers cannot. It is drawn for each bin, as the mean of looks over a gamma
- *  distributed texture (K law), before the receiver.
+/** Fits the speckle of a device that averages several looks in each bin, as many side-scans do. Its intensities vary
+ *  less than those of one look, which fields of scatterers cannot reproduce. It is drawn for each bin before the
+ *  receiver, as the mean of looks over a gamma-distributed texture (K law).
  *
- *  The statistic T = <I ln I> / <I> - <ln I> - 1 of such speckle is 1 / looks + 1 / shape - 1 (for one look that of
- *  Blacknell and Tough 2001; for gamma distributed factors X of shape n, <X ln X> - <ln X> = 1 / n). One number states
- *  not both: the fewest looks that leave a shape are taken. */
+ *  The statistic T = <I ln I> / <I> - <ln I> - 1 of this speckle is 1 / looks + 1 / shape - 1. For one look it is that
+ *  of Blacknell and Tough 2001; for gamma-distributed factors X of shape n, <X ln X> - <ln X> = 1 / n. One number
+ *  cannot determine both, so the min number of looks that leaves a shape is used. */
 class AveragedSpeckle {
 public:
     explicit AveragedSpeckle(FitChain& chain) : chain_(chain) {}
 
-    /** Whether speckle varies so little that one look cannot be. */
+    /** Returns whether speckle varies too little for one look. */
     static bool isIn(const SpeckleMoments& recorded);
 
-    /** The first estimate, by theory. */
+    /** Makes the first estimate, by theory. */
     void begin(const SpeckleMoments& recorded);
-    /** A better one: targets move by what simulated statistics are off. */
+    /** Improves the estimate: moves the targets by the error of the simulated statistics. */
     void improve(const SpeckleMoments& recorded, const SpeckleMoments& simulated);
     void addTo(std::vector<Finding>& findings) const;
 
 private:
-    /** Takes the fewest looks that leave a shape. @param both 1 / looks + 1 / shape */
+    /** Uses the min number of looks that leaves a shape. @param both 1 / looks + 1 / shape */
     void take(double both);
     void apply();
-    /** Whether the texture is more than its error. */
+    /** Returns whether the texture exceeds its error. */
     bool isTextured() const;
 
     FitChain& chain_;
     SpeckleMoments recorded_ = {};
     int looks_ = 1;
     double inverse_ = 0;  ///< 1 / shape [1].
-    double bins_ = 0;     ///< Sum of the correlations of the first three lags that the filter is to have [1].
+    double bins_ = 0;     ///< Target of the filter: the sum of the correlations of the first three lags [1].
 };
 
 }  // namespace insonify::study

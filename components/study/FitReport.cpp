@@ -57,7 +57,7 @@ std::string blockOf(const receiver::CodeConfig& code) {
     return text + (code.gamma != 1 ? fmt::format(", gamma: {:.4g}}}", code.gamma) : "}");
 }
 
-/** A curve of a plot of levels over range. */
+/** Returns a curve of the plot of levels over range. */
 std::string polyline(const LevelBlocks& blocks, const char* colour, double low, double high) {
     constexpr double width = 800, height = 300;
     std::string points;
@@ -76,13 +76,13 @@ void write(const std::filesystem::path& path, const std::string& text) {
     if (!(file << text).flush()) throw std::runtime_error(path.string() + " cannot be written");
 }
 
-/** What a fitted deployment says next to a property. */
+/** Returns the comment of a property in a fitted deployment. */
 std::string comment(const RecordingFit& fit, const std::string& name) {
     const Finding* finding = fit.finding(name);
     return finding ? name + ": " + finding->text() : "";
 }
 
-/** What a side-scan has across its track; its azimuth is that of the fan which the chain has in its place. */
+/** Adds the pattern of a side-scan across its track: the azimuth pattern of the fan that represents it in the chain. */
 void addAcross(const RecordingFit& fit, const std::string& task, std::vector<FitSetting>& all) {
     const sonar::SonarConfig& fan = fit.chain.sonar;
     if (fit.levels.water_db)
@@ -103,12 +103,12 @@ void addSonar(const RecordingFit& fit, const std::string& task, std::vector<FitS
     };
     set("range", fmt::format("{:.9g}", sonar.range), "as recorded");
     set("bin_count", fmt::format("{}", sonar.bin_count), "as recorded");
-    set("range_rounding", "exact", "bins as deep as the recorded ones");
+    set("range_rounding", "exact", "bins as deep as recorded");
     set("speed_of_sound", fmt::format("{:.7g}", sonar.speedOfSound()), "as recorded");
     set("frequency_khz", fmt::format("{:.7g}", *sonar.frequency_khz), "as recorded");
     set("pulse", blockOf(*sonar.pulse), comment(fit, "pulse length"));
     set("speckle", sonar.speckle ? blockOf(*sonar.speckle) : "null",
-        sonar.speckle ? comment(fit, "scatterers per cell") : "the noise has it");
+        sonar.speckle ? comment(fit, "scatterers per cell") : "speckle is made by the noise task");
     set("absorption", fmt::format("{{db_per_m: {:.4g}}}", *sonar.absorption->db_per_m), comment(fit, "absorption"));
     if (fit.chain.isSideScan()) return addAcross(fit, task, all);
     set("field_of_view_deg", "null", "");
@@ -170,7 +170,8 @@ std::vector<FitSetting> wayOf(const FitChain& chain, const FitTasks& tasks) {
         {tasks.vehicle + ".waypoints", fmt::format("[{}]", fmt::join(points, ", ")),
          "a straight way, as high above the floor and pitched as the recording states; every fourth line"}};
     const auto level = [&](const char* turn, double is_deg) {
-        if (is_deg != 0) all.push_back({tasks.scene + ".mount." + turn, "0", "the recorded pitch is the sonar's own"});
+        if (is_deg != 0)
+            all.push_back({tasks.scene + ".mount." + turn, "0", "the recorded pitch is that of the sonar"});
     };
     level("roll_deg", tasks.mount.roll_deg);
     level("pitch_deg", tasks.mount.pitch_deg);

@@ -11,12 +11,12 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t sectors = 8, sector_beams = 16;  // of the jackknife; blocks of overPatches have so many beams
+constexpr size_t sectors = 8, sector_beams = 16;  // of the jackknife; beams in a block of overPatches
 constexpr size_t lags_of_moments = 3;
-constexpr double alike_of_texture = 0.6;  ///< Patches of few scatterers differ within themselves; edges do more.
-constexpr double mostly = 0.75;  ///< Share of the intensity from which on bins are those of echoes, or of noise.
+constexpr double alike_of_texture = 0.6;  ///< Patches of few scatterers differ within themselves; edges differ more.
+constexpr double mostly = 0.75;           ///< Min fraction of the intensity for bins of echoes, or of noise.
 
-/** Mean levels of the 16 x 16 bins about each bin [dB]. */
+/** Returns the mean levels of the 16 x 16 bins about each bin [dB]. */
 std::vector<double> levelsAbout(const CodedPing& ping) {
     std::vector<double> levels(ping.codes.size(), -400);
     for (size_t b = 0; b < ping.beam_count; b += sector_beams)
@@ -33,7 +33,7 @@ std::vector<double> levelsAbout(const CodedPing& ping) {
     return levels;
 }
 
-/** The bins of a field whose share of echoes is within bounds; what is left has their mean share and range. */
+/** The bins of a field whose fraction of echoes is within bounds, with their mean fraction and range. */
 struct Selected {
     SpeckleField field;
     double share = 0, range = 0;
@@ -60,7 +60,7 @@ Selected select(const CodedPing& ping, const SpeckleField& field, const LevelFit
     return selected;
 }
 
-/** The field without the bins of one sector of beams. */
+/** Returns the field without the bins of one sector of beams. */
 SpeckleField withoutSector(const SpeckleField& field, size_t sector) {
     SpeckleField rest = field;
     for (size_t i = 0; i < rest.relative.size(); ++i)
@@ -106,7 +106,7 @@ MeasuredMoments jackknifed(const SpeckleField& field, bool with_errors) {
     return measured;
 }
 
-/** Means over pings. Speckle of a still scene is the same in each, so errors stay what they are in one. */
+/** Averages over pings. Speckle of a still scene is the same in each ping, so errors remain those of one ping. */
 MeasuredMoments meanOf(const std::vector<MeasuredMoments>& all) {
     MeasuredMoments mean;
     for (size_t i = 0; i < mean.size(); ++i) {
@@ -118,7 +118,7 @@ MeasuredMoments meanOf(const std::vector<MeasuredMoments>& all) {
     return mean;
 }
 
-/** Sum over lags of the squared autocorrelation of a field. @param reach where the field has ended */
+/** Returns the sum over lags of the squared autocorrelation of a field. @param reach where the field ends */
 double autocorrelation(const std::function<double(double)>& field, double lag, double reach) {
     constexpr int steps = 4000;
     const double step = 2 * reach / steps;
@@ -139,7 +139,7 @@ double medianOf(std::vector<double> values) {
     return *middle;
 }
 
-/** A ping in which a target may stand. */
+/** A ping that is searched for targets. */
 class TargetView {
 public:
     TargetView(const CodedPing& ping, double width_beams)
@@ -147,7 +147,8 @@ public:
           near_(static_cast<long>(std::ceil(1.2 * width_beams)) + 1),
           far_(static_cast<long>(std::ceil(6 * width_beams)) + 2) {}
 
-    /** Level of its highest sidelobe relative to the target in this bin [dB]; none where there is no such target. */
+    /** Returns the level of the highest sidelobe relative to the target in this bin [dB]; none without a suitable
+     *  target. */
     std::optional<double> sidelobeAt(long beam, long bin) const {
         const double level = levelAt(beam, bin);
         if (ping_.code(static_cast<size_t>(beam), static_cast<size_t>(bin)) >= 0.99f || !isPeak(beam, bin)) return {};
@@ -172,7 +173,7 @@ private:
     double levelAt(long beam, long bin) const {
         return ping_.levelDb(ping_.code(static_cast<size_t>(beam), static_cast<size_t>(bin)));
     }
-    /** Whether none of its neighbours, out to its sidelobes and three bins about it, is stronger. */
+    /** Returns whether no neighbour is stronger, out to the sidelobes and within three bins. */
     bool isPeak(long beam, long bin) const {
         const double level = levelAt(beam, bin);
         for (long b = std::max(0L, beam - far_); b <= std::min(static_cast<long>(ping_.beam_count) - 1, beam + far_);
@@ -184,7 +185,7 @@ private:
     }
 
     const CodedPing& ping_;
-    long near_, far_;  ///< From the target on, where sidelobes are looked for [beams].
+    long near_, far_;  ///< Range of distances from the target in which sidelobes are searched [beams].
 };
 
 }  // namespace
@@ -201,7 +202,7 @@ Measured sidelobesOf(const std::vector<CodedPing>& pings, double width_beams) {
     if (all.empty()) return {};
     const double middle = medianOf(all);
     for (const double level : all) off.push_back(std::abs(level - middle));
-    // 1.4826: a normal law's deviation over its median deviation; of few targets at least 1 dB each.
+    // 1.4826: standard deviation over median deviation of a normal law; for few targets at least 1 dB each.
     const double deviation = std::max(1.0, 1.4826 * medianOf(off));
     return {middle, 1.25 * deviation / std::sqrt(static_cast<double>(all.size()))};
 }

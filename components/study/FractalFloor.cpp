@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/** Fourier transform in place of every `stride`-th of n values, n a power of two (Cooley and Tukey, 1965). */
+/** Fourier-transforms every `stride`-th of n values in place, n a power of two (Cooley and Tukey, 1965). */
 void transform(Complex* values, size_t n, size_t stride) {
     for (size_t i = 1, j = 0; i < n; ++i) {
         size_t bit = n / 2;
@@ -33,7 +33,7 @@ void transform(Complex* values, size_t n, size_t stride) {
         }
 }
 
-/** A standard complex Gaussian number (Box and Muller, 1958). */
+/** Returns a standard complex Gaussian number (Box and Muller, 1958). */
 Complex gaussian(uint64_t seed, uint64_t a, uint64_t b) {
     const uint64_t word = types::hashed(seed, a, b);
     return std::polar(std::sqrt(-2 * std::log(types::unit(word >> 32))),

@@ -6,27 +6,27 @@
 
 namespace insonify::study {
 
-constexpr double silent_db = -400;  ///< Level where there is no intensity [dB].
+constexpr double silent_db = -400;  ///< Level of zero intensity [dB].
 
 inline double toDb(double power) { return power > 1e-40 ? 10 * std::log10(power) : silent_db; }
 inline double toPower(double db) { return std::pow(10, db / 10); }
 
-/** What a code says in the mean of an intensity, over the exponential law of speckle: codes are cut off at both ends
+/** Computes the mean intensity that codes state, over the exponential law of speckle: codes are clipped at both ends
  *  and rounded. */
 class CodeResponse {
 public:
-    /** @param law with which intensities, relative to that of the largest code, become codes and levels again */
+    /** @param law converts intensities, relative to that of the max code, to codes and back to levels */
     explicit CodeResponse(const CodedPing& law);
 
-    /** Mean of the intensity that codes state, for a mean intensity of `level_db`, both relative to the largest code's
-     *  [dB]. */
+    /** Returns the mean intensity that codes state for a mean intensity of `level_db`, both relative to that of the max
+     *  code [dB]. */
     double operator()(double level_db) const;
 
 private:
-    std::vector<double> stated_db_;  ///< By steps of a quarter of a decibel.
+    std::vector<double> stated_db_;  ///< In steps of a quarter of a decibel.
 };
 
-/** Mean levels of blocks of a ping, by beams and by range. */
+/** Mean levels of blocks of a ping: groups of beams, slices of range. */
 struct LevelBlocks {
     size_t beam_blocks = 0, slices = 0;
     std::vector<double> ranges = {};  ///< Middle of each slice [m].
@@ -35,13 +35,13 @@ struct LevelBlocks {
     double at(size_t block, size_t slice) const { return level[block * slices + slice]; }
 };
 
-/** Mean levels of what the codes of a ping state, relative to the largest code, and of intensities relative to the
+/** Returns the mean levels that a ping's codes state, relative to the max code; for intensities, relative to the
  *  source. A block without intensity has the level -400 dB. */
 LevelBlocks blocksOf(const CodedPing& ping);
 LevelBlocks blocksOf(const types::Sonar& intensities);
-/** The mean of several pings, as intensities. */
+/** Returns the mean of several pings, as intensities. */
 LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
-/** The least of several pings. */
+/** Returns the min of several pings. */
 LevelBlocks leastOf(const std::vector<LevelBlocks>& all);
 
 }  // namespace insonify::study

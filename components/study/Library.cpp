@@ -1,4 +1,4 @@
-// The component library study: what the command loads for `insonify study`.
+// The component library study: loaded by the command for `insonify study`.
 #include "components/deployer/CodedLog.hpp"
 #include "components/deployer/FittedDeployment.hpp"
 #include "components/deployer/Pipeline.hpp"

@@ -9,10 +9,10 @@ namespace insonify::study {
 namespace {
 
 constexpr size_t patch = 16;              ///< Bins and beams of a patch.
-constexpr double quarters_alike = 0.25;   ///< A quarter's mean may differ from the patch's by so much of it [1].
-constexpr double clipped_at_most = 0.02;  ///< Of a homogeneous patch, at code 0 or the largest [1].
-constexpr double seen_arc_db = 3;         ///< Above what is around it.
-constexpr size_t targets = 5;             ///< Whose arcs are looked at.
+constexpr double quarters_alike = 0.25;   ///< Max relative difference of a quarter's mean from the patch's mean [1].
+constexpr double clipped_at_most = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
+constexpr double seen_arc_db = 3;         ///< Min level of an arc above its surroundings.
+constexpr size_t targets = 5;             ///< Number of targets whose arcs are examined.
 
 double median(std::vector<double> values) {
     if (values.empty()) return NAN;
@@ -29,7 +29,7 @@ double mean(const std::vector<double>& values) {
 
 double decibels(double power) { return 10 * std::log10(std::max(power, 1e-30)); }
 
-/** What the figures are taken from: intensity and amplitude relative to the largest code's. */
+/** The data of the statistics: intensity and amplitude relative to the max code. */
 class Picture {
 public:
     explicit Picture(const CodedPing& ping) : ping_(ping) {
@@ -108,7 +108,7 @@ struct Patch {
     }
 };
 
-/** Contrast and correlations of homogeneous patches. */
+/** Adds contrast and correlations of homogeneous patches. */
 void addSpeckle(const Picture& picture, Looks& looks) {
     std::vector<double> contrast, along, across;
     for (size_t beam = 0; beam + patch <= picture.beams(); beam += patch)
@@ -126,7 +126,7 @@ void addSpeckle(const Picture& picture, Looks& looks) {
                     if (i + 1 < patch) in_beams += here * (each.amplitude(i + 1, j) - all);
                 }
             contrast.push_back(std::sqrt(squares / (patch * patch)) / all);
-            if (!(squares > 1e-12 * all * all)) continue;  // nothing varies
+            if (!(squares > 1e-12 * all * all)) continue;  // constant
             const double pairs = static_cast<double>(patch - 1) / patch;
             along.push_back(in_range / squares / pairs);
             across.push_back(in_beams / squares / pairs);
@@ -138,10 +138,10 @@ void addSpeckle(const Picture& picture, Looks& looks) {
 
 struct Target {
     size_t beam, bin;
-    double intensity;  ///< Mean of 3 x 3 bins about it.
+    double intensity;  ///< Mean of the 3 x 3 bins around it.
 };
 
-/** The strongest, each at a range of its own. */
+/** Returns the strongest targets, each at a different range. */
 std::vector<Target> strongestTargets(const Picture& picture, size_t apart_bins) {
     std::vector<Target> all;
     for (size_t bin = apart_bins; bin + apart_bins < picture.bins(); ++bin) {
@@ -165,7 +165,8 @@ std::vector<Target> strongestTargets(const Picture& picture, size_t apart_bins) 
     return chosen;
 }
 
-/** Median intensity of the beams beside a target, from 1/32 to 1/4 of all beams away, in bins [from, to]. */
+/** Returns the median intensity of the beams next to a target, from 1/32 to 1/4 of all beams away, in bins [from,
+ *  to]. */
 double beside(const Picture& picture, const Target& target, size_t from, size_t to) {
     const size_t near = std::max<size_t>(4, picture.beams() / 32), far = picture.beams() / 4;
     std::vector<double> values;
@@ -191,7 +192,7 @@ void addArcs(const Picture& picture, Looks& looks) {
     looks.arc_excess_db = median(excess);
 }
 
-/** Calls with each figure of two looks. */
+/** Calls a function with each statistic of two looks. */
 template <class F>
 void forEachFigure(Looks& a, const Looks& b, const F& f) {
     for (size_t i = 0; i < code_classes; ++i) f(a.histogram[i], b.histogram[i]);
@@ -209,7 +210,7 @@ double meanOf(const std::array<double, range_slices>& levels) {
     return sum;
 }
 
-/** The same shape and law, all codes 0. */
+/** Returns a ping of the same shape and law with all codes 0. */
 CodedPing emptyLike(const CodedPing& like, const char* name) {
     CodedPing ping = like;
     ping.name = name;
@@ -221,7 +222,7 @@ CodedPing emptyLike(const CodedPing& like, const char* name) {
 
 Looks looksOf(const CodedPing& ping) {
     if (ping.beam_count < 2 * patch || ping.bin_count < 4 * patch)
-        throw std::invalid_argument(ping.name + " has too few beams or bins to tell what it looks like");
+        throw std::invalid_argument(ping.name + " has too few beams or bins for these statistics");
     Looks looks;
     const Picture picture(ping);
     addCodes(ping, looks);
@@ -300,7 +301,7 @@ std::vector<Claim> claims(const Apart& apart, const Looks& recorded) {
             {"speckle contrast, apart by", apart.contrast, 0.1, true},
             {"correlation of neighbouring bins, apart by", apart.range_correlation, 0.2, true},
             {"correlation of neighbouring beams, apart by", apart.beam_correlation, 0.2, true},
-            {"level of arcs beside the strongest, apart by [dB]", apart.arc_db, 10, true,
+            {"level of arcs next to the strongest, apart by [dB]", apart.arc_db, 10, true,
              recorded.arc_excess_db >= seen_arc_db}};
 }
 

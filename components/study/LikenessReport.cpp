@@ -17,7 +17,7 @@ namespace {
 constexpr int fan_height = 600, gap = 12;  // [pixels]
 using Out = std::back_insert_iterator<std::string>;
 
-/** Where each pixel of a fan of some half-opening comes from; of a waterfall its lines beside each other. */
+/** Maps pixels to bins of a fan with some half-opening; the lines of a waterfall are side by side. */
 class Fan {
 public:
     explicit Fan(const CodedPing& ping) : ping_(ping) {

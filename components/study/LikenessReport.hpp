@@ -8,7 +8,7 @@
 
 namespace insonify::study {
 
-/** A picture under study: its figures, and how far they are from those of the recordings. */
+/** A picture under study: its statistics, and its differences from those of the recordings. */
 struct LikenessRow {
     std::string name;
     Looks looks;
@@ -17,31 +17,31 @@ struct LikenessRow {
 
 struct LikenessResult {
     Looks recorded;                 ///< Mean of the recorded pings.
-    std::vector<LikenessRow> rows;  ///< Each recorded ping, the simulated one if there is one, the wrong forms.
-    std::vector<CodedPing> shown;   ///< A recorded ping, and the simulated one beside it.
+    std::vector<LikenessRow> rows;  ///< Each recorded ping, the simulated ping if there is one, the wrong pictures.
+    std::vector<CodedPing> shown;   ///< A recorded ping, and the simulated ping next to it.
 
-    const LikenessRow* row(const std::string& name) const;  ///< Null when there is none.
+    const LikenessRow* row(const std::string& name) const;  ///< Returns null if there is none.
 };
 
-/** Lays pings beside each other. @param simulated where it is null, of the recordings and the wrong forms alone
- *  @throws std::invalid_argument when a ping has too few beams or bins */
+/** Compares pings. @param simulated null: only the recordings and the wrong pictures
+ *  @throws std::invalid_argument if a ping has too few beams or bins */
 LikenessResult studyLikeness(const std::vector<CodedPing>& recorded, const CodedPing* simulated);
 
-/** Names of the figures of a row of likeness.csv, and their values. */
+/** The name and the value of a statistic in a row of likeness.csv. */
 struct LikenessFigure {
     const char* name;
     double value;
 };
 std::vector<LikenessFigure> figuresOf(const LikenessRow& row);
 
-std::string csvOf(const LikenessResult& result);          ///< A line for each row, its figures and distances.
-std::string profilesCsvOf(const LikenessResult& result);  ///< Histograms by code, codes and levels by slice of range.
+/** Return a line for each row, with its statistics and distances; histograms by code, codes and levels by slice. */
+std::string csvOf(const LikenessResult& result);
+std::string profilesCsvOf(const LikenessResult& result);
 
-/** Pings as fans beside each other, grey, codes as they are. */
+/** Draws pings as fans side by side, grey, codes unchanged. */
 types::Image fansOf(const std::vector<CodedPing>& pings);
 
-/** Writes likeness.csv, profiles.csv and fans.png. Throws std::runtime_error when one cannot be written.
- */
+/** Writes likeness.csv, profiles.csv and fans.png. Throws std::runtime_error if a file cannot be written. */
 void writeReport(const LikenessResult& result, const std::filesystem::path& folder);
 
 }  // namespace insonify::study

@@ -21,7 +21,7 @@ using types::radians;
 
 double decibels(double ratio) { return 10 * std::log10(ratio); }
 
-/** Bins of 0.1 m to 30 m, from 60 deg below to 60 deg above. */
+/** Returns a sonar with bins of 0.1 m to 30 m, from 60 deg below to 60 deg above. */
 sonar::SonarConfig listener(double fov_deg, int bounces) {
     sonar::SonarConfig config = fan(fov_deg, 120, 1, 30);
     setSamples(config, 1024);
@@ -42,10 +42,10 @@ types::Snapshot under(double surface, types::GeometryPtr scene) {
     return snapshot;
 }
 
-/** A small disc far behind. */
+/** Returns a small disc far behind. */
 types::GeometryPtr openWater() { return sceneOf({disc(1, 0.1)}, {{-500, 0, 0}}); }
 
-/** A plate that is a mirror by its lobe. */
+/** Returns the material of a plate that is a mirror by its lobe. */
 types::Material smooth() {
     types::Material material;
     material.lambert_db = -200;
@@ -60,7 +60,7 @@ types::GeometryPtr ofMaterial(const types::GeometryPtr& scene, const types::Mate
     return changed;
 }
 
-/** A target at 12 m, 1 m down, from 3 m below the surface. */
+/** Tests a target at 12 m, 1 m down, from 3 m below the surface. */
 void studyTarget(MultipathResult& result) {
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     types::Snapshot snapshot = under(3, openWater());
@@ -84,7 +84,7 @@ void studyTarget(MultipathResult& result) {
     result.curves.push_back(std::move(level));
 }
 
-/** A bottom 4 m below, the surface 2 m above: sums over slices of 1 m. */
+/** Tests a bottom 4 m below, with the surface 2 m above: sums over slices of 1 m. */
 void studyBottom(MultipathResult& result) {
     const double fov = radians(8), half = radians(60), step = 1e-3;
     const types::GeometryPtr scene = sceneOf({levelGround(-4)});
@@ -112,9 +112,9 @@ void studyBottom(MultipathResult& result) {
     result.curves.push_back(std::move(curve));
 }
 
-/** A target beside a mirror that ends at different places: the three returns, or the first alone. */
+/** Tests a target next to a mirror that ends at different places: the three returns, or only the first. */
 void studyWall(MultipathResult& result) {
-    HeardCurve curve{"wall", "Returns of a target beside a mirror that ends", "end of the mirror [m]", "returns", {}};
+    HeardCurve curve{"wall", "Returns of a target next to a mirror that ends", "end of the mirror [m]", "returns", {}};
     types::Material mirror;
     mirror.mirror = true;
     mirror.lambert_db = -200;
@@ -126,13 +126,13 @@ void studyWall(MultipathResult& result) {
         const auto count = std::ranges::count_if(heard.ping.bins, [](float bin) { return bin > 0; });
         curve.points.push_back({end, static_cast<double>(count), end > 12 * 4.0 / 7 ? 3.0 : 1.0});
     }
-    result.claims.push_back({"returns too many or too few beside a mirror that ends", curve.worst(), 0, true});
+    result.claims.push_back({"returns too many or too few next to a mirror that ends", curve.worst(), 0, true});
     result.curves.push_back(std::move(curve));
 }
 
 constexpr double corner_range = 50, wavelength = 0.003, side = 0.1;
 
-/** Target strength of a small corner 50 m ahead [dB]. */
+/** Returns the target strength of a small corner 50 m ahead [dB]. */
 double strengthOf(const types::GeometryPtr& corner) {
     sonar::SonarConfig config = fan(0.4, 0.4, 1, 60);
     config.speed_of_sound = 1500;
@@ -153,7 +153,7 @@ types::GeometryPtr dihedral(double yaw_deg) {
     return ofMaterial(sceneOf({quad(edge, side * axes[0], up), quad(edge, side * axes[1], up)}), smooth());
 }
 
-/** Three axes at right angles that lean back at the sonar alike. */
+/** Returns three perpendicular axes with equal angles to the sonar. */
 glm::dmat3 trihedralAxes() {
     const double x = std::sqrt(1.0 / 3), r = std::sqrt(2.0 / 3);
     glm::dmat3 axes;
@@ -172,7 +172,7 @@ types::GeometryPtr trihedral(bool square, double yaw_deg) {
     return ofMaterial(sceneOf(std::move(plates)), smooth());
 }
 
-/** Aperture of a trihedral towards the sonar, by the cosines of the direction from the least to the greatest [m^2]. */
+/** Returns the aperture of a trihedral towards the sonar, from the sorted cosines of the direction [m^2]. */
 double trihedralAperture(bool square, double yaw_deg) {
     const glm::dmat3 axes = turned(yaw_deg) * trihedralAxes();
     std::array<double, 3> cosines{-axes[0].x, -axes[1].x, -axes[2].x};

@@ -6,7 +6,7 @@
 
 namespace insonify::study {
 
-/** What a sonar hears beside what it should. */
+/** A received value and its expected value. */
 struct HeardPoint {
     double x, heard, expected;
 };
@@ -14,7 +14,7 @@ struct HeardCurve {
     std::string name, title, x_label, y_label;
     std::vector<HeardPoint> points;
 
-    double worst() const;  ///< Largest difference.
+    double worst() const;  ///< Returns the max difference.
 };
 
 struct MultipathResult {
@@ -22,11 +22,11 @@ struct MultipathResult {
     std::vector<Claim> claims;
 };
 
-/** Echoes by way of mirrors against the image method and the target strengths of corner reflectors (ACOUSTICS.md 5.23,
- *  5.25): a point target and a flat bottom under a flat surface, a target beside a wall, a dihedral and trihedrals that
- *  are turned; and what none of it may change, the first echo. */
+/** Compares echoes by way of mirrors with the image method and with the target strengths of corner reflectors
+ *  (ACOUSTICS.md 5.23, 5.25). Cases: a point target and a flat bottom under a flat surface, a target next to a wall,
+ *  and turned dihedrals and trihedrals. The first echo must not change. */
 MultipathResult studyMultipath();
 
-std::string csvOf(const MultipathResult& result);  ///< curve,x,heard,expected.
+std::string csvOf(const MultipathResult& result);  ///< Returns curve,x,heard,expected.
 
 }  // namespace insonify::study

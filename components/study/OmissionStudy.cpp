@@ -22,12 +22,12 @@ namespace {
 
 using sonar::SonarConfig;
 
-/** One way to render the ping. */
+/** A way to render the ping. */
 struct Way {
     SonarConfig config;
     types::Snapshot snapshot;
     sonar::RenderOptions options = {};
-    int bins_in_one = 1;  ///< So many bins are added up before they are compared [1].
+    int bins_in_one = 1;  ///< Number of bins that are summed before the comparison [1].
 };
 
 struct Rendered {
@@ -39,7 +39,7 @@ double now() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/** Neighbouring bins added up; bins of a beam are a multiple of `in_one`. */
+/** Sums groups of neighbouring bins; the number of bins of a beam is a multiple of `in_one`. */
 std::vector<float> joined(const std::vector<float>& bins, int in_one) {
     std::vector<float> sums(bins.size() / static_cast<size_t>(in_one));
     for (size_t i = 0; i < bins.size(); ++i) sums[i / static_cast<size_t>(in_one)] += bins[i];
@@ -63,7 +63,7 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/** In turns, so that a machine that grows slow is slow for both. */
+/** Renders both ways alternately, so that a slowing machine affects both equally. */
 Ablation compared(const Way& without, const Way& with, int pings) {
     constexpr int turns = 3;
     Rendered a, b;
@@ -83,7 +83,8 @@ Ablation compared(const Way& without, const Way& with, int pings) {
     return {loudest > 0 ? difference / loudest : difference, rel_l2_tvg, median(a.ms), median(b.ms)};
 }
 
-/** A scene in which no material has a normal map, with one that none of its objects has: all are drawn flat. */
+/** Returns a scene in which no material has a normal map with an additional map that no object uses: all surfaces are
+ *  rendered flat. */
 types::GeometryPtr withFlatMap(const types::Geometry& geometry) {
     auto mapped = std::make_shared<types::Geometry>(geometry);
     mapped->materials.emplace_back().normal_map = static_cast<int>(mapped->normal_maps.size());
@@ -118,7 +119,7 @@ public:
     }
 
 private:
-    /** What twice the rows and columns change: the bound of what depends on how fine the pixels are. */
+    /** Measures the change by twice the rows and columns: the bound for effects that depend on the pixels' size. */
     void measureQuality() {
         progress_("quality");
         Way finer = planned_;
@@ -138,7 +139,7 @@ private:
         return row;
     }
 
-    /** Puts back what has been left out; false where it cannot be. */
+    /** Puts back an omission; returns false if that is impossible. */
     bool putBack(const sonar::LeftOut& what, Way& with, OmissionRow& row) const {
         const auto bound = [&](double value, const char* of) {
             row.bound = value;
@@ -194,7 +195,7 @@ private:
         return way != ways.end() && way->second();
     }
 
-    /** A tone as long as a bin, which changes nothing. */
+    /** Adds a tone as long as a bin, which changes nothing. */
     bool neutralPulse(Way& with, OmissionRow& row) const {
         const sonar::BinGrid grid = sonar::makeBinGrid(planned_.config);
         with.config.pulse.emplace().duration_us = 2e6 * grid.bin_width / grid.speed_of_sound;
@@ -203,7 +204,7 @@ private:
         return true;
     }
 
-    /** One that is nothing in float. */
+    /** Adds a ring-down that is zero in float. */
     bool weakRingDown(Way& with, OmissionRow& row) const {
         if (planned_.config.model != sonar::Model::Physical) return false;
         if (!with.config.pulse) neutralPulse(with, row);
@@ -213,7 +214,7 @@ private:
         return true;
     }
 
-    /** Eight bins for each, added up: absorption changes from one to the next. */
+    /** Renders eight bins for each and sums them: absorption changes from one to the next. */
     bool splitBins(Way& with, OmissionRow& row) const {
         constexpr int parts = 8;
         const SonarConfig& config = planned_.config;

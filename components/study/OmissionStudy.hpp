@@ -10,27 +10,27 @@
 
 namespace insonify::study {
 
-/** Two ways to render one ping, compared. */
+/** The comparison of two ways to render one ping. */
 struct Ablation {
-    double change = 0;                   ///< Largest difference of a bin over the loudest bin [1].
+    double change = 0;                   ///< Max difference of a bin, relative to the strongest bin [1].
     double rel_l2_tvg = 0;               ///< M2 between the two (Metrics.hpp) [1].
-    double without_ms = 0, with_ms = 0;  ///< Of a ping, medians [ms].
+    double without_ms = 0, with_ms = 0;  ///< Medians of a ping [ms].
 };
 
-/** What a plan leaves out, or an effect that it keeps, with what that does to bins and time. */
+/** An effect that a plan omits, or keeps, and its influence on bins and time. */
 struct OmissionRow {
     std::string name, reason;
-    std::optional<Ablation> measured;  ///< None: `reason` is all there is, as the effect is not built.
-    std::optional<double> bound;       ///< Of what leaving it out may change [1].
-    std::string bound_of;              ///< What the bound is of, and where it comes from.
-    bool kept = false;                 ///< Configured: shown for what it does and costs.
+    std::optional<Ablation> measured;  ///< None: the effect is not built; `reason` explains it.
+    std::optional<double> bound;       ///< Max change that the omission may cause [1].
+    std::string bound_of;              ///< The quantity of the bound, and its origin.
+    bool kept = false;                 ///< Configured: shown for its influence and cost.
 
-    /** Whether what was left out changes no more than its bound; true where there is nothing to judge. */
+    /** Returns whether the omission changes at most its bound; true without a bound. */
     bool holds() const;
 };
 
-/** Renders a sonar's ping as planned, and again with each thing that its plan leaves out put back (with neutral values
- *  where it has some), or each effect that it keeps taken away. `pings` are timed of either, in turns. */
+/** Renders a sonar's ping as planned, and again with each omission put back (with neutral values for some), and with
+ *  each kept effect removed. Both are timed alternately over `pings` pings. */
 std::vector<OmissionRow> studyOmissions(const sonar::SonarConfig& config, const types::Snapshot& snapshot, int pings,
                                         const std::function<void(const std::string&)>& progress);
 

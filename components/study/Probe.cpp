@@ -15,10 +15,10 @@
 namespace insonify::study {
 namespace {
 
-constexpr double max_rays = 1e6, max_triangles = 1e5;  ///< For which kappa is worth its time.
+constexpr double max_rays = 1e6, max_triangles = 1e5;  ///< Max for the computation of kappa, which takes time.
 
-/** Most bins that one pixel covers; NaN where the caster does not know the beams, would take too
- *  long, or is not built. */
+/** Returns the max number of bins that one pixel covers; NaN if the ray tracer does not support the beams, would take
+ *  too long, or is not built. */
 double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     const double rays = static_cast<double>(config.rows()) * config.columnsPerBeam() * config.beams();
     const bool planar = config.bearings_deg.empty() && config.beam_geometry == sonar::BeamGeometry::Planar;
@@ -35,7 +35,7 @@ double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) 
 #endif
 }
 
-/** Loudest material over the mean of all [dB]. */
+/** Returns the loudest material relative to the mean of all [dB]. */
 double strengthSpan(const types::Geometry& geometry) {
     double loudest = 0, sum = 0;
     for (const types::Material& material : geometry.materials) {

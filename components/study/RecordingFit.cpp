@@ -18,31 +18,32 @@ constexpr size_t rounds = 5, simulations = 3;
 constexpr size_t fewest_beams = 32, fewest_bins = 64;
 
 void refuseUnusable(const std::vector<CodedPing>& recorded) {
-    if (recorded.empty()) throw types::ConfigError("", "--real", "holds no ping");
+    if (recorded.empty()) throw types::ConfigError("", "--real", "has no ping");
     const CodedPing& first = recorded.front();
     const auto refuse = [&](const std::string& why) { throw types::ConfigError(first.file, "", why); };
     if (first.beam_count < fewest_beams || first.bin_count < fewest_bins)
-        refuse(fmt::format("has pings of {} beams and {} bins; a fit needs {} and {} at least", first.beam_count,
+        refuse(fmt::format("has pings of {} beams and {} bins; a fit needs at least {} and {}", first.beam_count,
                            first.bin_count, fewest_beams, fewest_bins));
     if (first.bits < 8 || first.bits > 16)
-        refuse(fmt::format("has codes of {} bits; the receiver of a deployment gives out 8 to 16", first.bits));
+        refuse(fmt::format("has codes of {} bits; the receiver of a deployment outputs 8 to 16", first.bits));
     size_t clipped = 0, zero = 0, all = 0;
     for (const CodedPing& ping : recorded) {
         if (ping.beam_count != first.beam_count || ping.bin_count != first.bin_count)
             throw types::ConfigError(
                 ping.file, "",
-                fmt::format("has a ping of {} beams and {} bins, another one {} and {}; a fit needs pings of one shape",
-                            ping.beam_count, ping.bin_count, first.beam_count, first.bin_count));
+                fmt::format(
+                    "has a ping of {} beams and {} bins, another ping has {} and {}; a fit needs pings of one shape",
+                    ping.beam_count, ping.bin_count, first.beam_count, first.bin_count));
         for (const float code : ping.codes) ++all, clipped += code >= 1, zero += code <= 0;
     }
     const auto share = [&](size_t count) { return static_cast<double>(count) / static_cast<double>(all); };
     if (share(zero) > 0.9)
         refuse(fmt::format("has codes of 0 in {:.0f} % of its bins: nothing to fit", 100 * share(zero)));
     if (share(clipped) > 0.5)
-        refuse(fmt::format("has the largest code in {:.0f} % of its bins: it is saturated", 100 * share(clipped)));
+        refuse(fmt::format("has the max code in {:.0f} % of its bins: it is saturated", 100 * share(clipped)));
 }
 
-/** Fields instead of energies, with a beam and a pulse that neighbours share. */
+/** Selects fields instead of energies, with a beam and a pulse that neighbours share. */
 void prepare(const CodedPing& recorded, FitChain& chain) {
     sonar::SonarConfig& sonar = chain.sonar;
     if (!sonar.frequency_khz)
@@ -64,7 +65,7 @@ void prepare(const CodedPing& recorded, FitChain& chain) {
     if (!azimuth->weighting) azimuth->weighting = acoustics::Weighting::Uniform;
 }
 
-/** Scales bandwidth or duration: in both cases the length of the pulse. */
+/** Scales bandwidth or duration; both determine the length of the pulse. */
 double pulseLength(const acoustics::PulseConfig& pulse, double c) { return acoustics::Pulse(pulse, c).resolution(); }
 
 void setPulseLength(double length, double c, acoustics::PulseConfig& pulse) {
@@ -75,7 +76,7 @@ void setPulseLength(double length, double c, acoustics::PulseConfig& pulse) {
         *pulse.bandwidth_khz /= factor;
 }
 
-/** Square of an integral over the integral of the square, of what weighs a cell. */
+/** Returns the square of an integral over the integral of the square, of a cell's weight. */
 template <class Weight>
 double effectiveWidth(double reach, const Weight& weight) {
     constexpr int steps = 4000;
@@ -87,7 +88,7 @@ double effectiveWidth(double reach, const Weight& weight) {
     return sum * sum / squares * 2 * reach / steps;
 }
 
-/** Area of a resolution cell, seen flat, for each metre of range [m]. */
+/** Returns the area of a resolution cell, seen flat, per metre of range [m]. */
 double cellPerMetre(const FitChain& chain) {
     const sonar::SonarConfig& sonar = chain.sonar;
     const acoustics::Pulse pulse(*sonar.pulse, sonar.speedOfSound());
@@ -100,7 +101,7 @@ double cellPerMetre(const FitChain& chain) {
            effectiveWidth(6 * pulse.resolution(), [&](double r) { return pulse.response(r); });
 }
 
-/** The device's properties that speckle states, moved until simulated and recorded statistics agree. */
+/** Properties of the device that determine speckle, moved until simulated and recorded statistics agree. */
 class SpeckleFit {
 public:
     SpeckleFit(const CodedPing& recorded, FitChain& chain)
@@ -111,7 +112,7 @@ public:
           width_before_(chain.isSideScan() ? 0 : azimuth().width_deg.value()),
           length_before_(pulseLength(*chain.sonar.pulse, c_)) {}
 
-    /** The first estimate, by theory. */
+    /** Makes the first estimate, by theory. */
     void begin(const SpeckleMoments& recorded) {
         recorded_ = recorded;
         beams_ = recorded.echo_beams.value, bins_ = recorded.echo_bins.value;
@@ -119,7 +120,7 @@ public:
         inverse_ = recorded.texture.isKnown() ? std::max(0.0, recorded.texture.value * areaAt(recorded)) : 0;
         apply();
     }
-    /** A better one: targets move by what simulated statistics are off. */
+    /** Improves the estimate: moves the targets by the error of the simulated statistics. */
     void improve(const SpeckleMoments& recorded, const SpeckleMoments& simulated) {
         recorded_ = recorded;
         const auto move = [](double& target, const Measured& real, const Measured& made) {
@@ -138,7 +139,7 @@ public:
 
 private:
     acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
-    /** 1 / shape of the K law of the echoes where it was measured, and whether it is more than nothing. */
+    /** Returns 1 / shape of the echoes' K law at the measured range; see isTextured() for its significance. */
     double texture() const { return inverse_ / areaAt(recorded_); }
     double textureInterval() const { return z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations); }
     bool isTextured() const { return recorded_.texture.isKnown() && texture() > textureInterval(); }
@@ -164,7 +165,7 @@ private:
         if (!recorded.isMoreThanChance() || correlation < 0.005) return std::nullopt;
         return std::clamp(1 / std::sqrt(-std::log(std::min(correlation, 0.99))), 0.3, 16.0);
     }
-    /** A step of the secant method. Patches of one kind show less texture than there is. */
+    /** Makes a step of the secant method. Patches of one kind show less texture than there is. */
     void improveTexture(const SpeckleMoments& recorded, double made) {
         const double area = areaAt(recorded), here = inverse_ / area;
         const double way = here - texture_before_;
@@ -187,7 +188,7 @@ private:
         chain_.noise.filter.reset();
         if (filter.correlation_beams || filter.correlation_bins) chain_.noise.filter = filter;
     }
-    /** An interval by those of the statistic, of recorded and simulated pings. */
+    /** Returns an interval from those of the recorded and simulated statistics. */
     template <class At>
     static Fitted interval(double value, double statistic, const Measured& recorded, const At& at) {
         const double off = z_95 * recorded.error * std::sqrt(1 + 1.0 / simulations);
@@ -198,8 +199,8 @@ private:
     FitChain& chain_;
     double c_, bin_, spacing_, width_before_, length_before_;  // [m/s, m, rad, deg, m]
     SpeckleMoments recorded_;
-    double beams_ = 0, bins_ = 0, noise_beams_ = 0, noise_bins_ = 0;  ///< Statistics that the theory is to have [1].
-    double texture_before_ = 0, made_before_ = NAN;  ///< 1 / shape in the round before, and its statistic then [1].
+    double beams_ = 0, bins_ = 0, noise_beams_ = 0, noise_bins_ = 0;  ///< Target statistics of the theory [1].
+    double texture_before_ = 0, made_before_ = NAN;  ///< 1 / shape in the previous round, and its statistic then [1].
     double inverse_ = 0;                             ///< 1 / scatterers per area [m^2].
 };
 
@@ -218,12 +219,12 @@ void SpeckleFit::addTo(std::vector<Finding>& findings) const {
     else
         add("beam width", "deg", recorded_.echo_beams,
             interval(*azimuth().width_deg, beams_, recorded_.echo_beams, [&](double at) { return widthAt(at); }), 0.25,
-            "of the receiver in azimuth, from what neighbouring beams share of speckle",
+            "of the receiver in azimuth, from the correlation of speckle of neighbouring beams",
             "neighbouring beams share no more speckle than chance, or too few bins show echoes without clipping");
     add("pulse length", "m", recorded_.echo_bins,
         interval(length, bins_, recorded_.echo_bins, [&](double at) { return lengthAt(at); }), 0.25,
-        "range resolution at -3 dB, from what neighbouring bins share of speckle",
-        "neighbouring bins share no more speckle than chance: the pulse is shorter than a bin, or nothing shows it");
+        "range resolution at -3 dB, from the correlation of speckle of neighbouring bins",
+        "neighbouring bins share no more speckle than chance: the pulse is shorter than a bin, or no bins show it");
     const double off = textureInterval();
     const Fitted shapes{1 / texture(), 1 / (texture() + off), texture() > off ? 1 / (texture() - off) : 1e9};
     findings.push_back({"scatterers per cell", "1", shapes, isTextured() && isWithin(shapes, 0.5),
@@ -240,7 +241,7 @@ void SpeckleFit::addTo(std::vector<Finding>& findings) const {
     noiseWidth("noise over bins", recorded_.noise_bins, noise_bins_);
 }
 
-/** How the sonar looks at a rough scene. */
+/** Adds the sonar's attitude over a rough scene. */
 void addLook(const LevelFit& fit, const FitChain& before, double range, std::vector<Finding>& findings) {
     const auto add = [&](const char* name, const char* unit, const Fitted& found, bool is_determined, const char* note,
                          const char* why_not) {
@@ -250,17 +251,17 @@ void addLook(const LevelFit& fit, const FitChain& before, double range, std::vec
     if (before.looks_abeam) {
         const double depression = 90 - std::abs(before.sonar.bearings_deg.front());
         add("depression", "deg", {depression + pitch.value, depression + pitch.low, depression + pitch.high},
-            pitch.half() <= 5, "of each beam's axis below the horizontal", "the width of the beam takes its place");
+            pitch.half() <= 5, "of each beam's axis below the horizontal", "the width of the beam has the same effect");
         add("elevation width", "deg", width, isWithin(width, 0.5), "of a beam across the track, two-way, at -3 dB",
-            "the depression takes its place");
+            "the depression has the same effect");
         return;
     }
     add("pitch", "deg", pitch, pitch.half() <= 5, "added to the mount, down is positive",
-        "height and elevation take its place");
-    add("height", "m", *fit.height_m, fit.height_m->half() <= 0.15 * range, "added to the sonar's place",
-        "pitch and elevation take its place");
+        "height and elevation have the same effect");
+    add("height", "m", *fit.height_m, fit.height_m->half() <= 0.15 * range, "added to the sonar's position",
+        "pitch and elevation have the same effect");
     add("elevation width", "deg", width, isWithin(width, 0.5), "one way, of the transmitter",
-        "height and pitch take its place");
+        "height and pitch have the same effect");
 }
 
 void addLevels(const LevelFit& fit, const FitChain& before, double range, std::vector<Finding>& findings) {
@@ -272,21 +273,21 @@ void addLevels(const LevelFit& fit, const FitChain& before, double range, std::v
     const auto positive = [](const Fitted& found) {
         return Fitted{std::max(0.0, found.value), std::max(0.0, found.low), std::max(0.0, found.high)};
     };
-    add("full scale", "dB", fit.full_scale_db, 3, "level of the largest code with all gain, for the scene's sediment",
-        "no echo is bright enough, or the gain over range takes its place");
+    add("full scale", "dB", fit.full_scale_db, 3, "level of the max code with all gain, for the scene's sediment",
+        "no echo is bright enough, or the gain over range has the same effect");
     add("noise", "dB", fit.noise_db, 3, "mean intensity in a bin, relative to the source",
         "no range shows noise by itself");
     add("TVG logarithm", "dB", positive(fit.log_coefficient), 5, "per decade of range",
-        "the range is too short to tell it from the TVG slope; the gain over the whole range may be known");
+        "the range is too short to separate it from the TVG slope; the gain over the whole range may be known");
     add("TVG slope", "dB/m", positive(fit.db_per_m), 2.5 / range, "one way",
-        "the range is too short to tell it from the TVG logarithm; the gain over the whole range may be known");
+        "the range is too short to separate it from the TVG logarithm; the gain over the whole range may be known");
     add("TVG span", "dB", fit.tvg_span_db, 3, "gain at the end of the range above that at its tenth",
         "echoes and noise over range are explained by several gains");
     add("absorption", "dB/m", positive(fit.absorption_db_per_m), 1.5 / range, "one way",
-        "only echoes and noise, both at several ranges, tell it from the TVG");
+        "only echoes and noise, both at several ranges, separate it from the TVG");
     if (fit.water_db)
         add("water", "dB re 1/m", *fit.water_db, 6, "volume backscattering strength, for the scene's sediment",
-            "no range shows the water by itself, or noise takes its place");
+            "no range shows the water by itself, or noise has the same effect");
     if (fit.pitch_deg) addLook(fit, before, range, findings);
     Finding source{
         "source level", "dB", {}, false, "only its sum with the sediment's strength and the gain is in the codes"};
@@ -305,7 +306,7 @@ void addLevels(const LevelFit& fit, const FitChain& before, double range, std::v
                         "only its sum with the source level and the gain is in the codes; the scene's is kept"});
 }
 
-/** The sidelobes of the beam; a Taylor weighting gets them. */
+/** Fits the sidelobes of the beam by a Taylor weighting. */
 void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::vector<Finding>& findings) {
     constexpr double useful_db = 3;
     acoustics::BeamLaw& law = *chain.sonar.beam_pattern->receive.azimuth;
@@ -316,13 +317,13 @@ void addSidelobes(const std::vector<CodedPing>& recorded, FitChain& chain, std::
                         "dB",
                         {level.value, level.value - off, level.value + off},
                         is_determined,
-                        is_determined ? "highest of a beam, beside isolated targets"
-                                      : "no target stands far enough above what is around it"});
+                        is_determined ? "highest of a beam, next to isolated targets"
+                                      : "no target is far enough above its surroundings"});
     if (is_determined && law.weighting == acoustics::Weighting::Taylor)
         law.sidelobe_db = std::clamp(level.value, -60.0, -14.0);
 }
 
-/** Keeps what a renderer makes of the scene, which all renderers of it share, for as long as it lives. */
+/** Keeps the renderer's data of the scene alive, which all renderers of the scene share. */
 class SceneTrees {
 public:
     explicit SceneTrees(const FitChain& chain) : renderer_(plain(chain.sonar), chain.snapshot.geometry) {
@@ -338,8 +339,8 @@ private:
     sonar::SonarRenderer renderer_;
 };
 
-/** The range up to which nearly all lines or beams have the largest code: their own transmitter [m]; 0: there is none.
- */
+/** Returns the range up to which nearly all lines or beams have the max code from their own transmitter [m]; 0:
+ *  none. */
 double ringingRange(const std::vector<CodedPing>& recorded) {
     constexpr double nearly_all = 0.9;
     constexpr float largest = 0.99f;
@@ -354,7 +355,7 @@ double ringingRange(const std::vector<CodedPing>& recorded) {
     return first.resolution * static_cast<double>(bin);
 }
 
-/** Lets the transmitter be heard at full scale up to this range, and fall steeply from there. */
+/** Adds the transmitter's ring-down at full scale up to this range, with a steep decay from there. */
 void ring(double range, double bin, FitChain& chain) {
     constexpr double steepest = 1000, margin_db = 15, whole_fall_db = 200;
     if (range <= 0) return;
@@ -366,11 +367,11 @@ void ring(double range, double bin, FitChain& chain) {
         .decay_db_per_m = decay};
 }
 
-/** Recorded levels less what the model of levels is off from simulated ones, by slices, where echoes are most of them:
- *  codes cut off more of speckle with few scatterers than of the exponential law of the model. */
+/** Corrects recorded levels by the error of the level model in simulated pings, by slices of mostly echoes: clipping of
+ *  codes removes more of speckle with few scatterers than of the model's exponential law. */
 LevelBlocks corrected(LevelBlocks recorded, const std::vector<CodedPing>& simulated, const LevelFit& fit) {
     constexpr double mostly_echo = 0.5;
-    constexpr size_t smoothed = 2;  ///< Slices to either side.
+    constexpr size_t smoothed = 2;  ///< Slices on either side.
     std::vector<LevelBlocks> each;
     for (const CodedPing& ping : simulated) each.push_back(blocksOf(ping));
     const LevelBlocks made = meanOf(each);
@@ -412,8 +413,8 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     refuseUnusable(recorded);
     if (recorded.front().is_waterfall != chain.looks_abeam)
         throw types::ConfigError(recorded.front().file, "",
-                                 chain.looks_abeam ? "is no recording of a side-scan, which the deployment has"
-                                                   : "is a recording of a side-scan, which the deployment has not");
+                                 chain.looks_abeam ? "is not a recording of a side-scan, but the deployment has one"
+                                                   : "is a recording of a side-scan, but the deployment has none");
     takeShape(recorded.front(), chain);
     if (chain.looks_abeam) layLines(recorded.front(), chain);
     const FitChain before = chain;
@@ -456,8 +457,7 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     fit.levels.pitch_deg = pitch, fit.levels.height_m = height, fit.levels.elevation_deg = elevation;
     addLevels(fit.levels, before, range, fit.findings);
     if (ringing > 0)
-        fit.findings.push_back(
-            {"transmitter", "m", {ringing, ringing, ringing}, true, "range up to which it is heard"});
+        fit.findings.push_back({"transmitter", "m", {ringing, ringing, ringing}, true, "range up to which it rings"});
     averaged ? averaged->addTo(fit.findings) : speckle.addTo(fit.findings);
     if (!chain.isSideScan()) addSidelobes(recorded, fit.chain, fit.findings);
     return fit;

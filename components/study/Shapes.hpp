@@ -1,5 +1,5 @@
 #pragma once
-// Meshes in code, for scenes with known echoes; each is one cluster.
+// Meshes made in code, for scenes with known echoes; each is one cluster.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -11,7 +11,7 @@
 
 namespace insonify::study {
 
-/** A mesh of triangles as one cluster; positions are used as they are. */
+/** Returns a mesh of triangles as one cluster; positions are used unchanged. */
 inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t> indices) {
     types::Mesh mesh;
     mesh.positions = std::move(positions);
@@ -26,12 +26,12 @@ inline types::Mesh meshOf(std::vector<glm::vec3> positions, std::vector<uint32_t
     return mesh;
 }
 
-/** A parallelogram: a corner and two edges [m]. */
+/** Returns a parallelogram from a corner and two edges [m]. */
 inline types::Mesh quad(glm::vec3 corner, glm::vec3 a, glm::vec3 b) {
     return meshOf({corner, corner + a, corner + a + b, corner + b}, {0, 1, 2, 0, 2, 3});
 }
 
-/** A sphere about the origin, of `rings` times 2 `rings` quads, their corners on it; closed [m]. */
+/** Returns a closed sphere about the origin, of `rings` times 2 `rings` quads with their corners on it [m]. */
 inline types::Mesh sphere(double radius, int rings = 128) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -52,7 +52,7 @@ inline types::Mesh sphere(double radius, int rings = 128) {
     return meshOf(std::move(positions), std::move(indices));
 }
 
-/** A disc square to the x axis about (distance, 0, 0), of `segments` triangles [m]. */
+/** Returns a disc perpendicular to the x axis about (distance, 0, 0), of `segments` triangles [m]. */
 inline types::Mesh disc(double distance, double radius, uint32_t segments = 256) {
     std::vector<glm::vec3> positions = {{distance, 0, 0}};
     std::vector<uint32_t> indices;
@@ -64,8 +64,8 @@ inline types::Mesh disc(double distance, double radius, uint32_t segments = 256)
     return meshOf(positions, indices);
 }
 
-/** One object for each mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) = 1. Large
- *  meshes are split into clusters. */
+/** Returns a scene of one object per mesh, at `positions` or else the origin, of one material with 10^(lambert_db/10) =
+ *  1. Large meshes are split into clusters. */
 inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, std::vector<glm::dvec3> positions = {}) {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.emplace_back().lambert_db = 0;

@@ -10,10 +10,10 @@ namespace insonify::study {
 namespace {
 
 constexpr size_t patch = 16;              ///< Bins and beams of a patch, and of a block of the jackknife.
-constexpr double clipped_at_most = 0.02;  ///< Of a patch, at code 0 or the largest [1].
+constexpr double clipped_at_most = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
 constexpr size_t fewest_blocks = 4;
 
-/** Intensities on any scale, and which of them an instrument has cut off. */
+/** Intensities on any scale, with marks for those that an instrument has clipped. */
 struct Intensities {
     size_t beam_count, bin_count;
     std::vector<double> values = {};
@@ -26,7 +26,7 @@ Intensities intensitiesOf(const CodedPing& ping) {
     for (size_t i = 0; i < ping.codes.size(); ++i) {
         const float code = ping.codes[i];
         const bool clipped = code <= 0 || static_cast<double>(code) > 1 - 1.5 * step;
-        // A code stands for all levels that are rounded to it: evenly, by the hash of its place.
+        // A code represents all levels that are rounded to it: evenly, by the hash of its place.
         const double within = clipped ? 0 : step * (types::unit(types::hashed(ping.bits, i, 0) >> 32) - 0.5);
         const auto spread = static_cast<float>(static_cast<double>(code) + within);
         all.values.push_back(std::pow(10, ping.levelDb(spread) / 10));
@@ -58,7 +58,7 @@ struct Patch {
             for (size_t j = 0; j < size; ++j) sum += std::sqrt(all.values[place(from_i + i, from_j + j)]);
         return sum / static_cast<double>(size * size);
     }
-    /** @param alike share of the patch's mean amplitude by which a quarter's may differ from it [1] */
+    /** @param alike max relative difference of a quarter's mean amplitude from the patch's [1] */
     bool isOneKind(double alike) const {
         size_t clipped = 0;
         for (size_t i = 0; i < patch; ++i)
@@ -101,7 +101,7 @@ size_t loudestSlice(const Intensities& all) {
     return static_cast<size_t>(std::ranges::max_element(sums) - sums.begin());
 }
 
-/** Sums that scintillation, texture and contrast are made of; they can be added and taken away. */
+/** Sums for scintillation, texture and contrast; they can be added and subtracted. */
 struct Sums {
     double count = 0, intensity = 0, square = 0, amplitude = 0, logarithm = 0, weighted = 0;
 
@@ -129,11 +129,11 @@ std::vector<Sums> blocksOf(const SpeckleField& field) {
                 blocks[beam / patch * columns + bin / patch].add(x);
     std::erase_if(blocks, [](const Sums& block) { return block.count == 0; });
     if (blocks.size() < fewest_blocks)
-        throw std::invalid_argument("too few bins tell of speckle: no four patches of 16 x 16 are one kind of bottom");
+        throw std::invalid_argument("too few bins show speckle: no four patches of 16 x 16 are one kind of bottom");
     return blocks;
 }
 
-/** A figure of all blocks, and its spread with each of them left out in turn. */
+/** Returns a statistic of all blocks, and its spread when each block is omitted in turn. */
 template <class Figure>
 Estimate jackknife(const Sums& total, const std::vector<Sums>& blocks, const Figure& figure) {
     const auto count = static_cast<double>(blocks.size());
@@ -143,7 +143,7 @@ Estimate jackknife(const Sums& total, const std::vector<Sums>& blocks, const Fig
     return {figure(total), std::sqrt(squares * (count - 1) / count)};
 }
 
-/** Of pairs of values. */
+/** Sums over pairs of values. */
 struct Pairs {
     double count = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
 
@@ -164,7 +164,8 @@ double lagged(const SpeckleField& field, size_t beams, size_t bins) {
     return pairs.correlation();
 }
 
-/** How many neighbours share what one bin says: the curve's sum over both sides, as far as it stands out. */
+/** Returns the number of neighbours that share the information of one bin: the curve's sum over both sides, as far as
+ *  it exceeds `floor`. */
 double sharedBy(const LagCurve& curve, double floor) {
     double sum = 1;
     for (size_t lag = 1; lag < curve.size() && curve[lag] > floor; ++lag) sum += 2 * curve[lag];
@@ -189,7 +190,7 @@ double distanceOfExponential(const SpeckleField& field) {
 
 SpeckleField overMeans(const types::Sonar& ping, const types::Sonar& means) {
     if (ping.beam_count != means.beam_count || ping.bin_count != means.bin_count)
-        throw std::invalid_argument("a ping has other beams or bins than its means");
+        throw std::invalid_argument("a ping and its means differ in beams or bins");
     SpeckleField field = emptyField(ping.beam_count, ping.bin_count);
     for (size_t i = 0; i < ping.bins.size(); ++i)
         if (means.bins[i] > 0)

@@ -9,7 +9,7 @@
 namespace insonify::study {
 namespace {
 
-constexpr double fewest_bins = 1024;  ///< Of a slice, four patches: fewer tell nothing.
+constexpr double fewest_bins = 1024;  ///< Min bins of a slice: four patches.
 
 double told(const SpeckleField& field) {
     return static_cast<double>(std::ranges::count_if(field.relative, [](double x) { return !std::isnan(x); }));
@@ -39,7 +39,7 @@ types::Sonar later(types::Sonar ping) {
     return ping;
 }
 
-/** A ping whose bins are all 1. */
+/** Returns a ping whose bins are all 1. */
 types::Sonar ones() {
     types::Sonar ping;
     ping.time.microseconds = 1;
@@ -49,7 +49,7 @@ types::Sonar ones() {
     return ping;
 }
 
-/** How many standard errors an estimate is off. */
+/** Returns the deviation of an estimate in standard errors. */
 double errorsOff(const Estimate& estimate, double truth) { return std::abs(estimate.value - truth) / estimate.error; }
 
 }  // namespace

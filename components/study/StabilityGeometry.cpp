@@ -18,14 +18,14 @@ const glm::dvec3 ball_at(9, 1, -0.5);
 sonar::SonarConfig smallFan() { return fan(60, 40, 16, 15); }
 types::GeometryPtr wallAndBall() { return sceneOf({facingWall(12), sphere(1.5, 48)}, {{0, 0, 0}, ball_at}); }
 
-/** Passes when a changed scene sounds like the wall and ball, to `tolerance`. */
+/** Passes if a changed scene has the echoes of wall and ball, to `tolerance`. */
 Outcome sounds(double tolerance, const types::GeometryPtr& changed, const std::string& got) {
     const Probe heard = probe(smallFan(), lookingAt(changed)), plain = probe(smallFan(), lookingAt(wallAndBall()));
     const double deviation = difference(heard.ping, plain.ping);
     return within(tolerance, deviation, got + (deviation == 0 ? ": bit-identical" : ""), heard);
 }
 
-/** Wall and ball with `change` done to the scene. */
+/** Returns wall and ball with `change` applied to the scene. */
 template <class Change>
 types::GeometryPtr changed(const Change& change) {
     const auto geometry = copyOf(wallAndBall());
@@ -39,7 +39,7 @@ Outcome insideAClosedMesh() {
     const Probe heard = probe(config, snapshot), again = probe(config, snapshot);
     const double truth = radians(60) * 2 * std::sin(radians(20)) / (5.05 * 5.05);
     const double deviation = heard.ping.bins == again.ping.bins ? off(heard.energy(), truth) : INFINITY;
-    return within(1e-3, deviation, "a sphere heard from its centre, both sides reflect; bit-identical again", heard);
+    return within(1e-3, deviation, "a sphere seen from its centre, both sides reflect; bit-identical again", heard);
 }
 
 Outcome exactlyOnASurface() {
@@ -72,7 +72,7 @@ Outcome duplicatedFaces() {
 }
 
 Outcome nonManifold() {
-    return sounds(1e-6, changed([](types::Geometry& g) {  // fins behind the wall, on an edge that has two faces already
+    return sounds(1e-6, changed([](types::Geometry& g) {  // fins behind the wall, on an edge that already has two faces
                       types::Mesh& wall = g.meshes[0];
                       wall.positions.push_back({20, 0, 0});
                       wall.positions.push_back({25, 3, 9});
@@ -82,7 +82,7 @@ Outcome nonManifold() {
                   "four faces on one edge, two of them behind the wall");
 }
 
-/** An object's place with `transform` before the sphere's translation. */
+/** Returns an object's place with `transform` before the sphere's translation. */
 types::GeometryPtr placedBall(const types::Mesh& ball, const glm::dmat4& transform) {
     const auto geometry = copyOf(sceneOf({facingWall(12), ball}));
     geometry->objects[1].world_from_object = glm::translate(glm::dmat4(1), ball_at) * transform;
@@ -119,9 +119,9 @@ Outcome straightDown() {
 std::vector<StabilityCase> geometryCases() {
     return {{5, "Sonar inside a closed mesh", "deterministic; both sides reflect, to 1e-3 of the closed form",
              insideAClosedMesh},
-            {6, "Sonar exactly on a surface", "no inf; the rest is heard as without, to 1e-3", exactlyOnASurface},
+            {6, "Sonar exactly on a surface", "no inf; other echoes unchanged, to 1e-3", exactlyOnASurface},
             {12, "Duplicated coplanar faces", "one return, to 1e-6", duplicatedFaces},
-            {12, "Non-manifold edges", "hidden faces are not heard, to 1e-6", nonManifold},
+            {12, "Non-manifold edges", "hidden faces have no echo, to 1e-6", nonManifold},
             {17, "Mirrored node", "as the shape that it makes, to 1e-5", mirrored},
             {17, "Node with unequal scales, mirrored and turned", "as a mesh of that shape, to 1e-5", stretched},
             {56, "Sonar that looks straight down", "to 1e-3 of the closed form of a facing plane", straightDown}};

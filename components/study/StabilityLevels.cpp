@@ -25,7 +25,7 @@ bool tells(const std::vector<std::string>& notices, const std::string& words) {
 
 constexpr double far_wall = 98.6993;  ///< [m]
 
-/** A wall ahead at 2 MHz. */
+/** Renders a wall ahead at 2 MHz. */
 Probe twoMegahertzOn(SonarConfig& config, double wall, int bins) {
     config.bin_count = bins;
     config.range_rounding = sonar::RangeRounding::Exact;
@@ -35,7 +35,7 @@ Probe twoMegahertzOn(SonarConfig& config, double wall, int bins) {
     return probe(config, lookingAt(sceneOf({facingWall(0)}, {{wall, 0, 0}})));
 }
 
-/** What a receiver makes of a ping. */
+/** Returns a ping after a receiver. */
 types::Sonar received(receiver::Receiver receiver, const types::Sonar& intensities) {
     types::Sonar ping;
     receiver.receive(intensities, ping);
@@ -48,7 +48,8 @@ receiver::ReceiverConfig inLevels() {
     return config;
 }
 
-/** Level of the wall in a bin in double precision, its absorption integrated in slices; -3000 dB for no echo. */
+/** Returns the level of the wall in a bin in double precision, its absorption integrated in slices; -3000 dB for no
+ *  echo. */
 double trueLevel(const SonarConfig& config, const Truth& truth, int bin) {
     constexpr int slices = 50;
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
@@ -99,8 +100,7 @@ Outcome gainOf(double gain_db, double tolerance) {
             worst, off(ping.bins[i], std::min(heard.ping.bins[i] * factor, heard.ping.bins[i] > 0 ? ceiling : 0)));
     return within(
         tolerance, tells(receiver.notices(), "reaches its max_db") ? worst : INFINITY,
-        fmt::format("a gain of {} dB: clamped there, which is told; intensities at most the largest float", gain_db),
-        heard);
+        fmt::format("a gain of {} dB: clamped there, and reported; intensities at most the max float", gain_db), heard);
 }
 
 Outcome weakAbsorption() {
@@ -123,7 +123,7 @@ Outcome weakAbsorption() {
         fmt::format("0: bit-identical to none; 1e-12 dB/m off by {:.1e}; 1e-4 dB/m off by {:.1e}", tiny, weak), heard);
 }
 
-/** A plate of a material before a wall. */
+/** Renders a plate of a material in front of a wall. */
 Probe plateBeforeWall(const SonarConfig& config, float lambert_db, float reflectivity) {
     const auto geometry = copyOf(sceneOf({facingWall(10), facingWall(5.05f, 20)}));
     geometry->materials.push_back(geometry->materials[0]);
@@ -147,7 +147,7 @@ Outcome silentSurfaces() {
             else if (k > 55)
                 worst = std::max(worst, double{bin});
         }
-    return within(1e-4, worst, "no echo in physical, S(0) = 6.1e-6 in cerqueira2017; the wall behind is not heard",
+    return within(1e-4, worst, "no echo in physical, S(0) = 6.1e-6 in cerqueira2017; the wall behind has no echo",
                   published);
 }
 
@@ -160,7 +160,7 @@ Outcome fullReflectivity() {
 
 constexpr double plate_at = 8.05;  ///< [m]
 
-/** A bottom of -80 dB, and before it a plate of 2 x 2 m of +20 dB, the loudest that a file may have. */
+/** Returns a bottom of -80 dB, and in front of it a plate of 2 x 2 m of +20 dB, the loudest that a file may have. */
 std::shared_ptr<types::Geometry> plateOverBottom() {
     const auto geometry = copyOf(sceneOf({levelGround(-5), quad({plate_at, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
     geometry->materials.push_back(geometry->materials[0]);
@@ -170,7 +170,7 @@ std::shared_ptr<types::Geometry> plateOverBottom() {
     return geometry;
 }
 
-/** Echo of the plate: ACOUSTICS.md 9.5, the wide window. */
+/** Returns the echo of the plate: ACOUSTICS.md 9.5, the wide window. */
 double plateEnergy() {
     constexpr int cells = 200;
     double sum = 0;
@@ -192,7 +192,7 @@ Outcome plateBesideBottom() {
     SonarConfig config = fan(40, 40, 1, 16);
     setSamples(config, 512, 512);  // the plate ends within a cell
     const Probe heard = probe(config, lookingAt(plateOverBottom()));
-    // The bottom from the aperture's edge on is seen below the plate, but where the plate hides it.
+    // The bottom from the aperture's edge on is visible below the plate, except where the plate hides it.
     const Truth bottom = planeTruth({0, 0, -1}, 5);
     const double plate = off(energyOf(heard, 80, 84), plateEnergy());
     const double below = off(energyOf(heard, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
@@ -200,14 +200,14 @@ Outcome plateBesideBottom() {
                   fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), heard);
 }
 
-/** A material that gives back what it mirrors, and next to nothing else. */
+/** Makes a material that returns what it mirrors, and almost nothing else. */
 void makeMirror(types::Material& material, float reflection, float slope) {
     material.lambert_db = -200;
     material.reflection = reflection;
     material.roughness_slope = slope;
 }
 
-/** All of a plane mirror's echo is that of the sonar's image, at twice the distance: R^2 / (2 D)^2. */
+/** A plane mirror's echo is that of the sonar's image, at twice the distance: R^2 / (2 D)^2. */
 Outcome mirrorAhead() {
     const auto geometry = copyOf(sceneOf({facingWall(10)}));
     makeMirror(geometry->materials[0], 0.5f, 0);
@@ -220,10 +220,10 @@ Outcome mirrorAhead() {
         heard = probe(config, lookingAt(geometry));
         worst = std::max(worst, std::abs(10 * std::log10(heard.energy() * 1600)));
     }
-    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and as many columns", heard);
+    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and columns", heard);
 }
 
-/** A plate whose lobe is +60 dB at its peak, over a bottom of -80 dB. */
+/** Tests a plate whose lobe is +60 dB at its peak, over a bottom of -80 dB. */
 Outcome glintBesideBottom() {
     constexpr double ahead = 8.05;  // [m]
     const auto geometry = copyOf(sceneOf({levelGround(-5), quad({ahead, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
@@ -253,12 +253,12 @@ std::vector<StabilityCase> levelCases() {
             {32, "2 MHz at 99 m in wide bins", "to the absorption of half a bin, and the plan warns",
              [] { return twoMegahertz(262, true); }},
             {33, "TVG gain of 1e20", "clamped and reported; to 1e-6", [] { return gainOf(200, 1e-6); }},
-            {33, "TVG gain of 1e100", "finite: clamped at the largest float", [] { return gainOf(1000, 1e-6); }},
+            {33, "TVG gain of 1e100", "finite: clamped at the max float", [] { return gainOf(1000, 1e-6); }},
             {35, "No and hardly any absorption", "continuous, to 1e-6", weakAbsorption},
             {36, "Reflectivity of 0", "no echo, but a shadow", silentSurfaces},
             {38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", mirrorAhead},
-            {39, "+20 dB plate beside a bottom of -80 dB", "both to 1 %", plateBesideBottom},
-            {39, "+60 dB glint beside a bottom of -80 dB", "glint to 1 dB, bottom to 1 %", glintBesideBottom},
+            {39, "+20 dB plate next to a bottom of -80 dB", "both to 1 %", plateBesideBottom},
+            {39, "+60 dB glint next to a bottom of -80 dB", "glint to 1 dB, bottom to 1 %", glintBesideBottom},
             {40, "Sigmoid at both ends", "S(1) = 0.99753 (S(0): case 36)", fullReflectivity}};
 }
 

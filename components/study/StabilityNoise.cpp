@@ -10,7 +10,7 @@
 namespace insonify::study {
 namespace {
 
-/** A ping of ones. */
+/** Returns a ping of ones. */
 types::Sonar ones(int64_t microseconds, uint32_t beams, uint32_t bins) {
     types::Sonar ping;
     ping.time.microseconds = microseconds;
@@ -26,7 +26,7 @@ types::Sonar noisy(const noise::NoiseConfig& config, const types::Sonar& clean) 
     return result;
 }
 
-/** Correlation of the first two beams. */
+/** Returns the correlation of the first two beams. */
 double correlation(const types::Sonar& ping) {
     const size_t n = ping.bin_count;
     double x = 0, y = 0, xx = 0, yy = 0, xy = 0;

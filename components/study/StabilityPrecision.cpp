@@ -16,14 +16,14 @@ namespace {
 
 using types::radians;
 
-/** Ground, a ball, a wall and a plate that leans. */
+/** Returns ground, a ball, a wall and a tilted plate. */
 types::GeometryPtr harbour(glm::dvec3 origin) {
     return sceneOf(
         {levelGround(-5, 400), sphere(1.5, 64), facingWall(30, 12), quad({12, -9, -3}, {1, 5, 0}, {2, 0, 4})},
         {origin, origin + glm::dvec3(10, 3, -2), origin, origin});
 }
 
-/** A plate 0.12 m to port and a wall 1999.85 m ahead to starboard. */
+/** Tests a plate 0.12 m to port and a wall 1999.85 m ahead to starboard. */
 Outcome tenCentimetresAndTwoKilometres() {
     const auto geometry = sceneOf({quad({0.12f, 0.0f, -0.1f}, {0, 0.1f, 0}, {0, 0, 0.2f}),
                                    quad({1999.85f, -300, -100}, {0, 300, 0}, {0, 0, 200})});
@@ -40,7 +40,7 @@ Outcome tenCentimetresAndTwoKilometres() {
                   heard);
 }
 
-/** The energy that a loud plane loses to a dumb one 1e-4 r behind it, at a pitch of 40 deg. */
+/** Returns the energy that a loud plane loses to a weak plane 1e-4 r behind it, at a pitch of 40 deg. */
 double leak(double distance, bool hidden_first, Probe& heard) {
     const glm::dvec3 normal(std::cos(radians(40)), 0, -std::sin(radians(40)));
     const auto plane = [&](double d) {
@@ -65,8 +65,8 @@ Outcome planesCloseTogether() {
     double worst = 0;
     for (const double distance : {0.01, 1.0, 600.0})
         for (const bool hidden_first : {false, true}) worst = std::max(worst, leak(distance, hidden_first, heard));
-    return within(1e-6, worst, "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, drawn first or last",
-                  heard);
+    return within(1e-6, worst,
+                  "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, rasterised first or last", heard);
 }
 
 Outcome utmCoordinates() {
@@ -89,10 +89,11 @@ Outcome instancesFarApart() {
     both->objects[1].mesh = 0;
     const sonar::SonarConfig config = fan(20, 20, 8, 12);
     const Probe near = probe(config, lookingAt(both)), far = probe(config, lookingAt(both, {1e6, 0, 0}));
-    return within(1e-6, difference(far.ping, near.ping), "the instance 1e6 m away heard as the one at the origin", far);
+    return within(1e-6, difference(far.ping, near.ping),
+                  "the instance 1e6 m away has the echoes of the instance at the origin", far);
 }
 
-/** Bins about the range at which a bottom 0.1 m below is met at an incidence, against the closed form. */
+/** Compares bins near the range at which a bottom 0.1 m below has an incidence with the closed form. */
 Outcome grazing(double incidence_deg) {
     const double height = 0.1, range = std::round(height / std::cos(radians(incidence_deg)));
     sonar::SonarConfig config = fan(10, 4, 4, std::ceil(1.1 * range));
@@ -107,7 +108,7 @@ Outcome grazing(double incidence_deg) {
                   fmt::format("{:.0f} to {:.0f} m over a bottom {} m below", first * 0.1, last * 0.1, height), heard);
 }
 
-/** Of a pixel that range_min cuts through, what lies beyond is heard to the last bit of it. */
+/** If range_min cuts through a pixel, the part beyond it is received exactly. */
 Outcome blankingThroughAPixel() {
     const double height = 0.1;
     sonar::SonarConfig open = fan(10, 4, 4, 70), blanked = open;
@@ -131,7 +132,7 @@ Outcome wallThroughThreeSlabs() {
     const Probe heard = probe(config, lookingAt(sceneOf({facingWall(5, 400)})));
     return within(
         1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5)),
-        fmt::format("worst of {} beams in {} slabs against the closed form", config.beam_count, heard.plan.slabs),
+        fmt::format("worst of {} beams in {} frusta against the closed form", config.beam_count, heard.plan.slabs),
         heard);
 }
 
@@ -149,7 +150,7 @@ Outcome hugeSeaFloor(float width) {
                   "worst of 64 beams against the closed form", heard);
 }
 
-/** A strip a tenth of a pixel wide, moved through a pixel in 40 steps. */
+/** Tests a strip a tenth of a pixel wide, moved through a pixel in 40 steps. */
 Outcome sliver() {
     sonar::SonarConfig config = fan(20, 20, 1, 12);
     setSamples(config, 64, 64);
@@ -174,7 +175,7 @@ Outcome sliver() {
                   heard);
 }
 
-/** Walls that cross at the border of two slabs, each in front of the other on one side. */
+/** Tests walls that cross at the border of two frusta, each in front of the other on one side. */
 Outcome wallsThatCrossAtASlabBorder() {
     const double lean = radians(20);
     const glm::dvec3 one(std::cos(lean), std::sin(lean), 0), other(std::cos(lean), -std::sin(lean), 0);
@@ -185,10 +186,10 @@ Outcome wallsThatCrossAtASlabBorder() {
     const Probe heard = probe(config, lookingAt(sceneOf({turned(one), turned(other)}, {{10, 0, 0}, {10, 0, 0}})));
     const double distance = 10 * std::cos(lean);
     double worst = 0;
-    for (uint32_t beam = 0; beam < 40; ++beam)  // at positive azimuths the plane is nearer whose normal leans to port
+    for (uint32_t beam = 0; beam < 40; ++beam)  // at positive azimuths the plane whose normal leans to port is nearer
         worst = std::max(
             worst, off(heard.energy(beam), trueEnergy(config, beam, planeTruth(beam < 20 ? other : one, distance))));
-    return within(1e-3, worst, fmt::format("worst of 40 beams in {} slabs against the nearer plane", heard.plan.slabs),
+    return within(1e-3, worst, fmt::format("worst of 40 beams in {} frusta against the nearer plane", heard.plan.slabs),
                   heard);
 }
 
@@ -198,17 +199,18 @@ std::vector<StabilityCase> precisionCases() {
     return {
         {1, "Ranges of 0.1 m and 2 km in one scene", "both first returns in their bin, energies to 1e-3",
          tenCentimetresAndTwoKilometres},
-        {2, "Far over near of 1e6", "a plane 1e-4 r behind another is not heard, to 1e-6", planesCloseTogether},
+        {2, "Far over near of 1e6", "a plane 1e-4 r behind another has no echo, to 1e-6", planesCloseTogether},
         {3, "World coordinates of 5e5 and 4.5e6 m", "energy as at the origin to 1e-6, first returns the same",
          utmCoordinates},
         {4, "Instances 1e6 m apart", "each as at the origin, to 1e-6", instancesFarApart},
         {7, "Grazing at 89.9 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.9); }},
         {7, "Grazing at 89.99 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.99); }},
-        {13, "A wall through three slabs", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeSlabs},
+        {13, "A wall through three frusta", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeSlabs},
         {13, "Ground that crosses the eye plane", "every beam to 1e-3 of the closed form", groundThroughTheEyePlane},
         {14, "Sea-floor quad of 1e8 m", "every beam to 1 % of the closed form", [] { return hugeSeaFloor(1e8f); }},
         {15, "Slivers thinner than a pixel", "right on average over shifts, to 2 %; aliasing reported", sliver},
-        {16, "Walls that cross at a slab border", "every beam to 1e-3 of the closed form", wallsThatCrossAtASlabBorder},
+        {16, "Walls that cross at a frustum border", "every beam to 1e-3 of the closed form",
+         wallsThatCrossAtASlabBorder},
         {60, "Blanking that cuts through a pixel", "nothing beyond range_min is lost, to 1e-6", blankingThroughAPixel}};
 }
 

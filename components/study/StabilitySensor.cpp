@@ -1,4 +1,4 @@
-// Fans, beams, apertures, range bins, beam patterns and pulses at the ends of what they may be.
+// Fans, beams, apertures, range bins, beam patterns and pulses at their limits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace {
 using sonar::SonarConfig;
 using types::radians;
 
-/** A room of 20 x 30 m, its bottom 4 m below the sonar, which stands off its middle. No wall stands at the edge of a
- *  bin, where the last digit of its distance decides in which bin it is heard. */
+/** Returns a room of 20 x 30 m, its bottom 4 m below the sonar, which is off its middle. No wall is at the edge of a
+ *  bin, where the last digit of its distance would decide its bin. */
 types::GeometryPtr room() {
     return sceneOf({levelGround(-4, 100), quad({12.03f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
                     quad({-7.97f, -14.03f, -4}, {0, 30, 0}, {0, 0, 20}),
@@ -27,7 +27,7 @@ types::GeometryPtr room() {
                     quad({-7.97f, -14.03f, -4}, {20, 0, 0}, {0, 0, 20})});
 }
 
-/** Relative L2 between beam `a` of one ping and beam `b` of another. */
+/** Returns the relative L2 between beam `a` of one ping and beam `b` of another. */
 double beamDifference(const types::Sonar& one, uint32_t a, const types::Sonar& other, uint32_t b) {
     double error = 0, norm = 0;
     for (uint32_t k = 0; k < one.bin_count; ++k) {
@@ -38,7 +38,7 @@ double beamDifference(const types::Sonar& one, uint32_t a, const types::Sonar& o
     return std::sqrt(error / norm);
 }
 
-/** Beams of a wide fan against those of a sonar of ten that looks the same way. */
+/** Compares beams of a wide fan with those of a sonar of ten beams in the same direction. */
 Outcome wideFan(double fov_deg) {
     const int beams = 360;
     const double width = fov_deg / beams;
@@ -47,13 +47,13 @@ Outcome wideFan(double fov_deg) {
     setSamples(narrow, 2048, 4);
     const Probe all = probe(wide, lookingAt(room()));
     double worst = 0;
-    for (const int first : {0, 40, 100, 175, 250, 310, 350}) {  // none has a corner of the room
+    for (const int first : {0, 40, 100, 175, 250, 310, 350}) {  // none contains a corner of the room
         const double bearing = -fov_deg / 2 + (first + 5) * width;
         const Probe few = probe(narrow, lookingAt(room(), {}, radians(bearing)));
         for (uint32_t k = 0; k < 10; ++k)
             worst = std::max(worst, beamDifference(all.ping, static_cast<uint32_t>(first) + k, few.ping, k));
     }
-    return within(1e-3, worst, fmt::format("70 beams of {} in {} slabs, bin by bin", beams, all.plan.slabs), all);
+    return within(1e-3, worst, fmt::format("70 beams of {} in {} frusta, bin by bin", beams, all.plan.slabs), all);
 }
 
 Outcome seams(double fov_deg) {
@@ -65,11 +65,11 @@ Outcome seams(double fov_deg) {
         worst = std::max(worst, beamDifference(heard.ping, k, heard.ping, (k + 1) % 360));
     return within(
         1e-3, worst,
-        fmt::format("neighbouring beams over level ground in {} slabs, the last beside the first", heard.plan.slabs),
+        fmt::format("neighbouring beams over level ground in {} frusta, the last next to the first", heard.plan.slabs),
         heard);
 }
 
-/** A fan of `beams` before a wall. */
+/** Tests a fan of `beams` in front of a wall. */
 Outcome beamsBeforeAWall(int beams, double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 20, beams, 25);
     setSamples(config, 64, std::max(2, 64 / beams));
@@ -103,7 +103,7 @@ Outcome oneRow() {
                   "10 deg on a wall by one row and one column per beam", heard);
 }
 
-/** A Gaussian beam, which has no sidelobes: its integral over azimuth is known. */
+/** Tests a Gaussian beam, which has no sidelobes: its integral over azimuth is known. */
 Outcome narrowBeam(double width_deg) {
     sonar::SonarConfig config = fan(40, 40, 4, 25);
     setSamples(config, 512, 1);
@@ -125,7 +125,7 @@ types::Sonar pulsed(double bins_long, bool whole) {
     return probe(config, lookingAt(sceneOf({facingWall(12)}))).ping;
 }
 
-/** Sums of the bins of a pulse so many bins long, over those without a pulse. */
+/** Compares the sums of the bins with a pulse `bins_long` long and without a pulse. */
 Outcome pulseEnergy(double bins_long, double expected) {
     const types::Sonar plain = pulsed(bins_long, false), heard = pulsed(bins_long, true);
     const auto sum = [](const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); };
@@ -136,7 +136,7 @@ Outcome pulseEnergy(double bins_long, double expected) {
             deviation <= 1e-5 ? Verdict::Pass : Verdict::Fail};
 }
 
-/** One bin against a thousand. */
+/** Compares one bin with a thousand. */
 Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
     SonarConfig many = fan(60, 40, 16, 50), one = many;
     setSamples(many, 1024);
@@ -166,7 +166,7 @@ Outcome narrowBinsFarAway() {
     const int bin = static_cast<int>(distance / grid.bin_width);
     Outcome outcome = within(
         0, std::abs(heard.firstReturn(0) - bin),
-        fmt::format("bins of {:.3g} m, the narrowest at 2 km that may be; deviation in bins", grid.bin_width), heard);
+        fmt::format("bins of {:.3g} m, the narrowest allowed at 2 km; deviation in bins", grid.bin_width), heard);
     outcome.conditions.push_back({"ulps_per_bin", grid.bin_width / 1.2207e-4});
     return outcome;
 }

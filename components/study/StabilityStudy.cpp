@@ -11,7 +11,7 @@
 namespace insonify::study {
 namespace {
 
-/** A JSON string. */
+/** Returns a JSON string. */
 std::string quoted(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
@@ -24,10 +24,10 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-/** A JSON number; JSON knows none that are not finite. */
+/** Returns a JSON number; null if not finite, which JSON cannot represent. */
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null"; }
 
-/** "33. TVG gain of 1e20". */
+/** Returns "33. TVG gain of 1e20". */
 std::string title(const StabilityRow& row) { return fmt::format("{}. {}", row.number, row.name); }
 
 std::string json(const StabilityRow& row) {
@@ -40,7 +40,7 @@ std::string json(const StabilityRow& row) {
         quoted(nameOf(row.outcome.verdict)));
 }
 
-/** A cell of a markdown table. */
+/** Returns a cell of a markdown table. */
 std::string cell(std::string text) {
     for (size_t at = 0; (at = text.find_first_of("|\n", at)) != std::string::npos; at += 2)
         text.replace(at, 1, text[at] == '|' ? "\\|" : "; ");
@@ -68,7 +68,8 @@ void write(const std::filesystem::path& file, const std::string& text) {
 }
 
 constexpr const char* legend =
-    "Condition numbers: `kappa`, the most bins that one pixel covers; `range_ratio`, farthest range over nearest; "
+    "Condition numbers: `kappa`, the max number of bins that one pixel covers; `range_ratio`, farthest range over "
+    "nearest; "
     "`attenuation_db`, two-way absorption from the nearest to the farthest range; `offset_ratio`, distance from the "
     "world's origin in bins; `strength_db`, loudest material over the mean; `samples_per_bin`, pixels per occupied "
     "bin. "

@@ -1,5 +1,5 @@
 #pragma once
-// The groups of ACOUSTICS.md 11, a file each.
+// The cases of ACOUSTICS.md 11, one file for each group.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -9,21 +9,21 @@
 namespace insonify::study {
 
 enum class Verdict { Pass, Fail, NotRun };
-/** "pass"; "fail"; "not run": this machine lacks what it needs. */
+/** Returns "pass"; "fail"; "not run": this machine lacks a requirement. */
 const char* nameOf(Verdict verdict);
 
 /** Condition numbers of a case, by name. */
 using Conditions = std::vector<std::pair<std::string, double>>;
 
-/** What came out of a case. */
+/** The result of a case. */
 struct Outcome {
     Conditions conditions;
     std::string got;
-    double deviation = 0;  ///< From what is expected, relative unless `got` names a unit [1].
+    double deviation = 0;  ///< From the expected value, relative unless `got` names a unit [1].
     Verdict verdict = Verdict::NotRun;
 };
 
-/** Whether it was run and has a deviation. */
+/** Returns whether the case was run and has a deviation. */
 bool isJudged(const Outcome& outcome);
 
 /** A stiff or extreme case of ACOUSTICS.md 11. */
@@ -33,10 +33,10 @@ struct StabilityCase {
     std::function<Outcome()> run;
 };
 
-/** Every case that has a figure to tell; those that only hold or do not are tests. */
+/** Returns every case that has a measured value; cases that only pass or fail are tests. */
 std::vector<StabilityCase> stabilityCases();
 
-// Its groups, a file each.
+// The groups, one file each.
 std::vector<StabilityCase> precisionCases();  ///< Ranges, world offsets, grazing: 1 to 4, 7, 13 to 16, 60.
 std::vector<StabilityCase> geometryCases();   ///< Odd geometry: 5, 6, 12, 17, 56.
 std::vector<StabilityCase> sensorCases();     ///< Fans, bins, beam patterns, pulses: 21, 23 to 25, 27, 30, 31, 59.
@@ -52,17 +52,17 @@ struct StabilityRow {
     Outcome outcome;
 };
 
-/** Runs a case; one that throws has failed. */
+/** Runs a case; a case that throws has failed. */
 StabilityRow runCase(const StabilityCase& stability_case);
-/** Runs all of them in the order of their numbers; `done` hears of each. */
+/** Runs all cases in the order of their numbers; calls `done` after each. */
 std::vector<StabilityRow> studyStability(std::vector<StabilityCase> cases,
                                          const std::function<void(const StabilityRow&)>& done);
 
-/** "78 pass, 0 fail, 1 not run". */
+/** Returns "78 pass, 0 fail, 1 not run". */
 std::string tally(const std::vector<StabilityRow>& rows);
 
-/** Writes `stability.md`, a sheet to read, and `stability.json`, [{case, conditions: {}, expected, got, deviation,
- *  verdict}], into a folder that exists. Throws std::runtime_error when they cannot be written. */
+/** Writes `stability.md`, a readable sheet, and `stability.json`, [{case, conditions: {}, expected, got, deviation,
+ *  verdict}], to an existing folder. Throws std::runtime_error if a file cannot be written. */
 void writeStability(const std::vector<StabilityRow>& rows, const std::filesystem::path& folder);
 
 }  // namespace insonify::study

@@ -36,7 +36,7 @@ Outcome loudSamplesInABin() {
                   "2e6 pixels of the loudest material that a file may have, in one bin", heard);
 }
 
-/** Relative difference of the bins that two pings share, without the edges of echoes. */
+/** Returns the relative difference of the bins that two pings share, without the edges of echoes. */
 double innerDifference(const types::Sonar& a, const types::Sonar& b) {
     double worst = 0;
     for (size_t i = 1; i + 1 < a.bins.size(); ++i) {
@@ -46,7 +46,7 @@ double innerDifference(const types::Sonar& a, const types::Sonar& b) {
     return worst;
 }
 
-/** Ground and a wall, by one device and deposit. */
+/** Renders ground and a wall, on one device and with one deposit. */
 Probe planesBy(const char* device, sonar::Deposit where) {
     SonarConfig config = fan(130, 40, 61, 30);
     config.deposit = where;
@@ -109,8 +109,8 @@ Outcome largeImage() {
 std::vector<StabilityCase> sumCases() {
     return {
         {41, "1e7 samples in one bin", "to 1e-6 of the closed form", manySamplesInABin},
-        {44, "Processor and shader", "within 1e-4 but for the edges of echoes", processorAndShader},
-        {44, "Software and graphics card", "within 1e-4 but for the edges of echoes", softwareAndCard},
+        {44, "Processor and shader", "within 1e-4 except at the edges of echoes", processorAndShader},
+        {44, "Software and graphics card", "within 1e-4 except at the edges of echoes", softwareAndCard},
         {55, "1e8 triangles on one pixel", "time-bounded", manyTriangles},
         {55, "One triangle, 16k rows", "to 1e-4 of the closed form", largeImage},
         {58, "2e6 samples of +20 dB in one bin", "to 1e-6 of the closed form: no wrap of the sums", loudSamplesInABin}};

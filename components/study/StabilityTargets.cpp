@@ -15,10 +15,10 @@ using Shape = std::function<Target(const Encounter&)>;
 
 constexpr int samples = 512;
 constexpr double tolerance = 0.5;       ///< [dB]
-constexpr double tilted_tolerance = 1;  ///< Of means over sidelobes, which bodies of finite range smear [dB]
+constexpr double tilted_tolerance = 1;  ///< For means over sidelobes, which are smeared for bodies of finite range [dB]
 
-/** Largest error over facets round and frequencies, `waves` being the Fresnel number of a flat length [m]; without one
- *  at a range of 5 and of 100 m. */
+/** Returns the max error over facets around and frequencies; `numbers` are Fresnel numbers of a flat length [m];
+ *  without it, at ranges of 5 and 100 m. */
 Outcome errorOf(const Shape& shape, double length, std::initializer_list<double> numbers, double allowed = tolerance) {
     double worst = 0;
     std::string where;
@@ -32,7 +32,7 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
                 const double error = targetError(met, target, targetSonar(met, target, samples));
                 if (!(std::abs(error) <= worst)) {
                     worst = std::abs(error);
-                    where = fmt::format("{:.2f} dB at {} kHz, {} facets round, {:.0f} m", error, frequency, around,
+                    where = fmt::format("{:.2f} dB at {} kHz, {} facets around, {:.0f} m", error, frequency, around,
                                         met.range);
                 }
             }
@@ -50,7 +50,7 @@ Target cylinder(const Encounter& met, double tilt_deg) {
 }  // namespace
 
 std::vector<StabilityCase> targetCases() {
-    const std::string expected = "to 0.5 dB with 32 to 2048 facets round, 100 kHz to 3 MHz";
+    const std::string expected = "to 0.5 dB with 32 to 2048 facets around, 100 kHz to 3 MHz";
     const auto sphere = [](const Encounter& met) { return ellipsoidTarget(met, 0.1, 0.1, 0.1); };
     const auto egg = [](const Encounter& met) { return ellipsoidTarget(met, 1, 0.6, 0.4); };
     const auto plate = [](const Encounter& met) { return plateTarget(met, 0.5, 0.3); };
@@ -76,7 +76,7 @@ std::vector<StabilityCase> targetCases() {
         {61, "Hull of a torpedo broadside, near", expected, [=] { return near(hull, 1); }}};
     for (const double tilt : {1., 3., 10.})
         cases.push_back({61, fmt::format("Cylinder {:.0f} deg off broadside", tilt),
-                         "to 1 dB with 32 to 2048 facets round, 100 kHz to 3 MHz; means of sidelobes", [=] {
+                         "to 1 dB with 32 to 2048 facets around, 100 kHz to 3 MHz; means of sidelobes", [=] {
                              return errorOf([=](const Encounter& met) { return cylinder(met, tilt); }, 0, {50, 200},
                                             tilted_tolerance);
                          }});

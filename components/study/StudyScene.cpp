@@ -27,7 +27,7 @@ types::Snapshot snapshotOf(types::GeometryPtr geometry, double pitch = 0, double
     return snapshot;
 }
 
-/** Down, in the axes of a sonar that is pitched down and then rolled to starboard. */
+/** Returns down, in the axes of a sonar that is pitched down and then rolled to starboard. */
 glm::dvec3 downOf(const types::Snapshot& snapshot) {
     return glm::conjugate(snapshot.sonar.orientation) * glm::dvec3(0, 0, -1);
 }
@@ -39,12 +39,12 @@ StudyScene flatBottom(const std::string& name, const std::string& doc, double ra
     return scene;
 }
 
-/** As far as the pattern is heard: 60 dB below its axis. */
+/** The pattern is included down to 60 dB below its axis. */
 StudyScene patternedBottom() {
     const double width_deg = 20, reach_deg = width_deg / 2 * std::sqrt(60 / (2 * 10 * std::log10(2.0)));
     StudyScene scene{"pitched_bottom_pattern",
                      "a flat bottom 5 m below, the sonar pitched down by 20 deg, with a Gaussian beam of 20 deg in "
-                     "elevation, sent and heard",
+                     "elevation, two-way",
                      fan(60, 2 * reach_deg, 32, 50),
                      snapshotOf(sceneOf({levelGround(-5)}), radians(20)),
                      {}};
@@ -92,7 +92,7 @@ StudyScene shinySphere() {
             sphereTruth(1, 10, section)};
 }
 
-/** Loud water, so that it is most of what is heard at long range. */
+/** Loud water, so that it dominates at long range. */
 StudyScene waterOverBottom() {
     StudyScene scene = flatBottom("volume_over_bottom", "the flat bottom in water of -45 dB re 1/m", 15, 0, 0);
     const auto geometry = copyOf(scene.snapshot.geometry);
@@ -106,7 +106,7 @@ StudyScene waterOverBottom() {
     return scene;
 }
 
-/** A screen 2 m high stands on the bottom 15 m ahead and hides what lies behind. */
+/** A screen 2 m high on the bottom 15 m ahead hides what is behind it. */
 StudyScene shadowScreen() {
     const double height = 5, top = 2, ahead = 15;
     const auto elevation = [=](double azimuth, double z) { return std::atan2(z - height, ahead / std::cos(azimuth)); };
@@ -120,12 +120,12 @@ StudyScene shadowScreen() {
                  planeTruth({0, 0, -1}, height, behind)})};
 }
 
-/** Of the rolling floor [m]. */
+/** Returns the height of the rolling floor [m]. */
 double rollingHeight(double x, double y) {
     return -3 + 0.15 * std::sin(0.7 * x + 0.3 * y) + 0.1 * std::sin(0.4 * x - 1.1 * y);
 }
 
-/** 60 x 60 m about a point 20 m ahead. */
+/** Returns 60 x 60 m about a point 20 m ahead. */
 types::Mesh rollingFloor(int cells) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -141,7 +141,7 @@ types::Mesh rollingFloor(int cells) {
     return meshOf(std::move(positions), std::move(indices));
 }
 
-/** A prism of `sides` between two heights, about the z axis; its ends are closed [m]. */
+/** Returns a closed prism of `sides` between two heights, about the z axis [m]. */
 types::Mesh prism(double radius, double low, double high, uint32_t sides, double turn = 0) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;

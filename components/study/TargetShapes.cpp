@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 double decibels(double section) { return 10 * std::log10(section); }
 
-/** Rigid, without a Lambertian part. */
+/** Returns a rigid body without a Lambertian part. */
 types::GeometryPtr shiny(types::Mesh mesh, const glm::dmat4& place) {
     const auto scene = copyOf(sceneOf({std::move(mesh)}));
     scene->objects[0].world_from_object = place;
@@ -28,12 +28,12 @@ types::GeometryPtr shiny(types::Mesh mesh, const glm::dmat4& place) {
 
 glm::dmat4 movedTo(double x, double y = 0, double z = 0) { return glm::translate(glm::dmat4(1), glm::dvec3(x, y, z)); }
 
-/** Of two radii of curvature at normal incidence by geometric optics, from a range [m^2]. */
+/** Returns the cross-section of two radii of curvature at normal incidence by geometric optics, from a range [m^2]. */
 double curvedSection(double range, double one, double other) {
     return 1 / ((1 / one + 1 / range) * (1 / other + 1 / range)) / 4;
 }
 
-/** Power of a flat length's end-on interference over that of broadside; beyond the main lobe its mean. */
+/** Returns the power of a flat length's end-on interference relative to broadside; beyond the main lobe its mean. */
 double diffraction(double beta) {
     if (beta == 0) return 1;
     return beta < 0.75 * pi ? std::pow(std::sin(beta) / beta, 2) : 0.5 / (beta * beta);
@@ -64,7 +64,7 @@ types::Mesh revolved(const std::vector<glm::dvec2>& profile, int around, double 
 }
 
 Target ellipsoidTarget(const Encounter& met, double ahead, double aside, double up) {
-    constexpr int whole_up_to = 256;  // what is finer is the part about the nearest point
+    constexpr int whole_up_to = 256;  // finer facets only about the nearest point
     const double arc = met.around > whole_up_to ? pi / 4 : pi;
     std::vector<glm::dvec2> profile;
     const int rings = std::max(2, static_cast<int>(std::ceil(met.around / 2.0 * arc / pi)));
@@ -117,7 +117,7 @@ Target hullTarget(const Encounter& met, double radius, double length) {
         if (i == 0) profile.push_back({radius, -length / 2});
         profile.push_back({i < rings ? radius * std::cos(angle) : 0, length / 2 + nose * std::sin(angle)});
     }
-    // Physical optics: stationary phase round the body, all of the profile along it.
+    // Physical optics: stationary phase around the body, all of the profile along it.
     std::complex<double> sum = 0;
     constexpr int steps = 200000;
     const double step = (tail + length + nose) / steps;

@@ -17,11 +17,11 @@
 namespace insonify::survey {
 namespace {
 
-/** Memory for the parts of files that GDAL keeps, whatever the machine has [bytes]. */
+/** Memory of GDAL's cache of file blocks, independent of the machine [bytes]. */
 constexpr int64_t cache_size = int64_t{64} << 20;
 
-/** Formats that are read by blocks. Not GDAL's others: of a text grid that ends too early it seeks the missing lines
- *  for hours. */
+/** Formats that are read by blocks. Other formats of GDAL are excluded: in a truncated text grid it seeks the missing
+ *  lines for hours. */
 void prepareGdal() {
     static std::once_flag once;
     std::call_once(once, [] {
@@ -41,18 +41,17 @@ std::string reason() {
     return text.empty() ? "GDAL gives no reason" : "GDAL: " + text;
 }
 
-/** Metres to a unit of the map; a file that names no map is taken to be in metres. */
+/** Returns the metres per unit of the map. A file without a map is assumed to be in metres. */
 double metresOf(GDALDataset& dataset, const std::filesystem::path& file) {
     const OGRSpatialReference* map = dataset.GetSpatialRef();
     if (!map) return 1;
     if (map->IsGeographic())
-        refuse(file,
-               "lies in degrees; project it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
+        refuse(file, "is in degrees; project it to metres: gdalwarp -t_srs EPSG:32632 IN OUT, with the zone of yours");
     return map->GetLinearUnits();
 }
 
-/** Of files that are nothing but numbers: what such a file lacks GDAL reads as 0, and of a .flt it takes the numbers of
- *  a shorter one for bytes. */
+/** Checks the size of raw binary files. GDAL reads missing values of a truncated file as 0, and would interpret a short
+ *  .flt as bytes. */
 void checkSize(GDALDataset& dataset, const std::filesystem::path& file) {
     const std::string format = dataset.GetDriverName();
     if (format != "EHdr" && format != "ENVI") return;
@@ -95,15 +94,15 @@ GdalSurvey::GdalSurvey(const std::filesystem::path& file, int band) : file_(file
                          "gdal_translate IN OUT.tif makes one of others");
     checkSize(*dataset_, file);
     if (band > dataset_->GetRasterCount())
-        refuse(file, fmt::format("has {} bands, and not one of number {}", dataset_->GetRasterCount(), band));
+        refuse(file, fmt::format("has {} bands, but no band {}", dataset_->GetRasterCount(), band));
     columns_ = dataset_->GetRasterXSize();
     rows_ = dataset_->GetRasterYSize();
     double map[6];
     if (dataset_->GetGeoTransform(map) != CE_None)
         refuse(file,
-               "does not say where it lies on the map; give it a place: gdal_translate -a_ullr WEST NORTH EAST SOUTH "
+               "has no place on the map; give it one: gdal_translate -a_ullr WEST NORTH EAST SOUTH "
                "IN OUT");
-    if (map[2] != 0 || map[4] != 0) refuse(file, "is turned against north; turn it: gdalwarp IN OUT");
+    if (map[2] != 0 || map[4] != 0) refuse(file, "is rotated against north; rotate it: gdalwarp IN OUT");
     unit_ = dataset_->GetRasterBand(band)->GetUnitType();
     const double metres = metresOf(*dataset_, file);
     spacing_ = metres * glm::dvec2(map[1], map[5]);
@@ -119,7 +118,7 @@ std::vector<float> GdalSurvey::read(const scene::PostWindow& window) const {
     CPLErrorReset();
     if (band.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(), window.columns,
                       window.rows, GDT_Float32, 0, 0) != CE_None)
-        throw scene::SurveyError(file_ + " cannot be read on; " + reason());
+        throw scene::SurveyError(file_ + " cannot be read any further; " + reason());
     int has_scale = 0, has_offset = 0, has_none = 0;
     const double scale = band.GetScale(&has_scale), offset = band.GetOffset(&has_offset);
     const auto none = static_cast<float>(band.GetNoDataValue(&has_none));

@@ -6,8 +6,8 @@
 
 namespace insonify::survey {
 
-/** Opens a survey by GDAL: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of them. As
- * scene::openSurvey. */
+/** Opens a survey with GDAL: GeoTIFF, BAG, netCDF, ESRI .flt, ENVI, Erdas .img, or a mosaic of them. Behaves like
+ *  scene::openSurvey(). */
 std::unique_ptr<scene::Survey> open(const std::filesystem::path& file, int band);
 
 }  // namespace insonify::survey

@@ -1,4 +1,4 @@
-// The component library video: what an output loads with the first video; its entry is in OpenVideo.cpp.
+// The component library video: loaded by outputs for their first video; its entry point is in OpenVideo.cpp.
 #include "components/loader/Interface.hpp"
 
 INSONIFY_COMPONENT_LIBRARY;

@@ -16,7 +16,7 @@ private:
 
 }  // namespace
 
-/** See output::openVideo. The caller owns it. */
+/** Implements output::openVideo. The caller owns the result. */
 extern "C" output::VideoEncoder* insonify_open_video(const char* file, double rate, int width, int height) {
     const bool avi = std::filesystem::path(file).extension() == ".avi";
     const int codec = avi ? cv::VideoWriter::fourcc('M', 'J', 'P', 'G') : cv::VideoWriter::fourcc('m', 'p', '4', 'v');

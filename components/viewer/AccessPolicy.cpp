@@ -22,7 +22,7 @@ std::string unescaped(std::string_view text) {
     return plain;
 }
 
-/** Takes as long whichever character differs. */
+/** Compares in constant time, so that the time does not reveal the place of a difference. */
 bool same(const std::string& a, const std::string& b) {
     unsigned difference = a.size() == b.size() ? 0 : 1;
     for (size_t i = 0; i < a.size(); ++i)
@@ -30,7 +30,8 @@ bool same(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
-/** Of a web page. Pages that hide theirs say "null"; programs made of pages have schemes of their own. */
+/** Returns whether the origin is a web page. Pages that hide their origin send "null"; programs made of pages have
+ *  their own schemes. */
 bool isSite(std::string_view origin) {
     return origin == "null" || origin.starts_with("http://") || origin.starts_with("https://");
 }

@@ -5,9 +5,9 @@
 
 namespace insonify::viewer {
 
-/** Who may have what. */
+/** Decides which requests are allowed. */
 struct AccessPolicy {
-    std::string token;  ///< Empty: none is asked for.
+    std::string token;  ///< Empty: not required.
 
     struct Request {
         std::string target;         ///< "/?token=x"
@@ -20,21 +20,22 @@ struct AccessPolicy {
     };
 
     enum class Use {
-        File,    ///< Holds no secret: for everybody.
-        Page,    ///< Needs the token, where there is one, as what follows.
-        Read,    ///< A socket that only reads: without a token not from web pages but ours and Foxglove's own.
-        Control  ///< A socket that may change things: without a token from no page but ours.
+        File,    ///< Contains no secret: allowed for everybody.
+        Page,    ///< Requires the token, if there is one, like the following uses.
+        Read,    ///< A read-only socket: without a token, of web pages only this server's and Foxglove's may open it.
+        Control  ///< A socket that may change things: without a token, only this server's pages may open it.
     };
     std::optional<Refusal> decide(const Request& request, Use use) const;
-    /** Whether a Foxglove client that may read may set parameters: without a token programs and our own pages may,
-     * other sites none. */
+    /** Returns whether a Foxglove client that may read may also set parameters. Without a token, programs and this
+     *  server's pages may, other sites may not. */
     bool maySet(const Request& request) const;
 };
 
-/** The value of `token` in a target's query, with its escapes undone; empty when there is none. */
+/** Returns the unescaped value of `token` in a target's query; empty if absent. */
 std::string tokenIn(std::string_view target);
 
-/** A numeric address or localhost, with or without a port: nothing that a name server elsewhere decides. */
+/** Returns whether the host is localhost or a numeric address, with or without a port, so that no name server decides
+ *  it. */
 bool isOwnName(std::string_view host);
 
 }  // namespace insonify::viewer

@@ -18,7 +18,7 @@ constexpr double max_covered = 8;
 
 bool same(types::Angle a, types::Angle b) { return a.rad == b.rad || (a.isUnknown() && b.isUnknown()); }
 
-/** Which beam a bearing belongs to, by its place between the outermost edges. */
+/** Maps bearings to beams, by their place between the outermost edges. */
 struct Beams {
     double low = 0, high = 0;
     std::vector<int> beam;  ///< -1: none.
@@ -44,7 +44,7 @@ private:
     types::BeamArc arc_;
 };
 
-/** What of the plane the fan takes, for a range of 1: x to starboard, y ahead. */
+/** The extent of the fan in the plane, for a range of 1: x to starboard, y ahead. */
 struct Extent {
     double x0 = 0, x1 = 0, y0 = 0, y1 = 0;
 

@@ -8,20 +8,20 @@
 
 namespace insonify::viewer {
 
-/** Pings as sensor_msgs/Image, mono8: the fan as seen from above, ahead is up and port is left; a pixel has the
- * strongest of the echoes that it covers, as the levels of components/ros/Pings.hpp; 0 is no echo, and outside of
- * the fan.
+/** Draws pings as sensor_msgs/Image, mono8: the fan as seen from above, ahead is up and port is left. A pixel shows the
+ *  strongest of the echoes that it covers, as a level of components/ros/Pings.hpp; 0 is no echo, and outside the fan.
  *
- *  Where each pixel's echoes are is tabled, and kept until bearings, widths, bins or range change. */
+ *  A table maps pixels to bins until bearings, widths, bins or range change. */
 class FanPicture {
 public:
     static constexpr uint32_t longest_side = 720;  ///< [px]
 
-    /** std::invalid_argument for a ping that is not well shaped, std::out_of_range for a time that ROS cannot hold. */
+    /** Throws std::invalid_argument for a ping whose lists do not match its counts, and std::out_of_range for a time
+     *  that ROS cannot represent. */
     void draw(const types::Sonar& ping, const ros::SonarOptions& options, ros::Image& message);
 
 private:
-    /** Bins of one beam that a pixel covers. */
+    /** The bins of one beam that a pixel covers. */
     struct Covered {
         uint32_t first = 0, count = 0;  ///< Index into the bins of a ping; 0: none.
     };

@@ -11,10 +11,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-/** A whole number of 32 bits. */
+/** Returns whether the value is an unsigned integer of 32 bits. */
 bool isId(const Json& value) { return value.is_number_unsigned() && value.get<uint64_t>() <= UINT32_MAX; }
 
-/** Empty when there is none, or something else. */
+/** Returns an empty list if the key is absent or not a list. */
 Json listIn(const Json& said, const char* key) {
     Json list = said.value(key, Json());
     return list.is_array() ? list : Json::array();
@@ -76,7 +76,7 @@ ParameterRequest::Kind kindOf(const Json& said) {
                                                  : Other;
 }
 
-/** A value as a property takes it: texts as they are. */
+/** Formats a value for a property's setter; texts unchanged. */
 std::string yamlOf(const Json& one) {
     const Json value = one.value("value", Json());
     return value.is_string() ? value.get<std::string>() : value.dump();
@@ -86,7 +86,7 @@ std::pair<std::string, std::string> settingOf(const Json& one) {
     if (!one.is_object() || !one.value("name", Json()).is_string())
         throw std::invalid_argument("sets a parameter without a name");
     if (one.value("type", Json()) == "byte_array")
-        throw std::invalid_argument("sets " + one["name"].dump() + " to bytes, which no property holds");
+        throw std::invalid_argument("sets " + one["name"].dump() + " to bytes, which no property has");
     return {one["name"].get<std::string>(), yamlOf(one)};
 }
 
@@ -103,7 +103,7 @@ ParameterRequest readParameterRequest(std::string_view text) {
         return request;
     }
     for (const Json& name : listIn(said, "parameterNames")) {
-        if (!name.is_string()) throw std::invalid_argument("names a parameter by what is no text");
+        if (!name.is_string()) throw std::invalid_argument("names a parameter with a value that is not a text");
         request.names.push_back(name.get<std::string>());
     }
     return request;
@@ -138,7 +138,7 @@ void ParameterSubscriptions::take(const ParameterRequest& request) {
 
 std::string Subscriptions::take(std::string_view text) {
     const Json said = readJson(text);
-    if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is no JSON object with an op";
+    if (!said.is_object() || !said.contains("op") || !said["op"].is_string()) return "is not a JSON object with an op";
     if (said["op"] == "unsubscribe") {
         for (const Json& id : listIn(said, "subscriptionIds"))
             if (isId(id)) channel_of_.erase(id.get<uint32_t>());
@@ -147,7 +147,7 @@ std::string Subscriptions::take(std::string_view text) {
     if (said["op"] != "subscribe") return "";
     for (const Json& one : listIn(said, "subscriptions")) {
         if (!one.is_object() || !isId(one.value("id", Json())) || !isId(one.value("channelId", Json())))
-            return "a subscription has an id and a channelId, whole numbers";
+            return "a subscription needs an id and a channelId, both integers";
         if (std::string diagnostic = add(one["id"].get<uint32_t>(), one["channelId"].get<uint32_t>());
             !diagnostic.empty())
             return diagnostic;

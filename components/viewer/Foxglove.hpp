@@ -1,6 +1,6 @@
 #pragma once
-// Foxglove's WebSocket protocol, version 1, as far as a server of channels, time and parameters speaks it. Its newer
-// name, foxglove.sdk.v1, is that of the same messages.
+// Foxglove's WebSocket protocol, version 1: the part for servers of channels, time and parameters. Its newer name,
+// foxglove.sdk.v1, denotes the same messages.
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -15,40 +15,40 @@ namespace insonify::viewer {
 inline constexpr const char* foxglove_protocol = "foxglove.websocket.v1";
 inline constexpr const char* foxglove_sdk_protocol = "foxglove.sdk.v1";
 
-/** What clients may subscribe to; its id is its place in the list. */
+/** A channel that clients may subscribe to; its id is its index in the list. */
 struct FoxgloveChannel {
     std::string topic;        ///< "/sonar/ping"
     std::string schema_name;  ///< "sensor_msgs/Image"
-    std::string schema;       ///< The whole text.
+    std::string schema;       ///< The full text.
 };
 
-/** @param session another one after each start of the server, so that clients know a connection that came back. */
+/** @param session changes with each start of the server, so that clients can recognise a restart */
 std::string serverInfo(const std::string& session);
 std::string advertise(const std::vector<FoxgloveChannel>& channels);
-/** Level 2 is an error. */
+/** Returns the text of a status message; level 2 is an error. */
 std::string diagnosticText(const std::string& message);
 
-/** 0x01, subscription, time, all little endian: goes before the message. */
+/** Returns 0x01, subscription and time, little endian: the header of a message. */
 std::string messageHead(uint32_t subscription, uint64_t nanoseconds);
 
-/** 0x02, time, little endian: what the server's clock shows. */
+/** Returns 0x02 and the time of the server's clock, little endian. */
 std::string timeMessage(uint64_t nanoseconds);
 
-/** A property of a task, "sonar.range", and its value in JSON. */
+/** Properties of tasks, as "sonar.range", and their values in JSON. */
 using Parameters = std::vector<std::pair<std::string, std::string>>;
 
-/** What a client asks of parameters. */
+/** A client's request about parameters. */
 struct ParameterRequest {
     enum class Kind { Other, Get, Set, Subscribe, Unsubscribe } kind = Kind::Other;
-    std::optional<std::string> id;   ///< Comes back in the answer.
-    std::vector<std::string> names;  ///< Of all but Set; empty: all.
-    Parameters values;               ///< Of Set, in YAML.
+    std::optional<std::string> id;   ///< Repeated in the answer.
+    std::vector<std::string> names;  ///< For all kinds except Set; empty: all.
+    Parameters values;               ///< For Set, in YAML.
 };
-/** Other for what is none. Throws std::invalid_argument with what is wrong with one. */
+/** Returns Other for other messages. Throws std::invalid_argument with what is wrong with a request. */
 ParameterRequest readParameterRequest(std::string_view text);
 std::string parameterValues(const Parameters& parameters, const std::optional<std::string>& id);
 
-/** Of which parameters a client is told when they change. */
+/** The parameters whose changes are sent to a client. */
 class ParameterSubscriptions {
 public:
     void take(const ParameterRequest& request);
@@ -57,15 +57,15 @@ public:
 
 private:
     bool all_ = false;
-    std::set<std::string> names_;  ///< These; when all are, all but these.
+    std::set<std::string> names_;  ///< The subscribed names; if all are subscribed, the names excluded.
 };
 
-/** Which subscription of a client is for which channel: one for each channel at most. */
+/** A client's subscriptions: at most one for each channel. */
 class Subscriptions {
 public:
     explicit Subscriptions(size_t channels) : channels_(channels) {}
-    /** Takes what a client says; gives what is wrong with it, nothing when all is well. Messages that are of the
-     *  protocol but not for this server change nothing. */
+    /** Handles a client's message; returns what is wrong with it, or an empty text. Messages of the protocol that this
+     *  server does not use change nothing. */
     std::string take(std::string_view text);
     const std::map<uint32_t, uint32_t>& all() const { return channel_of_; }  ///< Channel by subscription.
 

@@ -1,5 +1,5 @@
 #pragma once
-// Messages of foxglove_msgs that Foxglove's 3-D panel draws, field for field as its ROS 2 schemas have them: see
+// Messages of foxglove_msgs that Foxglove's 3-D panel draws, field for field as in its ROS 2 schemas: see
 // components/ros/GeometryMessages.hpp.
 #include <cstdint>
 #include <string>
@@ -42,7 +42,7 @@ struct Color {
     }
 };
 
-/** Where a frame is in another. */
+/** The pose of a frame in another. */
 struct FrameTransform {
     static constexpr const char* type_name = "foxglove_msgs/msg/FrameTransform";
     static constexpr const char* type_hash = "RIHS01_55c9e596be1c38e5fa762aa6064bbf23463ecb2266231baadbd5ae0b95eba360";
@@ -203,7 +203,7 @@ struct LinePrimitive {
     }
 };
 
-/** Three indices, each of a point, make a triangle. */
+/** Every three indices of points make a triangle. */
 struct TriangleListPrimitive {
     static constexpr const char* type_name = "foxglove_msgs/msg/TriangleListPrimitive";
     static constexpr const char* type_hash = "RIHS01_59e14f63f22ab10a4a19f48817ed4a7e1b929b0991c6774c824943b1f881de63";
@@ -267,7 +267,7 @@ struct ModelPrimitive {
     }
 };
 
-/** Takes the place of an older one with its id. */
+/** Replaces an older entity with its id. */
 struct SceneEntity {
     static constexpr const char* type_name = "foxglove_msgs/msg/SceneEntity";
     static constexpr const char* type_hash = "RIHS01_2bef8cc577d3b5cafc057812811866685a9fb926f0c18b321a8943944584863b";

@@ -6,14 +6,14 @@
 
 namespace insonify::viewer {
 
-/** What is sent to several clients, written once. */
+/** Bytes sent to several clients, encoded once. */
 using Bytes = std::shared_ptr<const std::string>;
 
 inline Bytes bytesOf(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 /** One WebSocket message. */
 struct Frame {
-    std::string head;  ///< Of this client alone, before the body.
+    std::string head;  ///< Header for this client only.
     Bytes body;
     bool text = false;
 };

@@ -16,7 +16,7 @@ std::string topicOf(const std::string& source) {
 
 namespace {
 
-/** A frame in another, from a pose of it. */
+/** Returns the transform of a frame in another, from a pose. */
 foxglove::FrameTransforms transformOf(const types::Pose& pose, const std::string& child,
                                       const ros::MessageOptions& options) {
     ros::PoseStamped placed;

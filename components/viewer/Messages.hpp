@@ -16,7 +16,7 @@
 
 namespace insonify::viewer {
 
-/** What can be shown: a snapshot or any sample. */
+/** Types that can be shown: snapshots and all samples. */
 template <class Samples>
 struct WithSnapshots;
 template <class... Sample>
@@ -24,14 +24,14 @@ struct WithSnapshots<std::tuple<Sample...>> {
     using type = std::tuple<types::Snapshot, Sample...>;
 };
 using ShownTypes = WithSnapshots<types::SampleTypes>::type;
-using AnySample = types::Variants<ShownTypes>::Carried;  ///< As it travels.
+using AnySample = types::Variants<ShownTypes>::Carried;  ///< As passed on by ports.
 
-/** Whether pages show a T; Foxglove shows all. */
+/** Whether pages show a T; Foxglove shows all types. */
 template <class T>
 inline constexpr bool on_pages =
     std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::Pose> || std::is_same_v<T, types::Snapshot>;
 
-/** What Foxglove gets of a T: poses, and the sonar's in snapshots, as PoseStamped, others as in a log. */
+/** The message of a T for Foxglove: PoseStamped for poses, and for the sonar in snapshots; else the message of logs. */
 template <class T>
 struct ShownMessage {
     using type = ros::LoggedMessage<T>;
@@ -45,22 +45,22 @@ struct ShownMessage<types::Snapshot> {
     using type = ros::PoseStamped;
 };
 
-/** A form in which Foxglove gets samples, each on a channel of its own. */
+/** A form of a sample for Foxglove; each has a separate channel. */
 enum class Form {
     Message,     ///< See ShownMessage.
-    Picture,     ///< Of a ping: sensor_msgs/Image, the fan, see FanPicture.
-    Points,      ///< Of a ping: sensor_msgs/PointCloud2, every bin that is a return.
-    Transforms,  ///< Of a pose and of the sonar in a snapshot: foxglove_msgs/FrameTransforms.
-    Scene        ///< Of a snapshot: foxglove_msgs/SceneUpdate, see SceneUpdates.
+    Picture,     ///< A ping as sensor_msgs/Image: the fan, see FanPicture.
+    Points,      ///< A ping as sensor_msgs/PointCloud2: every bin that is a return.
+    Transforms,  ///< A pose, or the sonar's pose in a snapshot, as foxglove_msgs/FrameTransforms.
+    Scene        ///< A snapshot as foxglove_msgs/SceneUpdate, see SceneUpdates.
 };
 
-/** What a source has for Foxglove. */
+/** A form that a source offers to Foxglove. */
 struct FoxgloveForm {
     Form form;
     FoxgloveChannel channel;
 };
 
-/** "/noise/noisy" of "noise.noisy". */
+/** Returns "/noise/noisy" for "noise.noisy". */
 std::string topicOf(const std::string& source);
 
 template <class Message>
@@ -68,12 +68,12 @@ FoxgloveChannel channelOf(const std::string& topic) {
     return {topic, ros::shortName(Message::type_name), ros::schemaOf<Message>()};
 }
 
-/** A ping, in whichever of its types. */
+/** Whether T is a type of pings. */
 template <class T>
 inline constexpr bool is_ping =
     std::is_same_v<T, types::Sonar> || std::is_same_v<T, types::SonarBeam> || std::is_same_v<T, types::SonarScan>;
 
-/** Of a source of T: its message first, then those that built-in panels draw. */
+/** Returns the forms of a source of T: its message first, then those that built-in panels draw. */
 template <class T>
 std::vector<FoxgloveForm> formsOf(const std::string& source) {
     const std::string topic = topicOf(source);
@@ -89,11 +89,12 @@ std::vector<FoxgloveForm> formsOf(const std::string& source) {
     return forms;
 }
 
-/** The samples of one source as messages in CDR. Not for several threads. */
+/** Encodes the samples of one source as CDR messages. Not thread-safe. */
 class Messages {
 public:
     Messages(ros::SonarOptions options, ros::WorldFrame world, size_t max_triangles = 500'000);
-    /** In any form but Scene. Throws std::invalid_argument and std::out_of_range for what ROS cannot hold. */
+    /** Encodes any form except Scene. Throws std::invalid_argument and std::out_of_range for values that ROS cannot
+     *  represent. */
     Bytes encode(const AnySample& sample, Form form = Form::Message);
     SceneUpdates& scene() { return scene_; }
 
@@ -106,7 +107,7 @@ private:
     SceneUpdates scene_;
 };
 
-/** Its stamp; of one that bears none, `otherwise`. */
+/** Returns the sample's stamp; `otherwise` if it has none. */
 types::Time stampOf(const AnySample& sample, types::Time otherwise);
 
 }  // namespace insonify::viewer

@@ -19,10 +19,10 @@ nlohmann::json edgesOf(const types::BeamArc& arc) {
     return edges;
 }
 
-/** NaN has no place in JSON. */
+/** Replaces NaN, which JSON cannot represent. */
 double orZero(double value) { return std::isfinite(value) ? value : 0; }
 
-/** The middle of the floats that begin with these bits. */
+/** Returns the middle of the floats that begin with these bits. */
 float levelOf(uint32_t bits) {
     const float value = std::bit_cast<float>(bits << 16 | 0x8000);
     return value > 0 && std::isfinite(value) ? 10 * std::log10(value) : nothing_db;

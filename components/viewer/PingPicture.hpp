@@ -9,32 +9,33 @@
 
 namespace insonify::viewer {
 
-/** What a page is told beside the picture. */
+/** Information for a page in addition to the picture. */
 struct PictureNote {
     std::string source;    ///< "noise.noisy"
     double latency_s = 0;  ///< Since the ping's stamp, on the deployment's clock [s].
     uint64_t count = 0;    ///< Pings of this source so far [1].
 };
 
-/** A binary message for pages: u32 kind, u32 size of the JSON, JSON padded to a multiple of 4, data; little endian. */
+/** Returns a binary message for pages: u32 kind, u32 size of the JSON, JSON padded to a multiple of 4, data; little
+ *  endian. */
 std::string pageMessage(uint32_t kind, std::string json, const std::string& data);
 
 inline constexpr uint32_t ping_kind = 1, scene_kind = 2;
 
-inline constexpr double lone_beam_width = 0.03;  ///< Shown for a single beam whose ping does not state it [rad].
+inline constexpr double lone_beam_width = 0.03;  ///< Shown width of a single beam whose ping does not state it [rad].
 
-/** Pings as messages for pages: a level of 8 bits for each beam and bin, beam-first. The beams are those of
+/** Encodes pings as messages for pages: a level of 8 bits for each beam and bin, beam-first. The beams are those of
  *  types::BeamArc, from starboard to port; `bearings` are their centres, `edges` two for each beam [rad].
  *
- *  255 stands for `top_db`, at or little above the strongest echo; each step below is `step_db`; 0 is no echo, or one
- *  below all steps. Of more than 4096 bins several become one, which has the strongest of their echoes. */
+ *  255 is `top_db`, at or slightly above the strongest echo; each step below is `step_db`; 0 is no echo, or an echo
+ *  below all steps. Above 4096 bins, several bins are merged into one with the strongest of their echoes. */
 class PingPicture {
 public:
     static constexpr double step_db = 0.4;
     static constexpr uint32_t max_bins = 4096;
 
     explicit PingPicture(ros::BinScale scale);
-    /** The ping must be well shaped. */
+    /** Encodes a ping, whose lists must match its counts. */
     std::string encode(const types::Sonar& ping, const PictureNote& note) const;
 
 private:

@@ -15,7 +15,7 @@ namespace {
 constexpr auto status_period = std::chrono::milliseconds(250);
 constexpr uint32_t status_stream = 0, first_source_stream = 1;
 
-/** When it started. */
+/** Names the session by the time of its start. */
 std::string sessionName() {
     const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
     return std::to_string(std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count());
@@ -46,7 +46,7 @@ std::vector<Messages> messagesOf(const ViewerConfig& config, size_t sources) {
         sources, Messages(config.messages, config.world_frame, static_cast<size_t>(config.max_triangles)));
 }
 
-/** 0 for a time before the epoch. */
+/** Returns 0 for a time before the epoch. */
 uint64_t nanosecondsOf(types::Time stamp) {
     return static_cast<uint64_t>(std::max<int64_t>(0, stamp.microseconds)) * 1000;
 }
@@ -73,7 +73,7 @@ Publisher::~Publisher() {
     }
     fresh_.notify_all();
     publishing_.join();
-    executors_.end();  // they answer through the server
+    executors_.end();  // their work replies through the server
 }
 
 void Publisher::offer(size_t source, AnySample sample, types::Time now) {
@@ -92,7 +92,7 @@ void Publisher::offer(size_t source, AnySample sample, types::Time now) {
     fresh_.notify_one();
 }
 
-/** How many clients a sample goes to. */
+/** Returns the number of clients that receive a sample. */
 uint64_t Publisher::audience(size_t source) const {
     uint64_t clients = sources_[source].on_pages ? server_.pages() : 0;
     for (uint32_t i = 0; i < sources_[source].forms.size(); ++i)
@@ -115,7 +115,7 @@ std::optional<PageFile> Publisher::file(std::string_view path) { return pageFile
 
 std::vector<Frame> Publisher::greeting() {
     std::lock_guard lock(mutex_);
-    for (Slot& slot : slots_) slot.fresh = slot.count > 0;  // the newcomer has seen none
+    for (Slot& slot : slots_) slot.fresh = slot.count > 0;  // the new client has seen none
     fresh_.notify_one();
     std::vector<Frame> frames{{"", interfaces_, true}};
     for (const auto& [source, scene] : scenes_) frames.push_back({"", scene, false});
@@ -198,7 +198,7 @@ void Publisher::showInFoxglove(size_t source, const Slot& slot) {
     }
 }
 
-/** A scene is sent once, and then what moves in it. */
+/** Sends a scene once, and then its moving objects. */
 void Publisher::sendScene(uint32_t channel, size_t source, const Slot& slot) {
     const auto* const snapshot = std::get_if<types::SnapshotPtr>(&slot.sample);
     if (!snapshot) return;
@@ -232,7 +232,7 @@ void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
     const Bytes scene = bytesOf(sceneMessage(*geometry, most, sources_[source].name));
     {
         std::lock_guard lock(mutex_);
-        scenes_[source] = scene;  // first, so that who comes now gets it twice rather than not at all
+        scenes_[source] = scene;  // first, so that a new client receives it twice rather than never
     }
     server_.toPages(first_source_stream + static_cast<uint32_t>(sources_.size() + source), {"", scene, false});
 }
@@ -251,7 +251,7 @@ void Publisher::showStatus() try {
 }
 
 void Publisher::showParameters(const types::DeploymentStatus& status) {
-    if (server_.parameterReaders() == 0) return told_.clear();  // who comes is told all
+    if (server_.parameterReaders() == 0) return told_.clear();  // a new client receives all
     Parameters parameters = parametersOf(status), changed;
     for (const auto& one : parameters)
         if (std::ranges::find(told_, one) == told_.end()) changed.push_back(one);
@@ -269,10 +269,10 @@ void Publisher::request(uint64_t client, std::string text) {
         return server_.reply(client, refusalText(request.id, error.what()));
     }
     if (!executors_.run(taskOf(request.operation), [this, client, request] { server_.reply(client, answer(request)); }))
-        server_.reply(client, refusalText(request.id, "too many requests wait; try again later"));
+        server_.reply(client, refusalText(request.id, "too many requests are waiting; try again later"));
 }
 
-/** The task that is called; empty: none that there is. */
+/** Returns the task that is called; empty if there is none. */
 std::string Publisher::taskOf(const std::string& path) const {
     const std::string task = path.substr(0, path.find('.'));
     return std::ranges::find(tasks_, task, &types::TaskInterface::name) == tasks_.end() ? "" : task;
@@ -289,10 +289,11 @@ void Publisher::parameters(uint64_t client, ParameterRequest request, bool may_s
     const auto work = [this, client, request, may_set] {
         server_.reply(client, answerParameters(client, request, may_set));
     };
-    if (!executors_.run(lane, work)) server_.reply(client, diagnosticText("too many requests wait; try again later"));
+    if (!executors_.run(lane, work))
+        server_.reply(client, diagnosticText("too many requests are waiting; try again later"));
 }
 
-/** Sets what is to be set, with a message for each refusal; then tells what holds. */
+/** Sets parameters, with a message for each refusal; then returns the present values. */
 std::string Publisher::answerParameters(uint64_t client, const ParameterRequest& request, bool may_set) try {
     std::set<std::string> names(request.names.begin(), request.names.end());
     for (const auto& [name, yaml] : request.values) {
@@ -307,11 +308,11 @@ std::string Publisher::answerParameters(uint64_t client, const ParameterRequest&
     return diagnosticText(error.what());
 }
 
-/** Gives why it was refused, or nothing. */
+/** Returns why the setting was refused, or an empty text. */
 std::string Publisher::setParameter(const std::string& name, const std::string& yaml, bool may_set) const try {
     if (!may_set) throw std::runtime_error("a web site may set parameters only with the viewer's token");
     const std::string task = taskOf(name);
-    if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is no property of a task");
+    if (task.empty() || task.size() + 1 >= name.size()) throw std::runtime_error("is not a property of any task");
     std::string operation = name;
     operation.replace(task.size(), 2, std::string(".set") + static_cast<char>(std::toupper(name[task.size() + 1])));
     Request request;
@@ -324,8 +325,8 @@ std::string Publisher::setParameter(const std::string& name, const std::string& 
 }
 
 std::string Publisher::carryOut(const Request& request) const {
-    if (!config_.control) throw std::runtime_error("this viewer only shows (control: false)");
-    if (!host_.deployment) throw std::runtime_error("there is no deployment around this viewer");
+    if (!config_.control) throw std::runtime_error("this viewer is read-only (control: false)");
+    if (!host_.deployment) throw std::runtime_error("this viewer is not part of a deployment");
     switch (request.kind) {
         case Request::Kind::Call:
             refuseOwn(request.operation);
@@ -338,9 +339,9 @@ std::string Publisher::carryOut(const Request& request) const {
 
 void Publisher::refuseOwn(const std::string& operation) const {
     static constexpr std::array life_cycle{".configure", ".start", ".stop", ".cleanup", ".recover"};
-    if (operation.starts_with(host_.viewer + ".")) throw std::runtime_error("the viewer does not steer itself");
+    if (operation.starts_with(host_.viewer + ".")) throw std::runtime_error("the viewer does not control itself");
     if (std::ranges::any_of(life_cycle, [&](const char* ending) { return operation.ends_with(ending); }))
-        throw std::runtime_error("states of tasks are the deployment's to change");
+        throw std::runtime_error("only the deployment changes the states of tasks");
 }
 
 }  // namespace insonify::viewer

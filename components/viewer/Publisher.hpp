@@ -20,34 +20,34 @@
 
 namespace insonify::viewer {
 
-/** Where a publisher runs. */
+/** The environment of a publisher. */
 struct Host {
-    std::string viewer;                                      ///< The name of its task, which pages do not steer.
-    types::DeploymentControl* deployment = nullptr;          ///< What pages see and control; null: nothing.
+    std::string viewer;                                      ///< The name of its task, which pages cannot control.
+    types::DeploymentControl* deployment = nullptr;          ///< The deployment that pages see and control; null: none.
     std::function<void(const std::string&)> warn = nullptr;  ///< Called on a thread of the publisher.
 };
 
 struct Source {
     std::string name;                 ///< "noise.noisy"
-    std::vector<FoxgloveForm> forms;  ///< What it is for Foxglove.
-    bool on_pages = false;            ///< Whether pages show it, too.
+    std::vector<FoxgloveForm> forms;  ///< Its forms for Foxglove.
+    bool on_pages = false;            ///< Whether pages show it too.
 };
 
-/** Sends the newest sample of each source to those who look, and does what pages ask for.
+/** Sends the newest sample of each source to all clients, and executes the requests of pages.
  *
- *  Threads: the server's; one that makes messages of samples, which nobody waits for; and one for each task that pages
- *  have asked something of, since such requests wait for the task. */
+ *  Threads: the server's thread; one that encodes samples, which no caller waits for; and one for each task that pages
+ *  have sent requests to, because requests wait for the task. */
 class Publisher final : private ServerHandler {
 public:
-    /** Throws ListenError where the port cannot be had. */
+    /** Throws ListenError if the port cannot be opened. */
     Publisher(const ViewerConfig& config, std::vector<Source> sources, Host host);
     ~Publisher() override;
 
-    /** The newest sample of a source; waits for nobody. `now`: on the deployment's clock. */
+    /** Offers the newest sample of a source; does not block. `now`: on the deployment's clock. */
     void offer(size_t source, AnySample sample, types::Time now);
     uint16_t port() const { return server_.port(); }
     ServerCounts counts() const;
-    /** What could not be made a message of since this was asked last, and why; empty: nothing. */
+    /** Returns why samples could not be encoded since the last call; empty if all could. */
     std::string takeError();
 
 private:
@@ -55,9 +55,9 @@ private:
         AnySample sample;
         types::Time stamp;
         double latency_s = 0;           ///< Since its stamp [s].
-        uint64_t count = 0, shown = 0;  ///< Samples so far; as of the last that was shown.
+        uint64_t count = 0, shown = 0;  ///< Number of samples so far; number at the last that was shown.
         bool fresh = false;
-        bool for_newcomer = false;  ///< Somebody in Foxglove has not got its scene yet.
+        bool for_newcomer = false;  ///< A Foxglove client has not received its scene yet.
     };
 
     std::optional<PageFile> file(std::string_view path) override;
@@ -88,22 +88,22 @@ private:
     const std::vector<Source> sources_;
     const Host host_;
     const PingPicture picture_;
-    std::vector<Messages> messages_;       ///< By source; the publishing thread's.
-    std::vector<uint32_t> first_channel_;  ///< Of each source.
+    std::vector<Messages> messages_;       ///< By source; for the publishing thread.
+    std::vector<uint32_t> first_channel_;  ///< First channel of each source.
     std::mutex mutex_;
     std::condition_variable fresh_;
     std::vector<Slot> slots_;
     std::string diagnostic_;
-    types::Time now_;                                  ///< As it came with the newest sample.
-    bool newcomers_ = false;                           ///< In Foxglove, who have been told no parameters yet.
-    Parameters told_;                                  ///< As clients know them; the publishing thread's.
-    std::map<size_t, types::GeometryPtr> geometries_;  ///< Of `scenes_`; the publishing thread's.
-    std::map<size_t, Bytes> scenes_;                   ///< By source, for pages that come later, as interfaces_.
+    types::Time now_;         ///< The time of the newest sample's offer().
+    bool newcomers_ = false;  ///< A Foxglove client has received no parameters yet.
+    Parameters told_;         ///< Values that clients have received; for the publishing thread.
+    std::map<size_t, types::GeometryPtr> geometries_;  ///< The geometries of `scenes_`; for the publishing thread.
+    std::map<size_t, Bytes> scenes_;                   ///< By source, for later pages, like interfaces_.
     const std::vector<types::TaskInterface> tasks_;
     const Bytes interfaces_;
     bool ending_ = false;
     std::atomic<uint64_t> skipped_{0};
-    SerialExecutors executors_;  ///< Of requests, by task.
+    SerialExecutors executors_;  ///< Executes requests, one executor per task.
     Server server_;
     std::thread publishing_;
 };

@@ -4,8 +4,8 @@
 
 namespace insonify::viewer {
 
-/** What a client says; discarded where it is no JSON. Values are copied recursively, so what lies deeper than any
- *  request of ours is left out. */
+/** Parses a client's message; discarded if it is not JSON. Values are copied recursively, so nesting deeper than any
+ *  valid request is omitted. */
 inline nlohmann::json readJson(std::string_view text) {
     constexpr int deepest = 8;
     const auto keep = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) { return depth <= deepest; };

@@ -16,7 +16,7 @@ void append(std::string& data, const std::vector<T>& values) {
     data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/** Only the vertices that are used. */
+/** Keeps only the vertices that are used. */
 Part partOf(const types::Mesh& mesh, bool coarse) {
     Part part;
     part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
@@ -39,7 +39,8 @@ Json matrixOf(const glm::dmat4& m) {
     return columns;
 }
 
-/** Objects, those of the most triangles first, as many as may be drawn; their numbers in ascending order. */
+/** Returns the numbers of the objects to draw, in ascending order. Objects with more triangles are preferred, up to
+ *  `most` triangles. */
 std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vector<Part>& parts, size_t most) {
     std::vector<size_t> order(geometry.objects.size()), shown;
     std::iota(order.begin(), order.end(), size_t{0});
@@ -70,7 +71,7 @@ ShownScene shownScene(const types::Geometry& geometry, size_t max_triangles) {
     std::vector<bool> used(scene.parts.size());
     for (const size_t i : scene.objects) used[static_cast<size_t>(geometry.objects[i].mesh)] = true;
     for (size_t i = 0; i < scene.parts.size(); ++i)
-        if (!used[i]) scene.parts[i] = {};  // keeps its number
+        if (!used[i]) scene.parts[i] = {};  // the part keeps its number
     return scene;
 }
 

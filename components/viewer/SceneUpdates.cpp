@@ -17,7 +17,7 @@ struct Tint {
     std::string_view material;
     foxglove::Color colour;
 };
-/** As the page has them. */
+/** The colours of the page. */
 constexpr std::array tints{Tint{"sand", {0.69, 0.60, 0.42, 1}},  Tint{"mud", {0.49, 0.44, 0.35, 1}},
                            Tint{"clay", {0.54, 0.45, 0.38, 1}},  Tint{"gravel", {0.56, 0.53, 0.48, 1}},
                            Tint{"stone", {0.52, 0.51, 0.48, 1}}, Tint{"rock", {0.48, 0.46, 0.43, 1}},
@@ -32,7 +32,7 @@ foxglove::Color colourOf(const types::Geometry& geometry, int material) {
     return found == tints.end() ? foxglove::Color{0.55, 0.58, 0.6, 1} : found->colour;
 }
 
-/** The triangles of an object, its points in the axes of a frame. */
+/** Returns the triangles of an object, with points in the axes of a frame. */
 foxglove::TriangleListPrimitive trianglesOf(const Part& part, const glm::dmat4& world_from_object,
                                             ros::WorldFrame axes) {
     foxglove::TriangleListPrimitive triangles;

@@ -7,18 +7,18 @@
 
 namespace insonify::viewer {
 
-/** A scene as messages foxglove_msgs/SceneUpdate in CDR: an entity for each object that is shown, its points in the
- * axes of the world. Not for several threads. */
+/** Encodes a scene as foxglove_msgs/SceneUpdate in CDR: an entity for each object that is shown, its points in the axes
+ *  of the world. Not thread-safe. */
 class SceneUpdates {
 public:
     SceneUpdates(ros::WorldFrame axes, size_t max_triangles) : axes_(axes), max_triangles_(max_triangles) {}
 
-    /** Whether the scene is another than that of the last whole(). */
+    /** Returns whether the scene differs from that of the last whole(). */
     bool isNew(const types::Snapshot& snapshot) const { return snapshot.geometry && snapshot.geometry != geometry_; }
-    /** All of it, where it is now, in the place of what was there before; null where there is no scene. */
+    /** Returns all objects at their present places, replacing earlier entities; null if there is no scene. */
     Bytes whole(const types::Snapshot& snapshot);
-    /** All objects that have moved since whole(), so that a message may take the place of the one before; null: none
-     * has since the last message. */
+    /** Returns all objects that have moved since whole(), so that a message may replace the previous one; null if none
+     *  has moved since the last message. */
     Bytes moved(const types::Snapshot& snapshot);
 
 private:
@@ -29,8 +29,8 @@ private:
     size_t max_triangles_;
     types::GeometryPtr geometry_;
     ShownScene shown_;
-    Places home_;   ///< Of the objects that are shown.
-    Places moved_;  ///< As it was told last, of those that were ever elsewhere.
+    Places home_;   ///< Places of the shown objects at the last whole().
+    Places moved_;  ///< Places last sent, of objects that have ever moved.
 };
 
 }  // namespace insonify::viewer

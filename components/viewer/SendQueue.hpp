@@ -7,15 +7,15 @@
 
 namespace insonify::viewer {
 
-/** What waits to be sent to one client, who may be slow or not read at all. Of each stream only the newest frame waits;
- *  what it takes the place of is counted. Not for several threads. */
+/** Queues frames for one client, which may be slow or not read at all. Keeps only the newest frame of each stream and
+ *  counts the replaced frames. Not thread-safe. */
 class SendQueue {
 public:
     static constexpr size_t max_replies = 64;
-    /** What time it is, beyond all streams of 32 bits: an older one is no loss. */
+    /** Stream of the time, beyond all streams of 32 bits. A replaced frame of it is not counted. */
     static constexpr uint64_t time_stream = uint64_t{1} << 32;
 
-    /** A frame of a stream, in the place of an older one that still waits. */
+    /** Queues a frame of a stream, replacing an older frame that still waits. */
     void put(uint64_t stream, Frame frame) {
         for (auto& [key, waiting] : streams_)
             if (key == stream) {
@@ -25,8 +25,8 @@ public:
             }
         streams_.emplace_back(stream, std::move(frame));
     }
-    /** A frame that must arrive; goes before those of streams. One `of` a stream takes the place of an older one of
-     *  it that was posted and still waits. False: too many wait, the client is to be given up. */
+    /** Queues a frame that must arrive, before the frames of streams. With `of` it replaces an older posted frame of
+     *  that stream that still waits. Returns false if too many wait: the client must be disconnected. */
     bool post(Frame frame, std::optional<uint64_t> of = {}) {
         for (auto& [key, waiting] : replies_)
             if (of && key == of) {
@@ -37,7 +37,7 @@ public:
         replies_.emplace_back(of, std::move(frame));
         return true;
     }
-    /** The next to send: replies, then the stream that has waited longest. */
+    /** Returns the next frame to send: replies first, then the stream that has waited longest. */
     std::optional<Frame> next() {
         if (!replies_.empty()) {
             Frame frame = std::move(replies_.front().second);

@@ -8,11 +8,11 @@
 
 namespace insonify::viewer {
 
-/** Work that may wait for long. What is in one lane runs in order, on a thread that begins with its first work; no lane
- *  waits for another. All functions are for any thread. */
+/** Runs work that may wait long. The work of one executor runs in order, on a thread that starts with its first work;
+ *  executors do not wait for each other. Thread-safe. */
 class SerialExecutors {
 public:
-    static constexpr size_t max_waiting = 16;  ///< In one lane.
+    static constexpr size_t max_waiting = 16;  ///< In one executor.
     using Work = std::function<void()>;        ///< Must not throw.
 
     SerialExecutors() = default;
@@ -20,9 +20,9 @@ public:
     SerialExecutors(const SerialExecutors&) = delete;
     SerialExecutors& operator=(const SerialExecutors&) = delete;
 
-    /** False, and it is not done: too many wait in that lane, or all has ended. */
+    /** Queues work. Returns false, without running it, if too much work waits in that executor, or after end(). */
     bool run(const std::string& executor, Work work);
-    /** What has begun ends before this returns; what waits is not begun. */
+    /** Waits for running work; queued work is dropped. */
     void end();
 
 private:

@@ -13,13 +13,13 @@
 namespace insonify::viewer {
 namespace {
 
-constexpr size_t spare_connections = 32;  // for requests of files, beyond those of clients [1]
-/** Streams for Foxglove in the map of what waits: their channel, beyond all of pages; then the time. */
+constexpr size_t spare_connections = 32;  // for file requests, in addition to clients [1]
+/** Keys of Foxglove's streams in the map of waiting frames: channels, beyond all streams of pages; then the time. */
 constexpr uint64_t foxglove_keys = uint64_t{1} << 32, time_key = uint64_t{1} << 33;
 
 }  // namespace
 
-/** The server's thread, and what it shares with others. */
+/** The server's thread, and the data that it shares with others. */
 class Server::Core final : public ServerContext {
 public:
     struct Waiting {
@@ -48,10 +48,10 @@ public:
     void publish(uint64_t key, Frame frame, uint64_t nanoseconds);
     void deliver();
     static void give(Session& session, uint64_t key, const Waiting& item);
-    /** On the server's thread. */
+    /** Runs on the server's thread. */
     template <class Work>
     void forEachFoxglove(Work&& work) {
-        const auto sessions = sessions_;  // sending may end one
+        const auto sessions = sessions_;  // sending may end a session
         for (const auto& [id, session] : sessions)
             if (session->kind() == Kind::Foxglove) session->attempt([&] { work(*session); });
     }
@@ -67,17 +67,17 @@ public:
     std::atomic<uint64_t> pages_{0}, foxglove_{0}, parameter_readers_{0};
     std::vector<std::atomic<uint64_t>> subscribers_;  ///< By channel.
     std::mutex mutex_;
-    std::map<uint64_t, Waiting> waiting_;  ///< Published and not delivered, the newest of each stream.
+    std::map<uint64_t, Waiting> waiting_;  ///< Published but not yet delivered, the newest of each stream.
     std::thread thread_;
 };
 
-/** What no session threw ends neither one nor the program. */
+/** Runs the server. An error outside a session ends neither a session nor the program. */
 void Server::Core::serve() {
     for (bool done = false; !done;) try {
             io_.run();
             done = true;
         } catch (const std::exception& error) {
-            refused.add(std::string("an error of this server: ") + error.what());
+            refused.add(std::string("an error in this server: ") + error.what());
         }
 }
 
@@ -93,7 +93,7 @@ Server::Core::~Core() {
 
 namespace {
 
-/** Programs that this one starts are not to hold its connections. */
+/** Prevents child processes from inheriting a connection. */
 void keepFromChildren(int descriptor) { fcntl(descriptor, F_SETFD, FD_CLOEXEC); }
 
 }  // namespace
@@ -108,10 +108,11 @@ void Server::Core::listen() try {
     port_ = acceptor_.local_endpoint().port();
 } catch (const boost::system::system_error& error) {
     if (error.code() == asio::error::address_in_use || error.code() == asio::error::access_denied)
-        throw ListenError("port", "is " + std::to_string(options.port) + ", which cannot be had on " + options.address +
-                                      ": " + error.code().message() + "; take another, or 0 for any that is free");
+        throw ListenError("port", "is " + std::to_string(options.port) + ", which cannot be opened on " +
+                                      options.address + ": " + error.code().message() +
+                                      "; use another, or 0 for any free port");
     throw ListenError("address", "is " + options.address + ", on which nothing can listen: " + error.code().message() +
-                                     "; it must be an address of this machine, as 127.0.0.1 or 0.0.0.0");
+                                     "; it must be an address of this machine, such as 127.0.0.1 or 0.0.0.0");
 }
 
 void Server::Core::accept() {
@@ -121,7 +122,7 @@ void Server::Core::accept() {
             accept();
             return take(std::move(socket));
         }
-        retry_.expires_after(std::chrono::milliseconds(50));  // no descriptors left, for example
+        retry_.expires_after(std::chrono::milliseconds(50));  // out of descriptors, for example
         retry_.async_wait([this](const Error& cancelled) {
             if (!cancelled) accept();
         });
@@ -138,13 +139,13 @@ void Server::Core::take(tcp::socket socket) {
     session->readRequest();
 }
 
-/** Ends the oldest connection that has asked for nothing yet, or else the oldest that is no client. */
+/** Ends the oldest connection without a request, or else the oldest that is not a client. */
 bool Server::Core::makeRoom() {
     auto oldest = std::ranges::find_if(sessions_, [](const auto& one) { return !one.second->hasAsked(); });
     if (oldest == sessions_.end())
         oldest = std::ranges::find_if(sessions_, [](const auto& one) { return one.second->kind() == Kind::None; });
     if (oldest == sessions_.end()) return false;
-    refused.add("too many connections: the oldest without a request, or with its answer not read, was closed");
+    refused.add("too many connections: the oldest without a request, or that does not read its answer, was closed");
     oldest->second->close();
     sessions_.erase(oldest);
     return true;
@@ -165,7 +166,7 @@ void Server::Core::deliver() {
         std::lock_guard lock(mutex_);
         published.swap(waiting_);
     }
-    const auto sessions = sessions_;  // sending may end one
+    const auto sessions = sessions_;  // sending may end a session
     for (const auto& [key, item] : published)
         for (const auto& [id, session] : sessions) session->attempt([&] { give(*session, key, item); });
 }

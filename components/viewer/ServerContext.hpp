@@ -9,13 +9,13 @@
 
 namespace insonify::viewer {
 
-/** What all connections of a server share. */
+/** Data shared by all connections of a server. */
 struct ServerContext {
     ServerContext(ServerOptions asked, ServerHandler& answers)
         : options(std::move(asked)), handler(answers), access{options.token} {}
     virtual ~ServerContext() = default;
     virtual void leave(uint64_t session) = 0;
-    virtual void recount() = 0;  ///< Who is connected, and subscribed to what.
+    virtual void recount() = 0;  ///< Counts clients and subscriptions again.
 
     const ServerOptions options;
     ServerHandler& handler;

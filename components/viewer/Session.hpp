@@ -1,5 +1,5 @@
 #pragma once
-// One connection of a server. For Server.cpp alone: it takes long to compile.
+// One connection of a server. Only for Server.cpp, because it takes long to compile.
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
 #include <memory>
@@ -22,7 +22,7 @@ using Error = boost::system::error_code;
 
 constexpr size_t max_message = 64 << 10;  // from a client [B]
 constexpr size_t max_header = 8 << 10;    // of a request [B]
-constexpr size_t max_rest = 256 << 10;    // of a refused request, that is read so that the answer arrives [B]
+constexpr size_t max_rest = 256 << 10;    // of a refused request, read so that the answer arrives [B]
 constexpr auto request_timeout = std::chrono::seconds(5), response_timeout = std::chrono::seconds(10),
                rest_timeout = std::chrono::seconds(1);
 
@@ -38,7 +38,7 @@ inline Response responseTo(const Request& request, unsigned status, std::string_
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, "no-cache");
     response.set(http::field::x_frame_options, "DENY");
-    response.set("Referrer-Policy", "no-referrer");  // the address may have a token
+    response.set("Referrer-Policy", "no-referrer");  // the address may contain a token
     response.keep_alive(false);
     response.body() = body;
     response.prepare_payload();
@@ -46,7 +46,7 @@ inline Response responseTo(const Request& request, unsigned status, std::string_
     return response;
 }
 
-/** The first of those that a client offers, in its order, which this server speaks; empty: none. */
+/** Returns the client's first offered protocol that this server speaks; empty if none. */
 inline std::string protocolOf(const std::string& offered) {
     const std::string separators = ", \t";
     for (size_t at = 0; (at = offered.find_first_not_of(separators, at)) != std::string::npos;) {
@@ -65,21 +65,21 @@ class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(tcp::socket socket, ServerContext& context, uint64_t id);
     Kind kind() const { return open_ ? kind_ : Kind::None; }
-    bool isAdmitted() const { return admitted_; }  ///< One of the clients, whose handshake may be under way.
-    bool hasAsked() const { return asked_; }       ///< Its request is there.
+    bool isAdmitted() const { return admitted_; }  ///< Counts as a client; the handshake may be under way.
+    bool hasAsked() const { return asked_; }       ///< Its request has arrived.
     const Subscriptions& subscriptions() const { return subscriptions_; }
     const ParameterSubscriptions& parameters() const { return parameters_; }
     void readRequest();
     void put(uint64_t stream, Frame frame);
     void post(Frame frame, std::optional<uint64_t> of = {});
     void close();
-    /** What `work` throws closes this session, and nothing else. */
+    /** Closes this session, and nothing else, if `work` throws. */
     template <class Work>
     void attempt(Work&& work);
 
 private:
     beast::tcp_stream& stream() { return ws_.next_layer(); }
-    /** What Asio calls when something is done. */
+    /** Returns a completion handler for Asio. */
     template <class Work>
     auto handler(Work work) {
         return [self = shared_from_this(), work](const Error& error, size_t = 0) {
@@ -109,13 +109,13 @@ private:
     std::optional<Response> response_;
     Subscriptions subscriptions_;
     ParameterSubscriptions parameters_;
-    std::string protocol_;  ///< That was agreed on.
-    bool may_set_ = false;  ///< Parameters.
+    std::string protocol_;  ///< The agreed protocol.
+    bool may_set_ = false;  ///< Whether it may set parameters.
     Kind kind_ = Kind::None;
     SendQueue queue_;
     Frame sending_;
     uint64_t told_dropped_ = 0;
-    size_t rest_ = 0;  ///< Read after the answer [B].
+    size_t rest_ = 0;  ///< Bytes read after the answer [B].
     bool asked_ = false, admitted_ = false, open_ = false, writing_ = false;
 };
 
@@ -129,7 +129,7 @@ template <class Work>
 void Session::attempt(Work&& work) try {
     work();
 } catch (const std::exception& thrown) {
-    context_.refused.add(std::string("an error of this server: ") + thrown.what());
+    context_.refused.add(std::string("an error in this server: ") + thrown.what());
     leave();
 }
 
@@ -143,17 +143,17 @@ inline void Session::readRequest() {
                      }));
 }
 
-/** The request cannot be read. */
+/** Answers a request that cannot be read. */
 inline void Session::answerError(const Error& error) {
     asked_ = true;
-    if (error == beast::error::timeout) context_.refused.add("no whole request came within 5 s");
+    if (error == beast::error::timeout) context_.refused.add("no complete request came within 5 s");
     const bool is_gone = error == http::error::end_of_stream || error == http::error::partial_message;
     if (is_gone || error.category() != http::make_error_code(http::error::end_of_stream).category()) return leave();
     const bool header = error == http::error::header_limit || error == http::error::buffer_overflow;
     refuse({error == http::error::body_limit ? 413u : header ? 431u : 400u, "the request: " + error.message()});
 }
 
-/** Files that are not there and methods are no refusals of a connection. */
+/** Missing files and wrong methods do not count as refused connections. */
 inline void Session::refuse(const AccessPolicy::Refusal& refusal) {
     if (refusal.status != 404 && refusal.status != 405)
         context_.refused.add(std::to_string(refusal.status) + ", " + refusal.reason);
@@ -177,7 +177,8 @@ inline void Session::answer() {
         if (kind_ == Kind::None)
             return refuse({400, std::string("the subprotocol must be ") + foxglove_sdk_protocol + ", " +
                                     foxglove_protocol + " or " + page_protocol});
-        if (context_.clients >= context_.options.clients) return refuse({503, "there are as many clients as may be"});
+        if (context_.clients >= context_.options.clients)
+            return refuse({503, "the max number of clients is connected"});
         return upgrade();
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -199,7 +200,7 @@ inline void Session::respond(Response response) {
                       }));
 }
 
-/** Until the client closes: who closes with bytes unread takes the answer away from the other. */
+/** Reads until the client closes: closing with unread bytes would discard the answer. */
 inline void Session::readRest() {
     buffer_.clear();
     stream().async_read_some(buffer_.prepare(max_header), [self = shared_from_this()](const Error& error, size_t size) {
@@ -227,7 +228,7 @@ inline void Session::upgrade() {
                      }));
 }
 
-/** Of a client that speaks no WebSocket, or sends too much; not of one that is gone. */
+/** Counts a client that does not speak WebSocket, or sends too much; not a client that is gone. */
 inline void Session::countError(const Error& error) {
     const bool is_error = error.category() == websocket::make_error_code(websocket::error::closed).category();
     if (is_error && error != websocket::error::closed) context_.refused.add("WebSocket: " + error.message());
@@ -263,7 +264,7 @@ inline void Session::taken(std::string text) {
     if (ws_.got_text() && !takeParameters(text)) takeFromFoxglove(text);
 }
 
-/** False: it is about something else. */
+/** Returns false if the message is not about parameters. */
 inline bool Session::takeParameters(const std::string& text) try {
     using enum ParameterRequest::Kind;
     ParameterRequest request = readParameterRequest(text);

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/** Text that is not UTF-8 is shown as well as it can be. */
+/** Replaces invalid UTF-8. */
 std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -21,7 +21,7 @@ Json valueOf(const types::PropertyValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
-/** Clients may be shown to others: what lets them in is not. */
+/** Hides tokens, because clients may be shown to others. */
 Json shown(const std::string& name, const types::PropertyValue& value) {
     const auto* text = std::get_if<std::string>(&value);
     const bool is_secret = name == "token" || name.ends_with(".token");
@@ -101,9 +101,9 @@ std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, 
 
 void readRequest(const std::string& text, Request& request) {
     const Json said = readJson(text);
-    if (!said.is_object()) throw std::invalid_argument("is no JSON object");
+    if (!said.is_object()) throw std::invalid_argument("is not a JSON object");
     const Json id = said.value("id", Json(0u));
-    if (!id.is_number_unsigned()) throw std::invalid_argument("id is no whole number");
+    if (!id.is_number_unsigned()) throw std::invalid_argument("id is not an integer");
     request.id = id.get<uint64_t>();
     if (said.contains("pause") && said["pause"].is_boolean()) {
         request.kind = Request::Kind::Pause;
@@ -113,9 +113,9 @@ void readRequest(const std::string& text, Request& request) {
     } else if (said.contains("call") && said["call"].is_string()) {
         request.operation = said["call"].get<std::string>();
         const Json arguments = said.value("arguments", Json::array());
-        if (!arguments.is_array()) throw std::invalid_argument("arguments are no list");
+        if (!arguments.is_array()) throw std::invalid_argument("arguments are not a list");
         for (const Json& argument : arguments) {
-            if (!argument.is_string()) throw std::invalid_argument("an argument is no text");
+            if (!argument.is_string()) throw std::invalid_argument("an argument is not a text");
             request.arguments.push_back(argument.get<std::string>());
         }
     } else {

@@ -7,21 +7,22 @@
 
 namespace insonify::viewer {
 
-/** JSON for pages. */
+/** Returns the state of the deployment as JSON for pages. */
 std::string statusText(const types::DeploymentStatus& status, const ServerCounts& counts);
-/** All properties, "sonar.range", as JSON values. */
+/** Returns all properties, named "sonar.range", as JSON values. */
 Parameters parametersOf(const types::DeploymentStatus& status);
 std::string interfacesText(const std::vector<types::TaskInterface>& interfaces, bool control);
 
-/** What a page asks for. */
+/** A page's request. */
 struct Request {
     enum class Kind { Call, Pause, Step } kind = Kind::Call;
-    uint64_t id = 0;                     ///< Comes back in the answer.
+    uint64_t id = 0;                     ///< Repeated in the answer.
     std::string operation;               ///< "sonar.setRange"
     std::vector<std::string> arguments;  ///< In YAML.
-    bool on = false;                     ///< Pause.
+    bool on = false;                     ///< For Pause.
 };
-/** Throws std::invalid_argument with what is wrong with the text; what was read before, as the id, is in `request`. */
+/** Reads a request. Throws std::invalid_argument with what is wrong; `request` then has what was read before, such as
+ *  the id. */
 void readRequest(const std::string& text, Request& request);
 
 std::string answerText(uint64_t id, const std::string& result);

@@ -23,28 +23,30 @@ struct ViewerConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         visit(
-            Field{"port", "1", "TCP port of the page and of Foxglove; 0: any that is free, told in a notice", 0, 65535},
+            Field{"port", "1", "TCP port of the page and of Foxglove; 0: any free port, printed in a notice", 0, 65535},
             self.port);
+        visit(Field{"address", "", "numeric address to listen on; an address other than loopback requires a token"},
+              self.address);
+        visit(Field{"token", "", "required from clients: http://address:port/?token=...; empty: none"}, self.token);
         visit(
-            Field{"address", "", "numeric address to listen on; one that is not of this host's loopback needs a token"},
-            self.address);
-        visit(Field{"token", "", "what a client must give: http://address:port/?token=...; empty: none"}, self.token);
-        visit(Field{"token_file", "",
-                    "a file whose first line is the token, relative to the deployment; the token is then in no log"},
-              self.token_file);
-        visit(Field{"clients", "1", "that may be connected at once; others are refused", 1, 1000}, self.clients);
-        visit(Field{"idle_timeout", "s", "a client that has not answered for so long is given up", 1, 3600},
+            Field{
+                "token_file", "",
+                "a file whose first line is the token, relative to the deployment; logs then do not contain the token"},
+            self.token_file);
+        visit(Field{"clients", "1", "max number of connected clients; others are refused", 1, 1000}, self.clients);
+        visit(Field{"idle_timeout", "s", "a client that has not answered for this long is disconnected", 1, 3600},
               self.idle_timeout);
         visit(Field{"control", "", "whether pages may set properties, call operations and pause; else they only show"},
               self.control);
-        visit(Field{"max_triangles", "1",
-                    "of the scene in the page; beyond, large meshes are coarse, small ones left out", 1000, 1e8},
-              self.max_triangles);
+        visit(
+            Field{"max_triangles", "1",
+                  "max triangles of the page's scene; above, large meshes are coarse, small meshes omitted", 1000, 1e8},
+            self.max_triangles);
         visit(Field{"world_frame", "",
                     "axes of poses for Foxglove: ours (x north, y west, z up), x east, y north, z up, or x north, y "
                     "east, z down"},
               self.world_frame);
-        visit(Field{"messages", "", "how pings become messages for Foxglove; `scale` holds for the page, too"},
+        visit(Field{"messages", "", "how pings become messages for Foxglove; `scale` also applies to the page"},
               self.messages);
     }
 
@@ -59,12 +61,12 @@ struct ViewerConfig {
     void check(types::Diagnostics& diagnostics) const {
         if (!isNumeric())
             diagnostics.push_back(
-                {"address", "is '" + address + "'; it must be a numeric address, as 127.0.0.1, 0.0.0.0 or ::1"});
+                {"address", "is '" + address + "'; it must be a numeric address, such as 127.0.0.1, 0.0.0.0 or ::1"});
         else if (!isLocal() && token.empty() && token_file.empty())
-            diagnostics.push_back({"token", "is missing; it must be there where address is " + address +
+            diagnostics.push_back({"token", "is missing; it is required because address is " + address +
                                                 ", which other machines can reach"});
         if (!token.empty() && !token_file.empty())
-            diagnostics.push_back({"token_file", "is of no use beside token; one of them may be there"});
+            diagnostics.push_back({"token_file", "is given in addition to token; only one of them may be given"});
     }
 };
 

@@ -11,14 +11,14 @@ namespace insonify::viewer {
 
 namespace {
 
-/** What is wrong with what came; empty: nothing. */
+/** Returns what is wrong with a sample; empty if nothing is. */
 template <class T>
 std::string diagnosticOf(const T* sample) {
     const char* const what = sample ? types::diagnosticOf(*sample) : "is null";
     return what ? what : "";
 }
 
-/** Hands what came over as samples of a source; gives what is wrong with one, or nothing. */
+/** Passes new samples to a source; returns what is wrong with one of them, or an empty text. */
 template <class Input>
 std::string drain(Input& input, Publisher& publisher, size_t source, types::Time now) {
     std::string told;
@@ -36,9 +36,10 @@ std::string drain(Input& input, Publisher& publisher, size_t source, types::Time
 
 framework::InputPortBase* ViewerTask::makeInput(const std::string& port, framework::OutputPortBase& source) {
     if (framework::InputPortBase* const made = inputs_.make(port, source, source.path())) return made;
-    throw types::ConfigError("", "",
-                             source.path() + " is " + source.typeName() +
-                                 ", which a viewer cannot show; it shows what a log can hold, and snapshots");
+    throw types::ConfigError(
+        "", "",
+        source.path() + " is " + source.typeName() +
+            ", which a viewer cannot show; it shows all types that a log can contain, and snapshots");
 }
 
 std::vector<std::string> ViewerTask::notices() const {
@@ -49,7 +50,8 @@ std::vector<std::string> ViewerTask::notices() const {
         "open http://{}:{}/{}", host, port(), config->token.empty() && config->token_file.empty() ? "" : "?token=...")};
     const ServerCounts so_far = counts();
     if (so_far.refused > 0) notices.push_back(fmt::format("{} connections refused", so_far.refused));
-    if (so_far.dropped > 0) notices.push_back(fmt::format("{} frames not sent, for newer ones", so_far.dropped));
+    if (so_far.dropped > 0)
+        notices.push_back(fmt::format("{} frames dropped: replaced by newer frames", so_far.dropped));
     return notices;
 }
 
@@ -95,7 +97,8 @@ void ViewerTask::errorHook() {
 void ViewerTask::cleanupHook() { publisher_.reset(); }
 
 void registerTasks(framework::Registry& registry) {
-    registry.add<ViewerTask>("viewer::ViewerTask", "shows what runs: a page in the browser, and data for Foxglove");
+    registry.add<ViewerTask>("viewer::ViewerTask",
+                             "shows the running deployment: a page in the browser, and data for Foxglove");
 }
 
 }  // namespace insonify::viewer

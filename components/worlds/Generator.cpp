@@ -27,19 +27,19 @@ namespace fs = std::filesystem;
 constexpr int lacks_packages = 97, no_program = 127;  ///< Exit codes of the package's __main__.py, of posix_spawn.
 constexpr const char* package_name = "insonify_worlds";
 
-/** The folder that holds the package. */
+/** Returns the folder that contains the package. */
 fs::path packageFolder() {
     for (const fs::path& folder : loader::folders())
         if (std::error_code none; fs::is_regular_file(folder / "python" / package_name / "__main__.py", none))
             return folder / "python";
-    throw types::ConfigError("", "",
-                             fmt::format("the Python package {} is not beside the component library worlds; "
-                                         "install the library anew",
-                                         package_name));
+    throw types::ConfigError(
+        "", "",
+        fmt::format("the Python package {} is not next to the component library worlds; install the library again",
+                    package_name));
 }
 
-/** Pythons to try, in this order: the given one alone, or that of scripts/setup in a build folder and those of the
- * path. */
+/** Returns the Pythons to try, in this order: only the given Python, or the Python of scripts/setup in a build folder
+ *  and the Pythons in the path. */
 std::vector<std::string> pythons() {
     if (const char* given = std::getenv(python_variable); given && *given) return {given};
     std::vector<std::string> all;
@@ -50,7 +50,7 @@ std::vector<std::string> pythons() {
     return all;
 }
 
-/** The environment, in which Python finds the package. */
+/** Returns the environment in which Python finds the package. */
 std::vector<std::string> environmentWith(const fs::path& folder) {
     constexpr std::string_view name = "PYTHONPATH=";
     std::vector<std::string> all;
@@ -71,7 +71,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& words) {
     return pointers;
 }
 
-/** The reading end of a pipe, to its end of file. */
+/** Reads a pipe to its end of file. */
 std::string readAll(int descriptor) {
     std::string text;
     char bytes[4096];
@@ -84,10 +84,10 @@ std::string readAll(int descriptor) {
 
 struct Outcome {
     int code = 0;        ///< Exit code; minus the number of the signal that ended it.
-    std::string errors;  ///< What it wrote to the standard error.
+    std::string errors;  ///< Its standard error.
 };
 
-/** Runs the package by one Python; its standard output is that of this process. */
+/** Runs the package with one Python; its standard output is that of this process. */
 Outcome runWith(const std::string& python, const std::vector<std::string>& options, const fs::path& folder) {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
@@ -116,7 +116,7 @@ Outcome runWith(const std::string& python, const std::vector<std::string>& optio
     return outcome;
 }
 
-/** What installs the packages: in a build folder, in a wheel, elsewhere. */
+/** Returns how to install the packages: in a build folder, in a wheel, elsewhere. */
 std::string remedy() {
     const fs::path around = packageFolder().parent_path().parent_path().parent_path();
     std::error_code none;

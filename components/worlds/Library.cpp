@@ -1,4 +1,4 @@
-// The component library worlds: what the command loads for `insonify scene make`, and for a sweep that names recipes.
+// The component library worlds: `insonify scene make`, and sweeps that name recipes.
 #include "components/loader/Interface.hpp"
 #include "components/worlds/Generator.hpp"
 

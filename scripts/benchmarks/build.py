@@ -1,4 +1,4 @@
-"""The build from nothing: its parts, the slowest files, and what headers of others cost."""
+"""The build from nothing: its parts, the slowest files, and the cost of external headers."""
 import collections
 import os
 import re
@@ -18,7 +18,7 @@ def run(*command):
 
 
 def slowest_files():
-    """Seconds from begin to end of each object, beside others."""
+    """Seconds from begin to end of each object, compiled in parallel with others."""
     files = []
     for line in (FOLDER / ".ninja_log").read_text().splitlines()[1:]:
         begin, end, _, output, _ = line.split("\t")
@@ -29,7 +29,8 @@ def slowest_files():
 
 
 def headers():
-    """The headers of others that ours include: how many files get each, directly or not, and what it takes alone."""
+    """The external headers that our files include: the number of files that get each, directly or not, and its
+    compile time alone."""
     included = set()
     for folder in ("types", "components", "tests"):
         for source in (ROOT / folder).rglob("*.[ch]pp"):
@@ -66,6 +67,6 @@ def show_build(measured):
     print("slowest files [s]")
     for each in measured["files"]:
         print(f"  {each['file']:58}{each['s']:8.1f}")
-    print("headers of others: files that get them, seconds of one, and of all")
+    print("external headers: files that get them, seconds of one, and of all")
     for each in measured["headers"]:
         print(f"  {each['header']:38}{each['files']:10}{each['alone_s']:10.2f}{each['s']:8.0f}")

@@ -1,4 +1,4 @@
-"""The same fan alone on the machine and beside busy processes."""
+"""The same fan alone on the machine and next to busy processes."""
 import subprocess
 from contextlib import contextmanager
 
@@ -10,7 +10,7 @@ NEIGHBOURS = 2
 
 @contextmanager
 def neighbours():
-    """Processes that keep a core busy each, wherever the system puts them."""
+    """Processes that keep one core busy each, on any core."""
     processes = [subprocess.Popen(["/usr/bin/python3", "-c", "while True: pass"]) for _ in range(NEIGHBOURS)]
     try:
         yield
@@ -36,5 +36,5 @@ def show_busy(found):
     for name, runs in found.items():
         quiet, busy = runs["quiet"], runs["busy"]
         rays = busy["embree"]["alone_median_ms"] / quiet["embree"]["alone_median_ms"]
-        print(f"beside {NEIGHBOURS} busy processes, {name}: {busy['ping'] / quiet['ping']:.2f} times as long, "
+        print(f"next to {NEIGHBOURS} busy processes, {name}: {busy['ping'] / quiet['ping']:.2f} times as long, "
               f"p99 {busy['ping_p99'] / quiet['ping_p99']:.2f}, rays {rays:.2f}")

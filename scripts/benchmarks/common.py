@@ -1,4 +1,4 @@
-"""What every benchmark needs: folders, runs of `insonify`, and an environment for DDS within this machine."""
+"""Shared by all benchmarks: folders, runs of `insonify`, and an environment for DDS within this machine."""
 import json
 import os
 import socket
@@ -20,7 +20,7 @@ def fail(program, status):
 
 @contextmanager
 def deployment_file(text, name="bench"):
-    """A deployment of this text, in a folder of its own that is deleted afterwards."""
+    """Yields a file with this deployment, in a temporary folder."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, f"{name}.yml")
         file.write_text(text)
@@ -28,7 +28,8 @@ def deployment_file(text, name="bench"):
 
 
 def run_pings(file, pings):
-    """The summary of a run of that many pings, from start to end of its process [ms], and its peak memory [MB]."""
+    """Returns the summary of a run with this number of pings, the time from start to end of its process [ms],
+    and its peak memory [MB]."""
     with tempfile.TemporaryDirectory() as folder:
         summary = Path(folder, "summary.json")
         command = [INSONIFY, "run", file, "--out", Path(folder, "out"), "--pings", str(pings), "--quiet",
@@ -44,7 +45,7 @@ def run_pings(file, pings):
 
 
 def time_rays(file, pings):
-    """Embree's times for as many primary rays as the sonar's quality asks for."""
+    """Embree's times for the number of primary rays that the sonar's quality sets."""
     done = subprocess.run([INSONIFY, "study", "rays", file, "--pings", str(pings)], stdout=subprocess.PIPE)
     if done.returncode != 0:
         fail("insonify study rays", done.returncode)
@@ -52,7 +53,7 @@ def time_rays(file, pings):
 
 
 def loopback():
-    """The environment for DDS within this machine, on a domain that others hardly use."""
+    """The environment for DDS within this machine, on a rarely used domain."""
     settings = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces><AllowMulticast>"
                 "false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers>"
                 "<Peer address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>")

@@ -6,7 +6,8 @@ from benchmarks.common import ROOT, loopback
 
 
 def measure_dds(options):
-    """What arrives of messages of 1 MB, and when [ms], between programs of ours and of PyPI's cyclonedds."""
+    """Number and delay [ms] of received messages of 1 MB, between our programs and programs with PyPI's
+    cyclonedds."""
     seconds = options.dds_seconds
     ours, python = ROOT / "build/bin/dds_bench", ROOT / "build/venv/bin/python3"
     env, peer = loopback(), [python, ROOT / "tests/dds/peer.py"]
@@ -28,7 +29,7 @@ def measure_dds(options):
 
 
 def show_dds(found):
-    print("DDS, 1 MB at 40 Hz: of sent, heard; latency median, p99 ms; sending median, p99, max ms")
+    print("DDS, 1 MB at 40 Hz: sent, received; latency median, p99 ms; sending median, p99, max ms")
     for name, times in found.items():
         sent, heard = times["sent"], times["heard"]
         own = [f"{sent[key]:9.2f}" for key in ["median_ms", "p99_ms", "max_ms"] if key in sent]

@@ -29,18 +29,18 @@ def seen(sonar, visibility):
 
 
 def unsaid(sonar):
-    """The sonar without a word on its quality."""
+    """The sonar with its default quality."""
     return sonar.replace(QUALITY, "")
 
 
-# Takes what pings show, and makes no picture of it.
+# Receives the truth of pings, and makes no picture of it.
 TRUTH = ("  truth: {type: output::TruthImageTask}", """  - {from: sonar.ping, to: truth.ping, policy: {type: buffer, size: 4}}
   - {from: sonar.truth, to: truth.truth, policy: {type: buffer, size: 4}}
 """)
 
 
 def with_truth(text):
-    """The deployment with somebody who takes the sonar's truth."""
+    """The deployment with a receiver of the sonar's truth."""
     task, connections = TRUTH
     return text.replace("connections:", f"{task}\nconnections:", 1) + connections
 
@@ -65,7 +65,7 @@ connections:
 
 
 def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", change=str, visible=None):
-    """Adds a result for each visibility, of the deployment as `change` makes it."""
+    """Adds a result for each visibility, of the deployment changed by `change`."""
     for visibility in options.visibility if visible is None else visible:
         text = change(deployment(seen(sonar, visibility), file, noise=noise))
         found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
@@ -84,7 +84,7 @@ def measure_rays(found, name, sonar, file, options):
 
 
 def measure_pings(options):
-    """Each sonar before each scene, and the fan of 256 beams where nothing is said on quality."""
+    """Each sonar before each scene, and the fan of 256 beams with its default quality."""
     found = {}
     for name, scene_options in SCENES.items():
         for sonar, text in SONARS.items():
@@ -106,7 +106,8 @@ EFFECTS = {"plain": "", "pattern": PATTERN, "pulse": PULSE, "pattern and pulse":
            "volume": VOLUME, "layers": LAYERS, "all": PATTERN + PULSE + SEABED + VOLUME}
 RAYS_ALONE = {"coherent": COHERENT, "coherent, pattern and pulse": COHERENT + PATTERN + PULSE}
 AMBIENT = ", ambient: {level_db: -110}"
-# Level, 3 m below the surface, which half of the rays meet: without it, with it, in wind, and with smooth objects as well.
+# Level, 3 m below the surface, which half of the rays meet: without the surface, with it, in wind, and with smooth
+# objects as well.
 SURFACE = "multipath: {surface: {wind_m_s: 0}}, "
 PATHS = {"level": "", "level, surface": SURFACE, "level, wind": SURFACE.replace("0", "3"),
          "level, second bounce": SURFACE.replace("}}", "}, bounces: 2}")}

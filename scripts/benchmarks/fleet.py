@@ -1,4 +1,4 @@
-"""Fleets in one process: vehicles with a forward-looking sonar each in one scene, deaf to each other and hearing each other."""
+"""Fleets in one process: vehicles with a forward-looking sonar each in one scene, with and without receiving each other's pings."""
 import json
 import os
 import subprocess
@@ -19,7 +19,7 @@ SONAR = {"range": 30, "beam_count": 256, "bin_count": 500, "field_of_view_deg": 
 
 
 def fleet(count, hears, schedule):
-    """A deployment of `count` vehicles in the harbour, each 3 m from the next, whose pings are spread over the period."""
+    """A deployment of `count` vehicles in the harbour, 3 m apart, whose pings are spread over the period."""
     tasks, connections = {}, []
     for i in range(count):
         start = [-10.0, 3.0 * i - 1.5 * count, -6.0]
@@ -62,7 +62,7 @@ def measure_fleet(options):
             _, few, _ = run(count, hears, "lockstep", ["--pings", "10"])
             summary, many, memory = run(count, hears, "lockstep", ["--pings", str(10 + options.pings)])
             live, _, _ = run(count, hears, "realtime", ["--duration", str(options.realtime_seconds)])
-            noises = [live["tasks"][f"noise{i}"] for i in range(count)]  # a sonar has cycles that only listen
+            noises = [live["tasks"][f"noise{i}"] for i in range(count)]  # a sonar also has cycles that only receive
             results[f"{count}{', hearing each other' if hears else ''}"] = {
                 "ms_per_ping": 1e3 * (many - few) / (options.pings * count), "mb": memory,
                 "realtime_pings": sum(noise["cycles"] for noise in noises), "sent": count * options.realtime_seconds / PERIOD}

@@ -13,18 +13,18 @@ STARTS = 7
 
 
 def demo(visibility):
-    """The deployment as it is, picture and log included, with a visibility and with files found from anywhere."""
+    """The unchanged deployment, picture and log included, with a visibility and absolute paths of files."""
     text = (ROOT / "deploy/harbour_fls.yml").read_text().replace("scenes/", f"{ROOT}/deploy/scenes/")
     return text.replace("      beam_count:", f"      visibility: {visibility}\n      beam_count:", 1)
 
 
 def unseen(text):
-    """Without a picture of each ping, which takes a core of its own."""
+    """The deployment without a picture per ping, which would take a core."""
     return text.replace("file: fan_%06d.png,", "file: fan_%06d.png, every: 1000,", 1)
 
 
 def first_ping(visibility):
-    """Medians of some starts [ms]: the whole process, of that the time before the run, and the first cycles."""
+    """Medians of some starts [ms]: the whole process, its part before the run, and the first cycles."""
     starts = []
     with deployment_file(demo(visibility)) as file:
         for _ in range(STARTS):
@@ -50,7 +50,7 @@ def show_harbour(found):
 
 
 def study_error(visibility, options):
-    """What `insonify study error` tells of each method: times to 1 and 0.1 % [ms], and how they were found."""
+    """Results of `insonify study error` per method: times to 1 and 0.1 % [ms], and how they were found."""
     with deployment_file(demo(visibility), "harbour") as file, tempfile.TemporaryDirectory() as folder:
         out = Path(folder, "out")
         command = [INSONIFY, "study", "error", file, "--ping", str(options.error_ping), "--out", out, "--quiet"]

@@ -25,11 +25,11 @@ connections:
 """
 HANDSHAKE = ("GET / HTTP/1.1\r\nHost: localhost:{}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13"
              "\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Protocol: insonify.view.v1\r\n\r\n")
-SETTLED = 10  # from then on nothing is made for the first time any more [s]
+SETTLED = 10  # time after which all buffers have been allocated [s]
 
 
 def resident(process):
-    """Memory of a process [MB]; none: it has ended."""
+    """Memory of a process [MB]; none if it has ended."""
     try:
         lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
     except FileNotFoundError:
@@ -39,7 +39,7 @@ def resident(process):
 
 
 def keep_reading(port, process):
-    """A page that reads all that it is sent, and comes again when it is left."""
+    """A page that reads all that it is sent, and reconnects when disconnected."""
     while process.poll() is None:
         try:
             with socket.create_connection(("127.0.0.1", port), timeout=5) as page:
@@ -51,7 +51,7 @@ def keep_reading(port, process):
 
 
 def watch(text, limits, port=None):
-    """Memory [MB] of a run when it has settled, at its end and at most, and how long it took [s]."""
+    """Memory [MB] of a run when it has settled, at its end and at most, and its duration [s]."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "long.yml")
         file.write_text(text)

@@ -23,7 +23,7 @@ def elevations(file):
     try:
         import numpy as np
     except ImportError:
-        sys.exit("bench: mission needs numpy; PATH=$PWD/build/venv/bin:$PATH scripts/bench has it after scripts/setup")
+        sys.exit("bench: mission needs numpy; PATH=$PWD/build/venv/bin:$PATH scripts/bench finds it after scripts/setup")
     if file.suffix == ".npz":
         held = np.load(file)
         return held[held.files[0]].astype("<f4"), 2.0
@@ -33,8 +33,8 @@ def elevations(file):
 
 
 def write_mosaic(floor, spacing, folder):
-    """The survey and its mirror images side by side, each a file of its own, so that no step
-    stands between two; the mosaic, and its side [m]."""
+    """The survey and its mirror images next to each other, each in its own file, so that there
+    are no steps at the edges; the mosaic, and its side [m]."""
     posts, sources = min(floor.shape) - 1, ""
     for row in range(ALONG):
         for column in range(ALONG):
@@ -53,7 +53,7 @@ def write_mosaic(floor, spacing, folder):
 
 
 def lines(seconds, side, depth):
-    """Waypoints of lines to and fro, and from the first again when the survey is done."""
+    """Waypoints of lines to and fro; when the survey is done, from the first line again."""
     half, way = side / 2 - 150, []
     time, line, north = 0.0, 0, -1
     while time < seconds:
@@ -80,5 +80,5 @@ def measure_mission(options):
 
 def show_mission(run):
     print(f"{run['hours']:g} h, {run['way_km']:.1f} km over {run['survey_km']:.2f} x {run['survey_km']:.2f} km in "
-          f"{run['seconds']:.0f} s, {3600 * run['hours'] / run['seconds']:.1f} times as fast as time goes; "
+          f"{run['seconds']:.0f} s, {3600 * run['hours'] / run['seconds']:.1f} times as fast as real time; "
           f"{run['settled_mb']:.1f} MB after {SETTLED} s, {run['end_mb']:.1f} MB at the end, {run['max_mb']:.1f} MB at most")

@@ -22,7 +22,7 @@ def show_ports(rows):
 
 
 def measure_logger(options):
-    """What logger_bench tells of pings of 512 x 1000 floats, 40 a second."""
+    """Results of logger_bench for pings of 512 x 1000 floats, 40 a second."""
     with tempfile.TemporaryDirectory(dir=BENCH) as folder:
         command = [ROOT / "build/bin/logger_bench", str(options.log_seconds), folder]
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
@@ -40,7 +40,8 @@ def show_logger(logger):
 
 
 def measure_oculus(options):
-    """What oculus_bench tells of a driver that asks deploy/hil_oculus.yml for 512 x 1000 at 40 Hz over TCP."""
+    """Results of oculus_bench for a driver that requests 512 x 1000 at 40 Hz from deploy/hil_oculus.yml
+    over TCP."""
     command = [ROOT / "build/bin/oculus_bench", str(options.log_seconds)]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
@@ -50,7 +51,7 @@ def measure_oculus(options):
 
 def show_oculus(oculus):
     print(f"Oculus, 512 x 1000 codes of 16 bits at 40 Hz over TCP: {oculus['received']} pings received of "
-          f"{oculus['asked']:.0f} asked for in {oculus['seconds']:.0f} s, {oculus['mb_per_s']:.1f} MB/s")
+          f"{oculus['asked']:.0f} requested in {oculus['seconds']:.0f} s, {oculus['mb_per_s']:.1f} MB/s")
 
 
 def measure_ways(options):
@@ -68,7 +69,8 @@ def show_ways(scenes):
 
 
 def measure_scenes(_options):
-    """What scene_bench tells of a mission over tiles of a survey, and of the memory of 1 and of 16 sonars of one scene."""
+    """Results of scene_bench for a mission over tiles of a survey, and for the memory of 1 and of 16 sonars of one
+    scene."""
     def told(*arguments):
         done = subprocess.run([ROOT / "build/bin/scene_bench", *arguments], stdout=subprocess.PIPE, text=True)
         if done.returncode != 0:

@@ -1,4 +1,4 @@
-"""Realtime runs on two cores, also beside readers that hang."""
+"""Realtime runs on two cores, also with readers that hang."""
 import json
 import os
 import signal
@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.common import INSONIFY, ROOT, fail, free_port, loopback
 from benchmarks.fans import SCENES, SONARS, deployment, scene
 
-# Sonar, period [s] and range [m] of a fan that is heard to its end within the period, on two cores.
+# Sonar, period [s] and range [m] of fans whose last echoes arrive within the period, on two cores.
 REALTIME = {"FLS 512 x 1000, 10 Hz": ("FLS 512 x 1000", 0.1, 50), "FLS 256 x 500, 40 Hz": ("FLS 256 x 500", 0.025, 15)}
 SLOW_READERS = """  ros: {{type: dds::PublisherTask, properties: {{topics: [{{port: ping, topic: /bench/slow, dtype: float32}}]}}}}
   view: {{type: viewer::ViewerTask, properties: {{port: {port}}}}}
@@ -23,7 +23,7 @@ PAGES = []  # connections that are kept open
 
 
 def run_realtime(sonar, period, reach, seconds, port=None):
-    """The summary of a realtime run; a ping has its period as the deadline. With a port: beside readers that hang."""
+    """The summary of a realtime run; a ping has its period as the deadline. With a port: with readers that hang."""
     text = SONARS[sonar].replace("range: 30", f"range: {reach}")
     text = text.replace("properties:", f"activity: {{deadline: {period}}}, properties:", 1)
     with tempfile.TemporaryDirectory() as folder:
@@ -44,7 +44,8 @@ def run_realtime(sonar, period, reach, seconds, port=None):
 
 
 def hang_on(port):
-    """A page that never reads and a ROS 2 reader that is stopped once it has heard something."""
+    """A page that never reads, and a ROS 2 reader that is stopped after it has received a
+    message."""
     end = time.time() + 10
     while time.time() < end:
         try:
@@ -65,7 +66,7 @@ def hang_on(port):
 
 
 def measure_realtime(options):
-    """Of each fan: pings, those written after the next was due, those not rendered, and latency and jitter [ms]."""
+    """Per fan: pings, those written after the next was due, those not rendered, and latency and jitter [ms]."""
     results = {}
     runs = [(name, setting, None) for name, setting in REALTIME.items()]
     if (ROOT / "build/venv/bin/python3").exists():

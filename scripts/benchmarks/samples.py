@@ -1,4 +1,4 @@
-"""Samples of a data set, beside pings of a run, by processor time."""
+"""Samples of a data set, compared with pings of a run, by processor time."""
 import os
 import statistics
 import subprocess
@@ -8,7 +8,7 @@ from pathlib import Path
 from benchmarks.common import BENCH, INSONIFY, ROOT, fail
 
 ROUNDS = 3
-FEW, MANY = 10, 70  # samples; the difference of both leaves the start out
+FEW, MANY = 10, 70  # samples; the difference of both excludes the start
 
 SWEEP = """seed: 3
 scenes: [{scene}]

@@ -1,4 +1,4 @@
-"""A run in shards, by one worker and by two, each on a processor of its own."""
+"""A run in shards, by one worker and by two, each on its own processor."""
 import os
 import statistics
 import subprocess
@@ -12,14 +12,14 @@ from benchmarks.fans import SCENES, SONARS, deployment, scene, seen
 
 SHARDS = 8
 ROUNDS = 3
-BEHIND = 20_000  # pings, to find what one costs that is passed over
+BEHIND = 20_000  # pings, to find the cost of a skipped ping
 
 LOG = "  log: {type: logger::LoggerTask, properties: {file: bench.0.log}}\nconnections:"
 LOGGED = "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}\n"
 
 
 def make(file, out, shard, pings, core):
-    """Makes a shard on one processor; how long it takes by the clock and of the processor's time [s]."""
+    """Makes a shard on one processor. Returns its wall and processor time [s]."""
     command = ["taskset", "--cpu-list", str(core), INSONIFY, "run", file, "--out", out, "--shard", shard, "--pings",
                str(pings), "--quiet"]
     start = time.monotonic()
@@ -32,7 +32,7 @@ def make(file, out, shard, pings, core):
 
 
 def whole(file, pings, workers):
-    """How long these workers take for all shards, and of processors' time [s]; how large they are [B]."""
+    """Wall and processor time of these workers for all shards [s]; size of the shards [B]."""
     waiting = iter(range(SHARDS))
 
     def work(core):
@@ -72,6 +72,6 @@ def show_shards(found):
     one, two = found["one_worker"], found["two_workers"]
     print(f"FLS 256 x 500, 80 k, cpu, logged, {found['pings']} pings in {SHARDS} shards, a core a worker, medians of {ROUNDS}:")
     print(f"  one worker:  {one[0]:.1f} pings a second, {one[1]:.1f} a second of the processor")
-    print(f"  two workers: {two[0]:.1f} pings a second, {two[1]:.1f} a second of the processor; {found['gain']:.2f} times as many")
+    print(f"  two workers: {two[0]:.1f} pings a second, {two[1]:.1f} a second of the processor; {found['gain']:.2f} times the rate")
     print(f"  start of a shard with its first ping: {found['start_ms']:.0f} ms of the processor; each ping before it: "
           f"{found['passed_over_us']:.1f} us; a ping: {found['bytes_a_ping'] / 1e6:.2f} MB")

@@ -1,4 +1,4 @@
-"""How long the command takes to start, its memory, and the libraries that it loads."""
+"""The start of the command: its time, its memory, and the libraries that it loads."""
 import os
 import statistics
 import subprocess

@@ -1,4 +1,4 @@
-"""A step from Python beside the same ping of the command."""
+"""A step from Python compared with the same ping of the command."""
 import os
 import statistics
 import subprocess
@@ -20,7 +20,7 @@ for _ in range(pings): simulation.step(pose).bins
 print(1e3 * (time.perf_counter() - start) / pings)
 """
 
-# Steps a second of so many environments of gymnasium: each in a process of its own, or all in one.
+# Steps a second of `count` environments of gymnasium: each in its own process, or all in one.
 AGENTS = """
 import sys, time, gymnasium, insonify, insonify.gym
 file, count, steps, together = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4] == "together"
@@ -46,7 +46,7 @@ def by_python(file, pings):
 
 
 def by_command(file, pings):
-    """The difference of a long run and one of ten pings, so that the start of the process is not in it."""
+    """The difference of a long run and one of ten pings, which excludes the start of the process."""
     (_, few, _), (_, many, _) = run_pings(file, 10), run_pings(file, 10 + pings)
     return (many - few) / pings
 

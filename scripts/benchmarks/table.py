@@ -6,9 +6,10 @@ CHAIN = ["sonar", "noise", "receiver"]
 
 
 def measure(text, pings, beside_rays=True):
-    """Of a deployment's run, per stage of the sonar, per task of the chain and of all three tasks in a ping: the median
-    [ms]; of the ping the 99th percentile as well, which is the sum of the tasks'; the first ping's own time in the
-    sonar; peak memory [MB]; quality and device. Beside it, right after the run, as many primary rays by Embree."""
+    """Result of a deployment's run. Medians [ms] per stage of the sonar, per task of the chain, and of all three
+    tasks in a ping; of the ping also the 99th percentile, as the sum of the tasks'; the sonar's time of the first
+    ping; peak memory [MB]; quality and device. For comparison, right after the run, the same number of primary rays
+    by Embree."""
     with deployment_file(text) as file:
         summary, _, resident_mb = run_pings(file, pings)
         rays = time_rays(file, pings) if beside_rays else None

@@ -1,4 +1,4 @@
-# What `cmake --install` puts in a prefix besides the command and the libraries, and what `cpack -G DEB` packs.
+# Files that `cmake --install` puts in a prefix besides the command and the libraries, and the packages of `cpack -G DEB`.
 include(CMakePackageConfigHelpers)
 set(documents ${CMAKE_INSTALL_DATAROOTDIR}/doc/insonify)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Insonify)
@@ -9,7 +9,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/InsonifyConfig.cmake ${PROJECT_BINARY_DIR}/InsonifyConfigVersion.cmake
   DESTINATION ${package_folder} COMPONENT development)
 
-# The manual page is what the command and component libraries say of themselves.
+# The manual page is generated from the help of the command and component libraries.
 get_property(components GLOBAL PROPERTY insonify_components)
 add_custom_command(
   OUTPUT ${PROJECT_BINARY_DIR}/insonify.1
@@ -19,11 +19,11 @@ add_custom_command(
 add_custom_target(insonify_man ALL DEPENDS ${PROJECT_BINARY_DIR}/insonify.1)
 install(FILES ${PROJECT_BINARY_DIR}/insonify.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
 
-# Of the shaders, which are in the command, only the one that a header includes.
+# The shaders are in the command; only the shader that a header includes is installed.
 install(FILES shaders/interface.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/insonify/shaders COMPONENT development)
 install(DIRECTORY deploy DESTINATION ${CMAKE_INSTALL_DATADIR}/insonify COMPONENT runtime PATTERN pictures EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${documents} COMPONENT runtime)
-# Where systemd looks, below /usr as below /usr/local, whatever the libraries' folder is called.
+# The folder that systemd searches, below /usr or /usr/local; independent of the name of the libraries' folder.
 install(FILES deploy/insonify.service DESTINATION lib/systemd/system COMPONENT runtime)
 file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS components/*.md components/*/*.md types/*.md)
 foreach(page ${pages})
@@ -66,7 +66,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   "insonify (= ${PROJECT_VERSION}), libfmt-dev, libglm-dev, libyaml-cpp-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
   "cyclonedds-dev, libembree-dev, libepoxy-dev, libgdal-dev, liblz4-dev, libmeshoptimizer-dev, libopencv-dev, libpng-dev, libprotobuf-dev, libsdformat-dev, libsnappy-dev, libstb-dev, libtinygltf-dev, libtinyxml2-dev, libzmq3-dev, libzstd-dev, zlib1g-dev")
-# What the packages hold.
+# Contents of the packages.
 get_property(installed GLOBAL PROPERTY insonify_installed)
 add_custom_target(insonify_packages DEPENDS insonify insonify_man ${installed} ${components})
 include(CPack)

@@ -1,7 +1,7 @@
-"""Makes the wheel and the archive of what build/ holds: python scripts/packaging/wheel.py wheel|archive...
+"""Makes the wheel and the archive from build/: python scripts/packaging/wheel.py wheel|archive...
 
-auditwheel copies the libraries of the system that they are linked with into them, but for those of glibc and of OpenGL;
-the licence of each comes along."""
+auditwheel copies the system libraries that they are linked with into them, except those of glibc and of OpenGL;
+their licences are added."""
 
 import os
 import pathlib
@@ -24,11 +24,11 @@ def run(*command: str | pathlib.Path) -> str:
 
 
 def stage() -> pathlib.Path:
-    """A folder with what the wheel holds, of our own."""
+    """A folder with our own files of the wheel."""
     shutil.rmtree(STAGE, ignore_errors=True)
     folder = STAGE / "own"
     run("cmake", "--install", "build", "--component", "python", "--prefix", folder, "--strip")
-    library = next((folder / "insonify/lib").glob("libinsonify.so.*.*.*"))  # wheels hold no links
+    library = next((folder / "insonify/lib").glob("libinsonify.so.*.*.*"))  # wheels cannot contain links
     library.replace(library.with_suffix(""))
     about = folder / backend.prepare_metadata_for_build_wheel(str(folder))
     (about / "RECORD").unlink(missing_ok=True)
@@ -40,7 +40,7 @@ def stage() -> pathlib.Path:
 
 
 def licences(bundled: pathlib.Path, to: pathlib.Path) -> None:
-    """Copies the licence of each library that was copied, as its Debian package has it."""
+    """Copies the licence of each copied library from its Debian package."""
     to.mkdir()
     for library in sorted(bundled.glob("*.so*")):
         name = re.sub(r"-[0-9a-f]{8}(?=\.)", "", library.name)
@@ -68,7 +68,7 @@ def make() -> pathlib.Path:
 
 
 def make_archive(folder: pathlib.Path) -> None:
-    """Without what only pip needs."""
+    """Without the files that only pip needs."""
     name = f"{folder.name}-{platform.machine()}"
     for about in (*folder.glob("*.data"), *folder.glob("*.dist-info")):
         shutil.rmtree(about)

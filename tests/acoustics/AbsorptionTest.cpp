@@ -18,7 +18,7 @@ Water waterOf(double celsius, double psu, double depth, double ph = 8) {
     return water;
 }
 
-TEST(AbsorptionTest, FrancoisGarrisonMeetsPublishedValues) {
+TEST(AbsorptionTest, FrancoisGarrisonMatchesPublishedValues) {
     struct Case {
         double celsius, khz, db_per_km;
     };
@@ -33,14 +33,15 @@ TEST(AbsorptionTest, FrancoisGarrisonAtImagingFrequencies) {
     };
     for (const Case& c : {Case{100, 0.034, 0.003}, Case{300, 0.073, 0.028}, Case{700, 0.200, 0.152},
                           Case{1200, 0.495, 0.447}, Case{2250, 1.62, 1.57}}) {
-        EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 35, 10, 8.1)), c.sea, 0.0006 + 0.003 * c.sea) << c.khz << " kHz";
+        EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 35, 10, 8.1)), c.sea, 0.0006 + 0.003 * c.sea)
+            << c.khz << " kHz";
         EXPECT_NEAR(francoisGarrison(c.khz, waterOf(10, 0, 10, 8.1)), c.fresh, 0.0006 + 0.003 * c.fresh)
             << c.khz << " kHz";
     }
 }
 
 TEST(AbsorptionTest, TheMisprintedPureWaterConstantIsAnotherLaw) {
-    // A public manual prints 4.397e-4 for the constant of pure water, 4.937e-4: 0.054 dB/m less at 1 MHz and 0 degC.
+    // A public manual prints 4.397e-4 instead of 4.937e-4 for pure water: 0.054 dB/m less at 1 MHz and 0 degC.
     const double right = francoisGarrison(1000, waterOf(0, 0, 0));
     EXPECT_NEAR(right, 0.4937, 1e-6);
     EXPECT_GT(right - 0.4397, 0.05);
@@ -56,23 +57,23 @@ TEST(AbsorptionTest, AinslieMccolmIsWithinTenPercentOfFrancoisGarrison) {
 }
 
 TEST(AbsorptionTest, AinslieMccolmTakesDepthInKilometres) {
-    // At 100 kHz, where magnesium sulphate absorbs, 1 km takes e^(-1/6) of it; metres in its place would leave none.
+    // At 100 kHz magnesium sulphate dominates, and 1 km of depth reduces it to e^(-1/6). Depth in metres would give 0.
     const double shallow = ainslieMccolm(100, waterOf(4, 35, 0)), deep = ainslieMccolm(100, waterOf(4, 35, 1000));
     EXPECT_NEAR(deep / shallow, std::exp(-1.0 / 6), 0.03);
 }
 
-TEST(AbsorptionTest, FisherAndSimmonsMeetTheirPublishedTable) {
-    // Their table IV: 10 kHz at 4 degC and 1 atm, and 100 kHz at 500 atm, which is 4970 m down.
+TEST(AbsorptionTest, FisherAndSimmonsMatchTheirPublishedTable) {
+    // Their table IV: 10 kHz at 4 degC and 1 atm, and 100 kHz at 500 atm, which is at 4970 m.
     EXPECT_NEAR(fisherSimmons(10, waterOf(4, 35, 0)), 0.00083, 0.01 * 0.00083);
     EXPECT_NEAR(gaugePressureBar(4970, 45), 500 * 1.01325, 1);
     EXPECT_NEAR(fisherSimmons(100, waterOf(4, 35, 4970)), 0.0175, 0.01 * 0.0175);
-    // In decibars, as depth is in metres, the pressure would leave another number.
+    // Pressure in decibars would give another number.
     EXPECT_GT(std::abs(fisherSimmons(100, waterOf(4, 35, 497)) - 0.0175), 0.005);
 }
 
 TEST(AbsorptionTest, FisherAndSimmonsIsTheSumOfItsThreeTerms) {
-    // At 10 degC and the surface by hand: relaxations of boric acid at 0.921 kHz and of magnesium sulphate at 91.3 kHz;
-    // 0.097, 27.56 and 3.18 dB/km of 100 kHz.
+    // At 10 degC and the surface, by hand: relaxations of boric acid at 0.921 kHz and of magnesium sulphate at 91.3
+    // kHz. The three terms at 100 kHz are 0.097, 27.56 and 3.18 dB/km.
     EXPECT_NEAR(1000 * fisherSimmons(100, waterOf(10, 35, 0)), 0.097 + 27.56 + 3.18, 0.02);
     // Salinity and acidity do not change it.
     EXPECT_EQ(fisherSimmons(100, waterOf(10, 20, 0, 7)), fisherSimmons(100, waterOf(10, 35, 0, 8)));
@@ -99,7 +100,7 @@ TEST(AbsorptionTest, EveryLawIsFiniteAtEveryEdgeOfItsBounds) {
                     }
 }
 
-TEST(AbsorptionTest, ValidityNamesWhatLiesOutside) {
+TEST(AbsorptionTest, ValidityNamesTheInputsOutside) {
     EXPECT_EQ(outsideValidity(AbsorptionLaw::FrancoisGarrison, 750, waterOf(12, 35, 8, 8.1)), "");
     EXPECT_EQ(outsideValidity(AbsorptionLaw::FrancoisGarrison, 10000, waterOf(12, 35, 8)), "10000 kHz (0.2 to 1000)");
     EXPECT_EQ(outsideValidity(AbsorptionLaw::AinslieMccolm, 500, waterOf(12, 0, 8)), "0 psu (5 to 50)");

@@ -16,7 +16,7 @@ namespace {
 using std::numbers::pi;
 using ::testing::HasSubstr;
 
-/** Integral of a function of the angle of incidence, from 0 to a right angle. */
+/** Returns the integral of a function of the angle of incidence, from 0 to a right angle. */
 template <class F>
 double overIncidence(const F& f) {
     constexpr int cells = 200000;
@@ -25,7 +25,7 @@ double overIncidence(const F& f) {
     return sum * pi / 2 / cells;
 }
 
-/** Echo of a sphere of radius a whose surface scatters by a law of the cosine of incidence [m^2]. */
+/** Returns the echo of a sphere of radius a whose surface scatters by a law of the cosine of incidence [m^2]. */
 template <class F>
 double sphereSection(double a, const F& section) {
     return overIncidence([&](double t) { return 2 * pi * a * a * std::sin(t) * section(std::cos(t)); });
@@ -37,11 +37,11 @@ TEST(BackscatterTest, ALambertSphereEchoesAsTwoThirdsOfPiOfItsParameter) {
     EXPECT_NEAR(10 * std::log10(lambertSection(-27, std::sin(30 * degree))), -27 - 6.0206, 1e-4);
 }
 
-TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWhateverItsSlope) {
+TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWithAnySlope) {
     for (const double slope : {0.02, 0.1, 0.3}) {
         const double heard = sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c); });
         EXPECT_NEAR(heard, 0.81 * 4.0 / 4 * (1 + slope * slope / 2), 2e-3) << slope;
-        // Without sec^4 it would be another number for a rough one.
+        // Without sec^4 a rough sphere would have another strength.
         const double bare =
             sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c) * std::pow(c, 4); });
         if (slope > 0.2) {
@@ -50,7 +50,8 @@ TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWhateverItsSlope) {
     }
 }
 
-/** Echo of an ellipsoid of semi-axes a, b, c, seen along a, whose surface scatters by a law of the cosine [m^2]. */
+/** Returns the echo of an ellipsoid of semi-axes a, b, c along a, whose surface scatters by a law of the cosine
+ *  [m^2]. */
 template <class F>
 double ellipsoidSection(double a, double b, double c, const F& section) {
     constexpr int rings = 4000, cells = 200;
@@ -73,7 +74,7 @@ TEST(BackscatterTest, TheLobeGivesAnEllipsoidItsTargetStrength) {
                                });
     const double urick = std::pow(0.7 * 0.4 / (2 * 2), 2);
     EXPECT_NEAR(10 * std::log10(heard / urick), 0, 0.05);
-    // That of a sphere as large as it is long would be another.
+    // A sphere of the ellipsoid's length would have another strength.
     EXPECT_GT(10 * std::log10(1 / urick), 20);
 }
 
@@ -82,7 +83,7 @@ TEST(BackscatterTest, TheLobeOfASmoothPlateIsItsTargetStrengthAtNormalIncidence)
     const Slopes smooth{0, 0, wavelength, area};
     const double sigma = area * objectSection(-300, 1, smooth.meanSquare(), 1);
     EXPECT_NEAR(sigma, area * area / (wavelength * wavelength), 1e-9 * sigma);
-    // Of half the area as the cell it would be half as loud: the cell is the plate's.
+    // The cell is the area of the plate: half the area would give half the echo.
     const Slopes half{0, 0, wavelength, area / 2};
     EXPECT_NEAR(area * objectSection(-300, 1, half.meanSquare(), 1), sigma / 2, 1e-9 * sigma);
 }
@@ -104,7 +105,7 @@ TEST(BackscatterTest, AFluidHalfSpaceReflectsByItsImpedanceAtTheNormal) {
     EXPECT_LT(std::abs(halfSpaceReflection(sand, 1.05 * critical)), 0.9);
 }
 
-TEST(BackscatterTest, TheLossOfSeabedsIsThatOfTheReportsFigure1) {
+TEST(BackscatterTest, TheLossOfSeabedsMatchesFigure1OfTheReport) {
     // APL-UW TR 9407, figure 1: silt of 6 phi peaks at some 35 dB near 16 deg and loses 24 dB at the vertical; rock
     // less than 0.1 dB below its critical angle of 66 deg, and 2.8 dB at the vertical.
     const auto lossDb = [](const char* name, double grazing_deg) {
@@ -140,7 +141,7 @@ TEST(BackscatterTest, ATableIsClampedNearGrazing) {
     EXPECT_NEAR(table.values()[255], pi / 2, 1e-9);
 }
 
-TEST(BackscatterTest, AMeasuredTableIsReadWithItsDiagnosticsInPlace) {
+TEST(BackscatterTest, ReadsAMeasuredTableAndReportsErrorsWithTheirPlace) {
     const Folder folder;
     std::ofstream(folder / "sand.csv") << "grazing_deg,strength_db\n10,-30\n30,-20\n\n90,-10\n";
     const Curve measured = readBackscatter(folder / "sand.csv");

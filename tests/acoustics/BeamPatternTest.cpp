@@ -23,7 +23,7 @@ struct DolphRow {
 };
 const DolphRow dolph[] = {{-25, 0.993}, {-30, 1.073}, {-40, 1.218}};
 
-/** In wavelengths over the length: twice the sine of half an angle, times the aperture. */
+/** Returns a width in u: twice the sine of half an angle, times the aperture [wavelengths]. */
 double inWavelengths(double width, const BeamPattern& pattern) { return 2 * std::sin(width / 2) * pattern.aperture(); }
 
 class BeamPatternTest : public ::testing::Test {
@@ -35,20 +35,20 @@ protected:
     }
 };
 
-TEST_F(BeamPatternTest, WidthsAreThoseOfTheTable) {
+TEST_F(BeamPatternTest, WidthsMatchTheTable) {
     for (const WeightingRow& row : weightings) {
         const BeamPattern pattern = longArray(row.law());
         const CutShape one_way = shapeOf([&](double a) { return pattern.power(a); });
         const CutShape two_way = shapeOf([&](double a) { return pattern.power(a) * pattern.power(a); });
         EXPECT_NEAR(inWavelengths(one_way.width_3db, pattern), row.width, 0.01 * row.width) << row.name;
         EXPECT_NEAR(inWavelengths(two_way.width_3db, pattern), row.two_way_width, 0.01 * row.two_way_width) << row.name;
-        // The amplitude taken for the power would make another width.
+        // The amplitude instead of the power would give another width.
         const CutShape amplitude = shapeOf([&](double a) { return std::sqrt(pattern.power(a)); });
         EXPECT_GT(inWavelengths(amplitude.width_3db, pattern), 1.2 * row.width) << row.name;
     }
 }
 
-TEST_F(BeamPatternTest, FirstNullsAndSidelobesAreThoseOfTheTable) {
+TEST_F(BeamPatternTest, FirstNullsAndSidelobesMatchTheTable) {
     for (const WeightingRow& row : weightings) {
         const BeamPattern pattern = longArray(row.law());
         const CutShape shape = shapeOf([&](double a) { return pattern.power(a); });
@@ -59,7 +59,7 @@ TEST_F(BeamPatternTest, FirstNullsAndSidelobesAreThoseOfTheTable) {
     }
 }
 
-TEST_F(BeamPatternTest, IntegralsAreThoseOfTheTable) {
+TEST_F(BeamPatternTest, IntegralsMatchTheTable) {
     for (const WeightingRow& row : weightings) {
         if (!row.integral) continue;
         const BeamPattern pattern = longArray(row.law());
@@ -70,7 +70,7 @@ TEST_F(BeamPatternTest, IntegralsAreThoseOfTheTable) {
     }
 }
 
-TEST_F(BeamPatternTest, DolphsBeamsAreThoseOfTheTableWithEverySidelobeAsHigh) {
+TEST_F(BeamPatternTest, DolphsBeamsMatchTheTableWithSidelobesOfEqualHeight) {
     for (const DolphRow& row : dolph) {
         BeamLaw law;
         law.weighting = Weighting::Dolph;
@@ -84,7 +84,7 @@ TEST_F(BeamPatternTest, DolphsBeamsAreThoseOfTheTableWithEverySidelobeAsHigh) {
     }
 }
 
-TEST_F(BeamPatternTest, ABeamIsAsWideAsItsWidthSaysWhateverTheWeighting) {
+TEST_F(BeamPatternTest, ABeamHasTheGivenWidthWithAnyWeighting) {
     for (const double width : {0.3, 1.0, 20.0, 60.0})
         for (const auto weighting : {Weighting::Uniform, Weighting::Cosine, Weighting::Hann, Weighting::Hamming,
                                      Weighting::Taylor, Weighting::Dolph, Weighting::Gaussian, Weighting::Piston}) {
@@ -99,7 +99,7 @@ TEST_F(BeamPatternTest, ABeamIsAsWideAsItsWidthSaysWhateverTheWeighting) {
         }
 }
 
-TEST_F(BeamPatternTest, AGaussianHasNoSidelobesAndNothingIsHeardBehind) {
+TEST_F(BeamPatternTest, AGaussianHasNoSidelobesAndNoPowerBehind) {
     BeamLaw law;
     law.weighting = Weighting::Gaussian;
     law.width_deg = 10;
@@ -121,7 +121,7 @@ TEST_F(BeamPatternTest, SteeringWidensABeamAsTheInverseCosine) {
     EXPECT_NEAR(inWavelengths(shape.width_3db, pattern), 2 * 0.8859, 0.01 * 2 * 0.8859);
 }
 
-TEST_F(BeamPatternTest, AnApertureTakesTheWavelengthAndAWidthDoesNot) {
+TEST_F(BeamPatternTest, AnApertureNeedsTheWavelengthAndAWidthDoesNot) {
     BeamLaw law;
     law.aperture_m = 0.1;
     EXPECT_NEAR(BeamPattern(law, 0.002).aperture(), 50, 1e-12);
@@ -132,7 +132,7 @@ TEST_F(BeamPatternTest, AnApertureTakesTheWavelengthAndAWidthDoesNot) {
     EXPECT_EQ(BeamPattern(law).power(0.02), BeamPattern(law, 0.1).power(0.02));
 }
 
-TEST_F(BeamPatternTest, AMeasuredTableIsThePatternThatWasMeasured) {
+TEST_F(BeamPatternTest, AMeasuredTableGivesTheMeasuredPattern) {
     const Folder folder;
     BeamLaw law;
     law.weighting = Weighting::Taylor;
@@ -178,14 +178,14 @@ TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
                 HasSubstr("beam.csv:3:6: has too many fields; a line has 2"));
     EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n200,nan\n"), HasSubstr("beam.csv:3:5: level_db: is 'nan'"));
     EXPECT_THAT(diagnosticOf("angle_deg,level_db\n0,0\n"), HasSubstr("needs at least 2"));
-    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("leaves out 0"));
+    EXPECT_THAT(diagnosticOf("angle_deg,level_db\n5,0\n6,0\n"), HasSubstr("does not include 0"));
     EXPECT_THAT(diagnosticOf(""), HasSubstr("is empty"));
     BeamLaw nowhere;
     nowhere.file = folder / "nowhere.csv";
     EXPECT_THROW(BeamPattern{nowhere}, types::ConfigError);
 }
 
-TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyWhatItsWeightingTakes) {
+TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyTheParametersOfItsWeighting) {
     const auto diagnosticsOf = [](const BeamLaw& law) {
         types::Diagnostics diagnostics;
         law.check(diagnostics);

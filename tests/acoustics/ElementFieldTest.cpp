@@ -22,7 +22,7 @@ std::vector<Complex> randomParts(size_t count, uint64_t seed) {
     return parts;
 }
 
-TEST(ElementFieldTest, TheTableIsTheSumOverTheElementsAtAnyU) {
+TEST(ElementFieldTest, TheTableMatchesTheSumOverTheElementsAtAnyU) {
     for (const size_t count : {2u, 3u, 17u, 64u, 255u})
         for (uint64_t seed = 0; seed < 3; ++seed) {
             const std::vector<Complex> parts = randomParts(count, seed);
@@ -39,7 +39,7 @@ TEST(ElementFieldTest, TheTableIsTheSumOverTheElementsAtAnyU) {
     EXPECT_EQ(ElementField().at(3.3), 0.0);
 }
 
-TEST(ElementFieldTest, EqualElementsMakeTheClosedFormOfALine) {
+TEST(ElementFieldTest, EqualElementsHaveTheClosedFormOfALine) {
     constexpr size_t count = 24;
     const ElementField field(std::vector<Complex>(count, 1.0 / count));
     for (double u = -20; u < 20; u += 0.0713) {

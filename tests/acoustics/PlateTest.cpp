@@ -22,7 +22,7 @@ double transmittedPower(const Plate& plate, const Fluid& fluid, double frequency
     return std::norm(plateResponse(plate, fluid, fluid, frequency, cosine).transmitted);
 }
 
-/** Draws plates of all kinds, and waves. */
+/** Draws random plates and waves. */
 class Draw {
 public:
     double between(double low, double high) {
@@ -34,7 +34,7 @@ private:
     std::mt19937 random_{3};
 };
 
-TEST(PlateTest, WhatIsNotReflectedIsTransmittedWithoutLossInAnyFluids) {
+TEST(PlateTest, ReflectionAndTransmissionSumToOneWithoutLoss) {
     Draw draw;
     for (int i = 0; i < 2000; ++i) {
         Plate plate{draw.between(1e-4, 0.1), draw.between(500, 9000), draw.between(1000, 7000), 0, 0};
@@ -52,7 +52,7 @@ TEST(PlateTest, WhatIsNotReflectedIsTransmittedWithoutLossInAnyFluids) {
     }
 }
 
-TEST(PlateTest, BothWaysThroughAreTheSame) {
+TEST(PlateTest, TransmissionIsTheSameInBothDirections) {
     Draw draw;
     for (int i = 0; i < 500; ++i) {
         const Plate plate{draw.between(1e-3, 0.05), 1200, 2700, 1340, 0.01};
@@ -81,7 +81,7 @@ TEST(PlateTest, AFluidLayerAtTheNormalIsThatOfTextbooks) {
     }
 }
 
-TEST(PlateTest, APlateOfHalfAWavelengthIsNotThereAndOneOfAQuarterReflectsMost) {
+TEST(PlateTest, AHalfWavePlateIsTransparentAndAQuarterWavePlateReflectsMost) {
     const double frequency = 500e3, wave = 5900 / frequency;
     EXPECT_NEAR(transmittedPower(steel(wave / 2), water, frequency, 1), 1, 1e-5);
     const double quarter = transmittedPower(steel(wave / 4), water, frequency, 1), ratio = 7850. * 5900 / (1025 * 1500);
@@ -98,8 +98,8 @@ TEST(PlateTest, AThinPlateFollowsTheLawOfMassBelowCoincidence) {
         }
 }
 
-/** Fahy and Gardonio 2007, table 5.1: critical frequency times thickness of steel in air, 12.4 m/s. Just above it a
- * plate without loss lets everything through at the angle at which its flexural waves are as fast along it. */
+/** Fahy and Gardonio 2007, table 5.1: critical frequency times thickness of steel in air, 12.4 m/s. Just above it, a
+ *  plate without loss transmits everything at the angle where the trace speed matches its flexural waves. */
 TEST(PlateTest, SteelInAirIsClearAtTheAngleOfCoincidence) {
     const double thickness = 1e-3, critical = 12.4 / thickness;
     for (const double over : {1.2, 2.0, 4.0}) {
@@ -114,7 +114,7 @@ TEST(PlateTest, SteelInAirIsClearAtTheAngleOfCoincidence) {
     }
 }
 
-TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
+TEST(PlateTest, AirBehindReflectsAllAndAnAbsorberTransmitsNothing) {
     const PlateResponse backed = plateResponse(steel(0.003), water, air, 200e3, 0.9);
     EXPECT_NEAR(std::abs(backed.reflected), 1, 1e-2);
     const Plate rubber{0.1, 1100, 1550, 0, 0.2};
@@ -123,7 +123,7 @@ TEST(PlateTest, AirBehindReflectsAllAndNothingPassesWhatAbsorbs) {
     EXPECT_NEAR(std::abs(lost.reflected), std::abs(1100. * 1550 - 1025. * 1500) / (1100. * 1550 + 1025. * 1500), 0.1);
 }
 
-/** Parseval: the energies of a series of pulses are the means over a period of the spectrum's. */
+/** Parseval: the sum of the energies of a series of pulses is the mean of the spectrum's energy over a period. */
 TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
     Draw draw;
     double worst = 0;
@@ -152,8 +152,8 @@ TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
     std::cout << "worst difference from the mean over a resonance: " << worst << "\n";
 }
 
-/** A train of pulses by the faces' own coefficients: at its delays it makes up the response at every frequency. */
-TEST(PlateTest, EachReturnIsThatOfItsPath) {
+/** A train of pulses by the coefficients of the faces. With its delays it equals the response at every frequency. */
+TEST(PlateTest, EachReturnMatchesItsPath) {
     const Plate plate{0.01, 1190, 2700, 0, 0};
     const Fluid oil{870, 1440};
     const double own = 1190. * 2700, one = water.density * water.sound_speed, other = oil.density * oil.sound_speed;
@@ -188,7 +188,7 @@ TEST(PlateTest, ReturnsOfExtremePlatesAreFiniteAndBounded) {
     }
 }
 
-TEST(PlateTest, ExtremeOnesAreFinite) {
+TEST(PlateTest, ExtremePlatesAreFinite) {
     for (const double thickness : {1e-9, 1e-3, 10.})
         for (const double frequency : {1., 1e5, 1e8})
             for (const double cosine : {0., 1e-12, 0.5, 1.})

@@ -22,7 +22,7 @@ Pulse tone(double duration_us) {
     return Pulse(config, speed_of_sound);
 }
 
-/** Integral over range of a function [m]. */
+/** Returns the integral of a function over range [m]. */
 template <class F>
 double integral(const F& f, double from, double to) {
     constexpr int cells = 400000;
@@ -31,7 +31,7 @@ double integral(const F& f, double from, double to) {
     return sum * (to - from) / cells;
 }
 
-TEST(PulseTest, MeansAreThoseOfTheResponse) {
+TEST(PulseTest, MeansMatchTheResponse) {
     EXPECT_DOUBLE_EQ(tone(100).mean(-0.0625, 0.0625), 0.6) << "0.075 m of 0.125 m";
     EXPECT_EQ(tone(100).mean(0.04, 0.05), 0);
     const Pulse pulse = chirp(10);  // a unit of 0.075 m
@@ -50,7 +50,7 @@ TEST(PulseTest, AToneIsABoxOfHalfItsLengthAboutItsEcho) {
     EXPECT_NEAR(pulse.cellLength(), 0.075, 1e-12);
     EXPECT_FALSE(pulse.peakSidelobeDb().has_value());
     EXPECT_NEAR(pulse.extent(-60), 0.0375, 1e-12);
-    // As it arrives, the echo would fill the range from the target outwards: a quarter of the pulse beyond.
+    // An echo that started at the target would be centred a quarter of the pulse beyond it.
     EXPECT_EQ(pulse.response(0.05), 0);
 }
 
@@ -75,11 +75,11 @@ TEST(PulseTest, AChirpHasTheResolutionAndSidelobesOfItsWindow) {
 
 TEST(PulseTest, AChirpOfHalfTheBandIsTwiceAsLong) {
     EXPECT_NEAR(chirp(25).resolution(), 2 * chirp(50).resolution(), 1e-9);
-    // Without the factor 2 of the way there and back it would be as long as a chirp of half the band.
+    // Without the factor 2 of the two-way path the pulse would have the length of a chirp of half the band.
     EXPECT_GT(std::abs(chirp(50).resolution() - 0.886 * speed_of_sound / 50e3), 0.01);
 }
 
-TEST(PulseTest, ReverberationOfARangeDensityIsItTimesTheCell) {
+TEST(PulseTest, ReverberationOfARangeDensityIsTheDensityTimesTheCellLength) {
     // A density that hardly changes over a cell: the intensity of a bin is the density times the integral of h.
     for (const Pulse& pulse : {tone(200), chirp(30, PulseWindow::Hann)}) {
         const auto density = [](double r) { return std::pow(r, -3); };
@@ -88,7 +88,7 @@ TEST(PulseTest, ReverberationOfARangeDensityIsItTimesTheCell) {
     }
 }
 
-TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
+TEST(PulseTest, ExtentReachesToTheFloor) {
     for (const auto window : {PulseWindow::None, PulseWindow::Hann, PulseWindow::Taylor}) {
         const Pulse pulse = chirp(50, window);
         const double reach = pulse.extent(-50);
@@ -98,7 +98,7 @@ TEST(PulseTest, ExtentReachesAsFarAsTheFloorSays) {
     }
 }
 
-TEST(PulseTest, IsGivenByABandOrADuration) {
+TEST(PulseTest, NeedsEitherABandwidthOrADuration) {
     const auto diagnosticsOf = [](const PulseConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);

@@ -1,4 +1,4 @@
-// What rough solids give back, against closed forms, limits and the conservation of energy (ACOUSTICS.md 3.11).
+// Backscatter of rough solids, compared with closed forms, limits and the conservation of energy (ACOUSTICS.md 3.11).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 const HalfSpace steel_space{7850.0 / 1025, 5900.0 / 1500, 1e-4};
 
-/** Integral over K of f(K) 2 pi K, in logarithmic steps. */
+/** Returns the integral over K of f(K) 2 pi K, in logarithmic steps. */
 template <class F>
 double overWaves(double low, double high, const F& f) {
     constexpr int steps = 20000;
@@ -27,8 +27,8 @@ double overWaves(double low, double high, const F& f) {
     return sum;
 }
 
-/** Share of the energy of a wave at an angle of incidence that a surface gives back: its lobe's and, by reciprocity,
- *  what scatters into each direction as the root of the cross sections of both. */
+/** Returns the share of a wave's energy at an angle of incidence that a surface returns: that of its lobe and, by
+ *  reciprocity, the scattering into each direction as the root of the cross sections of both directions. */
 double energyBack(const RoughSurface& surface, double incidence) {
     constexpr int steps = 2000;
     double scattered = 0;
@@ -64,7 +64,7 @@ TEST(RoughSurfaceTest, TheReflectionIsThatOfTheImpedanceInTheWater) {
     EXPECT_NEAR(RoughSurface({1, 1, 0}, {1e-5, 1e-4}, 3770).reflection(), 0, 1e-15) << "water in water";
 }
 
-TEST(RoughSurfaceTest, WithoutHeightItIsAMirror) {
+TEST(RoughSurfaceTest, ASurfaceWithoutHeightIsAMirror) {
     double last_share = 0, last_slope = 1, last_diffuse = 1;
     for (const double height : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
         const RoughSurface surface(steel_space, {height, 1e-3}, 3770);
@@ -96,7 +96,7 @@ TEST(RoughSurfaceTest, GreatHeightsFollowLambertsLawOfAllThatIsReflected) {
 TEST(RoughSurfaceTest, SmallHeightsFollowSmallPerturbations) {
     const Relief relief{2e-6, 1e-3};
     const double k = 3770;
-    // A rigid surface scatters 4 k^4 (1 + sin^2)^2 W(2 k sin), one without pressure 4 k^4 cos^4 W, of the incidence.
+    // A rigid surface scatters 4 k^4 (1 + sin^2)^2 W(2 k sin) by the angle of incidence, a soft surface 4 k^4 cos^4 W.
     const RoughSurface rigid({1e6, 1e3, 0}, relief, k), soft({1e-6, 0.2, 0}, relief, k);
     for (const double incidence_deg : {35.0, 45.0, 55.0}) {
         const double incidence = incidence_deg * pi / 180, sine = std::sin(incidence), cosine = std::cos(incidence);
@@ -122,7 +122,7 @@ TEST(RoughSurfaceTest, NoEnergyIsCreated) {
         for (const double incidence : {0.0, 0.5, 1.0, 1.4})
             EXPECT_LE(energyBack(surface, incidence), reflected * (1 + 1e-5) + 1e-15) << i;
     }
-    // The cap is what holds it: small perturbations alone would scatter more than arrives.
+    // The cap limits the energy: small perturbations alone would scatter more energy than arrives.
     EXPECT_GT(RoughSurface(steel_space, {0.02, 0.02}, 3770).perturbation(1), 1);
 }
 

@@ -1,4 +1,4 @@
-// The published tables of APL-UW TR 9407 (1994): table 2, what sediments are, and table 3, how strongly they scatter.
+// The published tables of APL-UW TR 9407 (1994): table 2, parameters of sediments, and table 3, their strengths.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace insonify::acoustics {
 namespace {
 
-constexpr double report_speed = 1528;  // of the sound in the water of table 3 [m/s]
+constexpr double report_speed = 1528;  // speed of sound in the water of table 3 [m/s]
 
 constexpr double grazing_deg[] = {1, 2, 3, 5, 7, 10, 20, 40, 60, 70, 80, 85, 88, 89, 90};
 
@@ -59,7 +59,7 @@ double strengthDb(const SeabedBackscatter& seabed, double grazing) {
     return 10 * std::log10(seabed.crossSection(grazing * degree));
 }
 
-TEST(SeabedBackscatterTest, SedimentsAreThoseOfTheReportsTable2) {
+TEST(SeabedBackscatterTest, SedimentsMatchTable2OfTheReport) {
     const Seabed sand = seabedNamed("medium_sand").value();
     EXPECT_NEAR(sand.density_ratio, 1.845, 5e-4);
     EXPECT_NEAR(sand.speed_ratio, 1.1782, 5e-5);
@@ -88,7 +88,7 @@ TEST(SeabedBackscatterTest, SedimentsAreThoseOfTheReportsTable2) {
     EXPECT_FALSE(grainSizeNamed("rock").has_value());
 }
 
-TEST(SeabedBackscatterTest, StrengthsAreThoseOfTheReportsTable3) {
+TEST(SeabedBackscatterTest, StrengthsMatchTable3OfTheReport) {
     for (const Column& column : table) {
         const SeabedBackscatter seabed(seabedNamed(column.name).value(), column.khz, report_speed);
         for (size_t i = 0; i < std::size(grazing_deg); ++i)
@@ -97,7 +97,7 @@ TEST(SeabedBackscatterTest, StrengthsAreThoseOfTheReportsTable3) {
     }
 }
 
-TEST(SeabedBackscatterTest, SoftBottomsFollowTheVolumeAlone) {
+TEST(SeabedBackscatterTest, SoftBottomsFollowOnlyTheVolume) {
     // The report's second column of silt, with sigma_2 of 0.0003.
     const double thin[] = {-63.4, -56.3, -51.8, -46.5, -43.5, -40.9, -37.0, -34.0,
                            -32.6, -32.1, -30.5, -25.8, -13.3, -6.8,  -3.6};
@@ -108,7 +108,7 @@ TEST(SeabedBackscatterTest, SoftBottomsFollowTheVolumeAlone) {
         EXPECT_NEAR(strengthDb(seabed, grazing_deg[i]), thin[i], 0.6) << grazing_deg[i];
 }
 
-TEST(SeabedBackscatterTest, WithoutItsLevelKirchhoffWouldMissTheTableNearTheVertical) {
+TEST(SeabedBackscatterTest, KirchhoffWithoutItsLevelMissesTheTableNearTheVertical) {
     const double level = std::pow(2, 1.2);  // 2^(2 (1 - a) / a) with a = 3.25 / 2 - 1
     for (const Column& column : table) {
         if (std::string(column.name).find("sand") == std::string::npos || column.khz != 30) continue;
@@ -120,7 +120,7 @@ TEST(SeabedBackscatterTest, WithoutItsLevelKirchhoffWouldMissTheTableNearTheVert
     }
 }
 
-TEST(SeabedBackscatterTest, AboveTheReportsBandItIsExtrapolated) {
+TEST(SeabedBackscatterTest, IsExtrapolatedAboveTheBandOfTheReport) {
     struct Case {
         double khz, at_20, at_40, at_60;
     };
@@ -137,8 +137,8 @@ TEST(SeabedBackscatterTest, AboveTheReportsBandItIsExtrapolated) {
     EXPECT_EQ(outsideGrainSizes(1.5), "");
 }
 
-TEST(SeabedBackscatterTest, LambertsParametersOfTheSeabedsAreItsMean) {
-    // The mean difference to 20 log10(sin) over 5 to 60 deg at 100 kHz is what ACOUSTICS.md 3.2 tabulates.
+TEST(SeabedBackscatterTest, LambertParametersOfTheSeabedsAreTheirMean) {
+    // ACOUSTICS.md 3.2 tabulates the mean difference to 20 log10(sin) over 5 to 60 deg at 100 kHz.
     struct Case {
         const char* name;
         double lambert_db;
@@ -165,7 +165,7 @@ TEST(SeabedBackscatterTest, EverySeabedIsFiniteAtEveryAngleAndFrequency) {
         }
 }
 
-TEST(SeabedBackscatterTest, GrainSizesBeyondTheEndsAreThoseOfTheEnds) {
+TEST(SeabedBackscatterTest, GrainSizesAreClampedAtTheEnds) {
     EXPECT_EQ(seabedOfGrainSize(-5).density_ratio, seabedOfGrainSize(-1).density_ratio);
     EXPECT_EQ(seabedOfGrainSize(20).speed_ratio, seabedOfGrainSize(9).speed_ratio);
     EXPECT_EQ(seabedOfGrainSize(1.5).loss, seabedNamed("medium_sand")->loss);

@@ -1,4 +1,4 @@
-// Rays through layers of water, against circles, and the files that tell of these layers.
+// Rays through layers of water, compared with circles, and files of sound profiles.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<double> timesTo(double last, int count) {
     return times;
 }
 
-/** Time along a circle whose centre is where speed would be 0, from its own integral by angle. */
+/** Returns the travel time along a circle whose centre is at the depth of speed 0, by its integral over the angle. */
 double timeOnCircle(double gradient, double from, double to) {
     return (std::asinh(std::tan(to)) - std::asinh(std::tan(from))) / gradient;
 }
@@ -59,7 +59,7 @@ TEST(SoundProfileTest, StraightRaysAreHundredAndThirtyThreeMetresOffAtTwoKilomet
     EXPECT_NEAR(-point.depth, 133.9, 0.1);
 }
 
-TEST(SoundProfileTest, WaterOfOneSpeedBendsNothing) {
+TEST(SoundProfileTest, WaterOfConstantSpeedBendsNoRay) {
     const SoundProfile still({{0, 10, 50}, {1480, 1480, 1480}});
     for (const double depth : {-5.0, 0.0, 20.0, 50.0, 80.0})
         for (const double elevation : {-1.5, -0.3, 0.0, 1.0}) {
@@ -85,7 +85,7 @@ RayPoint stepped(const SoundProfile& profile, double depth, double elevation, do
     return {across, depth, elevation, profile.speed(depth)};
 }
 
-TEST(SoundProfileTest, RaysTurnAndCrossLayersAsSmallStepsDo) {
+TEST(SoundProfileTest, RaysThroughLayersMatchSmallSteps) {
     const SoundProfile layers({{0, 30, 45, 100, 300}, {1510, 1512, 1495, 1490, 1500}});
     for (const double depth : {10.0, 30.0, 40.0, 99.0, 250.0})
         for (const double elevation : {-0.5, -0.06, -0.02, 0.013, 0.07, 0.4}) {
@@ -96,7 +96,7 @@ TEST(SoundProfileTest, RaysTurnAndCrossLayersAsSmallStepsDo) {
         }
 }
 
-TEST(SoundProfileTest, BeyondItsEndsSpeedsAreThoseOfTheEnds) {
+TEST(SoundProfileTest, SpeedsBeyondTheEndsAreThoseOfTheEnds) {
     const SoundProfile layers({{5, 20}, {1500, 1510}});
     EXPECT_EQ(layers.speed(-3), 1500);
     EXPECT_EQ(layers.speed(400), 1510);
@@ -128,7 +128,7 @@ std::string diagnosticOf(const std::string& text) {
     return {};
 }
 
-TEST(SoundProfileTest, AFileThatIsWrongIsToldWithItsPlace) {
+TEST(SoundProfileTest, ReportsAnErrorInAFileWithItsPlace) {
     EXPECT_EQ(diagnosticOf("depth_m,sound_speed_m_s\n0,1500\n10,1490.5\n"), "");
     EXPECT_THAT(diagnosticOf("depth_m\n0\n10\n"),
                 HasSubstr("profile.csv:1:1: is 'depth_m'; the header must be depth_m,sound_speed_m_s"));

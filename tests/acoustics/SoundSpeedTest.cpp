@@ -22,7 +22,7 @@ Water equatorial(double celsius, double psu, double depth) {
     return at;
 }
 
-/** Del Grosso's equation as Wong and Zhu (1995) fitted it again for ITS-90, with their S^2 term or another [m/s]. */
+/** Returns the speed by Del Grosso's equation in the fit of Wong and Zhu (1995) for ITS-90, with an S^2 term [m/s]. */
 double wongZhuSpeed(double t, double s, double p, double c_s2 = 1.288598e-4) {
     return 1402.392 + 5.012285 * t - 5.51184e-2 * t * t + 2.21649e-4 * t * t * t + 1.329530 * s + c_s2 * s * s +
            0.1560592 * p + 2.449993e-5 * p * p - 8.833959e-9 * p * p * p - 1.275936e-2 * s * t + 6.353509e-3 * t * p +
@@ -31,25 +31,25 @@ double wongZhuSpeed(double t, double s, double p, double c_s2 = 1.288598e-4) {
            4.857614e-6 * s * s * t * p - 3.406824e-4 * s * t * p;
 }
 
-TEST(SoundSpeedTest, MackenzieMeetsItsPublishedCheckValues) {
+TEST(SoundSpeedTest, MackenzieMatchesItsPublishedCheckValues) {
     EXPECT_NEAR(mackenzieSpeed(waterAt(25, 35, 1000)), 1550.744, 1e-3);
     EXPECT_NEAR(mackenzieSpeed(waterAt(40, 40, 10000)), 1718.774, 1e-3);
 }
 
-TEST(SoundSpeedTest, ChenAndMilleroMeetUnescosCheckValue) {
+TEST(SoundSpeedTest, ChenAndMilleroMatchUnescosCheckValue) {
     EXPECT_NEAR(chenMilleroSpeed(40, 40, 1000), 1731.995, 1e-3);  // Fofonoff and Millard 1983, page 48
-    // In decibars, as many programs take the pressure, it is another number.
+    // Pressure in decibars, which many programs use, gives another number.
     EXPECT_GT(std::abs(chenMilleroSpeed(40, 40, 10000) - 1731.995), 100);
-    // And with two terms of Wong and Zhu's refit, as one public program has it, off by more than the check value says.
+    // With two terms of Wong and Zhu's refit, as in a public program, the error is larger than the check allows.
     const double mixed = chenMilleroSpeed(40, 40, 1000) + 40 * (2e-8 * 40 * 40 + 2e-9 * 40 * 40 * 40);
     EXPECT_GT(std::abs(mixed - 1731.995), 1e-3);
 }
 
-TEST(SoundSpeedTest, DelGrossoIsWhatWongAndZhuFittedAgain) {
+TEST(SoundSpeedTest, DelGrossoMatchesTheFitOfWongAndZhu) {
     for (double t : {0.0, 5.0, 15.0, 30.0})
         for (double s : {30.0, 35.0, 40.0})
             for (double p : {0.0, 10.0, 100.0, 1000.0}) {
-                if (p > 500 && t > 15) continue;  // no sea has it
+                if (p > 500 && t > 15) continue;  // not in any sea
                 EXPECT_NEAR(delGrossoSpeed(celsius68(t), s, p), wongZhuSpeed(t, s, p), 0.01)
                     << t << ' ' << s << ' ' << p;
             }
@@ -64,14 +64,14 @@ TEST(SoundSpeedTest, DelGrossoWithTheMisprintedTermIsAnotherEquation) {
     EXPECT_LT(std::abs(wongZhuSpeed(5, 35, 0) - delGrossoSpeed(celsius68(5), 35, 0)), 0.01);
 }
 
-TEST(SoundSpeedTest, PressureIsThatOfLeroyAndParthiot) {
+TEST(SoundSpeedTest, PressureMatchesLeroyAndParthiot) {
     EXPECT_NEAR(gaugePressureBar(1000, 27), 100.75, 0.02);  // for the common oceans
     EXPECT_EQ(gaugePressureBar(0, 45), 0);
     EXPECT_GT(gaugePressureBar(1000, 90), gaugePressureBar(1000, 0) + 0.4);
     EXPECT_EQ(gaugePressureBar(1000, -60), gaugePressureBar(1000, 60));
 }
 
-TEST(SoundSpeedTest, LeroyHasTheTableOfItsPublishedProgram) {
+TEST(SoundSpeedTest, LeroyMatchesTheTableOfItsPublishedProgram) {
     // At 30 psu and the equator, as the open documentation of sonar formulas SonarDocs tabulates it.
     struct Case {
         double celsius, depth, speed;
@@ -79,7 +79,7 @@ TEST(SoundSpeedTest, LeroyHasTheTableOfItsPublishedProgram) {
     for (const Case& c : {Case{0, 10, 1442.56}, Case{10, 10, 1483.90}, Case{30, 1000, 1556.85}, Case{40, 5000, 1641.20},
                           Case{20, 2000, 1548.98}})
         EXPECT_NEAR(leroySpeed(equatorial(c.celsius, 30, c.depth)), c.speed, 0.0051) << c.celsius << ' ' << c.depth;
-    // At 45 deg of latitude it is faster in the deep.
+    // At 45 deg of latitude sound is faster in deep water.
     EXPECT_GT(leroySpeed(waterAt(40, 30, 5000)), 1641.20 + 0.2);
 }
 
@@ -94,7 +94,7 @@ TEST(SoundSpeedTest, LatitudeChangesTheSpeedInTheDeepAsPressureDoes) {
 }
 
 TEST(SoundSpeedTest, EveryLawIsNearUnescosEquation) {
-    // Chen and Millero's equation (Fofonoff and Millard 1983) at the surface, computed apart from here to 0.01 m/s.
+    // Chen and Millero's equation (Fofonoff and Millard 1983) at the surface, computed independently to 0.01 m/s.
     struct Case {
         double celsius, psu, speed;
     };

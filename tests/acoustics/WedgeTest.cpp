@@ -1,5 +1,5 @@
-// Edges against solutions by other means: Keller's and Ufimtsev's formulas for the half-plane, exact fields of strips
-// and of square cylinders by integral equations (ACOUSTICS.md 3.12).
+// Edges compared with independent solutions: Keller's and Ufimtsev's formulas for the half-plane, and exact fields of
+// strips and square cylinders by integral equations (ACOUSTICS.md 3.12).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ std::vector<Piece> lineOf(Vec from, Vec to, int count) {
     return pieces;
 }
 
-/** Far fields D of backscatter, u_s = D exp(i (k r + pi / 4)) / sqrt(2 pi k r), of sound that comes from directions. */
+/** Far fields D of backscatter, u_s = D exp(i (k r + pi / 4)) / sqrt(2 pi k r), for directions of incidence. */
 using Fields = std::vector<Complex>;
 
 /** Field of a soft strip: the single layer on it vanishes with the incident wave, i/4 int H0 q = -u_i. */
@@ -157,7 +157,7 @@ Fields rigidSquare(double k, double width, const std::vector<double>& from) {
     return fields;
 }
 
-/** Physical optics of a lit face of a width about a place, in the units of D; positive for a rigid one. */
+/** Physical optics of a lit face of a width about a place, in the units of D; positive for a rigid face. */
 Complex opticsOf(double k, double width, Vec middle, Vec normal, double angle) {
     const Vec to{std::cos(angle), std::sin(angle)};
     const double cosine = dot(to, normal);
@@ -248,7 +248,7 @@ TEST(WedgeTest, ASoftStripIsItsTwoEdges) {
         const Vec to{std::cos(angles[a]), std::sin(angles[a])};
         const Complex optics = -opticsOf(k, width, {0, 0}, {0, 1}, angles[a]);
         Complex sum = optics;
-        for (const double side : {-1.0, 1.0}) {  // the right one's face is to its left
+        for (const double side : {-1.0, 1.0}) {  // the face of the right edge is to its left
             const double from_face = side < 0 ? angles[a] : pi - angles[a];
             sum += wedgeEcho(WedgeFaces::Soft, 2 * pi, from_face).fringe *
                    std::exp(-2.0 * i * k * dot(to, {side * width / 2, 0}));

@@ -1,7 +1,7 @@
 // Pings of 1 MB, 40 a second, from one process to another by DDS; times as JSON.
 //
-//     dds_bench listen SECONDS       "ready", then how many came, and how long after their stamp
-//     dds_bench send SECONDS WAIT    waits for WAIT seconds, then sends; how long that took
+//     dds_bench listen SECONDS       "ready", then the number of pings, and their delay after the stamp
+//     dds_bench send SECONDS WAIT    waits for WAIT seconds, then sends; the duration of sending
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// framework_bench [FILE.json]: what ports and activities cost on this machine, beside what they may cost.
-// Exits 1 when one of them costs more, or the file cannot be written.
+// framework_bench [FILE.json]: costs of ports and activities on this machine, and their bounds. Exits with 1 if a cost
+// exceeds its bound, or the file cannot be written.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ void largeSample(std::vector<Result>& results) {
     }
 }
 
-/** Waits for nothing but its sample, which says when it was written. */
+/** Waits only for its sample, which contains the time of writing. */
 struct Woken : TaskContext {
     using TaskContext::TaskContext;
     InputPort<Clock::time_point> in{this, "in", "when it was written"};
@@ -94,7 +94,7 @@ struct Woken : TaskContext {
     }
 };
 
-/** The same with a condition variable and nothing else. */
+/** The same with only a condition variable. */
 class BareThread {
 public:
     ~BareThread() {
@@ -131,7 +131,7 @@ private:
     std::thread thread_{&BareThread::run, this};
 };
 
-/** One wake-up after the other, each of a thread that has gone to sleep. */
+/** Wake-ups one after the other, each of a sleeping thread. */
 template <class Wake>
 void wakeUp(const std::atomic<size_t>& woken, Wake&& wake) {
     const size_t before = woken;
@@ -170,7 +170,7 @@ void wakeUps(std::vector<Result>& results) {
                        static_cast<double>(allocations.size()) / static_cast<double>(count), 0});
 }
 
-/** Holds the first sample that it reads until it is let go. */
+/** Keeps the first sample that it reads until released. */
 struct Slow : TaskContext {
     using TaskContext::TaskContext;
     InputPort<Large> in{this, "in", "large samples"};
@@ -208,7 +208,7 @@ void slowReader(std::vector<Result>& results) {
 
 bool isMissed(const Result& result) { return result.value > result.at_most; }
 
-/** Met, missed, or only told. */
+/** Returns whether the bound is met or missed; "" without a bound. */
 const char* verdict(const Result& result) {
     if (std::isnan(result.at_most)) return "";
     return isMissed(result) ? "MISSED" : "met";
@@ -229,7 +229,7 @@ std::string json(const std::vector<Result>& results) {
 int main(int count, char** words) {
     using namespace insonify::framework;
     std::vector<Result> results;
-    BareThread second;  // where there is one thread only, the C library's locks cost nothing
+    BareThread second;  // with a single thread, the C library's locks cost nothing
     smallSample(results);
     largeSample(results);
     wakeUps(results);

@@ -1,6 +1,6 @@
-// Whether the logger keeps up: pings of 512 x 1000 floats, 40 a second, through a deployment into a log.
-//   logger_bench SECONDS FOLDER      prints JSON; exits 1 when a ping is not in the log or the p99 of the
-//   times to write one is above its bound, which the JSON tells. Takes 82 MB a second of disk.
+// Measures whether the logger keeps up: pings of 512 x 1000 floats, 40 a second, through a deployment into a log.
+//   logger_bench SECONDS FOLDER      prints JSON; exits with 1 if a ping is not in the log or the p99 of the
+//   writing times is above the bound in the JSON. Writes 82 MB a second to disk.
 #include <fmt/core.h>
 
 #include <chrono>
@@ -22,7 +22,7 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/** Writes a ping in each cycle, and measures how long that takes and how far apart cycles are. */
+/** Writes a ping in each cycle, and measures the time of writing and the interval of cycles. */
 struct PingTask final : framework::TaskContext {
     using TaskContext::TaskContext;
     framework::OutputPort<types::SonarPtr> ping{this, "ping", "512 beams of 1000 bins"};

@@ -1,5 +1,5 @@
-// How many of the pings that a driver of an Oculus asks for come over a TCP connection: 512 beams x 1000 bins of 16
-// bits to 10 m, 40 a second, in the harbour.
+// Measures the share of requested pings that a driver of an Oculus receives over a TCP connection: 512 beams x 1000
+// bins of 16 bits to 10 m, 40 a second, in the harbour.
 //   oculus_bench SECONDS            prints JSON
 #include <fmt/core.h>
 
@@ -35,11 +35,11 @@ framework::Registry registry() {
     return all;
 }
 
-/** Pings that come in so many seconds, and how many were left out in between by their numbers. */
+/** Counts the pings that arrive in this number of seconds, and missing pings by their numbers. */
 void count(uint16_t port, double seconds) {
     test::OculusDriver driver(port);
     driver.send(device::bytesOf(device::OculusFire{.rate = 2, .flags = 0x4B, .range = 10}));
-    for (int i = 0; i < 20; ++i) driver.nextPing();  // shaders are compiled, the quality is found
+    for (int i = 0; i < 20; ++i) driver.nextPing();  // shaders are compiled, the quality is chosen
     const auto begin = Clock::now();
     const uint32_t first = driver.nextPing().number;
     uint32_t last = first;

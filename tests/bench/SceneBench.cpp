@@ -1,10 +1,9 @@
-// What a scene costs sonars that share it, and a sonar whose scene changes:
+// Costs of a scene for sonars that share it, and for a sonar whose scene changes:
 //   scene_bench mission FOLDER      prints JSON: milliseconds a ping [median, p99, max] of a mission over more than 100
 //                                   tiles of a survey that it writes there, by rays of one thread: of all pings and of
 //                                   those with new tiles, by the clock and of that thread's processor time.
-//   scene_bench memory SONARS CELLS prints JSON: megabytes of the scene's file in memory and of the process with so
-//   many
-//                                   sonars that have all pinged, before a floor of 2 CELLS^2 triangles.
+//   scene_bench memory SONARS CELLS prints JSON: megabytes of the scene's file in memory and of the process with
+//                                   this number of sonars that have all pinged, before a floor of 2 CELLS^2 triangles.
 #include <fmt/core.h>
 #include <time.h>
 #include <unistd.h>
@@ -71,14 +70,14 @@ std::string spread(std::vector<double> ms) {
     return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", share(0.5), share(0.99), ms.back());
 }
 
-/** Processor time of this thread so far. */
+/** Returns the processor time of this thread so far. */
 double busyMs() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/** 1900 m at 1 m a ping, each ping as soon as the one before has ended. */
+/** Measures 1900 m at 1 m a ping, each ping started when the one before has ended. */
 void mission(const std::string& folder) {
     scene::BathymetryConfig config;
     config.easting = config.northing = 0;

@@ -1,4 +1,4 @@
-// How long the ways to 50 point targets by up to two mirrors take, in processor time of one thread:
+// Processor time, in one thread, of the ways to 50 point targets by up to two mirrors:
 //   ways_bench PINGS      prints JSON, milliseconds a ping by scene. Sonar and targets have new places in each ping.
 #include <fmt/core.h>
 #include <time.h>

@@ -9,12 +9,12 @@
 namespace insonify::command {
 namespace {
 
-TEST(JsonTest, KeysKeepTheirOrderAndWhatJsonCannotHoldIsMended) {
+TEST(JsonTest, KeysKeepTheirOrderAndInvalidValuesAreReplaced) {
     const Json json = {{"b", INFINITY}, {"a", std::string("M\xfcll")}};
     EXPECT_EQ(text(json), "{\n  \"b\": null,\n  \"a\": \"M\xef\xbf\xbdll\"\n}");
 }
 
-TEST(JsonTest, AFileHoldsTheTextAndOneThatCannotBeWrittenIsAnError) {
+TEST(JsonTest, WritesTheTextToAFileOrThrows) {
     const Folder folder;
     write({{"range", 5}}, folder / "a.json");
     const std::vector<char> bytes = bytesOf(folder / "a.json");

@@ -7,7 +7,7 @@
 namespace insonify::command {
 namespace {
 
-TEST(OutputFolderTest, AFolderMadeForARunGoesUnlessItIsKept) {
+TEST(OutputFolderTest, RemovesAFolderMadeForARunUnlessKept) {
     const Folder folder;
     { const OutputFolder made(folder / "gone", "x.yml"); }
     EXPECT_FALSE(std::filesystem::exists(folder / "gone"));
@@ -20,7 +20,7 @@ TEST(OutputFolderTest, AFolderMadeForARunGoesUnlessItIsKept) {
     EXPECT_TRUE(std::filesystem::is_directory(folder / "kept")) << "it was there before";
 }
 
-TEST(OutputFolderTest, WhatIsNoFolderIsRefused) {
+TEST(OutputFolderTest, RefusesAPathThatIsNotAFolder) {
     const Folder folder;
     writeBytes(folder / "file", {});
     EXPECT_THROW(OutputFolder(folder / "file", "x.yml"), types::ConfigError);

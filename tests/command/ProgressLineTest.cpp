@@ -7,7 +7,7 @@
 namespace insonify::command {
 namespace {
 
-TEST(ProgressLineTest, TheTimeLeftFollowsFromTheShareThatIsDone) {
+TEST(ProgressLineTest, ComputesTheTimeLeftFromTheFinishedShare) {
     EXPECT_EQ(timeLeft(0.25, 10), ", 25 % done, 30 s left");
     EXPECT_EQ(timeLeft(0.5, 300), ", 50 % done, 5 min 00 s left");
     EXPECT_EQ(timeLeft(0.001, 10), ", 0 % done, 2 h 46 min left");

@@ -1,4 +1,4 @@
-// The parts of a piece of work, and the hashes by which they are known.
+// The parts of divided work, and the hashes that identify files.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -22,7 +22,7 @@ TEST(ShardTest, AShardIsReadAndNamed) {
     EXPECT_EQ((Shard{3, 11}.fileText()), "03_of_11");
 }
 
-TEST(ShardTest, WhatIsNoShardIsToldWithWhatItMayBe) {
+TEST(ShardTest, ReportsAnInvalidShardWithTheAlternatives) {
     const std::map<std::string, std::string> wrong = {
         {"0/0", "is 0/0; N must be from 1 to 1000000000"},
         {"5/4", "is 5/4; of 4 shards i may be from 0 to 3"},
@@ -42,7 +42,7 @@ TEST(ShardTest, WhatIsNoShardIsToldWithWhatItMayBe) {
         EXPECT_THAT(Shard::refuse(text), HasSubstr(why));
         try {
             Shard::read(text);
-            ADD_FAILURE() << text << " was taken";
+            ADD_FAILURE() << text << " was accepted";
         } catch (const types::ConfigError& error) {
             EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("--shard"), HasSubstr(why)));
         }
@@ -50,7 +50,7 @@ TEST(ShardTest, WhatIsNoShardIsToldWithWhatItMayBe) {
     EXPECT_EQ(Shard::refuse("3/4"), "");
 }
 
-TEST(ShardTest, BlocksFollowEachOtherAndAreAsLongAsEachOther) {
+TEST(ShardTest, BlocksAreConsecutiveAndOfEqualLength) {
     for (const uint64_t total : {0ull, 1ull, 10ull, 16ull, 1001ull, 9223372036854775807ull})
         for (const uint64_t count : {1ull, 3ull, 16ull, 1000ull}) {
             uint64_t end = 0;
@@ -65,7 +65,7 @@ TEST(ShardTest, BlocksFollowEachOtherAndAreAsLongAsEachOther) {
         }
 }
 
-TEST(Sha256Test, TheVectorsOfTheStandardAreMet) {
+TEST(Sha256Test, MatchesTheVectorsOfTheStandard) {
     EXPECT_EQ(sha256Of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     EXPECT_EQ(sha256Of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     EXPECT_EQ(sha256Of("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),

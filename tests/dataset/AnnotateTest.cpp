@@ -15,9 +15,9 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr uint32_t beams = 61, bins = 100;
-constexpr double bin_width = 0.0213;  // [m]; other than the ping's rounded duration says
+constexpr double bin_width = 0.0213;  // [m]; differs from the ping's rounded duration
 
-/** A floor everywhere at -20 dB, a "rock" and a "pile" at 0 dB in it. */
+/** A floor at -20 dB everywhere, with a "rock" and a "pile" at 0 dB. */
 class AnnotateTest : public ::testing::Test {
 protected:
     AnnotateTest() {
@@ -53,7 +53,7 @@ protected:
         const Instances instances(classes, lineages);
         return annotate(ping_, truth_, *shown_, classes, instances, config_, picture_.scale, bin_width);
     }
-    /** Of the pixel at which a bin is shown. */
+    /** Whether a box contains the pixel of a bin. */
     bool holds(const Box& box, uint32_t beam, uint32_t bin) const {
         const cv::Point at = shown_->pixelOf(beam, bin / shown_->binsPerCell());
         return at.x >= box.x && at.x < box.x + box.width && at.y >= box.y && at.y < box.y + box.height;
@@ -120,14 +120,14 @@ TEST_F(AnnotateTest, EachObjectOfAClassHasABoxThatHoldsItsBins) {
     EXPECT_TRUE(holds(pile.box, 40, 70));
 }
 
-TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
+TEST_F(AnnotateTest, AShadowBelongsToTheObjectThatTheSoundJustPasses) {
     sweep_.annotations.shadows = config_.shadows = true;
     truth_.shadow.assign(ping_.bins.size(), 0);
     truth_.elevation.resize(ping_.bins.size());
     for (uint32_t beam = 0; beam < beams; ++beam)
         for (uint32_t bin = 0; bin < bins; ++bin)  // a floor 20 bins below
             truth_.elevation[size_t{beam} * bins + bin] = -std::asin(20.0f / static_cast<float>(std::max(bin, 20u)));
-    const auto hide = [&](Span in_beams, Span in_bins, float above) {  // an object at 50 to 60 hides what is behind
+    const auto hide = [&](Span in_beams, Span in_bins, float above) {  // an object at 50 to 60 hides the bins behind it
         put(nothing, in_beams, in_bins, 0, 0);
         for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam) {
             for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
@@ -141,7 +141,7 @@ TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
     };
     hide({20, 24}, {60, 80}, 0.001f);  // it stands on the floor
     put(1, {30, 34}, {50, 60});
-    hide({30, 34}, {75, 90}, 0.02f);   // it floats, and the floor is seen between it and its shadow
+    hide({30, 34}, {75, 90}, 0.02f);   // it floats; the floor is visible between it and its shadow
     hide({50, 54}, {75, 90}, 0.001f);  // the floor's own
     const Annotated all = annotated();
     ASSERT_THAT(all.annotations, SizeIs(3));
@@ -160,7 +160,7 @@ TEST_F(AnnotateTest, AShadowIsThatOfTheObjectNextToWhichTheSoundPasses) {
     EXPECT_FALSE(holds(shadow.box, 52, 80));
 }
 
-TEST_F(AnnotateTest, RunsLabelsAndAreaTellTheSamePixels) {
+TEST_F(AnnotateTest, RunsLabelsAndAreaAgree) {
     const Annotated all = annotated();
     for (size_t i = 0; i < all.annotations.size(); ++i) {
         const Annotation& annotation = all.annotations[i];
@@ -185,10 +185,10 @@ TEST_F(AnnotateTest, ThePolarPictureHasAPixelForEachBin) {
     EXPECT_EQ(all.annotations[0].box, (Box{static_cast<int>(beams) - 24, bins - 60, 4, 10}));
 }
 
-TEST_F(AnnotateTest, WhatIsNotSeenIsNotAnnotated) {
+TEST_F(AnnotateTest, InvisibleObjectsAreNotAnnotated) {
     put(1, {20, 24}, {50, 60}, 1e-6f);  // below black
     EXPECT_THAT(annotated().annotations, SizeIs(1));
-    put(1, {20, 24}, {50, 60}, 1, 0.4f);  // most of it is something else's
+    put(1, {20, 24}, {50, 60}, 1, 0.4f);  // most of the energy is from something else
     EXPECT_THAT(annotated().annotations, SizeIs(1));
     config_.min_share = 0.3;
     EXPECT_THAT(annotated().annotations, SizeIs(2));
@@ -201,7 +201,7 @@ TEST_F(AnnotateTest, WhatIsNotSeenIsNotAnnotated) {
     EXPECT_EQ(std::accumulate(none.labels.begin(), none.labels.end(), 0), 0);
 }
 
-TEST_F(AnnotateTest, OfBinsThatShareACellTheLoudestGivesTheLabel) {
+TEST_F(AnnotateTest, TheLoudestBinLabelsItsCell) {
     picture_.shape = output::PlainShape::Polar;
     picture_.height = 25;
     config_.min_pixels = 1;
@@ -209,7 +209,7 @@ TEST_F(AnnotateTest, OfBinsThatShareACellTheLoudestGivesTheLabel) {
     const Annotated all = annotated();
     const Annotation& pile = all.annotations.at(1);
     EXPECT_EQ(pile.box.x, static_cast<int>(beams) - 41);
-    EXPECT_EQ(pile.area, 2u);  // with the cell that it takes from the rock
+    EXPECT_EQ(pile.area, 2u);  // including the cell that it takes from the rock
     EXPECT_NEAR(pile.energy, 102, 1e-3);
 }
 
@@ -234,7 +234,7 @@ TEST_F(AnnotateTest, PartsOfOneThingAreOneInstance) {
     EXPECT_TRUE(holds(wheel.box, 20, 50) && holds(wheel.box, 40, 71));
 }
 
-TEST_F(AnnotateTest, WhatCameByMirrorsIsNoObjectAndWhereAskedForAGhost) {
+TEST_F(AnnotateTest, EchoesByMirrorsAreGhostsOnRequestAndNoObjects) {
     truth_.path.assign(ping_.bins.size(), 0);
     const auto came = [&](uint8_t path, Span in_beams, Span in_bins) {
         put(1, in_beams, in_bins);
@@ -264,7 +264,7 @@ TEST_F(AnnotateTest, WhatCameByMirrorsIsNoObjectAndWhereAskedForAGhost) {
     EXPECT_TRUE(holds(all.annotations[2].box, 21, 85) || holds(all.annotations[3].box, 21, 85));
 }
 
-/** The truth names what the file does not hold, as the tiles of a survey: that is of no class. */
+/** The truth names objects outside of the file, such as the tiles of a survey, which have no class. */
 TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
     lineages_ = {{"floor"}, {"rock"}};
     const Classes classes(sweep_, truth_.objects);
@@ -276,8 +276,9 @@ TEST_F(AnnotateTest, ObjectsBeyondTheFilesAreOfNoClass) {
     EXPECT_EQ(all.annotations[0].name, "rock");
 }
 
-/** A rise of the floor that hides some of it, far behind an object whose top is as high as what lies behind. */
-TEST_F(AnnotateTest, AShadowOfTheFloorItselfIsNoObjects) {
+/** A rise of the floor that hides some of the floor, far behind an object whose top is as high as the first echo
+ *  behind. */
+TEST_F(AnnotateTest, AShadowOfTheFloorBelongsToNoObject) {
     sweep_.annotations.shadows = config_.shadows = true;
     config_.min_pixels = 1;
     truth_.shadow.assign(ping_.bins.size(), 0);

@@ -1,4 +1,4 @@
-// Wrong sweeps of insonify dataset.
+// Invalid sweeps of insonify dataset.
 #include <gmock/gmock.h>
 
 #include "tests/dataset/HarbourDeployment.hpp"
@@ -41,9 +41,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"WaterfallOfOnePing", grid + "picture: {shape: waterfall}\n",
                  "picture.shape: `lines` and `picture: {shape: waterfall}` go together"},
         BadSweep{"LinesWithoutSpeed", grid + "lines: {count: 3}\npicture: {shape: waterfall}\n",
-                 "sweep.yml:2:8: lines.speed: is missing: how fast the vehicle goes straight ahead [m/s]"},
-        BadSweep{"LinesOfAnotherSonar", grid + "lines: {speed: 1, count: 3}\npicture: {shape: waterfall}\n",
-                 "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; those of d.yml have "},
+                 "sweep.yml:2:8: lines.speed: is missing; give the speed of the vehicle straight ahead [m/s]"},
+        BadSweep{
+            "LinesOfAnotherSonar", grid + "lines: {speed: 1, count: 3}\npicture: {shape: waterfall}\n",
+            "sweep.yml:2:8: lines: are of side-scans, whose pings have one or two beams; the pings of d.yml have "},
         BadSweep{"OneLine", grid + "lines: {speed: 1, count: 1}\npicture: {shape: waterfall}\n",
                  "sweep.yml:2:26: lines.count: is 1; may be 2 to 10000"},
         BadSweep{"ClassOfGhosts", grid + "classes: {ghost: hull}\nannotations: {ghosts: true}\n",
@@ -72,16 +73,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "sweep.yml:2:34: settings.sonar.range.choice: is 30; must be a list"},
         BadSweep{"TiltWithoutBounds",
                  grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], roll_deg: [20]}\n",
-                 "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [least, most]"},
+                 "sweep.yml:3:57: objects[0].roll_deg: must be two numbers, [min, max]"},
         BadSweep{"TwoTurns",
                  grid + "objects:\n  - {names: [rock_000], x: [0, 1], y: [0, 1], yaw_deg: [0, 9], any_turn: true}\n",
-                 "sweep.yml:3:56: objects[0].yaw_deg: is given beside any_turn; only one may set the turn"},
+                 "sweep.yml:3:56: objects[0].yaw_deg: is given with any_turn; only one may set the turn"},
         BadSweep{"TwoLaws", grid + "settings:\n  sonar.range: {uniform: [20, 30], choice: [20]}\n",
                  "sweep.yml:3:16: settings.sonar.range: must have one of uniform, normal and choice"},
         BadSweep{"NoLaw", grid + "settings:\n  sonar.range: {unifrm: [20, 30]}\n",
                  "sweep.yml:3:17: settings.sonar.range.unifrm: is not a key here; did you mean uniform?"},
         BadSweep{"LawWithoutBounds", grid + "settings:\n  sonar.range: {uniform: [30, 20]}\n",
-                 "settings.sonar.range.uniform: must be two numbers, [least, most]"},
+                 "settings.sonar.range.uniform: must be two numbers, [min, max]"},
         BadSweep{"EmptyChoice", grid + "settings:\n  sonar.range: {choice: []}\n",
                  "sweep.yml:3:25: settings.sonar.range.choice: is empty; give at least one value"},
         BadSweep{"ChoiceOutOfBounds", grid + "settings:\n  sonar.range: {choice: [30, -5]}\n",
@@ -105,8 +106,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"BudgetOfAScene", grid + "scenes: [{set: {sonar.quality.budget_ms: 5}}]\n",
                  "sweep.yml:2:42: scenes[0].set.sonar.quality.budget_ms: budget_ms lets the speed of the machine"},
         BadSweep{"SceneAsASetting", grid + "settings: {scene.file: [tank.glb]}\n",
-                 "sweep.yml:2:25: settings.scene.file[0]: names the file of scene, which decides what objects there "
-                 "are; name it under scenes"},
+                 "sweep.yml:2:25: settings.scene.file[0]: names the file of scene, which sets the objects of the "
+                 "scene; name it under scenes"},
         BadSweep{"SceneInASet", grid + "scenes: [{set: {scene.file: tank.glb}}]\n",
                  "sweep.yml:2:29: scenes[0].set.scene.file: names the file of scene"},
         BadSweep{
@@ -119,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSweep{"NoClass", grid + "classes:\n  wreck: hul\n",
                  "sweep.yml:3:3: classes.wreck[0]: is hul, which is no name"},
         BadSweep{"RangesOfAFan", grid + "picture: {shape: range}\n",
-                 "sweep.yml:2:18: picture.shape: is range, a picture of 3-D sonars; the sonar of d.yml is none"},
+                 "sweep.yml:2:18: picture.shape: is range, a picture of 3-D sonars; the sonar of d.yml is not 3-D"},
         BadSweep{"ShadowsInARangeImage", grid + "picture: {shape: range}\nannotations: {shadows: true}\n",
                  "sweep.yml:3:24: annotations.shadows: is true; a range image shows the strongest return of each beam"},
         BadSweep{"Picture", grid + "picture: {shape: disc}\n",

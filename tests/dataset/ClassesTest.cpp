@@ -20,7 +20,7 @@ TEST(ClassesTest, WithoutRulesAClassIsANameWithoutItsNumber) {
     EXPECT_EQ(classes.of("crane"), 0u);
 }
 
-TEST(ClassesTest, OfRulesTheFirstThatMatchesCountsInTheOrderOfTheFile) {
+TEST(ClassesTest, TheFirstMatchingRuleCounts) {
     Sweep sweep;
     sweep.classes = {{"wreck", {"hull"}, 3, 1}, {"first", {"*_00"}, 4, 1}, {"pile", {"pile_*"}, 5, 1}};
     const Classes classes(sweep, objects);
@@ -31,7 +31,7 @@ TEST(ClassesTest, OfRulesTheFirstThatMatchesCountsInTheOrderOfTheFile) {
     EXPECT_EQ(classes.of("rock.001"), 0u);
 }
 
-TEST(ClassesTest, ShadowsHaveClassesBehindAllOthers) {
+TEST(ClassesTest, ClassesOfShadowsFollowAllOthers) {
     Sweep sweep;
     EXPECT_EQ(Classes(sweep, objects).shadowOf(3), 0u);
     sweep.annotations.shadows = true;

@@ -102,7 +102,7 @@ TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
     EXPECT_EQ(far["picture"]["height"], 200);
 }
 
-TEST_F(DatasetCommandTest, TheBytesAreTheSameWhoeverMadeThem) {
+TEST_F(DatasetCommandTest, TheBytesDoNotDependOnTheProcess) {
     const std::string few = replaced(sweep, "count: 4", "count: 2");
     const std::string tilted = replaced(few, "ground: sea_floor,", "ground: sea_floor, roll_deg: [0, 90],");
     writeFile(folder_ / "sweep.yml", replaced(tilted, "settings:\n", drawn_settings));
@@ -134,7 +134,7 @@ TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     EXPECT_TRUE(*strengths.begin() >= -30 && *strengths.rbegin() <= -15);
 }
 
-TEST_F(DatasetCommandTest, ASettingOfTheCommandLineIsUnderThoseOfTheSweepAndItsSeedGoesBeforeTheFiles) {
+TEST_F(DatasetCommandTest, SettingsOfTheSweepAndTheSeedOfTheCommandTakePrecedence) {
     writeFile(folder_ / "sweep.yml",
               "poses: {random: {count: 1, x: {uniform: [0, 20]}, y: -4, z: -5.5}}\nsettings: {sonar.range: [20]}\n");
     const std::vector<std::string> set = {"--set", "sonar.range=30", "--set", "sonar.bin_count=100"};
@@ -151,7 +151,7 @@ TEST_F(DatasetCommandTest, ASettingOfTheCommandLineIsUnderThoseOfTheSweepAndItsS
     EXPECT_THAT(make("plain", {"--seed", "9"}).err, HasSubstr("a sample of another sweep"));
 }
 
-/** Paths of the values of a record; those of lists of numbers, settings and files end there. */
+/** Paths of the values of a record. Lists of numbers, settings and files are not expanded. */
 void addKeys(const json& value, const std::string& path, std::set<std::string>& keys) {
     if (value.is_array() && !value.empty() && value[0].is_object()) {
         for (const json& each : value) addKeys(each, path + "[]", keys);
@@ -179,7 +179,7 @@ TEST_F(DatasetCommandTest, ARecordHasTheKeysOfThePage) {
     EXPECT_EQ(documented, written);
 }
 
-TEST_F(DatasetCommandTest, WhatIsThereIsKeptAndWhatIsMissingOrDamagedIsMadeAgain) {
+TEST_F(DatasetCommandTest, KeepsSamplesAndRemakesMissingOrDamagedSamples) {
     ASSERT_EQ(make("out").code, 0);
     const auto whole = filesOf(folder_ / "out");
     const std::vector<std::string> names = namesOf(folder_ / "out");
@@ -194,9 +194,9 @@ TEST_F(DatasetCommandTest, WhatIsThereIsKeptAndWhatIsMissingOrDamagedIsMadeAgain
     EXPECT_THAT(make("out").out, HasSubstr("0 samples made, 8 were there"));
 }
 
-TEST_F(DatasetCommandTest, AKilledRunIsTakenUpWhereItWas) {
+TEST_F(DatasetCommandTest, AKilledRunIsContinued) {
     ASSERT_EQ(make("whole").code, 0);
-    const TestFolder elsewhere;  // for the output of the one that is killed
+    const TestFolder elsewhere;  // for the output of the killed run
     for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
     const Process killed(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
     const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && namesOf(folder_ / "out").size() > 4; };
@@ -220,7 +220,7 @@ TEST_F(DatasetCommandTest, TwoProcessesInOneFolderDoNotHarmEachOther) {
     EXPECT_EQ(filesOf(folder_ / "out"), filesOf(folder_ / "whole"));
 }
 
-TEST_F(DatasetCommandTest, AnotherSweepGoesToAnotherFolder) {
+TEST_F(DatasetCommandTest, AnotherSweepNeedsAnotherFolder) {
     ASSERT_EQ(make("out", {"--shard", "0/8"}).code, 0);
     writeFile(folder_ / "sweep.yml", sweep + "# changed\n");
     const Outcome outcome = make("out");
@@ -270,7 +270,7 @@ TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
     EXPECT_FALSE(labels >> more);
 }
 
-TEST_F(DatasetCommandTest, MasksTellInstancesAndClassesPixelByPixel) {
+TEST_F(DatasetCommandTest, MasksShowInstancesAndClassesPixelByPixel) {
     if (python(folder_, "import matplotlib.image").code != 0)
         GTEST_SKIP() << "/usr/bin/python3 has no matplotlib; scripts/setup installs it";
     ASSERT_EQ(make("out", {"--format", "mask", "--shard", "1/8"}).code, 0);
@@ -392,7 +392,7 @@ TEST_F(DatasetCommandTest, ABudgetInAPropertyFileIsRefused) {
                 HasSubstr("sonar.yml:3:14: quality.budget_ms: budget_ms lets the speed of the machine decide"));
 }
 
-TEST_F(DatasetCommandTest, ObjectsAreHeardWhereTheyArePlaced) {
+TEST_F(DatasetCommandTest, ObjectsEchoFromTheirPlaces) {
     writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
 objects: [{names: [rock_000], x: [12, 12.001], y: [2, 2.001], frame: vehicle, ground: sea_floor}]
 classes: {rock: rock_000}
@@ -411,7 +411,7 @@ classes: {rock: rock_000}
     }
 }
 
-TEST_F(DatasetCommandTest, RangesInARecordAreThoseOfTheSonarHoweverBinsAreRounded) {
+TEST_F(DatasetCommandTest, RangesInARecordAreThoseOfTheSonarAtAnyRounding) {
     writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5}}
 settings:
   sonar.range: [6.3]
@@ -439,7 +439,7 @@ classes: {rock: rock_000}
     EXPECT_NEAR(nearest, std::hypot(4.6, 0.8), 1);
 }
 
-TEST_F(DatasetCommandTest, AShadowLiesBehindItsObjectAsFarAsItsHeightTells) {
+TEST_F(DatasetCommandTest, TheHeightOfAnObjectSetsTheLengthOfItsShadow) {
     writeFile(folder_ / "sweep.yml", R"(poses: {grid: {x: 5, y: -30, z: -5.5, yaw_deg: [0, 90]}}
 objects: [{names: [rock_000], x: [10, 10.001], y: [1, 1.001], frame: vehicle, ground: sea_floor}]
 classes: {rock: rock_000}
@@ -506,7 +506,7 @@ TEST_F(DatasetCommandTest, ALogOfASampleHasItsPingTruthAndPose) {
                                      testing::Pair("vehicle.pose", 1)));
 }
 
-TEST_F(DatasetCommandTest, WhatOnlyTheCommandLineCanSayIsCheckedAsWell) {
+TEST_F(DatasetCommandTest, ChecksOptionsOfTheCommandLine) {
     EXPECT_THAT(make("out", {"--shard", "3/3"}).err, HasSubstr("of 3 shards i may be from 0 to 2"));
     EXPECT_EQ(make("out", {"--format", "voc"}).code, 2);
     EXPECT_THAT(make("out", {"--seed", "-1"}).err, HasSubstr("-1 is no whole number from 0 to 2^64 - 1"));

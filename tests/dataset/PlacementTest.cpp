@@ -64,7 +64,7 @@ TEST(PlacementTest, ObjectsStandInTheirAreaAndDoNotTouch) {
     }
 }
 
-TEST(PlacementTest, TheyKeepOffTheVehicleAndWhatIsToBeAvoided) {
+TEST(PlacementTest, ObjectsKeepClearOfTheVehicleAndAvoidedNodes) {
     Sweep sweep = sweepOf({-2, 2}, {-2, 2});
     sweep.objects[0].avoid = {"wall*"};
     SceneParts scene = stones(1);
@@ -77,7 +77,7 @@ TEST(PlacementTest, TheyKeepOffTheVehicleAndWhatIsToBeAvoided) {
     }
 }
 
-TEST(PlacementTest, AnAreaGoesWithTheVehicle) {
+TEST(PlacementTest, AnAreaMovesWithTheVehicle) {
     Sweep sweep = sweepOf({5, 6}, {0, 1});
     sweep.objects[0].frame = Frame::Vehicle;
     types::Pose vehicle;
@@ -89,7 +89,7 @@ TEST(PlacementTest, AnAreaGoesWithTheVehicle) {
     }
 }
 
-TEST(PlacementTest, TheyStandOnTheHighestGroundBelowTheirOrigin) {
+TEST(PlacementTest, ObjectsStandOnTheHighestGroundBelowTheirOrigin) {
     Sweep sweep = sweepOf({1, 3}, {1, 3});
     sweep.objects[0].ground = "floor";
     SceneParts scene = stones(1);
@@ -102,7 +102,7 @@ TEST(PlacementTest, TheyStandOnTheHighestGroundBelowTheirOrigin) {
     EXPECT_NEAR(*highestAt(slope, 1, 1), 1, 1e-12);
 }
 
-TEST(PlacementTest, AScaledObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
+TEST(PlacementTest, AScaledObjectStandsOnTheGroundClearOfOthers) {
     Sweep sweep = sweepOf({1, 12}, {1, 12});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].scale = {0.5, 2};
@@ -126,7 +126,7 @@ TEST(PlacementTest, AScaledObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
     EXPECT_GT(most, 1.9);
 }
 
-TEST(PlacementTest, ATiltedObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
+TEST(PlacementTest, ATiltedObjectStandsOnTheGroundClearOfOthers) {
     Sweep sweep = sweepOf({1, 30}, {1, 30});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].roll_deg = {90, 90};
@@ -146,7 +146,7 @@ TEST(PlacementTest, ATiltedObjectStandsOnTheGroundAndHasTheRoomThatItNeeds) {
     EXPECT_NEAR(placed(sweep, scene, 2, 0)[0].at.position.z, -6, 1e-6);
 }
 
-TEST(PlacementTest, AnyTurnHasNoDirectionThatItPrefers) {
+TEST(PlacementTest, AnyTurnIsUniform) {
     Sweep sweep = sweepOf({1, 30}, {1, 30});
     sweep.objects[0].any_turn = true;
     const SceneParts scene = stones(1);
@@ -168,7 +168,7 @@ TEST(PlacementTest, AnyTurnHasNoDirectionThatItPrefers) {
     EXPECT_NEAR(angle, std::numbers::pi / 2 + 2 / std::numbers::pi, 0.03);  // the mean of (1 - cos) / pi from 0 to pi
 }
 
-TEST(PlacementTest, AsManyAreThereAsTheCountAllowsAndTheOthersAreOutOfHearing) {
+TEST(PlacementTest, PlacesTheCountAndMovesTheOthersOutOfReach) {
     Sweep sweep = sweepOf({-20, 20}, {-20, 20});
     sweep.objects[0].count = {2, 5};
     std::array<int, 7> seen{};
@@ -201,7 +201,7 @@ TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
     EXPECT_EQ(pairs.size(), 15u);
 }
 
-TEST(PlacementTest, WhereThereIsNoRoomItSaysHowManyFitted) {
+TEST(PlacementTest, ReportsTheNumberOfObjectsThatFit) {
     const Sweep sweep = sweepOf({2, 4}, {2, 4});
     try {
         placed(sweep, stones(30), 30, 8);

@@ -84,7 +84,7 @@ print(abs(levels - expected).max(), (levels == 0).sum() > 0, levels.max() > 128)
     EXPECT_THAT(read.out, HasSubstr("0.0 True True"));
 }
 
-/** The ping of a 3-D sonar is a fan as any other, with its truth. */
+/** The ping of a 3-D sonar is a fan like any other, with its truth. */
 TEST_F(RangeImageTest, ItsPingIsAPictureAsWell) {
     writeFile(folder_ / "sweep.yml", sweep("fan"));
     const Outcome outcome = make("fans", "yolo");

@@ -24,7 +24,7 @@ types::SonarTruthPtr truthOf(const types::Sonar& ping, int32_t object) {
     return truth;
 }
 
-TEST(RunTest, ItsPingHoldsTheBeamsOfAllInOrder) {
+TEST(RunTest, JoinsTheBeamsOfAllPingsInOrder) {
     dataset::Run run;
     for (int i = 0; i < 3; ++i) {
         const auto line = lineOf(static_cast<float>(i));

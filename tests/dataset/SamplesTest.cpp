@@ -49,7 +49,7 @@ SceneParts stoneParts(int count) {
     return parts;
 }
 
-TEST(SamplesTest, APoseIsTheFastestThenSettingsThenScenes) {
+TEST(SamplesTest, PosesVaryFastestThenSettingsThenScenes) {
     const Sweep sweep = gridded();
     const Samples samples(sweep, {}, {SceneParts{}, SceneParts{}});
     ASSERT_EQ(samples.count(), 24u);
@@ -63,7 +63,7 @@ TEST(SamplesTest, APoseIsTheFastestThenSettingsThenScenes) {
     EXPECT_THAT(samples.settingsOf(1), ElementsAre(Pair("sonar.range", "30"), Pair("sonar.bin_count", "100")));
 }
 
-TEST(SamplesTest, ASampleIsTheSameHoweverManyThereAreAndWhateverWasAskedBefore) {
+TEST(SamplesTest, ASampleDependsOnItsNumberAlone) {
     const Sweep few = drawn(3), many = drawn(1000);
     const Samples of_few(few, {}, {SceneParts{}}), of_many(many, {}, {SceneParts{}});
     of_many.at(999);
@@ -138,7 +138,7 @@ TEST(SamplesTest, LinesGoStraightAheadFromEachPoseAndWavesMoveEachRunByItself) {
     EXPECT_GT(apart, 0.03);
 }
 
-TEST(SamplesTest, ObjectsThatAreNotThereOrTwiceAreRefusedWithTheirPlace) {
+TEST(SamplesTest, RefusesMissingAndRepeatedObjectsWithTheirPlace) {
     Sweep sweep = drawn(1);
     sweep.objects.resize(2);
     for (ObjectGroup& group : sweep.objects) group.names = {"stone_1"}, group.x = group.y = {0, 1}, group.line = 9;
@@ -206,7 +206,7 @@ TEST(SamplesTest, EachSampleDrawsItsSettingsByItsNumberAlone) {
     EXPECT_EQ(Samples(sweep, {}, {SceneParts{}}).at(7).settings[1].second, seventh);
 }
 
-TEST(SamplesTest, MoreThanCanBeAreRefused) {
+TEST(SamplesTest, RefusesTooManySamples) {
     Sweep sweep = drawn(100000000);
     sweep.settings = {{"sonar.range", {{"20", 1, 1}, {"30", 1, 1}}}};
     EXPECT_THROW(Samples(sweep, {}, {SceneParts{}}), types::ConfigError);

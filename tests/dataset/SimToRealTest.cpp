@@ -1,4 +1,4 @@
-// scripts/sim_to_real, by the tests of its own language.
+// Runs the Python tests of scripts/sim_to_real.
 #include <gmock/gmock.h>
 
 #include "tests/support/Paths.hpp"

@@ -18,7 +18,7 @@ Json recordOf(uint64_t index, const std::string& part, uint32_t area) {
              {{{"name", "pile_0"}, {"category", 1}, {"bbox", {1, 2, 3, 4}}, {"area", area}, {"range_m", {4.0, 8.5}}}}}};
 }
 
-TEST(StatisticsPageTest, ItTellsCountsSizesAndRangesAndShowsExamples) {
+TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
     Sweep sweep;
     const Classes classes(sweep, {"pile_0", "rock"});
     StatisticsPage page("sweep.yml", classes);

@@ -26,7 +26,7 @@ protected:
     const Folder folder_;
 };
 
-TEST_F(StoreTest, ASampleIsThereOnceItsRecordIs) {
+TEST_F(StoreTest, ASampleExistsOnceItsRecordExists) {
     Store files = store();
     EXPECT_FALSE(files.has(3));
     files.putText(files.stemOf(3) + ".txt", "sample 3");
@@ -38,7 +38,7 @@ TEST_F(StoreTest, ASampleIsThereOnceItsRecordIs) {
     EXPECT_EQ((*files.record(3))["value"], 0.1);
 }
 
-TEST_F(StoreTest, WhatIsDamagedIsNotThere) {
+TEST_F(StoreTest, ADamagedSampleDoesNotExist) {
     Store files = store();
     const std::string stem = files.stemOf(0);
     const auto broken = [&](const std::string& name, const std::string& text) {
@@ -85,7 +85,7 @@ TEST_F(StoreTest, AWriterThatFailsLeavesNothing) {
     EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
-TEST_F(StoreTest, WhatKilledWritersLeftGoesInTheEnd) {
+TEST_F(StoreTest, RemovesFilesOfKilledWriters) {
     Store files = store();
     overwrite(".part_0123_1_x.png", "half");
     fs::create_directory(folder_ / ".part_0123_2_y.mcap.bag");

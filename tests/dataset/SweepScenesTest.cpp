@@ -83,7 +83,7 @@ types::Geometry mappedFloors() {
     return geometry;
 }
 
-/** Each change gives a digest of its own. */
+/** Expects that each change gives a different digest. */
 void expectOthers(const types::Geometry& plain, const Changes& changes) {
     std::set<std::string> digests = {digestOf(plain)};
     for (size_t i = 0; i < changes.size(); ++i) {
@@ -93,7 +93,7 @@ void expectOthers(const types::Geometry& plain, const Changes& changes) {
     }
 }
 
-TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
+TEST(SweepScenesTest, EveryAcousticPropertyOfAGeometryChangesItsDigest) {
     const types::Geometry plain = mappedFloors();
     const Changes changes = {
         [](auto& changed) { changed.meshes[0].positions[1].x = 5; },
@@ -127,7 +127,7 @@ TEST(SweepScenesTest, WhateverIsHeardOfAGeometryChangesItsDigest) {
     EXPECT_EQ(digestOf(plain), digestOf(types::Geometry(plain)));
 }
 
-TEST(SweepScenesTest, WhateverIsHeardOfASurfaceMapChangesTheDigest) {
+TEST(SweepScenesTest, EveryAcousticPropertyOfASurfaceMapChangesTheDigest) {
     const auto remapped = [](const auto& change) {
         return [change](types::Geometry& changed) {
             types::SurfaceMap other = *changed.meshes[0].maps[0].map;

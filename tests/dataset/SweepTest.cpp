@@ -43,7 +43,7 @@ TEST(SweepTest, StepsGoEvenlyFromOneValueToTheOther) {
     EXPECT_THAT(stepsOf(axis), ElementsAre(4, 2));
 }
 
-TEST(SweepTest, AGridThatNobodyCouldMakeDoesNotRunOver) {
+TEST(SweepTest, AHugeGridDoesNotOverflow) {
     PoseAxes axes;
     PoseAxes::forEach(axes,
                       [](const char*, const char*, Axis& axis) { axis.from = 0, axis.to = 1, axis.count = 1000000; });
@@ -68,7 +68,7 @@ TEST(SweepTest, DrawnValuesFollowTheirLaw) {
     EXPECT_NEAR(squares / count, 0.25, 5 * 0.25 * std::sqrt(2.0 / count));
 }
 
-TEST(SweepTest, APartIsThatOfTheNumberAlone) {
+TEST(SweepTest, APartDependsOnTheNumberAlone) {
     Split split;
     EXPECT_EQ(split.of(1, 12), Part::Train);
     split.train = 0.7, split.val = 0.2, split.test = 0.1;
@@ -81,7 +81,7 @@ TEST(SweepTest, APartIsThatOfTheNumberAlone) {
     EXPECT_EQ(split.of(1, 12), Part::Test);
 }
 
-TEST(SweepTest, AStarStandsForAnyLetters) {
+TEST(SweepTest, AStarMatchesAnyLetters) {
     EXPECT_TRUE(matches("pile_*", "pile_07"));
     EXPECT_TRUE(matches("*", ""));
     EXPECT_TRUE(matches("*rock*a", "big_rock_rock_a"));
@@ -91,27 +91,26 @@ TEST(SweepTest, AStarStandsForAnyLetters) {
     EXPECT_FALSE(matches("", "a"));
 }
 
-TEST(SweepTest, WhatCannotBeMeantIsRefused) {
+TEST(SweepTest, RefusesContradictoryKeys) {
     EXPECT_THAT(diagnosticsOf(Axis{}), testing::SizeIs(1));
     Axis axis = drawnFrom({4, 2}, {});
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("uniform: must be two numbers, [least, most]"));
+    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("uniform: must be two numbers, [min, max]"));
     axis = drawnFrom({}, {1, -1});
     EXPECT_THAT(diagnosticsOf(axis),
                 ElementsAre("normal: must be two numbers, [mean, deviation], the deviation not below 0"));
     axis = {};
     axis.from = 1;
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("has not all of from, to and count, which steps need"));
+    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("needs all of from, to and count for steps"));
     Split split;
     split.val = 0.2;
     EXPECT_THAT(diagnosticsOf(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
     ObjectGroup group;
     group.names = {"a"};
     group.x = {0, 1};
-    EXPECT_THAT(diagnosticsOf(group), ElementsAre("y: is missing; give [least, most]"));
+    EXPECT_THAT(diagnosticsOf(group), ElementsAre("y: is missing; give [min, max]"));
     TrajectoryPoses poses;
     poses.file = "a.csv";
-    EXPECT_THAT(diagnosticsOf(poses),
-                ElementsAre("has neither or both of count and period; one says how many poses there are"));
+    EXPECT_THAT(diagnosticsOf(poses), ElementsAre("must have one of count and period, which set the number of poses"));
 }
 
 }  // namespace

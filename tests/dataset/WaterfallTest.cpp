@@ -1,4 +1,4 @@
-// insonify dataset: waterfalls of a side-scan over rocks whose places are known.
+// insonify dataset: waterfalls of a side-scan over rocks at known places.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -88,7 +88,7 @@ TEST_F(WaterfallTest, EachRockIsWhereTheVehiclePassedIt) {
             const double ahead = x * std::cos(yaw) + y * std::sin(yaw), port = y * std::cos(yaw) - x * std::sin(yaw);
             const double row = lines - 1 - ahead / (speed * period);
             const double near = box[0].get<double>(), far = near + box[2].get<double>();
-            const double slack = 2 + 1 / (speed * period);  // a rock has a metre
+            const double slack = 2 + 1 / (speed * period);  // a rock measures one metre
             EXPECT_NEAR(box[1].get<double>() + box[3].get<double>() / 2, row, slack) << each["name"];
             const double sign = port > 0 ? -1 : 1;
             const double inner = sign * ((sign > 0 ? near : far) - 400) / 400 * 20;  // slant range [m]
@@ -106,7 +106,7 @@ TEST_F(WaterfallTest, EachRockIsWhereTheVehiclePassedIt) {
     EXPECT_GE(shadows, 4u);
 }
 
-TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
+TEST_F(WaterfallTest, TheBytesDoNotDependOnTheProcess) {
     std::string text = sweep_of_lines;
     writeFile(folder_ / "sweep.yml", text.replace(text.find("count: 120"), 10, "count: 12"));
     for (const char* format : {"yolo", "mcap"}) {
@@ -116,8 +116,8 @@ TEST_F(WaterfallTest, TheBytesAreTheSameWhoeverMadeThem) {
     }
 }
 
-/** Rocks of twice their size leave boxes of about twice as many lines. */
-TEST_F(WaterfallTest, ScaledObjectsAreAsLargeAsTheRecordSays) {
+/** Rocks of twice the size give boxes of about twice the number of lines. */
+TEST_F(WaterfallTest, ScaledObjectsHaveTheRecordedSize) {
     std::map<std::string, double> lines_of[2];
     for (const int large : {0, 1}) {
         std::string text = sweep_of_lines;
@@ -141,7 +141,7 @@ TEST_F(WaterfallTest, ScaledObjectsAreAsLargeAsTheRecordSays) {
     EXPECT_NEAR(large / small, 2, 0.5);
 }
 
-/** Along a trajectory a run goes on from its pose, and must end before the trajectory does. */
+/** Along a trajectory, a run continues from its pose and must end before the trajectory. */
 TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     writeFile(folder_ / "t.csv", "time,x,y,z,qw,qx,qy,qz\n0,2,-14,-5,1,0,0,0\n20,32,-14,-5,1,0,0,0\n");
     const auto sweepOf = [&](const std::string& poses, const std::string& more) {
@@ -171,9 +171,9 @@ TEST_F(WaterfallTest, ARunFollowsATrajectory) {
     sweepOf("count: 2, from: 16", "");
     EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines: take 4.9 s; the trajectory from 16 to 20 s is shorter"));
     sweepOf("count: 2", ", speed: 1");
-    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given beside a trajectory, which has its own"));
+    EXPECT_THAT(refused(), HasSubstr("sweep.yml:2:8: lines.speed: is given with a trajectory, which has its own"));
     sweepOf("count: 2", ", motion: {heave_m: 1}");
-    EXPECT_THAT(refused(), HasSubstr("lines.motion: is given beside a trajectory; give it as poses.trajectory.motion"));
+    EXPECT_THAT(refused(), HasSubstr("lines.motion: is given with a trajectory; give it as poses.trajectory.motion"));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
-"""Reads a data set as those who learn from it do: check_coco.py COCO NPZ, two data sets of one sweep.
+"""Reads a data set with pycocotools: check_coco.py COCO NPZ, two data sets of one sweep.
 
-Every box must hold the energy of its object, as the bins and the truth of the other data set tell it, without anything that the
-program knows of pictures; and every mask must lie in its box."""
+Every box must contain the energy of its object, computed from the bins and the truth of the other data set, independently of the
+program's pictures; and every mask must be inside its box."""
 
 import glob
 import json
@@ -15,7 +15,7 @@ LEAST = 0.99  # of an object's energy
 
 
 def places(ping, width, height):
-    """Column and row of the middle of each bin in a fan, ahead up and port left."""
+    """Column and row of the centre of each bin in a fan, ahead up and port left."""
     reach = ping["range_m"][-1] + (ping["range_m"][1] - ping["range_m"][0]) / 2
     distance = height * ping["range_m"][None, :] / reach
     bearing = ping["bearings"][:, None]

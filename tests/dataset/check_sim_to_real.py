@@ -1,5 +1,5 @@
-"""Holds scripts/sim_to_real to what it says: halves never share a film, windows show what stands out, wrong input is one error and exit 2.
-Sets are made by a command in the place of insonify, which writes what a data set has."""
+"""Tests scripts/sim_to_real: halves never share a film, windows show the visible pixels, wrong input is one error and exit 2.
+A stand-in for insonify makes the sets, and writes the files of a data set."""
 import random
 import subprocess
 import sys
@@ -59,7 +59,7 @@ class Halves(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for label in "ab":
                 (Path(folder) / label).mkdir()
-                for i in range(1, 13):  # by number, not by letter: img_10 follows img_9
+                for i in range(1, 13):  # by number, not alphabetically: img_10 follows img_9
                     Image.new("L", (8, 8), i).save(Path(folder) / label / f"img_{i}.png")
             train, test = sets.halves(sets.real(Path(folder))[0])
             for label in "ab":

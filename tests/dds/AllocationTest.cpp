@@ -9,7 +9,7 @@ namespace {
 
 class AllocationTest : public Loopback {};
 
-TEST_F(AllocationTest, NothingIsAllocatedAfterTheFirstPings) {
+TEST_F(AllocationTest, AllocatesNothingAfterTheFirstPings) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
                                             topicOut("in", "/scan", message_type<ros::LaserScan>),
                                             topicOut("in", "/points", message_type<ros::PointCloud2>)});

@@ -28,13 +28,13 @@ std::string errorOf(const std::function<void()>& work) {
 
 }  // namespace
 
-TEST_F(DomainTest, NamesAreThoseOfRos) {
+TEST_F(DomainTest, UsesTheNamesOfRos) {
     EXPECT_EQ(ddsTopic("/auv/sonar"), "rt/auv/sonar");
     EXPECT_EQ(ddsTopic("clock"), "rt/clock");
     EXPECT_EQ(ddsType("sensor_msgs/msg/Image"), "sensor_msgs::msg::dds_::Image_");
 }
 
-TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
+TEST_F(DomainTest, RefusesNamesThatRosRefuses) {
     for (const char* good : {"/auv/sonar", "sonar", "/a_1/B2"}) EXPECT_EQ(diagnosticOfTopic(good), "") << good;
     for (const char* bad : {"", "/", "//a", "/a/", "/1a", "/a b", "/a-b", "/a//b", "~/a"})
         EXPECT_THAT(diagnosticOfTopic(bad), HasSubstr("must be words of letters")) << bad;
@@ -46,7 +46,7 @@ TEST_F(DomainTest, NamesThatRosRefusesAreRefused) {
     for (const char* bad : {"", "/", "//a", "a/", "1a", "a b"}) EXPECT_NE(diagnosticOfNode(bad), "") << bad;
 }
 
-TEST_F(DomainTest, TheDomainIsTheOneGivenOrThatOfTheEnvironment) {
+TEST_F(DomainTest, TakesTheGivenDomainOrThatOfTheEnvironment) {
     setenv("ROS_DOMAIN_ID", "17", 1);
     EXPECT_EQ(domainId(3), 3u);
     EXPECT_EQ(domainId({}), 17u);
@@ -58,7 +58,7 @@ TEST_F(DomainTest, TheDomainIsTheOneGivenOrThatOfTheEnvironment) {
     }
 }
 
-TEST_F(DomainTest, ADomainThatCannotBeJoinedIsOneErrorThatTellsWhy) {
+TEST_F(DomainTest, ReportsWhyADomainCannotBeJoined) {
     setenv("CYCLONEDDS_URI",
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nothere0\"/></Interfaces></General>"
            "</Domain></CycloneDDS>",
@@ -70,11 +70,11 @@ TEST_F(DomainTest, ADomainThatCannotBeJoinedIsOneErrorThatTellsWhy) {
     EXPECT_THAT(errorOf([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
 }
 
-TEST_F(DomainTest, ADomainCanBeLeftAndJoinedAgain) {
+TEST_F(DomainTest, LeavesAndJoinsADomainAgain) {
     for (int i = 0; i < 3; ++i) EXPECT_GT(joinDomain(domainId({}), "").handle(), 0);
 }
 
-TEST_F(DomainTest, ANodeIsAnnouncedWithIdentifiersOfSixteenOrTwentyFourBytes) {
+TEST_F(DomainTest, AnnouncesANodeWithIdentifiersOf16Or24Bytes) {
     using Info = ParticipantEntitiesInfo<24>;
     Node listener(domainId({}), "listener", 16), humble(domainId({}), "/auv/old/humble", 24);
     const Quality latched{.reliability = Reliability::Reliable, .depth = 1, .transient_local = true};

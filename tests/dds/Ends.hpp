@@ -1,5 +1,5 @@
 #pragma once
-// Tasks at work in a test: what goes in and what comes out.
+// Running tasks for tests, with their inputs and outputs.
 #include <chrono>
 
 #include "components/dds/PublisherTask.hpp"
@@ -20,7 +20,7 @@ inline TopicOut topicOut(const std::string& port, const std::string& topic, Mess
     return made;
 }
 
-/** A publisher with one port, which the test writes. */
+/** A publisher with one input port that the test writes to. */
 template <class Carried>
 struct Publishing {
     Publishing(std::vector<TopicOut> topics, const std::function<void(PublisherConfig&)>& change = {},
@@ -44,7 +44,7 @@ struct Publishing {
     test::Writer<Carried> writer;
 };
 
-/** A subscriber with one port, which the test reads; works by itself once released. */
+/** A subscriber with one output port that the test reads; runs by itself once released. */
 struct Subscribing {
     explicit Subscribing(const std::string& topic, PoseType type = PoseType::Odometry,
                          const std::function<void(SubscriberConfig&)>& change = {}, const types::RosNames& names = {}) {
@@ -63,13 +63,13 @@ struct Subscribing {
         task.activity().release();
     }
     ~Subscribing() { task.activity().hold(); }
-    /** The next pose, waited for. */
+    /** Waits for the next pose. */
     std::optional<types::Pose> next() {
         types::Pose pose;
         if (!comesTrue([&] { return reader.port.readNew(pose); })) return std::nullopt;
         return pose;
     }
-    /** The first pose of a peer after its greetings, which lie at the origin. */
+    /** Returns a peer's first pose after its greetings, which are at the origin. */
     std::optional<types::Pose> firstOf(const Peer& peer) {
         auto pose = next();
         if (pose) peer.begin();
@@ -81,7 +81,7 @@ struct Subscribing {
     SubscriberTask task{"subscriber"};
 };
 
-/** A fan of noise, stamped now. */
+/** Returns a fan of noise, stamped now. */
 inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
     auto ping = std::make_shared<types::Sonar>();
     ping->resize(bins, beams);
@@ -95,7 +95,7 @@ inline types::SonarPtr pingOf(uint32_t beams, uint32_t bins) {
     return ping;
 }
 
-/** What a peer that listens answers with "met", and does not count: it has no stamp. */
+/** A ping without a stamp, which a listening peer acknowledges with "met" and does not count. */
 inline types::SonarPtr greeting() {
     auto ping = std::make_shared<types::Sonar>(*pingOf(4, 4));
     ping->time = {};

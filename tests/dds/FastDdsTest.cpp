@@ -27,7 +27,7 @@ protected:
 
 }  // namespace
 
-TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
+TEST_F(FastDdsTest, ReceivesEveryPingOf128KilobytesAt40Hertz) {
     TopicOut levels = topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>);
     levels.sonar.dtype = ros::ImageType::Uint8;
     Publishing<types::SonarPtr> publishing({levels},
@@ -45,7 +45,7 @@ TEST_F(FastDdsTest, HearsEveryPingOf128KilobytesAtFortyHertz) {
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
 }
 
-TEST_F(FastDdsTest, SendsPosesOfWhichNoneIsLost) {
+TEST_F(FastDdsTest, SendsPosesWithoutLoss) {
     ros::Odometry message;
     message.header = {ros::toRos(framework::wallClock()), "map"};
     const deployer::TestFolder folder;
@@ -66,7 +66,7 @@ TEST_F(FastDdsTest, SendsPosesOfWhichNoneIsLost) {
     for (int i = 0; i < 100; ++i) {
         const auto pose = i == 0 ? subscribing.firstOf(peer) : subscribing.next();
         ASSERT_TRUE(pose) << i;
-        EXPECT_EQ(pose->position, glm::dvec3(2, -1, 3));  // of east, north, up
+        EXPECT_EQ(pose->position, glm::dvec3(2, -1, 3));  // from east, north, up
     }
     EXPECT_THAT(subscribing.task.notices(), testing::IsEmpty());
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A DDS domain of the test's own on the loopback interface, and other peers on it.
+// A separate DDS domain of the test on the loopback interface, and other peers in it.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -17,8 +17,8 @@ namespace insonify::dds {
 
 using test::comesTrue;
 
-/** A DDS domain that no other test is in, in this network, while this lives. Its ports lie below those that the system
- *  hands out. */
+/** A DDS domain that no other test in this network uses during its lifetime. Its ports are below those that the system
+ *  assigns. */
 class OwnDomain {
 public:
     OwnDomain() {
@@ -32,7 +32,7 @@ public:
     int number() const { return number_; }
 
 private:
-    /** Takes hold of a name that stands for the domain, without a file. */
+    /** Reserves a name for the domain, without a file. */
     bool isFree() {
         socket_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
         const std::string name = "insonify-test-domain-" + std::to_string(number_);
@@ -48,7 +48,7 @@ private:
     int number_ = 0, socket_ = -1;
 };
 
-/** Tests in a domain of their own, where `lo` has no multicast. */
+/** Tests in a separate domain; `lo` has no multicast. */
 class Loopback : public testing::Test {
 protected:
     Loopback() {
@@ -65,26 +65,26 @@ private:
     const OwnDomain domain_;
 };
 
-/** A peer by another DDS, which says when it is ready, then what it found. */
+/** A peer with another DDS implementation, which prints that it is ready, then its findings. */
 class Peer : public test::Peer {
 public:
-    /** Of peer.py: "listen PoseStamped /pose 2" */
+    /** Runs a command of peer.py: "listen PoseStamped /pose 2" */
     explicit Peer(const std::string& command) : test::Peer("tests/dds/peer.py", command) {}
-    /** A program and its arguments. */
+    /** Runs a program with its arguments. */
     explicit Peer(std::vector<std::string> words) : test::Peer(std::move(words)) {}
-    /** Whether PyPI's cyclonedds is here. */
+    /** Returns whether PyPI's cyclonedds is installed. */
     static bool available() { return pythonHas("cyclonedds"); }
     bool ready() const { return ready_; }
-    /** Sends greetings until a listener has heard one: it then hears all that is sent. */
+    /** Sends greetings until a listener has received one; it then receives all that is sent. */
     template <class Greet>
     bool meets(Greet&& greet) const {
         return comesTrue([&] { return greet(), hasSaid("met"); });
     }
-    /** The first greeting of a sender has come: it may begin. */
+    /** Starts a sender, whose first greeting has arrived. */
     void begin() const { signal(SIGUSR1); }
-    /** Whether it has found what it looked for. */
+    /** Returns whether the peer has printed its findings. */
     bool hasEnded() const { return hasSaid("{"); }
-    /** What it found; null, with a failure, if it ended otherwise. */
+    /** Returns its findings; null, with a test failure, if it ended otherwise. */
     nlohmann::json result() {
         const deployer::Outcome outcome = wait();
         EXPECT_EQ(outcome.code, 0) << outcome.err;

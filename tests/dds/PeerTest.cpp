@@ -1,4 +1,4 @@
-// A ROS 2 peer by another version of Cyclone: PyPI's.
+// A ROS 2 peer with another version of Cyclone: PyPI's.
 #include <gmock/gmock.h>
 
 #include "components/dds/Endpoints.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 class PeerTest : public WithPeer {};
 
-/** 1 MB of float32, as scripts/bench has it. */
+/** Returns a topic of images of 1 MB of float32, as in scripts/bench. */
 TopicOut floats(const std::string& topic) {
     TopicOut made = topicOut("in", topic, message_type<ros::ProjectedSonarImage>);
     made.sonar.dtype = ros::ImageType::Float32;
@@ -36,7 +36,7 @@ void sendAll(int count, double hertz, Send&& send) {
 
 }  // namespace
 
-TEST_F(PeerTest, HearsEveryPingOfAMegabyteAtFortyHertz) {
+TEST_F(PeerTest, ReceivesEveryPingOfAMegabyteAt40Hertz) {
     Publishing<types::SonarPtr> publishing({floats("/auv/sonar")},
                                            [](PublisherConfig& config) { config.depth = 200; });  // a busy machine
     Peer peer("listen ProjectedSonarImage /auv/sonar 240 200");
@@ -52,12 +52,12 @@ TEST_F(PeerTest, HearsEveryPingOfAMegabyteAtFortyHertz) {
     EXPECT_EQ(found["first"]["image"]["data"]["size"], 256 * 1000 * 4);
     EXPECT_EQ(found["first"]["image"]["beam_count"], 256);
     EXPECT_EQ(found["first"]["header"]["frame_id"], "sonar");
-    EXPECT_GT(found["median_ms"], 0);  // how long depends on what else the machine does
+    EXPECT_GT(found["median_ms"], 0);  // the latency depends on the machine's other load
     std::cout << "1 MB at 40 Hz: median " << found["median_ms"] << " ms, p99 " << found["p99_ms"] << " ms\n";
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
 }
 
-TEST_F(PeerTest, SendsImagesOfAMegabyteAtFortyHertzOfWhichNoneIsLost) {
+TEST_F(PeerTest, SendsImagesOfAMegabyteAt40HertzWithoutLoss) {
     using Image = ros::ProjectedSonarImage;
     Node node(domainId({}), "listener", 16);
     Reader reader(node, ddsTopic("/peer/sonar"), Image::type_name, Image::type_hash, Quality{.depth = 200}, {});
@@ -85,7 +85,7 @@ TEST_F(PeerTest, SendsImagesOfAMegabyteAtFortyHertzOfWhichNoneIsLost) {
     EXPECT_EQ(peer.result()["count"], 200);
 }
 
-TEST_F(PeerTest, SendsPosesOfWhichNoneIsLost) {
+TEST_F(PeerTest, SendsPosesWithoutLoss) {
     Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
         config.reliability = Reliability::Reliable;
         config.depth = 200;
@@ -105,7 +105,7 @@ TEST_F(PeerTest, SendsPosesOfWhichNoneIsLost) {
     EXPECT_GT(latencies[100], 0);
 }
 
-TEST_F(PeerTest, SeesTheNodeItsWritersTheirTypesAndHashes) {
+TEST_F(PeerTest, FindsTheNodeItsWritersTheirTypesAndHashes) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>),
                                             topicOut("in", "/clock", message_type<ros::Clock>)},
                                            [](PublisherConfig& config) { config.node.node_name = "insonify"; });
@@ -152,7 +152,7 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     EXPECT_EQ(clock["first"]["clock"]["sec"], ping->time.microseconds / 1'000'000);
 }
 
-TEST_F(PeerTest, ReadsWhatNavigationsSensorsMeasure) {
+TEST_F(PeerTest, ReadsTheMeasurementsOfNavigationSensors) {
     types::Imu imu;
     imu.time = framework::wallClock();
     imu.orientation = {1, 0, 0, 0};
@@ -195,7 +195,7 @@ TEST_F(PeerTest, ReadsWhatNavigationsSensorsMeasure) {
     EXPECT_EQ(told["beam_velocity_covar"][2], -1);
 }
 
-TEST_F(PeerTest, ReadsSoundingsAsPointsOfTheWorldAndTheRangeOfAnAltimeter) {
+TEST_F(PeerTest, ReadsSoundingsAsPointsInTheWorldAndTheRangeOfAnAltimeter) {
     auto soundings = std::make_shared<types::PointCloud>();
     soundings->time = framework::wallClock();
     soundings->add({12.5, -3.25, -8}, 0.5);
@@ -225,14 +225,14 @@ TEST_F(PeerTest, ReadsSoundingsAsPointsOfTheWorldAndTheRangeOfAnAltimeter) {
 
 class SpoiltPoses : public PeerTest, public testing::WithParamInterface<std::pair<const char*, const char*>> {};
 
-TEST_P(SpoiltPoses, OfAPeerAreDroppedAndTheRunGoesOn) {
+TEST_P(SpoiltPoses, AreDroppedAndTheRunContinues) {
     Subscribing subscribing("/auv/odometry", PoseType::Odometry, [](SubscriberConfig& config) {
         config.reliability = Reliability::Reliable;
         config.depth = 1000;
     });
     Peer peer("odometry /auv/odometry 40 100 " + std::string(GetParam().first) + " --greet");
     ASSERT_TRUE(subscribing.next());
-    subscribing.task.activity().hold();  // all are looked at together, on one time: else a stall would be a silence
+    subscribing.task.activity().hold();  // takes all at the same time: a stall would otherwise count as a silence
     peer.begin();
     peer.result();
     subscribing.task.environment().now = [now = framework::wallClock()] { return now; };
@@ -253,6 +253,6 @@ TEST_P(SpoiltPoses, OfAPeerAreDroppedAndTheRunGoesOn) {
 
 INSTANTIATE_TEST_SUITE_P(PeerTest, SpoiltPoses,
                          testing::Values(std::pair("nan", "not finite"), std::pair("zero", "no length"),
-                                         std::pair("back", "the stamp lies before"),
-                                         std::pair("bytes", "no message of its type")),
+                                         std::pair("back", "the stamp is before"),
+                                         std::pair("bytes", "not a message of its type")),
                          [](const auto& tested) { return std::string(tested.param.first); });

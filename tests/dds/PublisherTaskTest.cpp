@@ -21,7 +21,7 @@ class PublisherTaskTest : public Loopback {
 protected:
     Node node{domainId({}), "listener", 16};
 
-    /** The message that `send` brings on a topic, or a failure. */
+    /** Returns the message that `send` causes on a topic, or fails. */
     template <class Message>
     Message heard(const std::string& topic, const std::function<void()>& send) {
         Reader reader(node, ddsTopic(topic), Message::type_name, "", {}, {});
@@ -35,7 +35,7 @@ protected:
     }
 };
 
-/** What a sonar and its scene tell of themselves. */
+/** A sonar and a scene with mount and frequency. */
 struct Described {
     double frequency_khz = 0;
     types::Mount mount;
@@ -65,7 +65,7 @@ std::string textOf(const types::Diagnostics& diagnostics) {
 
 }  // namespace
 
-TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
+TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
                                             topicOut("in", "/raw", message_type<ros::RawSonarImage>),
                                             topicOut("in", "/ranges", message_type<ros::SonarRanges>),
@@ -91,7 +91,7 @@ TEST_F(PublisherTaskTest, APingBecomesAllMessagesThatItCanBe) {
     EXPECT_EQ(ros::fromRos(heard<ros::Clock>("/clock", send).clock), ping->time);
 }
 
-TEST_F(PublisherTaskTest, SoundingsAreTurnedIntoTheWorldFrameAndNameIt) {
+TEST_F(PublisherTaskTest, ConvertsSoundingsToTheWorldFrameAndNamesIt) {
     auto soundings = std::make_shared<types::PointCloud>();
     soundings->time = framework::wallClock();
     soundings->add({12.5, -3.25, -8}, 0.5);  // north, west, up
@@ -105,7 +105,7 @@ TEST_F(PublisherTaskTest, SoundingsAreTurnedIntoTheWorldFrameAndNameIt) {
     EXPECT_EQ(cloud.header.frame_id, "odom");
 }
 
-TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {
+TEST_F(PublisherTaskTest, ConvertsAPoseToTheWorldFrameAndNamesItsFrames) {
     types::Pose pose;
     pose.time = framework::wallClock();
     pose.position = {3, 2, 1};  // north, west, up
@@ -121,7 +121,7 @@ TEST_F(PublisherTaskTest, APoseIsTurnedIntoTheWorldFrameAndNamesItsFrames) {
     }
 }
 
-TEST_F(PublisherTaskTest, APoseBecomesATransformOfItsFrames) {
+TEST_F(PublisherTaskTest, SendsAPoseAsATransformOfItsFrames) {
     types::Pose pose;
     pose.time = framework::wallClock();
     pose.position = {3, 2, 1};  // north, west, up
@@ -133,7 +133,7 @@ TEST_F(PublisherTaskTest, APoseBecomesATransformOfItsFrames) {
     EXPECT_EQ(message.transforms[0].transform.translation, (ros::Vector3{-2, 3, 1}));
 }
 
-TEST_F(PublisherTaskTest, TheMountOfASonarIsToldToWhoComesLaterAndItsFrequencyInItsPings) {
+TEST_F(PublisherTaskTest, PublishesTheMountToLateSubscribersAndTheFrequencyInPings) {
     TopicOut image = topicOut("in", "/image", message_type<ros::ProjectedSonarImage>),
              other = topicOut("in", "/other", message_type<ros::ProjectedSonarImage>);
     image.sonar.frame_id = "sonar_z";
@@ -170,7 +170,7 @@ TEST_F(PublisherTaskTest, TheMountOfASonarIsToldToWhoComesLaterAndItsFrequencyIn
     EXPECT_EQ(heard<ros::ProjectedSonarImage>("/other", send).ping_info.frequency, 300e3f) << "the topic's own";
 }
 
-TEST_F(PublisherTaskTest, AMessageThatFastDdsWouldLoseIsWarnedOfOnce) {
+TEST_F(PublisherTaskTest, WarnsOnceOfAMessageThatFastDdsWouldLose) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/large", message_type<ros::ProjectedSonarImage>)});
     std::vector<std::string> told;
     publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
@@ -184,7 +184,7 @@ TEST_F(PublisherTaskTest, AMessageThatFastDdsWouldLoseIsWarnedOfOnce) {
     EXPECT_THAT(told[0], HasSubstr("take dtype: uint8, or raise"));
 }
 
-TEST_F(PublisherTaskTest, TheRemedyForALargeMessageIsNotWhatIsSetAlready) {
+TEST_F(PublisherTaskTest, TheRemedyForALargeMessageDiffersFromThePresentSetting) {
     TopicOut small = topicOut("in", "/large", message_type<ros::ProjectedSonarImage>);
     small.sonar.dtype = ros::ImageType::Uint8;
     Publishing<types::SonarPtr> publishing({small});
@@ -196,7 +196,7 @@ TEST_F(PublisherTaskTest, TheRemedyForALargeMessageIsNotWhatIsSetAlready) {
     EXPECT_THAT(told[0], testing::AllOf(HasSubstr("lose most of them; raise"), testing::Not(HasSubstr("dtype"))));
 }
 
-TEST_F(PublisherTaskTest, APictureBecomesAnImage) {
+TEST_F(PublisherTaskTest, SendsAPictureAsAnImage) {
     auto picture = std::make_shared<types::Image>();
     picture->size = {4, 2};
     picture->pixel_size = 3;
@@ -210,15 +210,15 @@ TEST_F(PublisherTaskTest, APictureBecomesAnImage) {
     EXPECT_EQ(message.data, picture->image);
 }
 
-TEST_F(PublisherTaskTest, NothingIsMadeForATopicThatNobodyReads) {
+TEST_F(PublisherTaskTest, MakesNoMessageForATopicWithoutReaders) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/nobody", message_type<ros::LaserScan>)});
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
-    crooked->bearings[1] = types::Angle{0.1234};  // of which no LaserScan can be made
+    crooked->bearings[1] = types::Angle{0.1234};  // cannot become a LaserScan
     publishing.send(crooked);
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());
 }
 
-TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
+TEST_F(PublisherTaskTest, DropsAndCountsSamplesThatDoNotFitTheMessage) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/scan", message_type<ros::LaserScan>),
                                             topicOut("in", "/image", message_type<ros::RawSonarImage>)});
     std::vector<std::string> told;
@@ -238,7 +238,7 @@ TEST_F(PublisherTaskTest, WhatAMessageCannotHoldIsACountedDropAndTheRunGoesOn) {
     EXPECT_EQ(heard<ros::RawSonarImage>("/image", [&] { publishing.send(crooked); }).image.beam_count, 4u);
 }
 
-TEST_F(PublisherTaskTest, FramesThatAreGivenTakeThePlaceOfThoseThatAPoseNames) {
+TEST_F(PublisherTaskTest, ConfiguredFramesReplaceThoseOfThePose) {
     types::Pose pose;
     pose.time = framework::wallClock();
     pose.target_frame = "world";
@@ -258,7 +258,7 @@ TEST_F(PublisherTaskTest, FramesThatAreGivenTakeThePlaceOfThoseThatAPoseNames) {
     EXPECT_EQ(heard<ros::PoseStamped>("/mapped", [&] { mapped.send(pose); }).header.frame_id, "map");
 }
 
-TEST_F(PublisherTaskTest, AFrameWithTwoKindsOfAxesIsToldOf) {
+TEST_F(PublisherTaskTest, ReportsAFrameWithTwoKindsOfAxes) {
     const TopicOut image = topicOut("in", "/image", message_type<ros::ProjectedSonarImage>);
     TopicOut scan = topicOut("in", "/scan", message_type<ros::LaserScan>);
     EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(),
@@ -267,12 +267,12 @@ TEST_F(PublisherTaskTest, AFrameWithTwoKindsOfAxesIsToldOf) {
     EXPECT_THAT(Publishing<types::SonarPtr>({image, scan}).task.notices(), testing::IsEmpty());
 }
 
-/** What no sample is. */
+/** A type that is not a sample. */
 struct Unknown {
     static constexpr const char* type_name = "/unknown";
 };
 
-TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
+TEST_F(PublisherTaskTest, ReportsWrongPortsAndTypesBeforeTheRun) {
     PublisherTask task("publisher");
     PublisherConfig config;
     config.topics = {topicOut("ping", "/a", message_type<ros::Odometry>),
@@ -290,7 +290,7 @@ TEST_F(PublisherTaskTest, PortsAndTypesThatDoNotFitAreToldBeforeItRuns) {
     EXPECT_THAT(textOf(diagnostics), HasSubstr("topics[1].port is none; no connection leads to publisher.none"));
 }
 
-TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
+TEST_F(PublisherTaskTest, ReportsNamesThatRosRefuses) {
     PublisherConfig config;
     config.node.node_name = "a b";
     config.node.gid_size = 20;
@@ -301,7 +301,7 @@ TEST_F(PublisherTaskTest, NamesThatRosRefusesAreTold) {
     EXPECT_EQ(diagnostics.size(), 5u) << textOf(diagnostics);
 }
 
-TEST_F(PublisherTaskTest, InANamespaceTopicsAndFramesAreThoseOfTheVehicle) {
+TEST_F(PublisherTaskTest, TopicsAndFramesGetTheNamespaceOfTheVehicle) {
     types::RosNames names;
     names.setNamespace("auv1");
     names.setFramePrefix("auv1");
@@ -323,7 +323,7 @@ TEST_F(PublisherTaskTest, InANamespaceTopicsAndFramesAreThoseOfTheVehicle) {
         EXPECT_EQ(transforms.transforms[0].header.frame_id, "map");
         EXPECT_EQ(transforms.transforms[0].child_frame_id, "auv1/base_link");
         EXPECT_THAT(publishing.task.notices(), testing::IsEmpty()) << "/tf is shared";
-        pose.source_frame = "auv1/hull";  // of a sender that has the prefix already
+        pose.source_frame = "auv1/hull";  // from a sender that has added the prefix already
         EXPECT_EQ(heard<ros::Odometry>("/auv1/odometry", send).child_frame_id, "auv1/hull");
     }
     Publishing<types::SonarPtr> publishing(
@@ -334,10 +334,10 @@ TEST_F(PublisherTaskTest, InANamespaceTopicsAndFramesAreThoseOfTheVehicle) {
     EXPECT_EQ(heard<ros::ProjectedSonarImage>("/auv1/sonar", send).header.frame_id, "auv1/fls");
     EXPECT_EQ(heard<ros::LaserScan>("/scan", send).header.frame_id, "auv1/fls");
     EXPECT_THAT(publishing.task.notices(),
-                testing::Contains("not in the namespace /auv1, for the names begin with a slash: /scan"));
+                testing::Contains("not in the namespace /auv1, because their names begin with a slash: /scan"));
 }
 
-TEST_F(PublisherTaskTest, RemapsThatLeadToOneTopicAreRefused) {
+TEST_F(PublisherTaskTest, RefusesRemapsToTheSameTopic) {
     types::RosNames names;
     names.remaps = {{"", "/a", "/b"}};
     PublisherTask task("publisher");
@@ -350,7 +350,7 @@ TEST_F(PublisherTaskTest, RemapsThatLeadToOneTopicAreRefused) {
     EXPECT_THAT(textOf(task.configError()->diagnostics()), HasSubstr("topics[1].topic is /b a second time"));
 }
 
-TEST_F(PublisherTaskTest, TheMountIsToldBetweenFramesWithTheirPrefix) {
+TEST_F(PublisherTaskTest, PublishesTheMountBetweenPrefixedFrames) {
     PublisherTask task("publisher");
     Sonar sonar;
     task.environment().names.setFramePrefix("auv1");

@@ -1,4 +1,4 @@
-// Bytes through DDS and back, within one process and between two.
+// Bytes sent through DDS and back, within one process and between two.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -31,7 +31,7 @@ protected:
 
 }  // namespace
 
-TEST_F(RawTypeTest, BytesOfAnySizeComeBackPaddedToWholeWords) {
+TEST_F(RawTypeTest, ReturnsBytesOfAnySizePaddedToWholeWords) {
     for (const size_t size : {4u, 5u, 7u, 8u, 1000u, 100'001u, 3'000'000u}) {
         Bytes bytes = sent(size), received;
         uint64_t sender = 0;
@@ -42,7 +42,7 @@ TEST_F(RawTypeTest, BytesOfAnySizeComeBackPaddedToWholeWords) {
     }
 }
 
-TEST_F(RawTypeTest, AReaderThatIsBehindHasTheNewestOnly) {
+TEST_F(RawTypeTest, ASlowReaderReceivesOnlyTheNewest) {
     for (size_t size = 4; size < 44; size += 4) sent(size);
     Bytes received;
     uint64_t sender = 0;
@@ -51,7 +51,7 @@ TEST_F(RawTypeTest, AReaderThatIsBehindHasTheNewestOnly) {
     EXPECT_THAT(sizes, testing::ElementsAre(24, 28, 32, 36, 40));
 }
 
-TEST_F(RawTypeTest, AReaderOfAnotherTypeHearsNothing) {
+TEST_F(RawTypeTest, AReaderOfAnotherTypeReceivesNothing) {
     Reader other(node, "rt/bytes", "test_msgs/msg/Other", "", {}, {});
     sent(8);
     Bytes received;
@@ -60,7 +60,7 @@ TEST_F(RawTypeTest, AReaderOfAnotherTypeHearsNothing) {
     EXPECT_FALSE(other.take(received, sender));
 }
 
-TEST_F(RawTypeTest, AListenerIsToldOfWhatArrives) {
+TEST_F(RawTypeTest, NotifiesAListenerOfArrivals) {
     std::atomic<int> told = 0;
     Reader listening(node, "rt/bytes", "test_msgs/msg/Bytes", "", {}, [&] { ++told; });
     sent(8);

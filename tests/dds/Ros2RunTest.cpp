@@ -1,4 +1,4 @@
-// deploy/ros2_fls.yml, deploy/ros2_tf.yml and what is wrong with others, as a user sees it.
+// deploy/ros2_fls.yml, deploy/ros2_tf.yml and the errors of faulty deployments, as a user sees them.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -24,7 +24,8 @@ protected:
     const std::string fls = test::sourceFile("deploy/ros2_fls.yml");
     const std::string tf = test::sourceFile("deploy/ros2_tf.yml");
 
-    /** The commands that a launch file would run, with its arguments: "one_vehicle.launch.py deployment:=x.yml". */
+    /** Returns the commands that a launch file would run, with its arguments: "one_vehicle.launch.py
+     *  deployment:=x.yml". */
     std::vector<std::vector<std::string>> launched(const std::string& words) {
         const std::string script = test::sourceFile("tests/dds/launch_commands.py ") + folder.path().string() + " ";
         const std::string answer =
@@ -34,7 +35,7 @@ protected:
         if (commands.is_discarded()) return {};
         return commands.get<std::vector<std::vector<std::string>>>();
     }
-    /** The first message of a topic that comes. */
+    /** Returns the first message that arrives on a topic. */
     template <class Message>
     Message heard(const std::string& topic) {
         Node node(domainId({}), "listener", 16);
@@ -53,10 +54,10 @@ protected:
     }
 };
 
-/** Of the harbour's task: a machine that stalls is not to look like a vehicle that has gone. */
+/** Setting of the harbour's task, so that a stalled machine does not count as a lost vehicle. */
 const std::string patience = "scene.pose_timeout=60";
 
-/** A vehicle that tells where it is, twenty times a second. */
+/** A vehicle that sends its pose twenty times a second. */
 const std::string vehicle =
     "schedule: realtime\ntasks:\n"
     "  vehicle: {type: pose::TrajectoryTask, activity: {period: 0.05}, properties: {file: " +
@@ -99,7 +100,7 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 40);
 }
 
-TEST_F(Ros2RunTest, PosesThatAreDroppedAreToldAtOnceAndAtTheEnd) {
+TEST_F(Ros2RunTest, ReportsDroppedPosesAtOnceAndAtTheEnd) {
     if (!Peer::available())
         GTEST_SKIP() << "PyPI's cyclonedds is not in " << python() << ": scripts/setup puts it there";
     const Process sonar(insonifyWords({"run", fls, "--out", "out", "--pings", "10", "--set", patience}), folder.path());
@@ -111,7 +112,7 @@ TEST_F(Ros2RunTest, PosesThatAreDroppedAreToldAtOnceAndAtTheEnd) {
     EXPECT_THAT(outcome.out + outcome.err, testing::ContainsRegex("messages? dropped: " + why));
 }
 
-TEST_F(Ros2RunTest, WithoutPosesItWaitsAndSaysSo) {
+TEST_F(Ros2RunTest, ReportsThatItWaitsForPoses) {
     Process waiting(insonifyWords({"run", fls, "--out", "out"}), folder.path());
     EXPECT_TRUE(comesTrue([&] {
         return readFile(folder / "stderr.txt").find("warning: scene: scene.pose: waits for the first pose") !=
@@ -139,7 +140,7 @@ TEST_F(Ros2RunTest, TheDeploymentsAreValid) {
     for (const std::string& deployment : {fls, tf}) EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
 }
 
-TEST_F(Ros2RunTest, DiagnosticsAreToldWithTheirPlace) {
+TEST_F(Ros2RunTest, ReportsDiagnosticsWithTheirPlace) {
     Outcome outcome = check(replaced(vehicle, "type: nav_msgs/Odometry", "type: nav_msgs/Odometri"));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("x.yml:4:"));
@@ -156,14 +157,14 @@ TEST_F(Ros2RunTest, DiagnosticsAreToldWithTheirPlace) {
     EXPECT_THAT(outcome.err, HasSubstr("no topic of ros is for port other"));
 }
 
-TEST_F(Ros2RunTest, LockstepDoesNotReadPoses) {
+TEST_F(Ros2RunTest, RefusesToReadPosesInLockstep) {
     const Outcome outcome =
         check(replaced(replaced(readFile(fls), "realtime", "lockstep"), "scenes/", test::sourceFile("deploy/scenes/")));
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages come on the wall clock's time"));
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.poses.properties: messages arrive by the wall clock"));
 }
 
-TEST_F(Ros2RunTest, ADomainThatCannotBeJoinedIsOneError) {
+TEST_F(Ros2RunTest, ReportsOneErrorForADomainThatCannotBeJoined) {
     writeFile(folder / "x.yml", vehicle);
     setenv("CYCLONEDDS_URI",
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface "
@@ -175,7 +176,7 @@ TEST_F(Ros2RunTest, ADomainThatCannotBeJoinedIsOneError) {
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
-TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveTopicsAndFramesOfTheirOwn) {
+TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveSeparateTopicsAndFrames) {
     const auto commands = launched("two_vehicles.launch.py auv1:=" + fls);
     ASSERT_EQ(commands.size(), 2u);
     std::vector<TestFolder> folders(4);
@@ -234,7 +235,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(Ros2RunTest, NodesHaveTheNamesThatTheArgumentsGive) {
+TEST_F(Ros2RunTest, NamesNodesByTheArguments) {
     const Process sonar(insonifyWords({"run", fls, "--out", "out", "--ros-args", "-r", "__ns:=/auv7", "-r", "__node:=x",
                                        "-r", "odometry:=/pose"}),
                         folder.path());
@@ -259,7 +260,7 @@ TEST_F(Ros2RunTest, NodesHaveTheNamesThatTheArgumentsGive) {
     EXPECT_EQ(sonar.wait().code, 0);
 }
 
-TEST_F(Ros2RunTest, FilesOfParametersHoldForTheNodesThatTheyName) {
+TEST_F(Ros2RunTest, AppliesParameterFilesToTheNodesThatTheyName) {
     const auto errorWith = [&](const std::string& node) {
         writeFile(folder / "p.yaml", node + ":\n  ros__parameters: {sonar: {range: -1}}\n");
         const Outcome outcome = callInsonify(folder, {"run", fls, "--ros-args", "--params-file", "p.yaml"});
@@ -326,7 +327,7 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
             "  - {from: scene.snapshot, to: sonar.snapshot}\n"
             "  - {from: sonar.ping, to: ros.ping}\n");
     const Process run(insonifyWords({"run", "x.yml", "--out", "out"}), folder.path());
-    {  // what is no request gets no answer, and ends nothing
+    {  // an invalid request gets no response and stops nothing
         Node node(domainId({}), "stranger", 16);
         Writer writer(node, "rq/auv/ros/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", "", {});
         EXPECT_TRUE(comesTrue([&] { return writer.hasReaders(); }));
@@ -360,6 +361,6 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
     EXPECT_EQ(found["results"][0][0], json({{"successful", true}, {"reason", ""}}));
     EXPECT_THAT(found["results"][0][1]["reason"].get<std::string>(), HasSubstr("must be a finite number"));
     EXPECT_EQ(found["results"][0][2],
-              json({{"successful", false}, {"reason", "nobody.at_home: is no property of a task"}}));
+              json({{"successful", false}, {"reason", "nobody.at_home: is not a property of any task"}}));
     EXPECT_EQ(found["after"][0][0]["double_value"], 15);
 }

@@ -1,4 +1,4 @@
-// A peer that hangs holds up neither the simulator nor other peers.
+// A peer that hangs blocks neither the simulator nor other peers.
 #include <gmock/gmock.h>
 
 #include <future>
@@ -15,7 +15,7 @@ class SlowReaderTest : public WithPeer {};
 
 }  // namespace
 
-TEST_F(SlowReaderTest, APeerThatHangsStallsNothing) {
+TEST_F(SlowReaderTest, APeerThatHangsBlocksNothing) {
     TopicOut topic = topicOut("in", "/auv/sonar", message_type<ros::ProjectedSonarImage>);
     topic.sonar.dtype = ros::ImageType::Float32;
     Publishing<types::SonarPtr> publishing({topic}, [](PublisherConfig& config) { config.depth = 200; });

@@ -20,7 +20,7 @@ types::Pose somewhere(double x) {
     return pose;
 }
 
-/** Until both have found each other. */
+/** Sends until both have found each other. */
 void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const types::Pose& pose) {
     types::Pose came;
     ASSERT_TRUE(comesTrue([&] { return publishing.send(pose), subscribing.reader.port.readNew(came); }));
@@ -29,7 +29,7 @@ void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const t
 
 }  // namespace
 
-TEST_F(SubscriberTaskTest, APoseComesBackAsItWentInAnyFrame) {
+TEST_F(SubscriberTaskTest, APoseReturnsUnchangedInAnyFrame) {
     for (const auto frame : {ros::WorldFrame::AsIs, ros::WorldFrame::Enu, ros::WorldFrame::Ned})
         for (const auto type : {PoseType::Odometry, PoseType::PoseStamped}) {
             const bool whole = type == PoseType::Odometry;
@@ -63,13 +63,13 @@ TEST_F(SubscriberTaskTest, AMessageWakesTheTaskAtOnce) {
     for (int i = 1; i <= 50; ++i) {
         publishing.send(somewhere(i));
         auto pose = subscribing.next();
-        while (pose && pose->position.x == 0) pose = subscribing.next();  // of their meeting
+        while (pose && pose->position.x == 0) pose = subscribing.next();  // from the discovery
         ASSERT_TRUE(pose);
         EXPECT_EQ(pose->position.x, i);
     }
 }
 
-TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
+TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestPoseWins) {
     Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
     Subscribing newest("/there"), all("/there", PoseType::Odometry, [](SubscriberConfig&config) { config.depth = 5; });
     meet(publishing, newest, somewhere(0));
@@ -93,7 +93,7 @@ TEST_F(SubscriberTaskTest, WithADepthOfOneTheNewestWins) {
     }
 }
 
-TEST_F(SubscriberTaskTest, NonsenseThatComesAfterAGoodPoseDoesNotPushItOut) {
+TEST_F(SubscriberTaskTest, InvalidMessagesDoNotDisplaceAGoodPose) {
     Publishing<types::Pose> publishing({topicOut("in", "/there", message_type<ros::Odometry>)});
     Subscribing subscribing("/there");
     meet(publishing, subscribing, somewhere(0));
@@ -109,7 +109,7 @@ TEST_F(SubscriberTaskTest, NonsenseThatComesAfterAGoodPoseDoesNotPushItOut) {
     EXPECT_EQ(pose.position.x, 7);
 }
 
-TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
+TEST_F(SubscriberTaskTest, RefusesLockstepWithAReason) {
     SubscriberTask task("subscriber");
     task.environment().lockstep = true;
     types::Diagnostics diagnostics;
@@ -118,8 +118,8 @@ TEST_F(SubscriberTaskTest, LockstepIsRefusedWithAReason) {
     EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("set schedule: realtime"));
 }
 
-/** The absence of each topic that has no pose, as reported by its subscription. */
-TEST_F(SubscriberTaskTest, ATopicWithoutAPoseIsReportedWithWhatTheDomainHas) {
+/** Returns each topic's report of the absence of poses. */
+TEST_F(SubscriberTaskTest, ReportsATopicWithoutAPoseTogetherWithTheDomainsTopics) {
     const auto absence = [](const std::string& topic, PoseType type, Reliability reliability) {
         Node node(domainId({}), "asking", 16);
         SubscriberConfig config;
@@ -148,7 +148,7 @@ TEST_F(SubscriberTaskTest, ATopicWithoutAPoseIsReportedWithWhatTheDomainHas) {
                 testing::HasSubstr("has 1 publishers, which send nothing that can be used"));
 }
 
-TEST_F(SubscriberTaskTest, TheAbsenceOfAPoseIsAWarningOnce) {
+TEST_F(SubscriberTaskTest, WarnsOnceOfTheAbsenceOfAPose) {
     std::vector<std::string> warnings;
     Subscribing subscribing("/nowhere");
     subscribing.task.activity().hold();

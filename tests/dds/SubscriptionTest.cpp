@@ -1,4 +1,4 @@
-// What a subscription refuses.
+// Messages that a subscription refuses.
 #include <gmock/gmock.h>
 
 #include "components/dds/Endpoints.hpp"
@@ -56,7 +56,7 @@ struct SubscriptionTest : Loopback {
 
 }  // namespace
 
-TEST_F(SubscriptionTest, TheNanosecondsOfAStampAreKeptForWhatIsMadeOfThePose) {
+TEST_F(SubscriptionTest, KeepsTheNanosecondsOfAStampForTheResultsOfThePose) {
     ros::Odometry message = at(1, 1);
     message.header.stamp = {1, 123'456'789};
     send(message);
@@ -69,7 +69,7 @@ TEST_F(SubscriptionTest, TheNanosecondsOfAStampAreKeptForWhatIsMadeOfThePose) {
     EXPECT_EQ(ros::fineStamps().exact({1, 123'457'000}), (ros::Time{1, 123'457'000})) << "of another microsecond";
 }
 
-TEST_F(SubscriptionTest, GoodPosesComeInOrder) {
+TEST_F(SubscriptionTest, ReturnsGoodPosesInOrder) {
     for (int i = 1; i < 4; ++i) send(at(i, i));
     for (int i = 1; i < 4; ++i) {
         ASSERT_TRUE(take());
@@ -79,7 +79,7 @@ TEST_F(SubscriptionTest, GoodPosesComeInOrder) {
     EXPECT_EQ(drops(), 0u);
 }
 
-TEST_F(SubscriptionTest, BytesThatAreNoMessageAreDroppedAndCounted) {
+TEST_F(SubscriptionTest, DropsAndCountsBytesThatAreNotAMessage) {
     Bytes whole;
     ros::encode(at(1, 1), whole);
     for (const size_t size : {0u, 3u, 4u, 8u, 100u, unsigned(whole.size()) - 8}) {
@@ -87,16 +87,16 @@ TEST_F(SubscriptionTest, BytesThatAreNoMessageAreDroppedAndCounted) {
         writer->write(cut);
     }
     Bytes strange = whole;
-    strange[1] = 9;  // an encoding that is not read
+    strange[1] = 9;  // an unsupported encoding
     writer->write(strange);
     writer->write(whole);
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.position.x, 1);
     EXPECT_GE(drops(), 6u);
-    EXPECT_THAT(dropped.last(), testing::HasSubstr("/judged: no message of its type: byte 0: encoding 9"));
+    EXPECT_THAT(dropped.last(), testing::HasSubstr("/judged: not a message of its type: byte 0: encoding 9"));
 }
 
-TEST_F(SubscriptionTest, PosesThatAreNotFiniteAreDropped) {
+TEST_F(SubscriptionTest, DropsPosesThatAreNotFinite) {
     ros::Odometry bad = at(1, std::numeric_limits<double>::quiet_NaN());
     send(bad);
     bad = at(1, std::numeric_limits<double>::infinity());
@@ -113,24 +113,24 @@ TEST_F(SubscriptionTest, PosesThatAreNotFiniteAreDropped) {
     EXPECT_THAT(dropped.last(), testing::HasSubstr("not finite"));
 }
 
-TEST_F(SubscriptionTest, StampsThatGoBackAreDroppedUntilTheirSenderIsGone) {
+TEST_F(SubscriptionTest, DropsStampsThatGoBackUntilTheirSenderIsGone) {
     send(at(10, 1));
     send(at(9, 2));
-    send(at(10, 3));  // as old is not back
+    send(at(10, 3));  // an equal stamp does not go back
     ASSERT_TRUE(take());
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.position.x, 3);
     EXPECT_FALSE(take());
     EXPECT_EQ(drops(), 1u);
     writer.reset();
-    writer = newWriter();  // a simulator that starts again
+    writer = newWriter();  // a restarted simulator
     send(at(1, 4));
     ASSERT_TRUE(comesTrue([&] { return take(); }));
     EXPECT_EQ(pose.position.x, 4);
     EXPECT_EQ(drops(), 1u);
 }
 
-TEST_F(SubscriptionTest, AClockThatWasSetBackIsBelievedAfterASecond) {
+TEST_F(SubscriptionTest, AcceptsAClockThatWasSetBackAfterASecond) {
     const auto take_at = [&](double later) {
         return subscription.take(arrival + types::Time::fromSeconds(later), pose);
     };
@@ -149,7 +149,7 @@ TEST_F(SubscriptionTest, AClockThatWasSetBackIsBelievedAfterASecond) {
     EXPECT_EQ(drops(), 3u);
 }
 
-TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
+TEST_F(SubscriptionTest, DropsAStampFarAheadOfTheClockAndBlocksNobody) {
     const auto clock = static_cast<int32_t>(arrival.seconds());
     send(at(clock + 1000, 1));
     send(at(clock, 2));
@@ -159,7 +159,7 @@ TEST_F(SubscriptionTest, AStampFarAheadOfTheClockIsDroppedAndSilencesNobody) {
     EXPECT_THAT(dropped.last(), testing::HasSubstr("ahead of the clock"));
 }
 
-TEST_F(SubscriptionTest, AMessageFarTooLargeIsNotTakenFromTheNetwork) {
+TEST_F(SubscriptionTest, DoesNotTakeAMessageFarTooLarge) {
     writer->write(Bytes(3 << 20, 'x'));
     writer->write(Bytes((64 << 10) + 4, 'x'));
     send(at(1, 1));
@@ -170,7 +170,7 @@ TEST_F(SubscriptionTest, AMessageFarTooLargeIsNotTakenFromTheNetwork) {
     EXPECT_THAT(dropped.last(), testing::HasSubstr("/judged: empty, or larger than any message of its type"));
 }
 
-TEST_F(SubscriptionTest, AfterAFloodOfNonsenseItTellsThatThereIsMore) {
+TEST_F(SubscriptionTest, ReportsMoreMessagesAfterManyInvalidMessages) {
     for (int i = 0; i < 90; ++i) writer->write(Bytes(10, 'x'));
     send(at(1, 1));
     EXPECT_FALSE(take());
@@ -179,7 +179,7 @@ TEST_F(SubscriptionTest, AfterAFloodOfNonsenseItTellsThatThereIsMore) {
     EXPECT_EQ(drops(), 90u);
 }
 
-TEST_F(SubscriptionTest, APoseMayBearTheTimeOfItsArrival) {
+TEST_F(SubscriptionTest, CanStampAPoseWithItsArrival) {
     TopicIn strange = topic;
     strange.stamp = StampFrom::Arrival;
     Subscription other(node, config, strange, dropped, odd, {});
@@ -188,7 +188,7 @@ TEST_F(SubscriptionTest, APoseMayBearTheTimeOfItsArrival) {
     EXPECT_EQ(pose.time, arrival);
 }
 
-TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
+TEST_F(SubscriptionTest, CountsDifferentInvalidMessagesAsOneReason) {
     const std::string nonsense(40, 'x');
     for (size_t size = 1; size < 40; ++size) {
         const Bytes bytes(nonsense.begin(), nonsense.begin() + static_cast<ptrdiff_t>(size));
@@ -199,13 +199,13 @@ TEST_F(SubscriptionTest, DifferentNonsenseIsOneReason) {
     EXPECT_EQ(dropped.byReason().size(), 1u);
 }
 
-TEST_F(SubscriptionTest, AMessageWithoutAStampBearsItsArrival) {
+TEST_F(SubscriptionTest, StampsAMessageWithoutAStampWithItsArrival) {
     send(at(0, 1));
     ASSERT_TRUE(take());
     EXPECT_EQ(pose.time, arrival);
 }
 
-TEST_F(SubscriptionTest, OrientationsAreOfUnitLength) {
+TEST_F(SubscriptionTest, NormalisesOrientations) {
     ros::Odometry message = at(1, 1);
     message.pose.pose.orientation = {0, 0, 3, 3};  // a quarter turn
     message.twist.twist.linear.x = 2;

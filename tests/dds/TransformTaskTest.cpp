@@ -1,4 +1,4 @@
-// tf as ROS 2 nodes tell it: by PyPI's cyclonedds, and by writers of the test.
+// tf as sent by ROS 2 nodes: by PyPI's cyclonedds, and by writers of the test.
 #include <gmock/gmock.h>
 
 #include "components/dds/Endpoints.hpp"
@@ -67,7 +67,7 @@ TEST_F(TransformTaskTest, APeersChainOfMovingAndStaticLinksBecomesPoses) {
     }
 }
 
-TEST_F(TransformTaskTest, AChainThatIsCutIsToldByItsLink) {
+TEST_F(TransformTaskTest, ReportsTheLinkThatInterruptsAChain) {
     if (!Peer::available()) GTEST_SKIP() << "PyPI's cyclonedds is not in " << python();
     startWith({{"pose", "base_link"}});
     const Peer peer("transforms 2 0");
@@ -77,10 +77,10 @@ TEST_F(TransformTaskTest, AChainThatIsCutIsToldByItsLink) {
         sender.send({Sender::place("map", "odom", 5)});
         return readers[0].port.readNewest(*std::make_unique<types::Pose>()) == framework::FlowStatus::NewData;
     }));
-    EXPECT_TRUE(tells("missing: pose: odom in map has not come for a second"));
+    EXPECT_TRUE(tells("missing: pose: odom in map was not published for a second"));
 }
 
-TEST_F(TransformTaskTest, AChainThatIsStaticIsToldTenTimesASecond) {
+TEST_F(TransformTaskTest, SendsAStaticChainTenTimesASecond) {
     startWith({{"pose", "pier"}});
     Sender sender("/tf_static");
     sender.send({Sender::place("map", "quay", 5), Sender::place("quay", "pier", 2)});
@@ -90,7 +90,7 @@ TEST_F(TransformTaskTest, AChainThatIsStaticIsToldTenTimesASecond) {
     EXPECT_GE(second->time - first->time, types::Time{100'000});
 }
 
-TEST_F(TransformTaskTest, WhatIsRefusedIsCountedAndTheRestGoesOn) {
+TEST_F(TransformTaskTest, CountsRefusedTransformsAndContinues) {
     startWith({{"pose", "base_link"}},
               [](TransformConfig& config) { config.node.world_frame = ros::WorldFrame::AsIs; });
     Sender sender;
@@ -106,14 +106,14 @@ TEST_F(TransformTaskTest, WhatIsRefusedIsCountedAndTheRestGoesOn) {
     }));
     EXPECT_EQ(pose.value_or(types::Pose{}).position, glm::dvec3(3, 0, 0));
     EXPECT_TRUE(tells("dropped: other: translation and rotation are not finite"));
-    EXPECT_TRUE(tells("dropped: a message that is none of its type"));
+    EXPECT_TRUE(tells("dropped: a message is not of its type"));
 }
 
-TEST_F(TransformTaskTest, TransformsMayBearTheTimeOfTheirArrival) {
+TEST_F(TransformTaskTest, CanStampTransformsWithTheirArrival) {
     startWith({{"pose", "base_link"}}, [](TransformConfig& config) { config.stamp = StampFrom::Arrival; });
     Sender sender;
     auto old = Sender::place("map", "base_link", 3);
-    old.header.stamp = {5, 0};  // of a simulation
+    old.header.stamp = {5, 0};  // of a simulation's time
     std::optional<types::Pose> pose;
     const types::Time before = framework::wallClock();
     EXPECT_TRUE(comesTrue([&] {
@@ -125,7 +125,7 @@ TEST_F(TransformTaskTest, TransformsMayBearTheTimeOfTheirArrival) {
     EXPECT_GE(pose.value_or(types::Pose{}).time, before);
 }
 
-TEST_F(TransformTaskTest, WhatIsWrongWithItsPropertiesIsToldWithThePlace) {
+TEST_F(TransformTaskTest, ReportsWrongPropertiesWithTheirPlace) {
     TransformTask other("other");
     TransformConfig config;
     types::Diagnostics diagnostics;

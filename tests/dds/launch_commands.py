@@ -1,7 +1,7 @@
-"""What launch files of ROS 2 would run: python3 launch_commands.py FOLDER LAUNCH_FILE [ARGUMENT:=VALUE ...]
+"""Prints the commands that launch files of ROS 2 would run: python3 launch_commands.py FOLDER LAUNCH_FILE [ARGUMENT:=VALUE ...]
 
-Stands in for the packages `launch` and `launch_ros`, which no package index has, as far as our launch files use them,
-and composes command lines as launch_ros does. Prints a JSON list of commands; parameters go to files in FOLDER.
+Replaces the packages `launch` and `launch_ros`, which no package index has, as far as our launch files use them.
+Composes command lines as launch_ros does. Prints a JSON list of commands; parameters go to files in FOLDER.
 """
 import json
 import pathlib
@@ -21,7 +21,7 @@ class Configuration:
 
 
 def text(value, values):
-    """A text, or a substitution as it is."""
+    """Returns a text, or the value of a substitution."""
     return text(values[value.name], values) if isinstance(value, Configuration) else value
 
 

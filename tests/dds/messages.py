@@ -1,4 +1,4 @@
-"""Messages of ROS 2 for PyPI's cyclonedds: an account of them that owes nothing to ours."""
+"""Messages of ROS 2 for PyPI's cyclonedds, defined independently of the C++ definitions."""
 from dataclasses import dataclass, field
 
 from cyclonedds.idl import IdlStruct

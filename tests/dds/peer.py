@@ -1,14 +1,14 @@
-"""Another ROS 2 peer, by PyPI's cyclonedds. What it found goes to stdout as JSON; `ready` before that, once it is there.
+"""Another ROS 2 peer, by PyPI's cyclonedds. Prints `ready` once it has joined, then its findings as JSON.
 
-    peer.py listen TYPE TOPIC SECONDS [COUNT]   counts messages, until that many came, and their latency [ms]; keeps the first
-    peer.py node SECONDS WRITERS                nodes, and writers with their types and hashes, once a node has so many
+    peer.py listen TYPE TOPIC SECONDS [COUNT]   counts COUNT messages and their latency [ms]; keeps the first
+    peer.py node SECONDS WRITERS                prints nodes, and writers with types and hashes, once a node has WRITERS
     peer.py image TOPIC COUNT HERTZ             sends images of 1 MB, 256 beams x 1000 ranges of float32
-    peer.py transforms SPEED [ODOM]             sends where base_link is, forever: see there; ODOM 0 leaves a link out
-    peer.py parameters NODE NAME VALUE          asks the services of a node's parameters, sets one [a double]
+    peer.py transforms SPEED [ODOM]             sends transforms of base_link without end; ODOM 0 omits a link
+    peer.py parameters NODE NAME VALUE          calls the parameter services of a node, sets a double
     peer.py odometry TOPIC COUNT HERTZ [FLAW]  sends poses along x; FLAW nan, back, zero or bytes spoils every second
 
-Who listens says `met` at the first image without a stamp, and does not count those. With --greet, who sends sends such an
-image, or poses at the origin, until SIGUSR1: none of what follows is lost because one side did not know the other yet.
+A listener prints `met` at the first image without a stamp, and does not count these. With --greet, a sender sends such
+images, or poses at the origin, until SIGUSR1: no later message is lost to an unfinished discovery.
 """
 import dataclasses
 import json
@@ -46,7 +46,7 @@ def seconds(stamp):
 
 
 def greet(writer, sample):
-    """Once there is a reader: until it has heard one, or for a while in which it comes to know us."""
+    """Waits for a reader, then until it has received a message, or for its discovery of this writer."""
     while not writer.get_matched_subscriptions():
         time.sleep(0.01)
     if "--greet" not in sys.argv:
@@ -57,7 +57,7 @@ def greet(writer, sample):
 
 
 def plain(value):
-    """As JSON holds it, long lists by their length and first."""
+    """Returns a value for JSON; long lists by their length and first item."""
     if dataclasses.is_dataclass(value):
         return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
     if isinstance(value, (bytes, bytearray, list, tuple)) and len(value) > 64:
@@ -92,7 +92,7 @@ def listen(kind, topic, span, count=10**9):
 
 
 def writers_of(info):
-    """Of a node's announcement: the keys of its writers."""
+    """Returns the keys of a node's writers from its announcement."""
     return [gid["data"] for node in info["node_entities_info_seq"] for gid in node["writer_gid_seq"]]
 
 
@@ -132,7 +132,7 @@ def image(topic, count, hertz):
     ready()
     greet(writer, sample)
     stamped_now(sample.header)
-    wire = bytearray(sample.serialize(use_version_2=False))  # takes Python longer than a period: once, then the stamp
+    wire = bytearray(sample.serialize(use_version_2=False))  # serialising takes longer than a period: once, then only the stamp
     sample.serialize = lambda **_: bytes(wire)
     due = time.time()
     for _ in range(int(count)):
@@ -160,7 +160,7 @@ def bytes_of(sample):
 
 @dataclasses.dataclass
 class Octets(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
-    """Bytes that may or may not be a pose: which frames it names decides on their number."""
+    """Bytes that may or may not be a pose. Their number depends on the names of its frames."""
     all: array[uint8, len(bytes_of(pose_at(0, 0.0, 0.0, 0.0)))]
 
 
@@ -194,8 +194,8 @@ def transform(parent, child, now, x, y, z, turn=0.0):
 
 
 def transforms(speed, odom=1):
-    """The world is east, north, up. odom lies 10 m east of map, turned left by a quarter, every tenth of a second; in it
-    base_link goes ahead from 1 m on, fifty times a second, by a sender of its own; in base_link an arm does not move."""
+    """Sends transforms in a world of east, north, up. odom is 10 m east of map, turned left by 90 degrees, at 10 Hz. In odom
+    base_link moves ahead from 1 m on, at 50 Hz, by another sender. In base_link an arm is static."""
     participant = DomainParticipant(DOMAIN)
     topic = Topic(participant, "rt/tf", messages.TFMessage)
     latched = DataWriter(participant, Topic(participant, "rt/tf_static", messages.TFMessage), qos=LATCHED)
@@ -216,7 +216,7 @@ def struct_of(typename, fields):
 
 
 def ask(participant, node, service, kind, request, response, *words):
-    """Calls a service as rmw_cyclonedds_cpp does: who asks and a number come first, and come back so."""
+    """Calls a service as rmw_cyclonedds_cpp does: request and response begin with the client's identity and a number."""
     who_asks = [("who", uint64), ("number", int64)]
     asked = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Request_", who_asks + request)
     said = struct_of(f"rcl_interfaces::srv::dds_::{kind}_Response_", who_asks + response)
@@ -225,7 +225,7 @@ def ask(participant, node, service, kind, request, response, *words):
     while not writer.get_matched_subscriptions() or not reader.get_matched_publications():
         time.sleep(0.01)
     who, number = 0x0123456789ABCDEF, 40 + len(service)
-    time.sleep(0.2)  # it has to know our reader as well
+    time.sleep(0.2)  # it must discover our reader as well
     writer.write(asked(who, number, *words))
     while True:
         for answer in reader.take(N=10):

@@ -1,4 +1,4 @@
-// Each line of a side-scan's recording is laid along the ground by its own altitude, in a replay and in an export.
+// Each line of a side-scan's recording is drawn along the ground by its own altitude, in a replay and in an export.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr int lines = output::WaterfallImage::history;
 
 double altitudeOf(int line) { return 7 + 3 * std::sin(line / 40.0); }
 
-/** A vehicle that rises and sinks by 3 m above a wire. Lines begin with the outgoing pulse, the loudest of all. */
+/** A vehicle that rises and sinks by 3 m above a wire. Lines begin with the outgoing pulse, the strongest sample. */
 std::vector<char> wireXtf() {
     types::Sonar ping;
     ping.bin_duration = {40};
@@ -62,7 +62,7 @@ connections:
   - {from: receiver.ping, to: other.ping, policy: {type: buffer, size: 8}}
 )";
 
-/** Columns to starboard of the middle at which the rows are brightest, without the middle: least and greatest. */
+/** Returns the min and max column to starboard of the middle at which the rows are brightest. */
 std::pair<int, int> brightestColumns(const fs::path& picture, const output::SideScanPictureConfig& config) {
     const cv::Mat image = cv::imread(picture, cv::IMREAD_GRAYSCALE);
     const cv::Rect water = output::SideScanImage(config).water();
@@ -106,7 +106,7 @@ TEST_F(AltitudeRunTest, AReplayHasTheAltitudesOfTheRecording) {
     EXPECT_GT(greatest - least, 30) << "a fixed altitude bends the wire";
 }
 
-TEST_F(AltitudeRunTest, AnXtfFileThatIsWrittenInAReplayHasTheAltitudesOfTheRecording) {
+TEST_F(AltitudeRunTest, AnXtfFileOfAReplayHasTheAltitudesOfTheRecording) {
     ASSERT_EQ(callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"}).code, 0);
     output::XtfFile file(folder_ / "out/again.xtf");
     int count = 0;

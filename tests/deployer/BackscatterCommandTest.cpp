@@ -69,7 +69,7 @@ TEST(BackscatterCommandTest, AMaterialIsARoughSolidWithItsSources) {
     EXPECT_NEAR(steel["parameters"]["roughness_um"], 14.8, 0.1);
     EXPECT_EQ(steel["sources"]["density_and_speeds"], "ASTM E494 2015, density Haynes 2014");
     EXPECT_THAT(steel["sources"]["roughness"].get<std::string>(), HasSubstr("Moody 1944"));
-    EXPECT_LT(steel["strength_db"][0], -25) << "a mirror beside its highlight";
+    EXPECT_LT(steel["strength_db"][0], -25) << "off its specular highlight";
     EXPECT_GT(steel["strength_db"][1], 20) << "its highlight";
     EXPECT_LT(steel["diffuse_db"][1], -20);
     EXPECT_NEAR(rock["strength_db"][1], 20 * std::log10(0.724 / std::sqrt(M_PI)), 0.05) << "Lambert's law";
@@ -102,7 +102,7 @@ TEST(BackscatterCommandTest, AboveAHundredKilohertzAWarningNamesTheRange) {
                       HasSubstr("warning: apl_uw_tr_9407 is extrapolated: 750 kHz (10 to 100)")));
 }
 
-TEST(BackscatterCommandTest, RefusesUnknownNamesAndWhatIsNoAngle) {
+TEST(BackscatterCommandTest, RefusesUnknownNamesAndInvalidAngles) {
     const TestFolder folder;
     struct Case {
         std::vector<std::string> options;

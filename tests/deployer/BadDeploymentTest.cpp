@@ -1,4 +1,4 @@
-// Everything that can be wrong with a deployment: exit code 2, a message with its place, and nothing started.
+// Errors in deployments: exit code 2, a message with its place, and nothing started.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -11,7 +11,7 @@ namespace {
 struct BadDeployment {
     const char* name;
     std::string text;
-    std::vector<std::string> messages;  ///< All are in what is printed.
+    std::vector<std::string> messages;  ///< The output has all of them.
 };
 
 void PrintTo(const BadDeployment& tested, std::ostream* stream) { *stream << tested.name; }
@@ -20,7 +20,7 @@ BadDeployment edited(const char* name, const char* what, const char* with, std::
     return {name, replaced(wall_deployment, what, with), std::move(messages)};
 }
 
-/** A receiver between the sonar and the noise. */
+/** Adds a receiver between the sonar and the noise. */
 std::string receiverBeforeNoise() {
     const std::string more =
         replaced(wall_deployment, "  noise:\n", "  receiver: {type: receiver::ReceiverTask}\n  noise:\n");
@@ -28,7 +28,7 @@ std::string receiverBeforeNoise() {
                     "{from: sonar.ping, to: receiver.intensity}\n  - {from: receiver.ping, to: noise.clean}");
 }
 
-/** The scene with these point targets. */
+/** Returns the scene with these point targets. */
 BadDeployment targets(const char* name, const std::string& list, std::vector<std::string> messages) {
     return edited(name, "{file: wall.gltf}", ("{file: wall.gltf, targets: [" + list + "]}").c_str(),
                   std::move(messages));
@@ -117,7 +117,7 @@ TEST_P(BadDeploymentTest, IsRefusedWithItsPlaceBeforeAnythingStarts) {
 INSTANTIATE_TEST_SUITE_P(All, BadDeploymentTest, testing::ValuesIn(cases),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST(BadDeploymentsTest, AFileThatIsNotThereIsNamed) {
+TEST(BadDeploymentsTest, NamesAMissingFile) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"run", "nowhere.yml"});
     EXPECT_EQ(outcome.code, 2);
@@ -125,12 +125,12 @@ TEST(BadDeploymentsTest, AFileThatIsNotThereIsNamed) {
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(BadDeploymentsTest, AFolderIsNoDeployment) {
+TEST(BadDeploymentsTest, RefusesAFolderWithoutADeployment) {
     const TestFolder folder;
     EXPECT_EQ(callInsonify(folder, {"run", "."}).code, 2);
 }
 
-TEST(BadDeploymentsTest, AllErrorsAreTold) {
+TEST(BadDeploymentsTest, ReportsAllErrors) {
     std::string text = replaced(wall_deployment, "range: 20", "range: -20");
     text = replaced(text, "bin_count: 50", "bin_count: few");
     text = replaced(text, "to: noise.clean", "to: noise.dirty");
@@ -141,7 +141,7 @@ TEST(BadDeploymentsTest, AllErrorsAreTold) {
         EXPECT_THAT(outcome.err, HasSubstr(place));
 }
 
-TEST(BadDeploymentsTest, ALogThatIsNoLogIsRefusedByReplay) {
+TEST(BadDeploymentsTest, ReplayRefusesAFileThatIsNotALog) {
     const WallFolder folder;
     writeFile(folder / "no.0.log", "this is no log at all, but it is longer than a header of one would be");
     const Outcome outcome = callInsonify(folder, {"replay", "no.0.log", "wall.yml", "--out", "out"});

@@ -15,7 +15,7 @@ void expectRefused(const WallFolder& folder, const std::string& message) {
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("wall.gltf"));
     EXPECT_THAT(outcome.err, HasSubstr(message));
-    EXPECT_FALSE(fs::exists(folder / "out")) << "nothing may be left of a run that did not start";
+    EXPECT_FALSE(fs::exists(folder / "out")) << "a run that did not start leaves no file";
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ TEST(BadSceneTest, AMissingFileIsNamed) {
     expectRefused(folder, "");
 }
 
-TEST(BadSceneTest, AFolderIsNoScene) {
+TEST(BadSceneTest, RefusesAFolder) {
     const WallFolder folder;
     fs::remove(folder / "wall.gltf");
     fs::create_directory(folder / "wall.gltf");
@@ -37,11 +37,11 @@ TEST(BadSceneTest, ATruncatedFileIsRefused) {
     expectRefused(WallFolder(wall_deployment, wallGltf().substr(0, wallGltf().size() / 2)), "");
 }
 
-TEST(BadSceneTest, FiftyEightBytesAreNoScene) {
+TEST(BadSceneTest, RefusesFiftyEightBytes) {
     expectRefused(WallFolder(wall_deployment, R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength":)"), "");
 }
 
-TEST(BadSceneTest, AnIndexOutOfRangeIsToldWithItsPrimitive) {
+TEST(BadSceneTest, ReportsAnIndexOutOfRangeWithItsPrimitive) {
     expectRefused(WallFolder(wall_deployment, gltfOf({10, -20, 20, 10, -20, -20, 10, 20, -20}, {0, 1, 3})), "mesh");
 }
 

@@ -9,7 +9,7 @@ using ::testing::HasSubstr;
 
 namespace {
 
-/** A deployment of a sonar with these properties as well. */
+/** Returns a deployment with these additional properties of the sonar. */
 std::string sonarWith(const std::string& properties) {
     return R"(tasks:
   vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, 0, 0]}]}}
@@ -37,16 +37,16 @@ protected:
     TestFolder folder_;
 };
 
-TEST_F(BeamCommandTest, TellsWidthFirstNullAndSidelobesTwoWay) {
+TEST_F(BeamCommandTest, PrintsWidthFirstNullAndSidelobesTwoWay) {
     const json cuts = cutsOf(
         "beam_pattern: {transmit: {elevation: {width_deg: 12}}, "
         "receive: {azimuth: {weighting: hann, width_deg: 1.5}, elevation: {width_deg: 12}}}");
     const json& azimuth = cuts["azimuth"];
-    EXPECT_NEAR(azimuth["width_3db_deg"], 1.5, 0.01) << "sent alike in all directions";
+    EXPECT_NEAR(azimuth["width_3db_deg"], 1.5, 0.01) << "transmitted equally in all directions";
     EXPECT_NEAR(azimuth["first_null_deg"], 1.5 * 2 / 1.4406, 0.02);
     EXPECT_NEAR(azimuth["peak_sidelobe_db"], -31.5, 0.1);
     const json& elevation = cuts["elevation"];
-    EXPECT_NEAR(elevation["width_3db_deg"], 12 * 0.6378 / 0.8859, 0.05) << "sent and heard";
+    EXPECT_NEAR(elevation["width_3db_deg"], 12 * 0.6378 / 0.8859, 0.05) << "transmitted and received";
     EXPECT_NEAR(elevation["peak_sidelobe_db"], -26.5, 0.1);
     for (const char* axis : {"azimuth", "elevation"}) {
         ASSERT_EQ(cuts[axis]["angle_deg"].size(), cuts[axis]["level_db"].size());
@@ -63,7 +63,7 @@ TEST_F(BeamCommandTest, WithoutAPatternABeamIsABox) {
     EXPECT_THAT(cuts["azimuth"]["level_db"], testing::ElementsAre(0, 0));
 }
 
-TEST_F(BeamCommandTest, WhatCannotBeShownIsTold) {
+TEST_F(BeamCommandTest, ReportsWhatCannotBeShown) {
     const Outcome no_task = call("", {"--task", "sona"});
     EXPECT_EQ(no_task.code, 2);
     EXPECT_THAT(no_task.err, HasSubstr("may be sonar"));

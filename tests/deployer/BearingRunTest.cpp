@@ -1,5 +1,5 @@
-// Where things are in the log is where they stand in the scene: positive bearings are to port, and every target is in
-// the beam and the bin of its own bearing and slant range.
+// Objects are in the log at their places in the scene: positive bearings are to port, and every target is in the beam
+// and the bin of its own bearing and slant range.
 #include <numeric>
 
 #include "tests/deployer/SceneRun.hpp"
@@ -14,10 +14,10 @@ using insonify::types::Sonar;
 
 namespace {
 
-/** The bin of target k out of n: all n differ, neighbours are far apart, and the nearest is at 5 m. */
+/** Returns the bin of target k of n: all bins differ, neighbours are far apart, and the nearest is at 5 m. */
 size_t binOf(size_t k, size_t n) { return 50 + 37 * k % n; }
 
-/** A ball of 7 cm at each of these bearings, at three elevations, whose echo lies inside one bin of 0.1 m. */
+/** A ball of 7 cm at each of these bearings, at three elevations, whose echo is within one bin of 0.1 m. */
 GeometryPtr targetsAt(const std::vector<double>& bearings_deg) {
     std::vector<glm::dvec3> positions;
     for (size_t k = 0; k < bearings_deg.size(); ++k) {

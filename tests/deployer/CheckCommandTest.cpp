@@ -14,7 +14,7 @@ TEST(CheckCommandTest, AValidDeploymentIsPrintedAsAGraph) {
     EXPECT_THAT(outcome.out, HasSubstr("  noisy -> log.noisy  /base/samples/Sonar, buffer 64\n"));
 }
 
-TEST(CheckCommandTest, JsonTellsTasksAndConnections) {
+TEST(CheckCommandTest, JsonHasTasksAndConnections) {
     const WallFolder folder;
     const json told = json::parse(callInsonify(folder, {"check", "wall.yml", "--json"}).out);
     EXPECT_TRUE(told["valid"]);
@@ -28,7 +28,7 @@ TEST(CheckCommandTest, JsonTellsTasksAndConnections) {
     EXPECT_EQ(told["connections"][4]["policy"]["size"], 64);
 }
 
-TEST(CheckCommandTest, WhatTheScheduleLeavesOutIsAWarning) {
+TEST(CheckCommandTest, WarnsOfKeysThatTheScheduleIgnores) {
     const std::string text = replaced(wall_deployment, "{trigger: [snapshot]}",
                                       "{trigger: [snapshot], scheduler: fifo, priority: 5, deadline: 0.1}");
     const WallFolder folder("lock_memory: true\n" + text);
@@ -40,7 +40,7 @@ TEST(CheckCommandTest, WhatTheScheduleLeavesOutIsAWarning) {
     EXPECT_THAT(run.err, HasSubstr("warning: sonar: not used in lockstep: scheduler, deadline\n"));
 }
 
-TEST(CheckCommandTest, JsonTellsEveryErrorWithItsPlace) {
+TEST(CheckCommandTest, JsonHasEveryErrorWithItsPlace) {
     const WallFolder folder(replaced(wall_deployment, "range: 20", "range: -20"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml", "--json"});
     EXPECT_EQ(outcome.code, 2);

@@ -1,6 +1,6 @@
-// The closed forms of ACOUSTICS.md 9 as a user meets them: a glTF scene and a deployment go through `insonify run`, and
-// what is checked are the numbers that `insonify log export` wrote. Every form stands beside a deliberately wrong one,
-// which must fail by the same measure. Bins are whole microseconds at 1000 m/s: 0.1 m is 100 us.
+// The closed forms of ACOUSTICS.md 9 for users: `insonify run` renders a glTF scene and a deployment, and the tests
+// check the numbers of `insonify log export`. Each form is compared with a deliberately wrong one, which must fail by
+// the same measure. Bins are whole microseconds at 1000 m/s: 0.1 m is 100 us.
 #include "tests/deployer/SceneRun.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/Scenes.hpp"
@@ -58,13 +58,13 @@ TEST(ClosedFormRunTest, Form3ABottomUnderAPitchedBeam) {
 }
 
 TEST(ClosedFormRunTest, Form4ASphere) {
-    // Bins of 0.2 m: at the limb one pixel spans 0.1 m of range, so that narrower bins would test the silhouette.
+    // Bins of 0.2 m: at the limb one pixel spans 0.1 m of range, so that smaller bins would test the silhouette.
     const Sonar ping = loggedPing(*ball(1, 256, 10), R"({speed_of_sound: 1000, range: 12, bin_count: 60, beam_count: 1,
         field_of_view_deg: 12, beam_height_deg: 12, quality: {rows: 512, columns_per_beam: 256}})");
     expectForm(ping, sphereEcho(1, 10), times(1.03, sphereEcho(1, 10)));
 }
 
-TEST(ClosedFormRunTest, Form5AWallBeforeAThinVerticalBeam) {
+TEST(ClosedFormRunTest, Form5AWallInAThinVerticalBeam) {
     const Sonar ping = loggedPing(*sceneOf({wall(10)}), R"({speed_of_sound: 1000, range: 15, bin_count: 150,
         beam_count: 1, field_of_view_deg: 1, beam_height_deg: 40, quality: {rows: 512, columns_per_beam: 64}})");
     expectForm(ping, thinBeamOnWall(10, radians(20), radians(1)), thinBeamOnFadingWall(10, radians(20), radians(1)));
@@ -91,8 +91,8 @@ TEST(ClosedFormRunTest, Form8AShadowEndsWhereTheRayOverTheTopMeetsTheBottom) {
     size_t end = static_cast<size_t>(std::hypot(15, 5) / 0.1) + 2;
     while (end < 400 && ping.bins[end] == 0) ++end;
     EXPECT_NEAR(end * 0.1, shadowEnd(5, 2, 15), 0.1);
-    EXPECT_GT(std::abs(end * 0.1 - 15.0 * 5 / (5 - 2)), 0.1) << "ground range in place of slant range is wrong";
-    Sonar lit = ping;  // beyond the shadow the bottom is as form 2 has it
+    EXPECT_GT(std::abs(end * 0.1 - 15.0 * 5 / (5 - 2)), 0.1) << "ground range instead of slant range is wrong";
+    Sonar lit = ping;  // beyond the shadow the bottom is that of form 2
     std::fill(lit.bins.begin(), lit.bins.begin() + static_cast<std::ptrdiff_t>(end) + 1, 0.f);
     const double from = lit.binStart(static_cast<double>(end) + 1);
     expectForm(lit, between(from, 40, flatBottom(5, radians(30), radians(1))),

@@ -1,5 +1,5 @@
 #pragma once
-// The `insonify` command as a user calls it: another process, its exit code and what it printed.
+// The `insonify` command as a separate process: its exit code and its output.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ struct Outcome {
     std::string out, err;
 };
 
-/** A program that runs; its output goes to files in `folder`, which is its current folder as well. */
+/** A running program; its output is written to files in `folder`, which is also its current folder. */
 class Process {
 public:
     Process(std::vector<std::string> words, fs::path folder) : folder_(std::move(folder)) {
@@ -78,7 +78,7 @@ inline Outcome callInsonify(const TestFolder& folder, std::vector<std::string> a
     return Process(insonifyWords(std::move(arguments)), folder.path()).wait();
 }
 
-/** What a command that ends well prints with --json. */
+/** Returns the output of a successful command with --json. */
 inline json jsonOf(const TestFolder& folder, std::vector<std::string> arguments) {
     arguments.push_back("--json");
     const Outcome outcome = callInsonify(folder, std::move(arguments));
@@ -86,12 +86,12 @@ inline json jsonOf(const TestFolder& folder, std::vector<std::string> arguments)
     return json::parse(outcome.out);
 }
 
-/** Waits until a program has said something on its error output. */
+/** Waits until a program has written something to its error output. */
 inline bool says(const TestFolder& folder, const std::string& text) {
     return test::comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
 }
 
-/** Runs a program in Debian's Python, which has numpy; what it prints is the answer. */
+/** Runs a program in Debian's Python, which has numpy; returns its output. */
 inline Outcome python(const TestFolder& folder, const std::string& program) {
     return Process({"/usr/bin/python3", "-c", program}, folder.path()).wait();
 }

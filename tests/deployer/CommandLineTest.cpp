@@ -51,7 +51,7 @@ TEST(CommandLineTest, HelpNamesEveryCommand) {
         EXPECT_THAT(outcome.out, HasSubstr(std::string("\n  ") + command + " "));
 }
 
-TEST(CommandLineTest, ResultsThatCannotBeWrittenAreAFailure) {
+TEST(CommandLineTest, FailsWhenResultsCannotBeWritten) {
     const TestFolder folder;
     const std::string command = insonify::test::program("insonify") + " describe > /dev/full";
     EXPECT_EQ(Process({"sh", "-c", command}, folder.path()).wait().code, 1);

@@ -10,7 +10,8 @@ namespace {
 
 const std::string bash = "source <(insonify completion bash)", zsh = "source <(insonify completion zsh)";
 
-/** Types lines with tabs into an interactive shell; the words of each, as the shell takes them on Enter. */
+/** Types lines with tabs into an interactive shell; returns the words of each line as the shell receives them on
+ *  Enter. */
 json typed(const TestFolder& folder, const std::string& shell, const std::string& setup,
            const std::vector<std::string>& lines) {
     const std::string path = std::string("PATH=") + insonify::test::bin_dir + ":" + std::getenv("PATH");
@@ -47,7 +48,7 @@ TEST(CompletionCommandTest, TabCompletesCommandsOptionsTypesSonarsAndFilesInBash
         ["insonify", "log", "info", "mine.yml", "--stx"]])"));
 }
 
-TEST(CompletionCommandTest, TabListsAllThatFitsInBash) {
+TEST(CompletionCommandTest, TabListsAllCandidatesInBash) {
     TestFolder folder;
     const std::string insert_all = "bind '\"\\t\": insert-completions'; ";
     const json words =
@@ -58,7 +59,7 @@ TEST(CompletionCommandTest, TabListsAllThatFitsInBash) {
     EXPECT_EQ(words[1], json({"insonify", "study", "speckle", "stability"}));
     EXPECT_EQ(words[2], json({"insonify", "run", "mine.yml"}));
     EXPECT_EQ(words[3], json({"insonify", "describe", "sonar::Sonar3dTask", "SonarTask"}))
-        << "what follows the colons is inserted, again for each";
+        << "the part after the colons is inserted, for each candidate";
 }
 
 TEST(CompletionCommandTest, TabCompletesTheSameInZsh) {

@@ -1,4 +1,4 @@
-// Two vehicles that hear each other's pulses, run as a user runs them.
+// Crosstalk of two vehicles, in runs of the command.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/SceneRun.hpp"
@@ -8,8 +8,8 @@ using insonify::types::Sonar;
 
 namespace {
 
-// Bins are 100 us at 1000 m/s: 0.1 m. Two is 20 m to port of one, and both look at each other, past the wall. Each
-// pulse of two is 4 ms later, 2 m of slant range, than that of one.
+// Bins are 100 us at 1000 m/s: 0.1 m. Vehicle two is 20 m to port of vehicle one, and both look at each other, past the
+// wall. Each pulse of two is 4 ms, or 2 m of slant range, later than that of one.
 const char* const pair = R"(tasks:
   one: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, -10, 0], yaw_deg: 90}]}}
   two: {type: pose::TrajectoryTask, activity: {period: 0.104}, properties: {waypoints: [{time: 0, position: [0, 10, 0], yaw_deg: -90}]}}
@@ -56,7 +56,7 @@ std::map<size_t, float> heard(const Sonar& ping) {
 
 }  // namespace
 
-TEST_F(CrosstalkRunTest, PulsesThatAreSentWhileASonarListensArriveWhenAndAsLoudAsTheyShould) {
+TEST_F(CrosstalkRunTest, PulsesOfTheOtherSonarArriveAtTheRightTimeAndLevel) {
     const Outcome outcome = run(pair, {"--pings", "6"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const std::vector<Sonar> one = logged("one"), two = logged("two");
@@ -72,13 +72,13 @@ TEST_F(CrosstalkRunTest, PulsesThatAreSentWhileASonarListensArriveWhenAndAsLoudA
         } else {
             EXPECT_TRUE(of_one.empty()) << i;
         }
-        if (i >= 5) continue;  // then a pulse of one comes before two listens
+        if (i >= 5) continue;  // from then on a pulse of one is before two listens
         ASSERT_EQ(of_two.size(), 1u) << i;
         EXPECT_EQ(of_two.begin()->first, early) << i;
     }
 }
 
-TEST_F(CrosstalkRunTest, PingsThatHearNoPulseAreThoseOfADeafSonar) {
+TEST_F(CrosstalkRunTest, PingsWithoutAPulseEqualThoseWithoutCrosstalk) {
     const std::string looking = replaced(pair, "yaw_deg: 90}", "yaw_deg: 0}");  // one looks at the wall
     ASSERT_EQ(run(looking, {"--pings", "4"}).code, 0);
     const std::vector<Sonar> hearing = logged("one");
@@ -98,7 +98,7 @@ TEST_F(CrosstalkRunTest, PingsThatHearNoPulseAreThoseOfADeafSonar) {
     }
 }
 
-TEST_F(CrosstalkRunTest, InRealtimeTheyHearEachOtherToo) {
+TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
     const Outcome outcome = run("schedule: realtime\n" + std::string(pair), {"--duration", "2"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const std::vector<Sonar> one = logged("one");
@@ -109,13 +109,13 @@ TEST_F(CrosstalkRunTest, InRealtimeTheyHearEachOtherToo) {
             EXPECT_NEAR(level, 1.0 / 400, 1e-6);
             ++hears;
         }
-    EXPECT_GE(hears, 2u);  // of 20 pings a pulse falls into a third
+    EXPECT_GE(hears, 2u);  // a pulse is received in a third of 20 pings
 }
 
-TEST_F(CrosstalkRunTest, WhatIsConnectedWronglyIsRefused) {
+TEST_F(CrosstalkRunTest, RefusesWrongConnections) {
     Outcome outcome = run(replaced(pair, ", crosstalk: {}", ""), {"--pings", "2"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("others: is connected; the sonar does not hear other sonars: "
+    EXPECT_THAT(outcome.err, testing::HasSubstr("others: is connected; the sonar does not receive other sonars: "
                                                 "give it `crosstalk: {}`"));
     std::string loop = replaced(pair, "one_sonar.others, policy: {type: circular_buffer, size: 8}", "one_sonar.others");
     loop = replaced(loop, "two_sonar.others, policy: {type: circular_buffer, size: 8}", "two_sonar.others");
@@ -130,5 +130,6 @@ TEST_F(CrosstalkRunTest, WhatIsConnectedWronglyIsRefused) {
     EXPECT_THAT(outcome.err, testing::HasSubstr("visibility: is gl with crosstalk.echoes, which needs rays"));
     outcome = run(pair, {"--pings", "4", "--shard", "1/2"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, testing::HasSubstr("pings of other sonars are heard, which a shard does not have"));
+    EXPECT_THAT(outcome.err,
+                testing::HasSubstr("the sonar receives pings of other sonars, which a shard does not have"));
 }

@@ -1,6 +1,6 @@
-// Every file in deploy/ runs. Those of ROS 2 wait for others: see tests/dds/Ros2RunTest.cpp. Those of devices wait for
-// drivers: see tests/device and tests/deployer/PingDriverTest.cpp. Those of MAVLink and Gazebo wait for
-// these: see tests/mavlink/MavlinkRunTest.cpp and tests/gazebo/GazeboRunTest.cpp.
+// Every file in deploy/ runs. Files that wait for other programs have their own tests: ROS 2 in
+// tests/dds/Ros2RunTest.cpp, drivers of devices in tests/device and tests/deployer/PingDriverTest.cpp, MAVLink and
+// Gazebo in tests/mavlink/MavlinkRunTest.cpp and tests/gazebo/GazeboRunTest.cpp.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
@@ -44,13 +44,13 @@ protected:
 TEST_P(DeploymentFilesTest, RunsForTwoPings) {
     const bool lockstep = readFile(deploy / (GetParam() + ".yml")).find("schedule: realtime") == std::string::npos;
     std::vector<std::string> more = {"--pings", "2", "--summary", "summary.json"};
-    if (!lockstep)  // a machine that stalls is not to look like a vehicle that has gone
+    if (!lockstep)  // a slow machine must not look like a missing vehicle
         more.insert(more.end(), {"--set", "scene.pose_timeout=60"});
     const Outcome outcome = callInsonify(folder, runOf(GetParam(), more));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 2);
-    for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample wins
+    for (const auto& [connection, lost] : summary["losses"].items())  // in realtime the newest sample is used
         EXPECT_TRUE(lost == 0 || !lockstep) << connection << ": " << lost;
 }
 
@@ -61,14 +61,14 @@ TEST_P(DeploymentFilesTest, IsValid) {
 INSTANTIATE_TEST_SUITE_P(All, DeploymentFilesTest, testing::ValuesIn(deployments()),
                          [](const auto& tested) { return tested.param; });
 
-TEST(DeliveredFilesTest, TheNamedOnesAreThere) {
+TEST(DeliveredFilesTest, NamedFilesExist) {
     EXPECT_THAT(deployments(),
                 testing::IsSupersetOf({"gemini_720i", "harbour_fls", "harbour_msis", "harbour_msis_sector",
                                        "harbour_profiler", "harbour_sidescan", "harbour_altimeter", "harbour_sonar3d",
                                        "minimal", "rock_dropin", "tank_mosaic", "two_vehicles"}));
 }
 
-TEST(DeliveredFilesTest, ReplayShowsWhatTheHarbourRunLeftInLatest) {
+TEST(DeliveredFilesTest, ReplayShowsTheLatestHarbourRun) {
     const TestFolder folder;
     fs::copy(deploy, folder / "deploy", fs::copy_options::recursive);
     ASSERT_EQ(callInsonify(folder, {"run", "deploy/harbour_fls.yml", "--pings", "2"}).code, 0);

@@ -38,7 +38,7 @@ TEST(DescribeCommandTest, EveryListedTaskCanBeDescribedAndEveryPropertyIsDocumen
     }
 }
 
-TEST(DescribeCommandTest, TellsPortsPropertiesUnitsDefaultsAndBounds) {
+TEST(DescribeCommandTest, PrintsPortsPropertiesUnitsDefaultsAndBounds) {
     const TestFolder folder;
     const json sonar = json::parse(callInsonify(folder, {"describe", "sonar::SonarTask", "--json"}).out);
     EXPECT_EQ(named(sonar["ports"], "snapshot")["direction"], "in");
@@ -52,7 +52,7 @@ TEST(DescribeCommandTest, TellsPortsPropertiesUnitsDefaultsAndBounds) {
     EXPECT_TRUE(sonar["operations"].is_array());
 }
 
-TEST(DescribeCommandTest, EverySeedSaysThatItsDefaultIsAHash) {
+TEST(DescribeCommandTest, EverySeedDocumentsThatItsDefaultIsAHash) {
     const TestFolder folder;
     int seeds = 0;
     for (const json& entry : json::parse(callInsonify(folder, {"describe", "--json"}).out)) {

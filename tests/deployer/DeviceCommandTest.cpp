@@ -7,7 +7,7 @@ using namespace insonify::deployer;
 using testing::AllOf;
 using testing::HasSubstr;
 
-TEST(DeviceCommandTest, ListTellsWhatTasksStandInForAndTheirPorts) {
+TEST(DeviceCommandTest, ListPrintsTheReplacedDevicesAndTheirPorts) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"device", "list"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -21,7 +21,7 @@ TEST(DeviceCommandTest, ListTellsWhatTasksStandInForAndTheirPorts) {
     EXPECT_EQ((*ping360)["ports"]["discovery.port"], 30303);
 }
 
-TEST(DeviceCommandTest, AProbeTellsTheDeviceThatAnswers) {
+TEST(DeviceCommandTest, AProbeIdentifiesTheDevice) {
     const TestFolder folder, asking;
     writeFile(
         folder / "x.yml",
@@ -49,13 +49,13 @@ TEST(DeviceCommandTest, AProbeTellsTheDeviceThatAnswers) {
     EXPECT_THAT(outcome.out, HasSubstr("serial line " + line + ": Blue Robotics Ping360, id 2, revision 1"));
 }
 
-TEST(DeviceCommandTest, SilenceIsToldWithItsReasonsAndCode1) {
+TEST(DeviceCommandTest, NoAnswerIsReportedWithReasonsAndCode1) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"device", "probe", "/nowhere/line", "--timeout", "0.05"});
     EXPECT_EQ(outcome.code, 1);
     EXPECT_THAT(outcome.out, HasSubstr("serial line /nowhere/line: ping protocol (Ping360, Ping1D)\nserial line "
                                        "/nowhere/line: SeaNet (Micron)\n  No such file"))
-        << "the reason once for both";
+        << "one reason for both";
     EXPECT_THAT(outcome.err, HasSubstr("nothing answers at /nowhere/line"));
     const json all =
         json::parse(callInsonify(folder, {"device", "probe", "/nowhere/line", "--timeout", "0.05", "--json"}).out);

@@ -1,4 +1,4 @@
-// Streams of logs as files of what records sonars: XTF of side-scans, as PyPI's pyxtf reads it, and .oculus.
+// Export of logs to files of sonar recorders: XTF of side-scans, as PyPI's pyxtf reads it, and .oculus.
 #include <gmock/gmock.h>
 
 #include "components/log/Reader.hpp"
@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** A side-scan that passes the wall, as an XTF file and in a log: its codes and its poses, the clean pings and the
+/** A side-scan that passes the wall, as an XTF file and as a log: its codes and poses, the clean pings and the
  *  vehicle's poses. */
 const std::string sidescan_deployment = R"(start_time: 1700000000.5
 tasks:
@@ -49,7 +49,7 @@ protected:
         const Outcome outcome = folder_.run({"--pings", "6"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
     }
-    /** `log export` of the run's log. */
+    /** Runs `log export` on the run's log. */
     Outcome toFile(const std::string& stream, const std::string& to, std::vector<std::string> more = {},
                    const std::string& log = "out/lines.0.log") const {
         std::vector<std::string> words = {"log", "export", log, "--to", to};
@@ -74,7 +74,7 @@ protected:
 
 }  // namespace
 
-TEST_F(DeviceExportTest, ALogGivesTheXtfFileThatItsRunWrites) {
+TEST_F(DeviceExportTest, ALogExportsTheXtfFileOfItsRun) {
     const Outcome outcome = toFile("receiver.ping", "lines.xtf");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "lines.xtf\n");
@@ -84,7 +84,7 @@ TEST_F(DeviceExportTest, ALogGivesTheXtfFileThatItsRunWrites) {
     EXPECT_TRUE(exported == readFile(folder_ / "out/lines.xtf"));
 }
 
-TEST_F(DeviceExportTest, PyxtfReadsTheLinesOfALogWithTheirPlaces) {
+TEST_F(DeviceExportTest, PyxtfReadsTheLinesOfALogWithTheirPositions) {
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it";
     ASSERT_EQ(toFile("receiver.ping", "lines.xtf").code, 0);
     const json file = readXtf("lines.xtf");
@@ -126,7 +126,7 @@ TEST_F(DeviceExportTest, AnMcapFileGivesTheSameLines) {
     }
 }
 
-TEST_F(DeviceExportTest, PosesOfTheVehicleAreTakenToItsSonar) {
+TEST_F(DeviceExportTest, ConvertsPosesOfTheVehicleToItsSonar) {
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it";
     ASSERT_EQ(toFile("receiver.ping", "sonar.xtf", {"--pose", "sonar.pose"}).code, 0);
     ASSERT_EQ(toFile("receiver.ping", "vehicle.xtf", {"--pose", "vehicle.pose"}).code, 0);
@@ -139,7 +139,7 @@ TEST_F(DeviceExportTest, PosesOfTheVehicleAreTakenToItsSonar) {
     }
 }
 
-TEST_F(DeviceExportTest, BinsThatAreNoCodesStayAsTheyAre) {
+TEST_F(DeviceExportTest, BinsThatAreNotCodesAreUnchanged) {
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it";
     ASSERT_EQ(toFile("noise.noisy", "noisy.xtf").code, 0);
     const json file = readXtf("noisy.xtf");
@@ -194,17 +194,17 @@ TEST_F(DeviceExportTest, AnXtfFileIsRenderedAgainAndScored) {
     for (const json& ping : score["pings"]) EXPECT_LT(ping["rel_l2"], 0.01) << "poses of the file are floats";
 }
 
-TEST_F(DeviceExportTest, ALogWithoutPosesGivesLinesWithoutPlacesAndSaysSo) {
+TEST_F(DeviceExportTest, ALogWithoutPosesGivesLinesWithoutPositionsAndANotice) {
     ASSERT_EQ(
         callInsonify(folder_, {"log", "cut", "out/lines.0.log", "--to", "pings.0.log", "--stream", "receiver.ping"})
             .code,
         0);
     const Outcome outcome = toFile("receiver.ping", "pings.xtf", {}, "pings.0.log");
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("notice: pings.0.log holds no poses: the lines have no places"));
+    EXPECT_THAT(outcome.err, HasSubstr("notice: pings.0.log holds no poses: the lines have no positions"));
 }
 
-TEST_F(DeviceExportTest, WhatIsNoSideScanIsRefused) {
+TEST_F(DeviceExportTest, RefusesStreamsThatAreNotASideScan) {
     expectRefused("sonar.pose", "x.xtf", {},
                   "sonar.pose: holds /base/samples/RigidBodyState_m; an XTF file takes the lines");
     expectRefused("no.ping", "x.xtf", {}, "no.ping");
@@ -219,7 +219,7 @@ TEST_F(DeviceExportTest, WhatIsNoSideScanIsRefused) {
                   wall / "out/wall.0.log");
 }
 
-/** The wall as a device with codes records it. */
+/** Returns the wall as recorded by a device with codes. */
 std::string codedWall(const std::string& code) {
     std::string text = replaced(
         wall_deployment, "  log:\n",
@@ -272,7 +272,7 @@ TEST(OculusExportTest, CodesOfOtherWidthsAreScaledToSixteenBits) {
         EXPECT_EQ(after.bins[i], std::round(before.bins[i] * 65535 / 4095)) << i;
 }
 
-TEST(OculusExportTest, WhatNoOculusSendsIsRefused) {
+TEST(OculusExportTest, RefusesPingsThatNoOculusSends) {
     const auto refusal = [](const std::string& code, const std::string& stream) {
         const WallFolder folder(codedWall(code));
         EXPECT_EQ(folder.run({"--pings", "1"}).code, 0);

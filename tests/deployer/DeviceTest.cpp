@@ -1,4 +1,4 @@
-// The device that a sonar draws on: none to be had, unknown, or chosen.
+// The device of a sonar's rasterisation: unavailable, unknown, or chosen.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -9,7 +9,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** What a command says of wall.yml where EGL has one vendor, and whether it has asked EGL for anything. */
+/** The output of a command for wall.yml where EGL has one vendor, and whether the command has called EGL. */
 std::pair<Outcome, bool> witnessed(const WallFolder& folder, std::vector<std::string> arguments) {
     const fs::path vendor = folder / "vendor.json", mark = folder / "asked";
     fs::remove(mark);
@@ -33,13 +33,13 @@ Outcome runWith(const WallFolder& folder, std::vector<std::string> variables, st
     return Process(words, folder.path()).wait();
 }
 
-/** Variables with which EGL knows no device, and with which the system has no EGL. */
+/** Variables that hide all devices from EGL, and all of EGL from the system. */
 const std::string ways_without_gl[] = {"__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent",
                                        "LD_PRELOAD=" + insonify::test::program("libinsonify_no_egl.so")};
 
 }  // namespace
 
-TEST(DeviceTest, WithoutAnyOpenGlTheMessageSaysWhatToInstallAndSet) {
+TEST(DeviceTest, WithoutOpenGlTheMessageNamesPackagesAndSettings) {
     for (const std::string& way : ways_without_gl) {
         const WallFolder folder;
         const Outcome outcome = runWith(folder, {way}, {"--set", "sonar.visibility=gl"});
@@ -50,7 +50,7 @@ TEST(DeviceTest, WithoutAnyOpenGlTheMessageSaysWhatToInstallAndSet) {
     }
 }
 
-TEST(DeviceTest, WithoutAnyOpenGlRaysNeedNone) {
+TEST(DeviceTest, RayTracingWorksWithoutOpenGl) {
     for (const std::string& way : ways_without_gl) {
         const WallFolder folder;
         const Outcome outcome = runWith(folder, {way});
@@ -58,7 +58,7 @@ TEST(DeviceTest, WithoutAnyOpenGlRaysNeedNone) {
     }
 }
 
-TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
+TEST(DeviceTest, AnUnknownDeviceIsNamedWithTheAlternatives) {
     for (const std::string device : {"quantum", "4000000000"}) {
         const WallFolder folder;
         for (const Outcome& outcome : {runWith(folder, {"INSONIFY_EGL_DEVICE=" + device}),
@@ -71,13 +71,13 @@ TEST(DeviceTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
     }
 }
 
-TEST(DeviceTest, ThePropertyGoesBeforeTheVariable) {
+TEST(DeviceTest, ThePropertyOverridesTheVariable) {
     const WallFolder folder;
     const Outcome outcome = runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST(DeviceTest, WhereRaysAreChosenOrThereIsNoCardNoDeviceIsAskedFor) {
+TEST(DeviceTest, RequestsNoDeviceForRayTracingOrWithoutAGraphicsCard) {
     const bool may_have_card = fs::exists("/dev/dri") || fs::exists("/dev/nvidiactl") || fs::exists("/dev/dxg");
     for (const std::string choice : {"visibility: cpu", "motion_in_ping: true", "visibility: auto"}) {
         const WallFolder folder(replaced(wall_deployment, "range: 20", choice + "\n      range: 20"));
@@ -87,7 +87,7 @@ TEST(DeviceTest, WhereRaysAreChosenOrThereIsNoCardNoDeviceIsAskedFor) {
     }
 }
 
-TEST(DeviceTest, ADeploymentIsCheckedWithoutAskingForADevice) {
+TEST(DeviceTest, ChecksADeploymentWithoutRequestingADevice) {
     for (const std::string visibility : {"auto", "gl", "cpu"}) {
         const auto with = [&](const std::string& more) {
             return WallFolder(
@@ -102,10 +102,10 @@ TEST(DeviceTest, ADeploymentIsCheckedWithoutAskingForADevice) {
         EXPECT_FALSE(asked_for_bad) << visibility;
         const auto [refused, asked_for_refused] = witnessed(with("-20"), {"run", "wall.yml", "--pings", "1"});
         EXPECT_EQ(refused.code, 2);
-        EXPECT_FALSE(asked_for_refused) << "what is wrong is found before";
+        EXPECT_FALSE(asked_for_refused) << "the error is found before";
     }
     const WallFolder drawn(replaced(wall_deployment, "range: 20", "visibility: gl\n      range: 20"));
     const auto [outcome, asked] = witnessed(drawn, {"run", "wall.yml", "--pings", "1"});
     EXPECT_TRUE(asked) << "the witness works";
-    EXPECT_EQ(outcome.code, 1) << "it is no device";
+    EXPECT_EQ(outcome.code, 1) << "it is not a device";
 }

@@ -1,4 +1,4 @@
-// What a typing mistake in a deployment or on the command line is answered with.
+// Answers to typing mistakes in a deployment or on the command line.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -9,7 +9,7 @@ using testing::Not;
 
 namespace {
 
-/** What `check` says of the wall's deployment with another text in the place of one that is there. */
+/** Returns the output of `check` for the wall's deployment with a text replaced. */
 std::string diagnosticsWith(const std::string& from, const std::string& to) {
     const WallFolder folder(replaced(wall_deployment, from, to));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
@@ -44,7 +44,7 @@ TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
     });
 }
 
-TEST(DidYouMeanTest, ANumberWithItsUnitIsShownAsItIsToBeWritten) {
+TEST(DidYouMeanTest, ShowsTheRightFormOfANumberWithItsUnit) {
     expectWords({
         {"range: 20", "range: 20 m", "is 20 m; write 20 or 20.m; must be a finite number"},
         {"range: 20", "range: 20m", "write 20 or 20.m;"},
@@ -60,18 +60,18 @@ TEST(DidYouMeanTest, ANumberWithItsUnitIsShownAsItIsToBeWritten) {
     EXPECT_THAT(diagnosticsWith("range: 20", "range: far"), Not(HasSubstr("write")));
 }
 
-TEST(DidYouMeanTest, ATabAndAWrongIndentAreNamedAsSuch) {
+TEST(DidYouMeanTest, NamesATabAndAWrongIndent) {
     expectWords({
         {"      range: 20", "\trange: 20", "is indented with a tab; indent with spaces"},
         {"      range: 20", "     \trange: 20", "is indented with a tab; indent with spaces"},
         {"      range: 20", "      range: 20\n     range_min: 1",
-         "is indented by 5 spaces; as the lines above are, it may be by 0 or 2 or 4 or 6"},
-        {"      range: 20", "      range: 20\n        range_min: 1", "is indented by 8 spaces; as the lines above are"},
+         "is indented by 5 spaces; after the lines above, it may be by 0 or 2 or 4 or 6"},
+        {"      range: 20", "      range: 20\n        range_min: 1", "is indented by 8 spaces; after the lines above"},
     });
 }
 
-TEST(DidYouMeanTest, TheCauseComesBeforeItsConsequences) {
-    // A task of another name: connections lead to one that is not there, and its own port has no connection.
+TEST(DidYouMeanTest, TheCauseIsBeforeItsConsequences) {
+    // A task with another name: connections refer to a missing task, and its own port has no connection.
     const std::string diagnostics = diagnosticsWith("  noise:\n", "  nose:\n");
     const size_t cause = diagnostics.find("did you mean nose?"), consequence = diagnostics.find("input port clean");
     ASSERT_NE(cause, std::string::npos) << diagnostics;
@@ -79,7 +79,7 @@ TEST(DidYouMeanTest, TheCauseComesBeforeItsConsequences) {
     EXPECT_LT(cause, consequence);
 }
 
-TEST(DidYouMeanTest, AMissingSceneIsToldWhereItWasLookedForAndWhatCanBeRead) {
+TEST(DidYouMeanTest, AMissingSceneIsReportedWithSearchedFoldersAndReadableFormats) {
     const WallFolder folder(replaced(wall_deployment, "wall.gltf", "wal.gltf"));
     const std::string diagnostics = callInsonify(folder, {"check", "wall.yml"}).err;
     EXPECT_THAT(diagnostics, HasSubstr("wall.yml:11:24: tasks.scene.properties.file: "));

@@ -1,5 +1,5 @@
-// What makes the shards of a run on many machines: Dask, Ray, Slurm, Kubernetes. All make the same files as one
-// machine.
+// Programs that make the shards of a run on many machines: Dask, Ray, Slurm, Kubernetes. They make the same files as
+// one machine.
 #include <gmock/gmock.h>
 
 #include <cerrno>
@@ -19,11 +19,11 @@ constexpr int shard_count = 6;
 
 class EngineTest : public testing::Test {
 protected:
-    /** The run, without its shard; `out` is relative to the folder of the test. */
+    /** The run, without its shard; `out` is relative to the test's folder. */
     std::vector<std::string> runTo(const std::string& out) const {
         return {"run", folder_ / "wall.yml", "--out", folder_ / out, "--pings", "60"};
     }
-    /** The shards of a folder with all of their files; what is not called a shard fails. */
+    /** Returns the shards of a folder with all of their files; fails for other files. */
     static std::map<std::string, std::string> filesIn(const fs::path& out) {
         std::map<std::string, std::string> files;
         for (const auto& shard : fs::directory_iterator(out)) {
@@ -33,7 +33,7 @@ protected:
         }
         return files;
     }
-    /** What one machine makes, one shard after the other. */
+    /** Returns the files of one machine that makes one shard after the other. */
     std::map<std::string, std::string> byOne() const {
         for (int i = 0; i < shard_count; ++i) {
             std::vector<std::string> words = runTo("one");
@@ -51,7 +51,7 @@ protected:
     const WallFolder folder_;
 };
 
-/** An engine of Python's that makes shards on workers. */
+/** A Python engine that makes shards on workers. */
 struct Engine {
     const char *name, *module;
 };
@@ -68,7 +68,7 @@ protected:
     }
     std::vector<std::string> byWorkers(const std::string& program, int workers,
                                        const std::vector<std::string>& command) const {
-        // Engines give up where a machine is slow to start them, and Ray leaves its session and a token behind.
+        // Engines give up if a slow machine takes long to start them, and Ray leaves its session and a token behind.
         std::vector<std::string> words = {"env",
                                           "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT=600s",
                                           "RAY_raylet_start_wait_time_s=600",
@@ -85,7 +85,7 @@ protected:
         words.insert(words.end(), command.begin(), command.end());
         return words;
     }
-    /** Runs the command, but who gets shard 2 first stops in the middle of it for ever and tells who it is. */
+    /** Runs the command, but the first process that gets shard 2 stops in the middle forever and reports its id. */
     fs::path stallingProgram() const {
         const std::string insonify = insonify::test::program("insonify"), first = folder_ / "first",
                           shards = folder_ / "shards";
@@ -112,14 +112,14 @@ protected:
         fs::permissions(folder_ / "insonify", fs::perms::owner_all);
         return folder_ / "insonify";
     }
-    /** The machine of the worker that has stopped dies: its command, itself, and what it waits for. An engine that took
-     *  the worker for dead meanwhile, because the machine is slow, has ended it in the middle as well. */
+    /** Simulates the death of the machine of the stopped worker: its command, the worker, and the process that the
+     *  worker waits for. On a slow machine the engine may have taken the worker for dead and ended it already. */
     void killStalled() const {
         std::istringstream pids(readFile(folder_ / "first/pids"));
         pid_t worker = 0, waiting = 0, command = 0;
         ASSERT_TRUE(pids >> worker >> waiting >> command);
         for (const pid_t pid : {command, worker}) EXPECT_TRUE(kill(pid, SIGKILL) == 0 || errno == ESRCH) << pid;
-        kill(waiting, SIGKILL);  // Ray ends what a dead worker has begun
+        kill(waiting, SIGKILL);  // Ray ends what a dead worker has started
     }
     static size_t linesOf(const std::string& text, const std::string& ending) {
         size_t count = 0;
@@ -130,7 +130,7 @@ protected:
 
 }  // namespace
 
-TEST_P(WorkersTest, OneOfTwoWorkersDiesInTheMiddleAndNothingIsLostOrDoubled) {
+TEST_P(WorkersTest, AWorkerThatDiesLosesAndDoublesNothing) {
     const Process engine(byWorkers(stallingProgram(), 2), folder_.path());
     const auto isAtIt = [&] {
         return fs::exists(folder_ / "first/pids") && linesOf(readFile(folder_ / "stdout.txt"), "done\n") > 0;
@@ -146,7 +146,7 @@ TEST_P(WorkersTest, OneOfTwoWorkersDiesInTheMiddleAndNothingIsLostOrDoubled) {
     expectAsByOne();
 }
 
-TEST_P(WorkersTest, AShardThatFailsIsToldAndFailsTheWhole) {
+TEST_P(WorkersTest, AFailingShardIsReportedAndFailsTheWholeRun) {
     fs::remove(folder_ / "wall.gltf");
     const Outcome outcome = Process(byWorkers(insonify::test::program("insonify"), 1), folder_.path()).wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
@@ -154,7 +154,7 @@ TEST_P(WorkersTest, AShardThatFailsIsToldAndFailsTheWhole) {
     EXPECT_THAT(outcome.out, HasSubstr("wall.gltf"));
 }
 
-TEST_P(WorkersTest, ADataSetIsThatOfOneMachine) {
+TEST_P(WorkersTest, ADataSetEqualsThatOfOneMachine) {
     writeFile(folder_ / "sweep.yml", "poses: {grid: {x: [0, 1, 2, 3], y: [0, 1]}}\npicture: {height: 64}\n");
     const auto dataSet = [&](const std::string& out) {
         return std::vector<std::string>{"dataset", folder_ / "wall.yml", "--sweep",  folder_ / "sweep.yml",
@@ -177,7 +177,7 @@ TEST_P(WorkersTest, ADataSetIsThatOfOneMachine) {
 INSTANTIATE_TEST_SUITE_P(All, WorkersTest, testing::Values(Engine{"dask", "distributed"}, Engine{"ray", "ray"}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST_F(EngineTest, AnArrayOfSlurmMakesAllShards) {
+TEST_F(EngineTest, ASlurmArrayMakesAllShards) {
     const std::string script = sourceFile("deploy/slurm/shards.sbatch");
     const auto job = [&](const std::string& index, const std::string& first) {
         std::vector<std::string> words = {"env",
@@ -205,7 +205,7 @@ TEST_F(EngineTest, AnArrayOfSlurmMakesAllShards) {
     EXPECT_THAT(alone.err, HasSubstr("SLURM_ARRAY_TASK_ID: is not set; submit with --array=0-N"));
 }
 
-TEST_F(EngineTest, AJobOfKubernetesIsWellFormedAndItsPodsMakeShards) {
+TEST_F(EngineTest, AKubernetesJobIsWellFormedAndItsPodsMakeShards) {
     if (Process({"/usr/bin/python3", "-c", "import jsonschema, yaml"}, folder_.path()).wait().code != 0)
         GTEST_SKIP() << "SKIPPED: python3-jsonschema and python3-yaml are not installed; scripts/setup does that";
     const auto wordsOf = [&](int index) {

@@ -1,4 +1,4 @@
-// Recordings of an ARIS and of a Gemini become logs, which are exported, replayed, rendered again and scored.
+// Recordings of an ARIS and of a Gemini become logs that are exported, replayed, rendered again and scored.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr uint32_t first_bin = 20, bins = 260;  // of 50 us one way: 7.5 cm
 
-/** The wall as an instrument with these beams records it: codes of 8 bits, 80 dB, from 1.5 m on. */
+/** Returns the wall as recorded by an instrument with these beams: codes of 8 bits, 80 dB, from 1.5 m on. */
 std::string wallWith(const std::vector<double>& bearings_deg) {
     std::string text = replaced(wall_deployment, "range: 20", "range: 19.5");
     text = replaced(text, "beam_count: 16", fmt::format("bearings_deg: {}", bearings_deg));
@@ -44,7 +44,7 @@ std::vector<double> arisBearingsDeg() {
     return {table.begin(), table.end()};
 }
 
-/** Of a Gemini, from port, unevenly. */
+/** Uneven bearings of a Gemini, from port. */
 std::vector<double> geminiBearingsDeg() {
     std::vector<double> bearings;
     for (int i = 0; i < 40; ++i) bearings.push_back(30 - 1.5 * i + 0.3 * std::sin(i));
@@ -53,7 +53,7 @@ std::vector<double> geminiBearingsDeg() {
 
 class FanImportTest : public testing::Test {
 protected:
-    /** What a run of the wall gave out. */
+    /** The pings of a run of the wall. */
     std::vector<types::Sonar> pingsOf(const std::string& deployment, int count) const {
         writeFile(folder_ / "wall.yml", deployment);
         EXPECT_EQ(folder_.run({"--pings", std::to_string(count)}).code, 0);
@@ -62,7 +62,7 @@ protected:
             ->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) { pings.push_back(ping); });
         return pings;
     }
-    /** Samples behind the window's begin, as a file has them. @param order of the beams */
+    /** Returns the samples from the window's start, in the order of a file. @param order of the beams */
     static test::RecordedBytes samplesOf(const types::Sonar& ping, uint32_t first) {
         test::RecordedBytes samples;
         for (uint32_t bin = first; bin < ping.bin_count; ++bin)
@@ -116,7 +116,7 @@ protected:
 
 }  // namespace
 
-TEST_F(FanImportTest, AnArisFileOfWhatWasRenderedIsRenderedAgain) {
+TEST_F(FanImportTest, AnArisFileOfRenderedPingsIsRenderedAgain) {
     recordAris(3);
     const Outcome outcome = import("dive.aris");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -129,7 +129,7 @@ TEST_F(FanImportTest, AnArisFileOfWhatWasRenderedIsRenderedAgain) {
     for (const json& ping : scored["pings"]) EXPECT_LT(ping["rel_l2"], 1e-3) << ping.dump();
 }
 
-TEST_F(FanImportTest, AGlfFileHasThePingsThatWereRendered) {
+TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
     recordGemini(3);
     const Outcome outcome = import("dive.glf");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -146,14 +146,14 @@ TEST_F(FanImportTest, AGlfFileHasThePingsThatWereRendered) {
         const types::Sonar &before = rendered[i], &after = imported[i];
         ASSERT_EQ(after.bins.size(), before.bins.size());
         EXPECT_DOUBLE_EQ(after.binStart(after.bin_count), before.binStart(before.bin_count));
-        for (uint32_t beam = 0; beam < before.beam_count; ++beam) {  // from port there, from starboard here
+        for (uint32_t beam = 0; beam < before.beam_count; ++beam) {  // from port in the file, from starboard in the log
             const uint32_t other = before.beam_count - 1 - beam;
             EXPECT_NEAR(after.bearings[other].rad, before.bearings[beam].rad, 1e-12);
             for (uint32_t bin = 0; bin < bins; ++bin)
                 ASSERT_EQ(after.bins[other * bins + bin], before.bins[beam * bins + bin]) << beam << " " << bin;
         }
     }
-    const json scored = score();  // speckle goes by the time, which is another
+    const json scored = score();  // speckle depends on the time, which differs
     EXPECT_EQ(scored["compared"], 3);
     for (const json& ping : scored["pings"]) EXPECT_GT(ping["correlation"], 0.5) << ping.dump();
 }
@@ -169,14 +169,14 @@ TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     EXPECT_EQ(to("fan.npz").code, 0);
     EXPECT_EQ(to("fan.csv").code, 0);
     const std::string info = callInsonify(folder_, {"log", "info", "dive.0.log", "--metadata"}).out;
-    EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device gave them out"));
+    EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device output them"));
     EXPECT_THAT(info, HasSubstr("\"dynamic_range_db\": 80"));
     const Outcome replay = callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"});
     EXPECT_EQ(replay.code, 0) << replay.err;
     EXPECT_TRUE(fs::exists(folder_ / "again/fan_000001.png"));
 }
 
-TEST_F(FanImportTest, PosesOfTheRecordingGoToTheVehicleAndTheSonar) {
+TEST_F(FanImportTest, PosesOfTheRecordingBecomeThoseOfTheVehicleAndTheSonar) {
     types::Sonar ping;
     ping.time = {1'700'000'000'000'000};
     ping.resize(bins, 48);

@@ -1,4 +1,4 @@
-// deploy/foxglove_layout.json, held against what deploy/live_view.yml serves.
+// deploy/foxglove_layout.json, compared with the topics of deploy/live_view.yml.
 #include <gmock/gmock.h>
 
 #include <csignal>
@@ -12,7 +12,7 @@ using namespace insonify::deployer;
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(FoxgloveLayoutTest, EachTopicAndFieldOfItIsServedByTheLiveView) {
+TEST(FoxgloveLayoutTest, TheLiveViewServesEachTopicAndField) {
     if (!pythonHas("websockets, mcap_ros2"))
         GTEST_SKIP() << "SKIPPED: Python packages websockets and mcap_ros2; scripts/setup installs them";
     const TestFolder folder;

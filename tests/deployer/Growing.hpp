@@ -1,5 +1,5 @@
 #pragma once
-// A log that is being written.
+// A log during its writing.
 #include <filesystem>
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace insonify::deployer {
 
-/** Samples of a stream that can be read by now; 0 for a file that is not there yet. */
+/** Returns the number of readable samples of a stream; 0 for a missing file. */
 inline uint64_t flushedSamples(const std::filesystem::path& log, const std::string& stream) {
     constexpr uintmax_t prologue = 16;  // [B]
     std::error_code absent;

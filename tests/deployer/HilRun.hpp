@@ -1,5 +1,5 @@
 #pragma once
-// A deployment with a device, run by the command, and where its device listens.
+// A deployment with a device, run by the command, and the address of its device.
 #include <regex>
 #include <string>
 
@@ -14,7 +14,7 @@ using deployer::readFile;
 using deployer::TestFolder;
 using deployer::writeFile;
 
-/** A deployment that runs in a folder of its own until the end of the test; any free port is given to its `device`. */
+/** A deployment that runs in its own folder until the end of the test; its `device` gets a free port. */
 class HilRun {
 public:
     HilRun(const std::string& deployment, std::vector<std::string> sets)
@@ -25,7 +25,7 @@ public:
     HilRun(const HilRun&) = delete;
     HilRun& operator=(const HilRun&) = delete;
 
-    /** The port that its notice tells; 0 where it has ended, or says nothing for long. */
+    /** Returns the port in its notice; 0 if it has ended, or prints nothing for long. */
     int port() const {
         std::smatch found;
         std::string text;
@@ -56,7 +56,7 @@ private:
     bool running_ = true;
 };
 
-/** A wall across the way, 40 m wide and high, at so many metres north, and a ball before it. */
+/** A wall across the way, 40 m wide and high, at a distance in metres north, and a ball in front of it. */
 inline std::string wallAndBall(double wall, const std::string& ball_at, double radius) {
     const auto model = [](const std::string& name, const std::string& pose, const std::string& geometry) {
         return "<model name='" + name + "'><static>true</static><pose>" + pose +

@@ -1,4 +1,4 @@
-// Recordings of an Oculus become logs, which are replayed, rendered again and scored.
+// Recordings of an Oculus become logs that are replayed, rendered again and scored.
 #include <gmock/gmock.h>
 
 #include "components/device/OculusPing.hpp"
@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** The wall as an instrument records it: codes of 16 bits, beams at whole hundredths of a degree. */
+/** Returns the wall as recorded by an instrument: codes of 16 bits, beams at whole hundredths of a degree. */
 std::string wallOfCodes() {
     std::string text = replaced(wall_deployment, "beam_count: 16", "beam_count: 20");
     text = replaced(text, "  log:\n",
@@ -26,7 +26,7 @@ std::string wallOfCodes() {
 
 class ImportCommandTest : public testing::Test {
 protected:
-    /** What the wall's receiver gave out, as the maker's viewer would have recorded it: in dive.oculus. */
+    /** Writes the codes of the wall's receiver to dive.oculus, as the maker's viewer would record them. */
     void record(int pings) const {
         ASSERT_EQ(folder_.run({"--pings", std::to_string(pings)}).code, 0);
         const auto log = log::openLog(folder_ / "out/wall.0.log");
@@ -40,10 +40,10 @@ protected:
             result.speed_of_sound = static_cast<double>(ping.speed_of_sound);
             encoder.encode(ping, result);
             result.settle();
-            recorder.write(ping.time.seconds(), bytesOf(result));  // speckle goes by the time
+            recorder.write(ping.time.seconds(), bytesOf(result));  // speckle depends on the time
         });
     }
-    /** A recording of some pings of the wall at 20 m and, from the third on, at 15 m. */
+    /** A recording of pings of the wall at 20 m and, from the third on, at 15 m. */
     void recordAChange() const {
         record(2);
         const std::string before = readFile(folder_ / "dive.oculus");
@@ -72,7 +72,7 @@ protected:
 
 }  // namespace
 
-TEST_F(ImportCommandTest, ARecordingOfWhatWasRenderedIsRenderedAgain) {
+TEST_F(ImportCommandTest, ARecordingOfRenderedPingsIsRenderedAgain) {
     record(3);
     const Outcome outcome = import("dive.oculus");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -116,7 +116,7 @@ TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
     for (const json& ping : scored["pings"]) EXPECT_LT(ping["rel_l2"], 1e-3) << ping["index"];
 }
 
-TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasWhatTheRecordingHas) {
+TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasTheRecordingsData) {
     record(3);
     const Outcome outcome = callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -133,7 +133,7 @@ TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasWhatTheRecordingHas) {
 
 TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile) {
     const fs::path recording = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
-    if (!fs::exists(recording)) GTEST_SKIP() << recording << " is not there: no real XTF file is tested";
+    if (!fs::exists(recording)) GTEST_SKIP() << recording << " is missing: no real XTF file is tested";
     const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "side.0.log: 461 pings as receiver.ping\n");
@@ -144,7 +144,7 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
     const auto to = [&](const std::string& file) {
         return callInsonify(folder_, {"log", "export", "side.0.log", "--stream", "receiver.ping", "--to", file});
     };
-    EXPECT_EQ(to("side.png").out, "side_000000.png\n") << "one waterfall of all lines";
+    EXPECT_EQ(to("side.png").out, "side_000000.png\n") << "one waterfall with all lines";
     EXPECT_EQ(to("side.npz").code, 0);
     ASSERT_EQ(to("side.xtf").code, 0);
     ASSERT_EQ(callInsonify(folder_, {"log", "import", "side.xtf", "--to", "again.0.log"}).code, 0);
@@ -186,7 +186,7 @@ TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
 
 TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {
     const fs::path recording = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
-    if (!fs::exists(recording)) GTEST_SKIP() << recording << " is not there: no recording of a device is tested";
+    if (!fs::exists(recording)) GTEST_SKIP() << recording << " is missing: no recording of a device is tested";
     const std::string deployment = test::sourceFile("deploy/hil_oculus.yml");
     const Outcome outcome = import(recording, deployment);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -197,13 +197,13 @@ TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {
     for (const json& ping : scored["pings"]) EXPECT_TRUE(ping["correlation"].is_number());
 }
 
-TEST_F(ImportCommandTest, WhatCannotBeImportedIsToldWithTheReason) {
+TEST_F(ImportCommandTest, ReportsWhyAFileCannotBeImported) {
     writeFile(folder_ / "empty.raw", "SO");
     EXPECT_THAT(import("empty.raw").err, HasSubstr("empty.raw: holds no ping of an Oculus"));
     EXPECT_THAT(import("missing.raw").err, HasSubstr("missing.raw: cannot be read"));
     record(1);
     writeFile(folder_ / "plain.yml", wall_deployment);
-    EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that gives out codes"));
+    EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that outputs codes"));
     const Outcome outcome =
         callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"});
     EXPECT_EQ(outcome.code, 2);

@@ -10,14 +10,14 @@ using testing::HasSubstr;
 
 namespace {
 
-/** Words of a run without the noise of the sea; a 3-D sonar's range images are without noise as they are. */
+/** Arguments of a run without the noise of the sea; a 3-D sonar's range images have no noise anyway. */
 std::vector<std::string> quietly(std::vector<std::string> words, const std::string& sonar) {
     if (!sonarPreset(sonar).isGrid()) words.insert(words.end(), {"--set", "noise.ambient=null"});
     return words;
 }
 
-/** One ping of what `init` made for this sonar: how many of its bins, or of its beams, hold something before the noise.
- */
+/** Returns, for one ping of the deployment of `init` for this sonar, the number of bins or beams with an echo, before
+ *  noise. */
 size_t echoesHeard(const TestFolder& folder, const std::string& sonar) {
     const Outcome made = callInsonify(folder, {"init", sonar, "--sonar", sonar});
     EXPECT_EQ(made.code, 0) << made.err;
@@ -34,13 +34,14 @@ size_t echoesHeard(const TestFolder& folder, const std::string& sonar) {
     return std::stoul(counted.out);
 }
 
-/** What leaves next to nothing of a ping to be seen: its last hundredth alone, or returns above the source's level. */
+/** Settings that hide almost everything in a ping: only its last hundredth, or only returns above the source's
+ *  level. */
 std::string almostNothing(const SonarPreset& preset) {
     if (preset.isGrid()) return "sonar.detection.threshold_db=0";
     return "sonar.range_min=" + std::to_string(0.99 * preset.range);
 }
 
-/** Pixels of echoes in the first picture of a run with a property that is set. */
+/** Returns the pixels of echoes in the first picture of a run with a property set. */
 int brightPixels(const TestFolder& folder, const std::string& sonar, const std::string& assignment) {
     const std::string out = "out_" + assignment;
     std::vector<std::string> words{"run", ".", "--pings", "1", "--out", out, "--set", assignment};
@@ -67,7 +68,7 @@ std::vector<std::string> presetNames() {
 
 }  // namespace
 
-TEST_P(InitPresetTest, IsValidRunsAtOnceAndHearsTheScene) {
+TEST_P(InitPresetTest, IsValidRunsAtOnceAndReceivesEchoes) {
     const TestFolder folder;
     EXPECT_GT(echoesHeard(folder, GetParam()), 100u);
     const Outcome checked = callInsonify(folder, {"check", GetParam()});
@@ -84,7 +85,7 @@ TEST_P(InitPresetTest, MakesAPictureOfTheScene) {
     EXPECT_GT(drawn, empty + (preset.isFan() || preset.isGrid() ? 5000 : 50));
 }
 
-TEST_P(InitPresetTest, HasABeamAsWideAsItsDataSheetSaysAndAPulse) {
+TEST_P(InitPresetTest, HasTheBeamWidthOfItsDataSheetAndAPulse) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     const SonarPreset& preset = sonarPreset(GetParam());
@@ -96,7 +97,7 @@ TEST_P(InitPresetTest, HasABeamAsWideAsItsDataSheetSaysAndAPulse) {
     EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr("pulse: {"));
 }
 
-TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheRangeThatIsAskedFor) {
+TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheConfiguredRange) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     const Outcome ran = callInsonify(folder, {"run", ".", "--pings", "1", "--out", "out"});
@@ -120,14 +121,14 @@ TEST(InitCommandTest, NothingIsOverwritten) {
     for (const char* sonar : {"oculus_m750d", "micron"}) {
         const Outcome again = callInsonify(folder, {"init", "dive", "--sonar", sonar});
         EXPECT_EQ(again.code, 2);
-        EXPECT_THAT(again.err, HasSubstr("dive/pass.csv: is there already"));
+        EXPECT_THAT(again.err, HasSubstr("dive/pass.csv: exists already"));
     }
     EXPECT_EQ(readFile(folder / "dive/pass.csv"), "mine");
     EXPECT_EQ(readFile(folder / "dive/oculus_m750d.yml"), before);
     EXPECT_FALSE(fs::exists(folder / "dive/micron.yml"));
 }
 
-TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesThatStandBesideIt) {
+TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesOfItsFolder) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
     std::vector<std::string> before;
@@ -142,7 +143,7 @@ TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesThatStandBesideIt) {
     EXPECT_EQ(readFile(folder / "dive/hover.csv"), before[2]);
 }
 
-TEST(InitCommandTest, ASonarThatIsNotKnownIsToldWithTheNearestOne) {
+TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"init", "dive", "--sonar", "oculus_m750"});
     EXPECT_EQ(outcome.code, 2);
@@ -150,7 +151,7 @@ TEST(InitCommandTest, ASonarThatIsNotKnownIsToldWithTheNearestOne) {
     EXPECT_FALSE(fs::exists(folder / "dive"));
 }
 
-TEST(InitCommandTest, AFolderStandsForItsOneDeployment) {
+TEST(InitCommandTest, AFolderSelectsItsOnlyDeployment) {
     const TestFolder folder;
     const Outcome none = callInsonify(folder, {"run", "."});
     EXPECT_EQ(none.code, 2);

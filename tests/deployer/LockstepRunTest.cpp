@@ -1,4 +1,4 @@
-// A lockstep run of one file and seed gives one log, bit for bit, whatever the machine is doing meanwhile.
+// A lockstep run of one file and seed gives one log, bit for bit, for any load of the machine.
 #include <gtest/gtest.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -8,7 +8,7 @@ using namespace insonify::deployer;
 
 namespace {
 
-/** A deployment of deploy/ in a folder of its own, with this text instead of another. */
+/** A deployment of deploy/ in its own folder, with a text replaced. */
 class DeployFolder : public TestFolder {
 public:
     DeployFolder(const std::string& name, const std::string& what, const std::string& with) {
@@ -16,7 +16,7 @@ public:
         fs::create_symlink(deploy / "scenes", *this / "scenes");
         writeFile(*this / "x.yml", replaced(readFile(deploy / name), what, with));
     }
-    /** The log `name` of a run, which must hold more than `least` bytes. */
+    /** Returns the log `name` of a run, which must have more than `least` bytes. */
     std::string logOf(const std::string& out, const std::string& name, size_t least,
                       const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words = {"run", "x.yml", "--out", out, "--pings", "6"};

@@ -7,7 +7,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** A folder in which the wall has run for three pings. */
+/** A folder with a run of the wall for three pings. */
 class LogCommandTest : public testing::Test {
 protected:
     LogCommandTest() { EXPECT_EQ(folder.run({"--pings", "3"}).code, 0); }
@@ -20,7 +20,7 @@ protected:
 
 }  // namespace
 
-TEST_F(LogCommandTest, InfoTellsStreamsTypesCountsAndRates) {
+TEST_F(LogCommandTest, InfoPrintsStreamsTypesCountsAndRates) {
     const json info = json::parse(callInsonify(folder, {"log", "info", log, "--json"}).out);
     EXPECT_EQ(info["bytes"], fs::file_size(folder / log));
     EXPECT_TRUE(info["complete"]);
@@ -34,7 +34,7 @@ TEST_F(LogCommandTest, InfoTellsStreamsTypesCountsAndRates) {
     EXPECT_THAT(names, testing::UnorderedElementsAre("sonar.ping", "noise.noisy", "vehicle.pose"));
 }
 
-TEST_F(LogCommandTest, ALogThatWasCutOffIsReadUpToThere) {
+TEST_F(LogCommandTest, ATruncatedLogIsReadUpToItsEnd) {
     fs::resize_file(folder / log, fs::file_size(folder / log) - 5);
     const Outcome outcome = callInsonify(folder, {"log", "info", log, "--json"});
     EXPECT_EQ(outcome.code, 0);
@@ -42,7 +42,7 @@ TEST_F(LogCommandTest, ALogThatWasCutOffIsReadUpToThere) {
     EXPECT_THAT(outcome.err, HasSubstr("notice: "));
 }
 
-TEST_F(LogCommandTest, ExportsPingsToNumpyWithTheWallWhereItStands) {
+TEST_F(LogCommandTest, ExportsPingsToNumpyWithTheWallAtItsRange) {
     ASSERT_EQ(exportTo("sonar.ping", "ping.npz").out, "ping.npz\n");
     const Outcome told = python(folder, R"(
 import numpy
@@ -91,18 +91,17 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
         << "several files, several streams";
     const Outcome nothing = cut({"--from", "7"});
     EXPECT_EQ(nothing.code, 2);
-    EXPECT_THAT(nothing.err,
-                HasSubstr("out/wall.0.log: none of its samples is in the part that is asked for; they go from "
-                          "1.000000 s to 1.200000 s"));
+    EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
+                                       "1.000000 s to 1.200000 s"));
     EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
     EXPECT_EQ(cut({"--samples", "1"}).code, 2);
     EXPECT_THAT(cut({"--samples", "a:b"}).err, HasSubstr("may be FIRST:LAST"));
     EXPECT_EQ(cut({"--stream", "no.such"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", log}).code, 2);
-    EXPECT_EQ(callInsonify(folder, {"log", "check", log}).code, 0) << "the log is as it was";
+    EXPECT_EQ(callInsonify(folder, {"log", "check", log}).code, 0) << "the log is unchanged";
 }
 
-TEST_F(LogCommandTest, TheFolderOfAFileThatIsWrittenIsMade) {
+TEST_F(LogCommandTest, MakesTheFolderOfAnOutputFile) {
     EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", "deep/er/cut.0.log"}).code, 0);
     EXPECT_EQ(exportTo("sonar.ping", "deep/too/ping.npz").code, 0);
     const Outcome outcome = exportTo("sonar.ping", "deep/er/cut.0.log/ping.npz");
@@ -134,7 +133,7 @@ TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {
     EXPECT_TRUE(valid["wrong"].is_null());
 }
 
-TEST_F(LogCommandTest, TheLogCarriesItsPlanAndThePropertiesLieBesideIt) {
+TEST_F(LogCommandTest, TheLogHasItsPlanAndThePropertyLogNextToIt) {
     const std::string text = readFile(folder / log);
     for (const char* key : {"insonify_plan: ", "insonify_deployment: ", "insonify_seed: "})
         EXPECT_THAT(text, HasSubstr(key));
@@ -144,7 +143,7 @@ TEST_F(LogCommandTest, TheLogCarriesItsPlanAndThePropertiesLieBesideIt) {
     EXPECT_THAT(names, testing::IsSupersetOf({"sonar.range", "noise.seed", "noise.speckle", "scene.file"}));
     EXPECT_EQ(callInsonify(folder, {"log", "check", "out/properties.0.log"}).code, 0);
     EXPECT_EQ(callInsonify(folder, {"replay", "out/properties.0.log", "wall.yml", "--out", "again"}).code, 2)
-        << "properties stand for no port";
+        << "properties are not samples of ports";
 }
 
 TEST_F(LogCommandTest, RefusesWhatItCannotExport) {
@@ -173,7 +172,7 @@ TEST(LogFrameTest, LoggedFramesAreExportedAsPictures) {
     EXPECT_THAT(exportTo("frame.csv").err, HasSubstr("pictures: .png and .npz"));
 }
 
-TEST(LogFileTest, AFileThatIsNoLogIsRefused) {
+TEST(LogFileTest, RefusesAFileThatIsNotALog) {
     const TestFolder folder;
     writeFile(folder / "empty.0.log", "");
     writeFile(folder / "text.0.log", "POCOSIN, almost a log, and long enough for a prologue");

@@ -1,4 +1,4 @@
-// What a log and what is exported from it tell of their numbers.
+// The meaning of the numbers in a log and in its exports.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -24,7 +24,7 @@ protected:
         const Outcome ran = folder_.run({"--pings", "2", "--seed", "5"});
         EXPECT_EQ(ran.code, 0) << ran.err;
     }
-    /** What a python program says of x.npz, exported from this stream. */
+    /** Returns the output of a python program on x.npz, exported from this stream. */
     std::string exported(const std::string& stream, const std::string& program) {
         const Outcome written =
             callInsonify(folder_, {"log", "export", "out/wall.0.log", "--stream", stream, "--to", "x.npz"});
@@ -40,7 +40,7 @@ protected:
 
 }  // namespace
 
-TEST_F(LogMeaningTest, ArraysTellTheRangeOfEachBin) {
+TEST_F(LogMeaningTest, ArraysHaveTheRangeOfEachBin) {
     EXPECT_EQ(exported("sonar.ping", R"(
 width = d['bin_duration'] * d['speed_of_sound']
 ranges = (numpy.arange(50) + 0.5) * width[:, None]
@@ -48,7 +48,7 @@ print(d['range_m'].shape, numpy.allclose(d['range_m'], ranges, rtol=1e-6)))"),
               "(2, 50) True\n");
 }
 
-TEST_F(LogMeaningTest, ArraysTellWhatTheirNumbersMean) {
+TEST_F(LogMeaningTest, ArraysHaveTheMeaningOfTheirNumbers) {
     EXPECT_EQ(
         exported("receiver.ping", "print(meta['output'], meta['tvg'], meta['model'], meta['mount'], meta['seed'])"),
         "level_db {'log_coefficient': 40} physical {'pitch_deg': 3} 5\n");
@@ -83,7 +83,7 @@ TEST_F(LogMeaningTest, TextOfManyBinsIsAnnouncedWithItsSize) {
     EXPECT_THAT(large.err, HasSubstr("notice: x.csv gets a line for each bin, some 3 million, 0.1 GB"));
 }
 
-TEST(LogRoundingTest, BinsOfNoWholeMicrosecondsAreWarnedOfWhereALogIsWritten) {
+TEST(LogRoundingTest, WarnsWhenLoggedBinsAreNotWholeMicroseconds) {
     const std::vector<std::string> exact = {"--pings",         "2", "--set", "sonar.range_rounding=exact", "--set",
                                             "sonar.range=19.9"};
     const WallFolder logged;

@@ -1,4 +1,4 @@
-// MCAP files from one end to the other: logged, exported, looked into, replayed.
+// MCAP files in all commands: logged, exported, inspected, replayed.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -8,12 +8,12 @@ using testing::HasSubstr;
 
 namespace {
 
-/** A folder in which the wall has run for three pings, logged by pocolog in out/. */
+/** A folder with a run of the wall for three pings, logged as pocolog in out/. */
 class McapCommandTest : public testing::Test {
 protected:
     McapCommandTest() { EXPECT_EQ(folder.run({"--pings", "3"}).code, 0); }
     Outcome call(std::vector<std::string> words) const { return callInsonify(folder, std::move(words)); }
-    /** Whether two logs hold the same pings, but for a rounding of the bearings. */
+    /** Whether two logs have the same pings, except for the rounding of bearings. */
     void expectSamePings(const std::string& a, const std::string& b,
                          const std::string& stream_of_b = "noise.noisy") const {
         ASSERT_EQ(call({"log", "export", a, "--stream", "noise.noisy", "--to", "a.npz"}).code, 0);
@@ -51,7 +51,7 @@ TEST_F(McapCommandTest, APocologFileExportedAndReplayedGivesTheSamePings) {
     expectSamePings("out/wall.0.log", "again/wall.0.log", "noise.noisy");
 }
 
-TEST_F(McapCommandTest, PosesOfAnMcapFileDriveTheSonarToTheSamePings) {
+TEST_F(McapCommandTest, PosesOfAnMcapFileGiveTheSamePings) {
     ASSERT_EQ(call({"log", "export", "out/wall.0.log", "--to", "wall.mcap", "--world-frame", "ned"}).code, 0);
     const Outcome scored = call({"replay", "wall.mcap", "wall.yml", "--out", "again", "--rerender", "--score"});
     ASSERT_EQ(scored.code, 0) << scored.err;

@@ -1,4 +1,5 @@
-// What others read about the project: the labels of deploy/Dockerfile, as BlueOS documents them, and CITATION.cff.
+// Data about the project for other programs: the labels of deploy/Dockerfile, as BlueOS documents them, and
+// CITATION.cff.
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
@@ -16,7 +17,8 @@ namespace {
 
 const fs::path repository = test::source_dir;
 
-/** The labels as Docker reads them: lines that go on are one, quotes fall, and SOURCE is what a builder gives. */
+/** Returns the labels as Docker reads them: continued lines are joined, quotes removed, and SOURCE is set by the
+ *  builder. */
 std::map<std::string, std::string> labels() {
     std::string recipe = std::regex_replace(readFile(repository / "deploy/Dockerfile"), std::regex("\\\\\n"), "");
     static const std::regex label(R"re(\nLABEL (\w+)=('([^'\n]*)'|"((\\"|[^"\n])*)"))re");
@@ -60,7 +62,7 @@ TEST(MetadataTest, TheLabelsAreWhatBlueOsReads) {
                 testing::Contains(all["type"]));
 }
 
-TEST(MetadataTest, TheExtensionStartsADeploymentThatIsRight) {
+TEST(MetadataTest, TheExtensionStartsAValidDeployment) {
     const json permissions = json::parse(labels()["permissions"]);
     EXPECT_EQ(permissions["HostConfig"]["NetworkMode"], "host");
     auto words = permissions["Cmd"].get<std::vector<std::string>>();
@@ -72,14 +74,14 @@ TEST(MetadataTest, TheExtensionStartsADeploymentThatIsRight) {
     const auto out = std::ranges::find(words, "--out");
     ASSERT_LT(out + 1, words.end());
     *(out + 1) = "out";
-    // The networks of a machine that tests are another matter.
+    // The networks of the testing machine do not matter here.
     for (std::string& word : words) word = std::regex_replace(word, std::regex("0\\.0\\.0\\.0"), "127.0.0.1");
     words.insert(words.end(), {"--set", "ping360.port=0", "--set", "ping1d.port=0", "--duration", "0.2"});
     const Outcome outcome = callInsonify(TestFolder(), words);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST(MetadataTest, TheCitationHasWhatItsFormatAsksFor) {
+TEST(MetadataTest, TheCitationHasTheFieldsOfItsFormat) {
     const YAML::Node citation = YAML::LoadFile((repository / "CITATION.cff").string());
     const auto text = [&](const char* key) { return citation[key].as<std::string>(""); };
     EXPECT_EQ(text("cff-version"), "1.2.0");

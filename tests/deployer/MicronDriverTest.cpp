@@ -1,4 +1,4 @@
-// A Micron over TCP and over a serial line, before what an open driver sends and checks, with the sonar behind it.
+// A Micron over TCP and over a serial line, with the messages and checks of an open driver, and a sonar behind it.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -85,7 +85,7 @@ protected:
     HilRun run_{deployment(folder_), {}};
 };
 
-TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndOverALine) {
+TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndASerialLine) {
     INSONIFY_NEEDS("sdf");
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
@@ -94,8 +94,9 @@ TEST_F(MicronDriverTest, ADriverScansASectorOverTcpAndOverALine) {
     expectAWallAt6Metres(driverOn(line), true);
 }
 
-/** Clients that come and go, in mid-ping too, and one that asks and never reads, hold up nobody. */
-TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
+/** Clients that connect and disconnect, also during a ping, and one that asks and never reads, delay no other
+ *  client. */
+TEST_F(MicronDriverTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead) {
     INSONIFY_NEEDS("sdf");
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
@@ -106,7 +107,7 @@ TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas)
         const Wire wire(Wire::connected(port));
         MicronDriver driver = driverOn(wire);
         if (i % 100 == 0) driver.configure({.resolution = 0.05, .max_distance = 10, .step = 0.1});
-        driver.request();  // and gone, before its line comes
+        driver.request();  // gone before its line arrives
     }
     const Wire last(Wire::connected(port));
     MicronDriver driver = driverOn(last);
@@ -117,8 +118,8 @@ TEST_F(MicronDriverTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas)
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-/** As on a machine that is short of processors, or whose clock is set on: the line comes late, and it comes. */
-TEST_F(MicronDriverTest, ALineIsAnsweredThoughTheSimulationStoodStill) {
+/** As on a machine with too few processors, or whose clock is set forward: the line is late, but is sent. */
+TEST_F(MicronDriverTest, AnswersALineAfterAPauseOfTheSimulation) {
     INSONIFY_NEEDS("sdf");
     const int port = run_.port();
     ASSERT_GT(port, 0) << readFile(run_.folder() / "stderr.txt");
@@ -127,7 +128,7 @@ TEST_F(MicronDriverTest, ALineIsAnsweredThoughTheSimulationStoodStill) {
     driver.configure({.resolution = 0.05, .max_distance = 10});
     for (int i = 0; i < 3; ++i) {
         driver.request();
-        std::this_thread::sleep_for(std::chrono::milliseconds(4 * i));  // before the ping, while it is under way, after
+        std::this_thread::sleep_for(std::chrono::milliseconds(4 * i));  // before the ping, during it, after it
         run_.signal(SIGSTOP);
         std::this_thread::sleep_for(std::chrono::milliseconds(2500));
         run_.signal(SIGCONT);

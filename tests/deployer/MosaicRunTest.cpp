@@ -1,4 +1,4 @@
-// deploy/tank_mosaic.yml as a user runs it: how straight the walls are is measured in the picture that it writes.
+// The straightness of the walls, measured in the picture of deploy/tank_mosaic.yml.
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int half_width = 2 * 420 + 112;  ///< Of the picture [px].
 
-/** The picture of the ping with which the head has gone round: at 20 s, turned about, 1.7 m north and 1.5 m west. */
+/** The picture of the ping that completes the head's turn: at 20 s, turned about, 1.7 m north and 1.5 m west. */
 class MosaicRunTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -63,7 +63,7 @@ TEST_F(MosaicRunTest, WallsAreStraightWithinOneBinWhereEachPingHasItsPose) {
     }
 }
 
-TEST_F(MosaicRunTest, AsTheHeadHearsThemTheyBendByMoreThanTenBins) {
+TEST_F(MosaicRunTest, OnAPolarDiscWallsBendByMoreThanTenBins) {
     std::vector<cv::Point2d> heard;
     for (double bearing = -155; bearing < -83; bearing += 0.9)
         for (double range = 3; range < 23; range += 0.05) {
@@ -78,11 +78,11 @@ TEST_F(MosaicRunTest, AsTheHeadHearsThemTheyBendByMoreThanTenBins) {
     EXPECT_GT(fit.farthest, 10 * pixelsPerBin());
 }
 
-TEST_F(MosaicRunTest, NoPingIsLaidAtAPoseThatIsNotBetweenTwo) {
+TEST_F(MosaicRunTest, EveryPingHasAnInterpolatedPose) {
     EXPECT_EQ(notices_.find("held"), std::string::npos) << notices_;
 }
 
-TEST_F(MosaicRunTest, APoseThatHadToBeHeldIsToldWhenTheRunIsOver) {
+TEST_F(MosaicRunTest, ReportsAHeldPoseAtTheEndOfTheRun) {
     const deployer::TestFolder folder;
     const fs::path deployment = fs::path(test::source_dir) / "deploy/tank_mosaic.yml";
     const Outcome outcome = callInsonify(folder, {"run", deployment, "--out", "out", "--pings", "2"});

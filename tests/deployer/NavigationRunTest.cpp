@@ -1,5 +1,5 @@
-// The bag of deploy/navigation.yml, as the SLAM package reads it that it is written for; and its sensors once more from
-// a log of poses.
+// The bag of deploy/navigation.yml, read as the SLAM package reads it for which it is written; and its sensors again
+// from a log of poses.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ const std::string navigation = test::sourceFile("deploy/navigation.yml");
 
 class NavigationRunTest : public testing::Test {
 protected:
-    /** Runs it with a small sonar, which takes no time. */
+    /** Runs it with a small, fast sonar. */
     void run(const std::string& out, std::vector<std::string> more = {}) {
         std::vector<std::string> words = {"run",   navigation,
                                           "--out", out,
@@ -28,7 +28,7 @@ protected:
         const Outcome outcome = callInsonify(folder_, words);
         ASSERT_EQ(outcome.code, 0) << outcome.err;
     }
-    /** What the reader says of a bag. */
+    /** Returns the reader's output for a bag. */
     json read(const std::string& out) const {
         const std::string answer = pythonSays(
             test::sourceFile("tests/deployer/read_navigation.py ") + (folder_ / out).string(), folder_ / "answer");
@@ -45,7 +45,7 @@ protected:
     const TestFolder folder_;
 };
 
-/** Takes errors from all that dead reckoning takes. */
+/** Removes the errors from the inputs of dead reckoning. */
 std::vector<std::string> withoutErrors() {
     std::vector<std::string> words;
     for (const char* key : {"dvl.errors.velocity_noise", "dvl.errors.scale_error", "dvl.errors.velocity_bias",
@@ -57,7 +57,7 @@ std::vector<std::string> withoutErrors() {
 
 }  // namespace
 
-TEST_F(NavigationRunTest, ASlamPackageTakesEveryMessageAndReckonsTheWay) {
+TEST_F(NavigationRunTest, ASlamPackageReadsEveryMessageAndReckonsThePath) {
     if (!pythonHas("rosbags, numpy"))
         GTEST_SKIP() << "SKIPPED: the Python package rosbags is missing; scripts/setup installs it";
     run("bag");
@@ -70,18 +70,19 @@ TEST_F(NavigationRunTest, ASlamPackageTakesEveryMessageAndReckonsTheWay) {
     EXPECT_TRUE(found["dropped"].empty()) << found["dropped"];
     EXPECT_EQ(found["counts"]["/oculus/sonar_image"], 429);
     EXPECT_EQ(found["counts"]["/dvl/data"], 685) << "eight a second for 85.6 s";
-    EXPECT_EQ(found["counts"]["/mavros/imu/data"], 8559) << "a hundred a second, but for the first pose and the last";
+    EXPECT_EQ(found["counts"]["/mavros/imu/data"], 8559)
+        << "a hundred a second, except for the first pose and the last";
     EXPECT_EQ(found["shape"], json({100, 32}));
     EXPECT_EQ(found["loudest"], 255);
     EXPECT_GT(found["to_port"], 0.55) << "where the quay is, and bearings are positive";
     EXPECT_NEAR(found["length"], 85.9, 0.1);
-    EXPECT_LT(found["worst"], 0.6) << "a degree of heading, 0.7 % of the way";
-    EXPECT_GT(found["worst"], 0.1) << "that is no error at all";
+    EXPECT_LT(found["worst"], 0.6) << "a degree of heading, 0.7 % of the path";
+    EXPECT_GT(found["worst"], 0.1) << "that would be no error";
     EXPECT_LT(found["depth_error"], 0.05) << "of a reader with another density";
     std::cout << found << '\n';
 }
 
-TEST_F(NavigationRunTest, WithoutErrorsTheWayCloses) {
+TEST_F(NavigationRunTest, WithoutErrorsThePathCloses) {
     if (!pythonHas("rosbags, numpy"))
         GTEST_SKIP() << "SKIPPED: the Python package rosbags is missing; scripts/setup installs it";
     run("bag", withoutErrors());
@@ -92,7 +93,7 @@ TEST_F(NavigationRunTest, WithoutErrorsTheWayCloses) {
     std::cout << found << '\n';
 }
 
-TEST_F(NavigationRunTest, TheSameSeedGivesTheSameReadingsAndAnotherGivesOthers) {
+TEST_F(NavigationRunTest, ReadingsFollowFromTheSeed) {
     run("a", {"--duration", "3", "--set", "log.file=a.0.log"});
     run("b", {"--duration", "3", "--set", "log.file=a.0.log"});
     run("c", {"--duration", "3", "--set", "log.file=a.0.log", "--seed", "4"});
@@ -104,7 +105,7 @@ TEST_F(NavigationRunTest, TheSameSeedGivesTheSameReadingsAndAnotherGivesOthers) 
     }
 }
 
-TEST_F(NavigationRunTest, ShardsHaveEachReadingOnceAndAsTheWholeRunHasIt) {
+TEST_F(NavigationRunTest, ShardsHaveEachReadingOfTheWholeRunOnce) {
     const std::vector<std::string> log = {"--pings", "6", "--set", "log.file=x.0.log"};
     run("whole", log);
     for (const char* shard : {"0/3", "1/3", "2/3"}) {

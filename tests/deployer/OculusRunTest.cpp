@@ -1,4 +1,4 @@
-// deploy/hil_oculus.yml with the drivers of others.
+// deploy/hil_oculus.yml with open drivers.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,14 +23,14 @@ protected:
         run_.signal(signal);
         return run_.wait().code;
     }
-    /** The TCP port that the notice tells. */
+    /** Returns the TCP port in the notice. */
     uint16_t port() const {
         const std::string words = "listens on TCP 127.0.0.1:";
         if (!says(folder_, words)) throw std::runtime_error("it does not listen");
         const std::string told = readFile(folder_ / "stderr.txt");
         return static_cast<uint16_t>(std::stoi(told.substr(told.find(words) + words.size())));
     }
-    /** The largest code of a bin. */
+    /** Returns the max code of a bin. */
     static int loudest(const device::OculusResult& ping, size_t bin) {
         const auto row = ping.image.begin() + static_cast<std::ptrdiff_t>(bin * ping.rowBytes());
         return *std::max_element(row, row + static_cast<std::ptrdiff_t>(ping.rowBytes()));
@@ -48,7 +48,7 @@ protected:
 
 }  // namespace
 
-TEST_F(OculusRunTest, DriversHearTheHarbourWithTheirOwnSettings) {
+TEST_F(OculusRunTest, DriversGetEchoesWithTheirOwnSettings) {
     const uint16_t at = port();
     {
         test::EnstaDriver driver(listener_.next(), at);
@@ -70,8 +70,8 @@ TEST_F(OculusRunTest, DriversHearTheHarbourWithTheirOwnSettings) {
     test::RockDriver rock(at);
     rock.fire({.range = 30});
     device::OculusResult ping = rock.nextPing();
-    while (ping.fire.range != 30) ping = rock.nextPing();  // what was under way for the other
-    int near = 0, far = 0;                                 // the floor is some metres below: nothing is heard before it
+    while (ping.fire.range != 30) ping = rock.nextPing();  // pings in progress for the other driver
+    int near = 0, far = 0;                                 // the floor is some metres below: there is no nearer echo
     for (size_t bin = 10; bin < 60; ++bin) near = std::max(near, loudest(ping, bin));
     for (size_t bin = 300; bin < 1000; ++bin) far = std::max(far, loudest(ping, bin));
     EXPECT_GT(far, 2 * near) << near << " within 1.8 m";

@@ -1,4 +1,4 @@
-// What the pages show works as it stands there: commands, deployments, code.
+// The examples of the pages work: commands, deployments, code.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -21,7 +21,7 @@ const fs::path sources = insonify::test::source_dir;
 
 bool holdsCommands(const CodeBlock& block) { return block.language == "sh"; }
 
-/** The pages with commands to be run. */
+/** The pages with commands to run. */
 std::vector<std::string> pagesWithCommands() {
     std::vector<std::string> paths;
     for (const Page& page : allPages())
@@ -29,7 +29,7 @@ std::vector<std::string> pagesWithCommands() {
     return paths;
 }
 
-/** What a user has in the folder in which he reads a page: the project, with nothing in it that a run has left. */
+/** A user's folder while reading a page: the project, without the output of any run. */
 void makeCheckout(const TestFolder& folder) {
     fs::copy(sources / "deploy", folder / "deploy", fs::copy_options::recursive);
     for (const char* name : {"types", "components", "shaders", "scripts", "tests"})
@@ -45,7 +45,7 @@ Outcome runInBash(const TestFolder& folder, const std::string& commands) {
 
 class PagesTest : public testing::TestWithParam<std::string> {};
 
-/** What the command says of itself. */
+/** The command's help. */
 struct Commands {
     std::map<std::string, std::string> help;  ///< By the words of the command, after "insonify": "", "log", "log cut".
 
@@ -53,7 +53,7 @@ struct Commands {
         add("");
         for (const char* parent : {"log", "study", "device", "scene"}) add(parent);
     }
-    /** The longest of its commands that a call begins with. */
+    /** Returns the longest command at the beginning of a call. */
     std::string nameOf(const std::vector<std::string>& words) const {
         std::string name;
         for (size_t i = 1; i < words.size(); ++i) {
@@ -76,7 +76,7 @@ private:
         const TestFolder folder;
         return runInBash(folder, "insonify " + name + " --help").out;
     }
-    /** The commands of a list of "Subcommands:". */
+    /** Returns the commands in a list of "Subcommands:". */
     void add(const std::string& parent) {
         const std::string text = help[parent] = helpOf(parent);
         std::istringstream lines(text.substr(text.find("Subcommands:")));
@@ -96,7 +96,7 @@ std::vector<std::string> wordsOf(const std::string& line) {
     return words;
 }
 
-/** All that the page tells to type which begins with the name of the command. */
+/** Returns all inputs on the page that begin with the name of the command. */
 std::vector<std::string> shownCalls(const Page& page) {
     std::vector<std::string> calls = page.inlineCode();
     for (const CodeBlock& block : page.blocks())
@@ -108,7 +108,7 @@ std::vector<std::string> shownCalls(const Page& page) {
     return calls;
 }
 
-/** The command or the options of a call that are not there. */
+/** Returns the command or the options of a call that do not exist. */
 std::vector<std::string> unknownIn(const std::string& call, const Commands& commands) {
     const std::vector<std::string> words = wordsOf(call);
     const std::string name = commands.nameOf(words);
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(All, PagesTest, testing::ValuesIn(pagesWithCommands()),
     return name;
 });
 
-TEST(PagesTest, EveryCommandAndOptionThatAPageNamesIsThere) {
+TEST(PagesTest, EveryCommandAndOptionOnAPageExists) {
     const Commands commands;
     size_t calls = 0;
     for (const Page& page : allPages())
@@ -160,7 +160,7 @@ TEST(PagesTest, EveryCommandAndOptionThatAPageNamesIsThere) {
                 testing::ElementsAre("--ping", "--worst"));
 }
 
-TEST(PagesTest, EveryTaskThatAPageShowsIsOneThatTheSchemaKnows) {
+TEST(PagesTest, EveryTaskOnAPageIsInTheSchema) {
     const TestFolder folder;
     if (python(folder, "import jsonschema, yaml").code != 0) GTEST_SKIP() << "there is no python3-jsonschema";
     writeFile(folder / "schema.json", callInsonify(folder, {"schema"}).out);

@@ -27,7 +27,7 @@ std::vector<double> numbersIn(const std::string& text, const std::string& patter
     return numbers;
 }
 
-/** The deployment while it runs, and what the client says of it. */
+/** The running deployment, and the output of the client. */
 class PingDriverTest : public testing::Test {
 protected:
     void SetUp() override {
@@ -65,7 +65,7 @@ protected:
     std::optional<Process> run_;
 };
 
-/** Range at which the echoes of an angle begin that are as strong as the strongest, or nearly [m]. */
+/** Returns the range where the echoes of an angle first are about as strong as its strongest [m]. */
 double firstReturn(const json& told, double range) {
     const auto data = told["data"].get<std::vector<int>>();
     const int strong = *std::ranges::max_element(data) - 40;
@@ -73,12 +73,13 @@ double firstReturn(const json& told, double range) {
     return (static_cast<double>(first - data.begin()) + 0.5) * range / static_cast<double>(data.size());
 }
 
-/** Range that a driver takes its samples to reach, with sound at 1500 m/s. */
+/** Returns the range that a driver computes for its samples, with sound at 1500 m/s. */
 double rangeOf(const json& told) {
     return told["number_of_samples"].get<double>() * told["sample_period"].get<double>() * 25e-9 * 1500 / 2;
 }
 
-/** From the sonar to the quay's wall along a bearing, as the scene's script and the deployment have it [m]. */
+/** Returns the distance from the sonar to the quay's wall along a bearing, by the scene's script and the deployment
+ *  [m]. */
 double wallAt(double angle) {
     const double wall = numbersIn(readFile(checkout / "scripts/make_harbour.py"), "QUAY = ([\\d.]+)").at(0);
     const double vehicle = numbersIn(readFile(ping_360), "position: \\[([-\\d.]+), ([-\\d.]+), ([-\\d.]+)\\]").at(1);
@@ -86,7 +87,7 @@ double wallAt(double angle) {
     return (wall - vehicle) / std::sin(to_port);
 }
 
-/** The water's depth at the vehicle, below its sounder, as the scene's script has the floor [m]. */
+/** Returns the water's depth below the vehicle's sounder, by the floor in the scene's script [m]. */
 double bottomBelow() {
     const TestFolder folder;
     const std::string program = "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '" +
@@ -98,7 +99,7 @@ double bottomBelow() {
 
 }  // namespace
 
-TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallWhereTheSceneHasIt) {
+TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
     const json told = driven("ping360 " + udpPortOf("ping360"));
     EXPECT_EQ(told["information"]["device_type"], 2);
     ASSERT_EQ(told["scan"].size(), 400u);
@@ -125,7 +126,7 @@ TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallWhereTheSceneHasIt) {
     EXPECT_EQ(told["automatic"]["stopped"], 2903);
 }
 
-TEST_F(PingDriverTest, TheSameComesByASerialLine) {
+TEST_F(PingDriverTest, TheSerialLineGivesTheSame) {
     const json told = driven("ping360 " + lineOf("ping360") + " 90 110 20");
     for (const json& echoes : told["scan"])
         EXPECT_NEAR(firstReturn(echoes, rangeOf(echoes)), wallAt(echoes["angle"]), 0.1) << echoes["angle"];

@@ -5,7 +5,7 @@
 using namespace insonify::deployer;
 using testing::HasSubstr;
 
-TEST(PlanCommandTest, JsonTellsWhatIsRunAndWhatIsLeftOut) {
+TEST(PlanCommandTest, JsonHasRunAndOmittedFeatures) {
     const WallFolder folder;
     const json plan = jsonOf(folder, {"plan", "wall.yml"});
     EXPECT_TRUE(plan["features"].is_array());
@@ -27,7 +27,7 @@ TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
     const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam"));
-    EXPECT_THAT(outcome.out, HasSubstr("  left out: "));
+    EXPECT_THAT(outcome.out, HasSubstr("  omitted: "));
 }
 
 TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
@@ -38,7 +38,7 @@ TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.out;
     };
-    const auto omitted = HasSubstr("left out: truth: nobody is connected");
+    const auto omitted = HasSubstr("omitted: truth: nobody is connected");
     EXPECT_THAT(printed(wall_deployment), omitted);
     for (const std::string port : {"truth", "returns"}) {
         const std::string reader = "  - {from: sonar." + port + ", to: log." + port + "}\n";
@@ -53,7 +53,7 @@ TEST(PlanCommandTest, NothingIsWritten) {
     EXPECT_FALSE(fs::exists(folder / "wall.0.log"));
 }
 
-TEST(PlanCommandTest, SeveralSonarsAreToldByName) {
+TEST(PlanCommandTest, SeveralSonarsArePrintedByName) {
     std::string two =
         replaced(wall_deployment, "  noise:\n",
                  "  second: {type: sonar::SonarTask, properties: {beam_count: 8, bin_count: 20}}\n  noise:\n");

@@ -8,8 +8,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/** In realtime, so that it takes the second whatever the machine. */
-TEST(ProgressLineTest, ARunOnATerminalTellsTheTotalAndTheTimeLeftAndElsewhereNothing) {
+/** In realtime, so that it takes a second on any machine. */
+TEST(ProgressLineTest, ARunShowsTotalAndTimeLeftOnATerminalOnly) {
     const WallFolder folder(replaced(wall_deployment, "schedule: lockstep", "schedule: realtime"));
     const std::string program = R"(
 import pty, sys
@@ -27,7 +27,7 @@ with open('seen.txt', 'wb') as seen:
     EXPECT_THAT(folder.run({"--pings", "2"}).err, Not(HasSubstr("done")));
 }
 
-TEST(ProgressLineTest, AStudyOnATerminalTellsHowManyOfItsCasesAreDone) {
+TEST(ProgressLineTest, AStudyShowsItsFinishedCasesOnATerminal) {
     const TestFolder folder;
     const std::string program = R"(
 import os, pty

@@ -1,4 +1,4 @@
-// schedule: realtime, as a user sees it.
+// schedule: realtime, in runs of the command.
 #include <gmock/gmock.h>
 
 #include <csignal>
@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** Without a pose for 0.2 s there is an error, until the next; they come so many seconds apart. */
+/** Without a pose for 0.2 s there is an error until the next pose; poses have this period [s]. */
 std::string withPosesEach(const std::string& seconds) {
     const std::string text = replaced(realtimeWall(), "period: 0.1", "period: " + seconds);
     return replaced(text, "pose_timeout: 60", "pose_timeout: 0.2");
@@ -26,7 +26,7 @@ size_t countIn(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-TEST(RealtimeRunTest, TheSummaryTellsWhatWasKeptAndMissed) {
+TEST(RealtimeRunTest, TheSummaryReportsMetAndMissedTimes) {
     const WallFolder folder(
         replaced(realtimeWall(), "{trigger: [snapshot]}", "{trigger: [snapshot], deadline: 0.001}"));
     const Outcome outcome = folder.run({"--pings", "4", "--summary", "summary.json"});
@@ -36,7 +36,7 @@ TEST(RealtimeRunTest, TheSummaryTellsWhatWasKeptAndMissed) {
     EXPECT_EQ(vehicle["jitter"]["count"], vehicle["cycles"]);
     EXPECT_GE(vehicle["overruns"], 0);
     const json& sonar = summary["tasks"]["sonar"];
-    // No ping before 2 x 20 m / 1500 m/s; so all of them miss a deadline of 1 ms.
+    // No ping is written before 2 x 20 m / 1500 m/s, so that all miss a deadline of 1 ms.
     EXPECT_GE(sonar["latency"]["median_ms"], 0.99 * 2 * 20 / 1500 * 1e3);
     EXPECT_GE(sonar["latency"]["max_ms"], sonar["latency"]["p99_ms"]);
     EXPECT_GE(sonar["latency"]["count"], 4);
@@ -48,7 +48,7 @@ TEST(RealtimeRunTest, TheSummaryTellsWhatWasKeptAndMissed) {
     EXPECT_THAT(outcome.out, HasSubstr("latency median, p99, max ms"));
 }
 
-TEST(RealtimeRunTest, ALockstepSummaryHasNoneOfIt) {
+TEST(RealtimeRunTest, ALockstepSummaryHasNoTimesOfRealtime) {
     const WallFolder folder;
     const Outcome outcome = folder.run({"--pings", "1", "--summary", "summary.json"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -56,7 +56,7 @@ TEST(RealtimeRunTest, ALockstepSummaryHasNoneOfIt) {
     EXPECT_FALSE(json::parse(readFile(folder / "summary.json"))["tasks"]["sonar"].contains("overruns"));
 }
 
-TEST(RealtimeRunTest, StalePosesAreToldAndPingsGoOnWithNewOnes) {
+TEST(RealtimeRunTest, StalePosesAreReportedAndPingsContinueWithNewPoses) {
     const WallFolder folder(withPosesEach("1"));
     const Process process(insonifyWords({"run", "wall.yml", "--out", "out", "--summary", "summary.json"}),
                           folder.path());
@@ -70,16 +70,16 @@ TEST(RealtimeRunTest, StalePosesAreToldAndPingsGoOnWithNewOnes) {
     EXPECT_GE(summary["tasks"]["scene"]["errors"], 2);
     EXPECT_GE(summary["pings"], 3);
     EXPECT_THAT(summary["warnings"].get<std::vector<std::string>>(),
-                Contains("scene: RunTimeError: scene.pose: no pose of the last 0.2 s (pose_timeout)"));
+                Contains("scene: RunTimeError: scene.pose: no pose in the last 0.2 s (pose_timeout)"));
     EXPECT_THAT(outcome.err, HasSubstr("warning: scene: has recovered"));
 }
 
-TEST(RealtimeRunTest, PosesThatEndBeforeTheRunAreToldAndNoFailure) {
+TEST(RealtimeRunTest, PosesThatEndBeforeTheRunAreReportedAndNotAFailure) {
     const WallFolder folder(withPosesEach("1000"));
     const Process process(insonifyWords({"run", "wall.yml", "--out", "out"}), folder.path());
     EXPECT_TRUE(says(folder, "warning: scene: RunTimeError"));
     process.signal(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("warning: scene: RunTimeError: scene.pose: no pose of the last 0.2 s"));
+    EXPECT_THAT(outcome.err, HasSubstr("warning: scene: RunTimeError: scene.pose: no pose in the last 0.2 s"));
 }

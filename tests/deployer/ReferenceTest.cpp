@@ -1,4 +1,4 @@
-// components/PROPERTIES.md is what `insonify describe` says now.
+// components/PROPERTIES.md matches the output of `insonify describe`.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -15,7 +15,7 @@ const fs::path root = insonify::test::source_dir;
 
 using Lines = std::vector<std::string>;
 
-/** The page by its sections: what stands before the first under "", each one under its heading. */
+/** The page by its sections: the part before the first under "", the others under their headings. */
 std::map<std::string, Lines> sectionsOf(const std::string& page) {
     std::map<std::string, Lines> sections;
     std::istringstream lines(page);
@@ -27,12 +27,12 @@ std::map<std::string, Lines> sectionsOf(const std::string& page) {
     return sections;
 }
 
-/** Tasks that a build may be without. */
+/** Optional tasks of a build. */
 bool isOptional(const std::string& section) {
     return section.starts_with("## dds::") || section.starts_with("## gazebo::") || section.starts_with("## viewer::");
 }
 
-/** Lines of the first that the second has not. */
+/** Returns the lines of the first that are missing in the second. */
 Lines missingIn(const Lines& lines, const Lines& others) {
     Lines missing = lines;
     std::erase_if(missing, [&](const std::string& line) { return std::ranges::count(others, line) > 0; });
@@ -41,7 +41,7 @@ Lines missingIn(const Lines& lines, const Lines& others) {
 
 }  // namespace
 
-TEST(ReferenceTest, ThePageSaysOfEachTaskWhatDescribeSaysNow) {
+TEST(ReferenceTest, ThePageMatchesDescribe) {
     const TestFolder folder;
     const Outcome made =
         Process({"/usr/bin/python3", root / "scripts/make_reference", insonifyWords({}).front()}, folder.path()).wait();

@@ -13,7 +13,7 @@ json infoOf(const TestFolder& folder, const std::string& log) {
 
 }  // namespace
 
-TEST(ReplayCommandTest, AStreamTakesThePlaceOfItsPortAndItsTaskIsNotStarted) {
+TEST(ReplayCommandTest, AStreamReplacesItsPortAndItsTaskIsNotStarted) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     const Outcome outcome =
@@ -25,7 +25,7 @@ TEST(ReplayCommandTest, AStreamTakesThePlaceOfItsPortAndItsTaskIsNotStarted) {
     for (const json& stream : infoOf(folder, "again/wall.0.log")["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
 }
 
-TEST(ReplayCommandTest, ALoggedPoseDrivesTheSonarToTheSamePings) {
+TEST(ReplayCommandTest, LoggedPosesGiveTheSamePings) {
     const std::string pose_only = replaced(
         replaced(wall_deployment, "  - {from: sonar.ping, to: log.clean, policy: {type: buffer, size: 64}}\n", ""),
         "  - {from: noise.noisy, to: log.noisy, policy: {type: buffer, size: 64}}\n", "");
@@ -75,7 +75,7 @@ TEST(ReplayCommandTest, ALogThatMatchesNothingIsRefused) {
     EXPECT_FALSE(fs::exists(folder / "again"));
 }
 
-TEST(ReplayCommandTest, ACutLogIsReplayedUpToItsLastWholeBlock) {
+TEST(ReplayCommandTest, ATruncatedLogIsReplayedUpToItsLastCompleteBlock) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
     fs::resize_file(folder / "out/wall.0.log", fs::file_size(folder / "out/wall.0.log") - 5);

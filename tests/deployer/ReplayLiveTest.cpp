@@ -1,4 +1,4 @@
-// What a run did while it was logged, done again: poses that were carried on, properties that were set.
+// Replay of events during a logged run: extrapolated poses, changed properties.
 #include <gmock/gmock.h>
 
 #include "components/log/Copy.hpp"
@@ -20,7 +20,7 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return call(words);
     }
-    /** Every ping of both streams has its counterpart, and is the same. */
+    /** Every ping of either stream has an equal ping in the other. */
     void expectAllSame(int compared) const {
         const json score = json::parse(readFile(folder_ / "scored/score.json"));
         EXPECT_EQ(score["streams"].size(), 2u);
@@ -36,9 +36,8 @@ protected:
         recordAChange("sonar.range=20", "sonar.range=15",
                       [](log::Writer& to, size_t range) { to.write(range, {1'200'000}, 15.0); });
     }
-    /** A log of four pings, of which the last two are set otherwise.
-     *  @param tell writes into the log of properties, given its stream of the property that is set first, what became
-     *  of it. */
+    /** A log of four pings, with a changed property in the last two.
+     *  @param tell writes the change to the property log, given its stream of the property. */
     void recordAChange(const std::string& first, const std::string& second,
                        const std::function<void(log::Writer&, size_t)>& tell) const {
         ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4", "--set", first}).code, 0);
@@ -64,7 +63,7 @@ protected:
 
 }  // namespace
 
-TEST_F(ReplayLiveTest, PosesThatWereCarriedOnAreLoggedAsUsedAndScoreZero) {
+TEST_F(ReplayLiveTest, ExtrapolatedPosesAreLoggedAsUsedAndScoreZero) {
     std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
     text = replaced(text, "waypoints: [{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]",
                     "waypoints: [{time: 0, position: [0, 0, 0]}, {time: 60, position: [6, 3, 0], yaw_deg: 40}]");
@@ -88,7 +87,7 @@ TEST_F(ReplayLiveTest, PosesThatWereCarriedOnAreLoggedAsUsedAndScoreZero) {
     expectAllSame(4);
 }
 
-TEST_F(ReplayLiveTest, APropertyThatWasSetWhileItRanIsReplayedAsItChanged) {
+TEST_F(ReplayLiveTest, ReplaysAChangeOfAPropertyDuringTheRun) {
     recordAChange();
     const Outcome outcome = score("changed/wall.0.log");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -96,7 +95,7 @@ TEST_F(ReplayLiveTest, APropertyThatWasSetWhileItRanIsReplayedAsItChanged) {
     expectAllSame(4);
 }
 
-TEST_F(ReplayLiveTest, APropertyThatWasTakenOutWhileItRanIsTakenOutAgain) {
+TEST_F(ReplayLiveTest, ReplaysTheRemovalOfAPropertyDuringTheRun) {
     recordAChange("sonar.absorption={db_per_m: 1}", "sonar.absorption=null", [](log::Writer& to, size_t) {
         to.write(to.addStream<bool>("sonar.absorption.present"), {1'200'000}, false);
     });
@@ -106,7 +105,7 @@ TEST_F(ReplayLiveTest, APropertyThatWasTakenOutWhileItRanIsTakenOutAgain) {
     expectAllSame(4);
 }
 
-TEST_F(ReplayLiveTest, APropertyThatCameWhileItRanIsNotThereBefore) {
+TEST_F(ReplayLiveTest, APropertyAddedDuringTheRunIsAbsentBefore) {
     recordAChange("sonar.absorption=null", "sonar.absorption={db_per_m: 1}", [](log::Writer& to, size_t) {
         to.write(to.addStream<std::string>("sonar.absorption"), {1'200'000}, std::string("{\"db_per_m\": 1}"));
     });
@@ -116,7 +115,7 @@ TEST_F(ReplayLiveTest, APropertyThatCameWhileItRanIsNotThereBefore) {
     expectAllSame(4);
 }
 
-TEST_F(ReplayLiveTest, WhatWasTakenOutBeforeItRanIsTakenOutAgain) {
+TEST_F(ReplayLiveTest, APropertyRemovedBeforeTheRunIsRemovedAgain) {
     writeFile(folder_ / "wall.yml",
               replaced(wall_deployment, "range: 20", "range: 20\n      absorption: {db_per_m: 1}"));
     ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "3", "--set", "sonar.absorption=null"}).code, 0);
@@ -126,7 +125,7 @@ TEST_F(ReplayLiveTest, WhatWasTakenOutBeforeItRanIsTakenOutAgain) {
     expectAllSame(3);
 }
 
-TEST_F(ReplayLiveTest, FromBehindAChangeItHoldsFromTheStart) {
+TEST_F(ReplayLiveTest, AReplayFromAfterAChangeStartsWithTheChangedValue) {
     recordAChange();
     const Outcome outcome = score("changed/wall.0.log", {"--from", "0.2"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -136,30 +135,30 @@ TEST_F(ReplayLiveTest, FromBehindAChangeItHoldsFromTheStart) {
     EXPECT_EQ(score["streams"][0]["other_shape"], 0);
 }
 
-TEST_F(ReplayLiveTest, TheUserHasTheLastWordOnAPropertyThatChanged) {
+TEST_F(ReplayLiveTest, TheUsersSettingOverridesARecordedChange) {
     recordAChange();
     const Outcome outcome = score("changed/wall.0.log", {"--set", "sonar.range=20"});
     EXPECT_THAT(outcome.out, HasSubstr("sonar.ping: 2 pings compared, 2 of other beams, bins or range"));
 }
 
-TEST_F(ReplayLiveTest, ALogWithoutItsPropertiesIsANotice) {
+TEST_F(ReplayLiveTest, ANoticeReportsALogWithoutItsProperties) {
     ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "3"}).code, 0);
     EXPECT_THAT(score("out/wall.0.log").err, testing::Not(HasSubstr("properties")));
     fs::remove(folder_ / "out/properties.0.log");
     const Outcome outcome = score("out/wall.0.log");
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("notice: out/wall.0.log has no properties.0.log of its run beside it"));
+    EXPECT_THAT(outcome.err, HasSubstr("notice: out/wall.0.log has no properties.0.log of its run next to it"));
     expectAllSame(3);
 }
 
-TEST_F(ReplayLiveTest, CutAndRepairKeepThePropertiesWithTheirLog) {
+TEST_F(ReplayLiveTest, CutAndRepairCopyThePropertyLog) {
     ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "3", "--set", "sonar.range=15"}).code, 0);
     for (const char* command : {"cut", "repair"}) {
         const std::string to = command;
         fs::create_directory(folder_ / to);
         const Outcome outcome = call({"log", command, "out/wall.0.log", "--to", to + "/y.0.log"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_THAT(outcome.err, HasSubstr("notice: " + to + "/properties.0.log is kept with it"));
+        EXPECT_THAT(outcome.err, HasSubstr("notice: " + to + "/properties.0.log is copied with it"));
         const auto kept = log::openLog(folder_ / to / "properties.0.log");
         EXPECT_EQ(kept->samples().size(), log::openLog(folder_ / "out/properties.0.log")->samples().size());
         EXPECT_THAT(score(to + "/y.0.log").err, HasSubstr("as in the log: sonar.range=15\n"));
@@ -170,7 +169,7 @@ TEST_F(ReplayLiveTest, CutAndRepairKeepThePropertiesWithTheirLog) {
     EXPECT_THAT(other.err, HasSubstr("again/properties.0.log is of another run"));
 }
 
-TEST_F(ReplayLiveTest, WhatTalksToOthersIsLeftOutUnlessAskedFor) {
+TEST_F(ReplayLiveTest, TasksThatCommunicateOutsideAreOmittedUnlessRequested) {
     if (call({"describe", "viewer::ViewerTask"}).code != 0) GTEST_SKIP() << "built without the viewer";
     ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "2"}).code, 0);
     std::string text = replaced(wall_deployment, "connections:\n",
@@ -178,7 +177,9 @@ TEST_F(ReplayLiveTest, WhatTalksToOthersIsLeftOutUnlessAskedFor) {
     writeFile(folder_ / "wall.yml", text + "  - {from: noise.noisy, to: view.ping}\n");
     const Outcome alone = call({"replay", "out/wall.0.log", "wall.yml", "--rerender", "--out", "again"});
     EXPECT_EQ(alone.code, 0) << alone.err;
-    EXPECT_THAT(alone.err, HasSubstr("notice: view is left out, since it talks to others; --outside lets it run"));
+    EXPECT_THAT(
+        alone.err,
+        HasSubstr("notice: view is omitted, because it communicates outside the deployment; --outside runs it"));
     EXPECT_THAT(alone.err, testing::Not(HasSubstr("open http://")));
     const Outcome shown = call({"replay", "out/wall.0.log", "wall.yml", "--rerender", "--outside", "--out", "shown"});
     EXPECT_EQ(shown.code, 0) << shown.err;

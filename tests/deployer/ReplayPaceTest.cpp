@@ -1,4 +1,4 @@
-// How a log is played: from where, how fast, how often, step by step, and on which clock.
+// Options of a replay: start, pace, repetition, steps, and its clock.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -32,7 +32,7 @@ protected:
         const Outcome outcome = callInsonify(folder_, words(more));
         ASSERT_EQ(outcome.code, 0) << outcome.err;
     }
-    /** Of the replayed pings [ms]. */
+    /** Times of the replayed pings [ms]. */
     std::vector<int64_t> stamps() const {
         std::vector<int64_t> result;
         log::pocolog::Reader log(folder_ / "again/wall.0.log");
@@ -50,24 +50,24 @@ protected:
 
 }  // namespace
 
-TEST_F(ReplayPaceTest, ItStartsSoManySecondsAfterTheLogsFirstStamp) {
+TEST_F(ReplayPaceTest, StartsAtTheGivenTimeAfterTheLogsFirstStamp) {
     replay({"--from", "0.1"});
     EXPECT_THAT(stamps(), testing::ElementsAre(1100, 1200));
 }
 
-TEST_F(ReplayPaceTest, APartThatIsCutAndAReplayStartAtTheSameStamp) {
+TEST_F(ReplayPaceTest, ACutAndAReplayStartAtTheSameStamp) {
     ASSERT_EQ(callInsonify(folder_, {"log", "cut", "out/wall.0.log", "--from", "0.1", "--to", "part.0.log"}).code, 0);
     const auto part = log::openLog(folder_ / "part.0.log");
     EXPECT_EQ(part->samples().front().time.microseconds, 1'100'000);
 }
 
-TEST_F(ReplayPaceTest, AStartBeyondTheLogsEndIsRefused) {
+TEST_F(ReplayPaceTest, RefusesAStartAfterTheLogsEnd) {
     const Outcome outcome = callInsonify(folder_, words({"--from", "3"}));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("from: is 3 s; the log ends 0.2 s after its start"));
 }
 
-TEST_F(ReplayPaceTest, InALoopTimeGoesOnAndTheLogIsPlayedAgain) {
+TEST_F(ReplayPaceTest, InALoopTheLogRepeatsWhileTimeContinues) {
     replay({"--loop", "--duration", "0.65"});
     EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200, 1300, 1400, 1500, 1600));
     EXPECT_EQ(python(folder_,
@@ -83,7 +83,7 @@ TEST_F(ReplayPaceTest, InALoopTimeGoesOnAndTheLogIsPlayedAgain) {
               "True\n");
 }
 
-TEST_F(ReplayPaceTest, PaceHoldsItToTheWallClockAndChangesNothingElse) {
+TEST_F(ReplayPaceTest, PaceLimitsTheSpeedAndChangesNothingElse) {
     replay({});
     const std::string fast = readFile(folder_ / "again/wall.0.log");
     replay({"--pace", "0.25", "--summary", "summary.json"});
@@ -91,7 +91,7 @@ TEST_F(ReplayPaceTest, PaceHoldsItToTheWallClockAndChangesNothingElse) {
     EXPECT_EQ(readFile(folder_ / "again/wall.0.log"), fast);
 }
 
-TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
+TEST_F(ReplayPaceTest, StepWaitsForALineAfterEachInstant) {
     ASSERT_EQ(mkfifo((folder_ / "lines").c_str(), 0600), 0);
     const Process process(
         {"/bin/sh", "-c",
@@ -110,7 +110,7 @@ TEST_F(ReplayPaceTest, StepByStepItWaitsForALineAfterEachInstant) {
     EXPECT_EQ(stamps().size(), 3u);
 }
 
-TEST_F(ReplayPaceTest, StepByStepALineSeeksToAPlaceInTheLog) {
+TEST_F(ReplayPaceTest, StepSeeksToATimeInTheLog) {
     const Outcome outcome = Process({"/bin/sh", "-c",
                                      "printf '\\nseek x\\nseek 0\\n' | " + test::program("insonify") +
                                          " replay out/wall.0.log wall.yml --out again --step"},
@@ -127,7 +127,7 @@ TEST_F(ReplayPaceTest, ARealtimeDeploymentIsReplayedOnTheLogsTime) {
     EXPECT_THAT(stamps(), testing::ElementsAre(1000, 1100, 1200));
 }
 
-TEST_F(ReplayPaceTest, ATaskOfARealtimeDeploymentThatReplaysALogGivesAllItsTime) {
+TEST_F(ReplayPaceTest, AReplayTaskInRealtimeSetsTheTimeOfAllTasks) {
     writeFile(folder_ / "realtime.yml", R"(schedule: realtime
 tasks:
   replay: {type: replay::ReplayTask, properties: {file: out/wall.0.log, loop: true}}
@@ -144,6 +144,6 @@ connections:
     log::pocolog::Reader log(folder_ / "again/again.0.log");
     for (const log::SampleRef& at : log.samples()) {
         EXPECT_GE(at.received, at.time);
-        EXPECT_LT((at.received - at.time).seconds(), 3600) << "not this year's";
+        EXPECT_LT((at.received - at.time).seconds(), 3600) << "not of this year";
     }
 }

@@ -1,4 +1,4 @@
-// A log rendered again and compared with itself.
+// A log rendered again and compared with its pings.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** out/wall.0.log of the wall's deployment, and scores against it. */
+/** out/wall.0.log of the wall's deployment, and scores compared with it. */
 class ReplayScoreTest : public testing::Test {
 protected:
     void record(std::vector<std::string> more = {"--pings", "3"}) {
@@ -26,7 +26,7 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return callInsonify(folder_, words);
     }
-    /** What score.json says of each stream, by its name; there must be two. */
+    /** Returns the streams in score.json by name; there must be two. */
     std::map<std::string, json> streams() const {
         std::map<std::string, json> result;
         const json score = json::parse(readFile(folder_ / "scored/score.json"));
@@ -43,7 +43,7 @@ protected:
             EXPECT_NEAR(ping["ssim"], 1, 1e-12);
         }
     }
-    /** A copy of the log whose poses from the `first` on lie 10 cm ahead, without one of its metadata. */
+    /** Returns a copy of the log with the poses from the `first` on 10 cm ahead, and without one of its metadata. */
     void shiftPoses(int first, const std::string& without = "") const {
         log::pocolog::Reader from(folder_ / "out/wall.0.log");
         log::pocolog::Writer to(folder_ / "shifted.0.log");
@@ -74,7 +74,7 @@ protected:
 
 }  // namespace
 
-TEST_F(ReplayScoreTest, OurOwnLogScoresRelativeL2ZeroAndCorrelationOne) {
+TEST_F(ReplayScoreTest, ASimulatedLogScoresRelativeL2ZeroAndCorrelationOne) {
     record();
     const Outcome outcome = score("out/wall.0.log");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -97,7 +97,7 @@ TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
         for (const json& ping : stream["pings"]) EXPECT_GT(ping["rel_l2"], 0.1);
 }
 
-TEST_F(ReplayScoreTest, APoseShiftedByTenCentimetresDoesNot) {
+TEST_F(ReplayScoreTest, PosesShiftedByTenCentimetresScoreWorse) {
     record();
     shiftPoses(0);
     const Outcome outcome = score("shifted.0.log");
@@ -111,7 +111,7 @@ TEST_F(ReplayScoreTest, APoseShiftedByTenCentimetresDoesNot) {
         }
 }
 
-TEST_F(ReplayScoreTest, TheWorstPingComesFirstInTableAndPictures) {
+TEST_F(ReplayScoreTest, TheWorstPingIsFirstInTableAndPictures) {
     record();
     shiftPoses(2);
     const Outcome outcome = score("shifted.0.log", {"--worst", "1"});
@@ -128,7 +128,7 @@ TEST_F(ReplayScoreTest, TheWorstPingComesFirstInTableAndPictures) {
     EXPECT_FALSE(fs::exists(folder_ / "scored/score_000002.png"));
 }
 
-TEST_F(ReplayScoreTest, TheSeedIsThatOfTheLog) {
+TEST_F(ReplayScoreTest, UsesTheLogsSeed) {
     record({"--pings", "3", "--seed", "5"});
     ASSERT_EQ(score("out/wall.0.log").code, 0);
     for (const auto& [name, stream] : streams()) expectSame(stream);
@@ -137,13 +137,13 @@ TEST_F(ReplayScoreTest, TheSeedIsThatOfTheLog) {
     for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
 }
 
-TEST_F(ReplayScoreTest, TheSeedZeroIsThatOfTheFile) {
+TEST_F(ReplayScoreTest, SeedZeroIsTheFilesSeed) {
     record({"--pings", "3", "--seed", "5"});
     ASSERT_EQ(score("out/wall.0.log", {"--seed", "0"}).code, 0);
     for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
 }
 
-TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsTheSameAgain) {
+TEST_F(ReplayScoreTest, ADerivedSeedIsTheSameAgain) {
     writeFile(folder_ / "wall.yml", replaced(wall_deployment, "seed: 7, ", ""));
     record();
     ASSERT_EQ(score("out/wall.0.log").code, 0);
@@ -153,7 +153,7 @@ TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsTheSameAgain) {
     for (const auto& [name, stream] : streams()) expectSame(stream);
 }
 
-TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsOneInLogsFromBeforeEachTaskHadItsOwn) {
+TEST_F(ReplayScoreTest, AnUnwrittenSeedIsOneInLogsOfEarlierVersions) {
     writeFile(folder_ / "wall.yml", replaced(wall_deployment, "seed: 7, ", ""));
     record({"--pings", "3", "--set", "noise.seed=1"});
     const Outcome outcome = score("out/wall.0.log");
@@ -167,12 +167,12 @@ TEST_F(ReplayScoreTest, ASeedThatIsNotWrittenIsOneInLogsFromBeforeEachTaskHadIts
     for (const json& ping : streams().at("noise.noisy")["pings"]) EXPECT_GT(ping["rel_l2"], 0.5);
 }
 
-TEST_F(ReplayScoreTest, TheQualityThatWasChosenIsThatOfTheLog) {
+TEST_F(ReplayScoreTest, UsesTheLogsChosenQuality) {
     writeFile(folder_ / "wall.yml", replaced(wall_deployment, "      quality: {rows: 32, columns_per_beam: 2}\n", ""));
     record({"--pings", "3", "--summary", "first.json"});
     const auto quality = [&](const char* file) { return json::parse(readFile(folder_ / file))["quality"]["sonar"]; };
     const json first = quality("first.json");
-    ASSERT_FALSE(first["predicted_error"].is_null()) << "it was chosen";
+    ASSERT_FALSE(first["predicted_error"].is_null()) << "the sonar chose it";
     for (const char* from : {"0", "0.1"}) {
         const Outcome outcome = score("out/wall.0.log", {"--from", from, "--summary", "again.json"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -182,13 +182,13 @@ TEST_F(ReplayScoreTest, TheQualityThatWasChosenIsThatOfTheLog) {
         }
         const json again = quality("again.json");
         for (const char* key : {"rows", "columns_per_beam"}) EXPECT_EQ(again[key], first[key]) << key;
-        EXPECT_TRUE(again["predicted_error"].is_null()) << "and is not chosen again";
+        EXPECT_TRUE(again["predicted_error"].is_null()) << "and does not choose again";
     }
     ASSERT_EQ(score("out/wall.0.log", {"--set", "sonar.quality={rows: 16}", "--summary", "again.json"}).code, 0);
-    EXPECT_EQ(quality("again.json")["rows"], 16) << "the user has the last word";
+    EXPECT_EQ(quality("again.json")["rows"], 16) << "the user's setting overrides";
 }
 
-TEST_F(ReplayScoreTest, WhatTheRunWasSetToIsTakenFromTheLogsProperties) {
+TEST_F(ReplayScoreTest, TakesSettingsOfTheRunFromTheLogsProperties) {
     record({"--pings", "3", "--set", "sonar.range=15", "--set", "sonar.speed_of_sound=1480", "--set",
             "sonar.absorption={db_per_m: 0.1}", "--set", "noise.seed=9"});
     const Outcome outcome = score("out/wall.0.log");
@@ -230,7 +230,7 @@ TEST_F(ReplayScoreTest, LevelsAreComparedAsEnergies) {
     for (const auto& [name, stream] : streams()) EXPECT_GT(stream["pings"][0]["rel_l2"], 0.05);
 }
 
-TEST_F(ReplayScoreTest, PingsOfAnotherShapeAreCountedAndNothingToCompareIsAFailure) {
+TEST_F(ReplayScoreTest, CountsPingsOfAnotherShapeAndFailsWithoutComparablePings) {
     record();
     const Outcome outcome = score("out/wall.0.log", {"--set", "sonar.beam_count=32"});
     EXPECT_EQ(outcome.code, 1);
@@ -239,7 +239,7 @@ TEST_F(ReplayScoreTest, PingsOfAnotherShapeAreCountedAndNothingToCompareIsAFailu
     EXPECT_EQ(streams().at("sonar.ping")["other_shape"], 3);
 }
 
-TEST_F(ReplayScoreTest, FromTheMiddleOnTheRestIsCounted) {
+TEST_F(ReplayScoreTest, FromTheMiddleOnCountsTheOtherPings) {
     record();
     const Outcome outcome = score("out/wall.0.log", {"--from", "0.1"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -249,7 +249,7 @@ TEST_F(ReplayScoreTest, FromTheMiddleOnTheRestIsCounted) {
     EXPECT_EQ(streams().at("noise.noisy")["pings"][0]["rel_l2"], 0);
 }
 
-TEST_F(ReplayScoreTest, WhatCannotBeScoredIsRefused) {
+TEST_F(ReplayScoreTest, RefusesWhatCannotBeScored) {
     record();
     EXPECT_EQ(callInsonify(folder_, {"replay", "out/wall.0.log", "wall.yml", "--score"}).code, 2) << "not rendered";
     const std::string pose_only = replaced(
@@ -270,5 +270,5 @@ TEST_F(ReplayScoreTest, ALogWithoutPosesIsRefused) {
     record();
     const Outcome outcome = score("out/wall.0.log");
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml that comes before its sonars"));
+    EXPECT_THAT(outcome.err, HasSubstr("none of its streams is of a task of wall.yml before its sonars"));
 }

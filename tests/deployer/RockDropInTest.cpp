@@ -1,4 +1,4 @@
-// deploy/rock_dropin.yml: the published simulator's ports, properties and property files, by their names.
+// deploy/rock_dropin.yml: the published simulator's ports, properties and property files, by their published names.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -28,7 +28,7 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return callInsonify(folder_, words);
     }
-    /** The one ping of a run. */
+    /** Returns the only ping of a run. */
     types::Sonar ping(std::vector<std::string> more, const std::string& stream = "multibeam.sonar_samples") const {
         more.insert(more.end(), {"--pings", "1"});
         const Outcome outcome = run(more);
@@ -70,7 +70,7 @@ TEST_F(RockDropInTest, BeamWidthIsTheFansOrByConventionOneBeams) {
     EXPECT_NEAR(spanDeg(ping({"--set", width, "--set", "multibeam.beam_width_convention=per_beam"})), 75, 1e-6);
 }
 
-TEST_F(RockDropInTest, AGainOfOneHalfPutsEchoesNearOneInBothModelsAndTheyGrowWithIt) {
+TEST_F(RockDropInTest, EchoesGrowWithTheGainAndAreNearOneAtOneHalf) {
     for (const std::string model : {"physical", "cerqueira2017"}) {
         const std::vector<std::string> plain = {"--set", "multibeam.model=" + model,
                                                 "--set", "multibeam.enable_speckle_noise=false",
@@ -90,7 +90,7 @@ TEST_F(RockDropInTest, AGainOfOneHalfPutsEchoesNearOneInBothModelsAndTheyGrowWit
     }
 }
 
-TEST_F(RockDropInTest, TheGainOfThePublishedModelIsTwiceItTimesTheMeanAndAtMostOne) {
+TEST_F(RockDropInTest, ThePublishedModelMultipliesTheMeanByTwiceTheGainUpToOne) {
     const auto with = [&](const char* gain) {
         return ping({"--set", "multibeam.model=cerqueira2017", "--set", "multibeam.enable_speckle_noise=false", "--set",
                      std::string("multibeam.gain=") + gain});
@@ -102,7 +102,7 @@ TEST_F(RockDropInTest, TheGainOfThePublishedModelIsTwiceItTimesTheMeanAndAtMostO
     }
 }
 
-TEST_F(RockDropInTest, SwitchesPutEffectsInAndTakeThemOut) {
+TEST_F(RockDropInTest, SwitchesInsertAndRemoveEffects) {
     std::string model;
     const auto with = [&](const char* attenuation, const char* speckle) {
         std::vector<std::string> words = {"--set", "multibeam.model=" + model};
@@ -143,7 +143,7 @@ TEST_F(RockDropInTest, ScansOfAnOlderLogBecomePictures) {
     EXPECT_TRUE(fs::exists(folder_ / "drawn/fan_000000.png"));
 }
 
-/** A property file of the published tasks, with every key that their files have. */
+/** A property file of the published tasks, with every key of their files. */
 std::string published(const std::string& of_one) {
     return "--- name:default\n"
            "attenuation_properties:\n  water_temperature:\n    kelvin: 293.15\n  sonar_frequency: 700.0\n" +
@@ -152,7 +152,7 @@ std::string published(const std::string& of_one) {
            "world_file_path: ''\nwrite_shader_image: false\n";
 }
 
-TEST_F(RockDropInTest, ThePublishedFilesLoadAsTheyAreAndWhatIsLeftOutIsNamed) {
+TEST_F(RockDropInTest, ThePublishedFilesLoadUnchangedAndOmittedKeysAreNamed) {
     writeFile(folder_ / multibeam_file,
               published("beam_count: 256\nbeam_height:\n  rad: 20.deg\nbeam_width:\n  rad: 120.deg\nbin_count: 500\n"));
     writeFile(folder_ / "deploy/rock/imaging_sonar_simulation::ScanningSonarTask.yml",
@@ -166,9 +166,8 @@ TEST_F(RockDropInTest, ThePublishedFilesLoadAsTheyAreAndWhatIsLeftOutIsNamed) {
     EXPECT_EQ(ping.bin_count, 500u);
     EXPECT_NEAR(ping.binStart(ping.bin_count), 50.25, 1e-3);  // 67 us a bin
     EXPECT_EQ(exportedPings(folder_, "out/rock.0.log", "scanning.sonar_samples").at(0).bin_count, 400u);
-    EXPECT_THAT(outcome.err,
-                HasSubstr("multibeam: left out, by ignored_properties: height, ignored_models, model_paths, "
-                          "width, world_file_path, write_shader_image"));
+    EXPECT_THAT(outcome.err, HasSubstr("multibeam: omitted by ignored_properties: height, ignored_models, model_paths, "
+                                       "width, world_file_path, write_shader_image"));
 }
 
 TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {
@@ -202,7 +201,7 @@ TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {
     EXPECT_THAT(readFile(folder_ / "w.csv"), HasSubstr(",2.094395"));  // 120 deg, in rad
 }
 
-TEST_F(RockDropInTest, ALogOfItsReplaysByItsNamesAndScoresAsItself) {
+TEST_F(RockDropInTest, ALogReplaysByItsAliasesAndScoresPerfectly) {
     ASSERT_EQ(run({"--pings", "2"}).code, 0);
     const Outcome scored = callInsonify(folder_, {"replay", "out/rock.0.log", "deploy/rock_dropin.yml", "--out",
                                                   "again", "--set", "multibeam.beam_count=16"});
@@ -213,7 +212,7 @@ TEST_F(RockDropInTest, ALogOfItsReplaysByItsNamesAndScoresAsItself) {
     for (size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].bins, again[i].bins);
 }
 
-TEST_F(RockDropInTest, DiagnosticsOfPropertyFilesAreToldWithTheirPlacesAllAtOnce) {
+TEST_F(RockDropInTest, ReportsAllDiagnosticsOfPropertyFilesWithTheirPlaces) {
     edit(multibeam_file, "enable_reverberation: false", "enable_reverberation: maybe");
     edit(multibeam_file, "rad: 120.deg", "rad: 120.m");
     edit(multibeam_file, "bin_count: 500", "bin_cuont: 500");

@@ -1,4 +1,4 @@
-// `--ros-args` and the names of a fleet as a user meets them: what a run does, what its log holds, what is refused.
+// `--ros-args` and the names of a fleet in runs of the command: effects, logs, errors.
 #include <gmock/gmock.h>
 
 #include "components/log/Reader.hpp"
@@ -50,7 +50,7 @@ const std::string fleet = "namespace: auv1\nframe_prefix: auv1\n" + wall_deploym
 
 }  // namespace
 
-TEST_F(RosArgumentsTest, ANamespaceAndAFramePrefixAreInALogAsInRos) {
+TEST_F(RosArgumentsTest, ALogHasTheNamespaceAndFramePrefixOfRos) {
     writeFile(folder / "fleet.yml", fleet);
     const Outcome outcome = run({}, "fleet.yml");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -69,7 +69,7 @@ TEST_F(RosArgumentsTest, ANamespaceAndAFramePrefixAreInALogAsInRos) {
     EXPECT_EQ(first<ros::ProjectedSonarImage>("sonar.ping").header.frame_id, "sonar");
 }
 
-TEST_F(RosArgumentsTest, ALogInANamespaceIsReplayedAsAnyOther) {
+TEST_F(RosArgumentsTest, ReplaysALogInANamespace) {
     ASSERT_EQ(run({"-r", "__ns:=/auv2", "-p", "frame_prefix:=auv2"}).code, 0);
     const Outcome outcome =
         callInsonify(folder, {"replay", "out/x.mcap", "wall.yml", "--rerender", "--score", "--out", "again"});
@@ -77,7 +77,7 @@ TEST_F(RosArgumentsTest, ALogInANamespaceIsReplayedAsAnyOther) {
     EXPECT_THAT(outcome.out, HasSubstr("sonar.ping"));
 }
 
-TEST_F(RosArgumentsTest, WithoutAnyTheLogStaysTheSameBitForBit) {
+TEST_F(RosArgumentsTest, WithoutNamesTheLogIsTheSameBitForBit) {
     ASSERT_EQ(folder.run().code, 0);
     const std::string before = readFile(folder / "out/wall.0.log");
     ASSERT_EQ(folder.run({"--pings", "2", "--ros-args"}).code, 0);
@@ -96,7 +96,7 @@ TEST_F(RosArgumentsTest, ParametersAreProperties) {
         0);
 }
 
-TEST_F(RosArgumentsTest, FilesOfParametersHoldForTheNodesThatTheyName) {
+TEST_F(RosArgumentsTest, ParameterFilesApplyToTheNodesThatTheyName) {
     const auto holds = [&](const std::string& node, std::vector<std::string> more = {}) {
         writeFile(folder / "p.yaml", node +
                                          ":\n  ros__parameters:\n    use_sim_time: false\n    sonar: {beam_count: 8}\n"
@@ -115,9 +115,9 @@ TEST_F(RosArgumentsTest, FilesOfParametersHoldForTheNodesThatTheyName) {
     ASSERT_EQ(run({"--params-file", "p.yaml", "-p", "sonar.beam_count:=4"}).code, 2);
     writeFile(folder / "p.yaml", "/**: {ros__parameters: {sonar: {beam_count: 8}}}\n");
     ASSERT_EQ(run({"--params-file", "p.yaml", "-p", "sonar.beam_count:=4"}).code, 0);
-    EXPECT_EQ(beams(), 4u) << "the last holds";
+    EXPECT_EQ(beams(), 4u) << "the last one applies";
     ASSERT_EQ(run({"-p", "sonar.beam_count:=4", "--params-file", "p.yaml"}).code, 0);
-    EXPECT_EQ(beams(), 8u) << "the last holds";
+    EXPECT_EQ(beams(), 8u) << "the last one applies";
 }
 
 TEST_F(RosArgumentsTest, WrongArgumentsAreOneErrorEach) {
@@ -165,7 +165,7 @@ TEST_F(RosArgumentsTest, WrongArgumentsAreOneErrorEach) {
     EXPECT_EQ(callInsonify(folder, {"check", "wall.yml", "--ros-args", "-r", "a:=b"}).code, 2);
 }
 
-TEST_F(RosArgumentsTest, WrongNamesInADeploymentAreToldWithTheirPlace) {
+TEST_F(RosArgumentsTest, ReportsWrongNamesInADeploymentWithTheirPlace) {
     writeFile(folder / "fleet.yml", "namespace: 1auv\nframe_prefix: /auv\n" + wall_deployment);
     const Outcome outcome = callInsonify(folder, {"check", "fleet.yml"});
     EXPECT_EQ(outcome.code, 2);

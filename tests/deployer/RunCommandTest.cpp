@@ -21,7 +21,7 @@ size_t samplesIn(const TestFolder& folder, const std::string& log) {
 
 }  // namespace
 
-TEST(RunCommandTest, TheSummaryTellsPingsTimesLossesAndOmissions) {
+TEST(RunCommandTest, TheSummaryHasPingsTimesLossesAndOmissions) {
     const WallFolder folder;
     const Outcome outcome = folder.run({"--pings", "3", "--summary", "summary.json"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -47,7 +47,7 @@ TEST(RunCommandTest, QuietPrintsNothing) {
     EXPECT_EQ(outcome.out + outcome.err, "");
 }
 
-TEST(RunCommandTest, WithoutAnOutputFolderAFreshOneIsMadeAndLatestLeadsToIt) {
+TEST(RunCommandTest, WithoutAnOutputFolderMakesANewFolderLinkedByLatest) {
     const WallFolder folder;
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1"}).code, 0);
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "2"}).code, 0);
@@ -70,7 +70,7 @@ TEST(RunCommandTest, AFixedPoseInLockstepIsOnePing) {
     EXPECT_EQ(samplesIn(folder, "out/wall.0.log"), 1u);
 }
 
-TEST(RunCommandTest, SetLaysAValueOverTheFile) {
+TEST(RunCommandTest, SetOverridesTheFile) {
     const WallFolder folder;
     ASSERT_EQ(folder.run({"--set", "sonar.bin_count=7", "--set", "sonar.quality.rows=16", "--pings", "1"}).code, 0);
     ASSERT_EQ(
@@ -104,7 +104,7 @@ TEST(RunCommandTest, LockstepRunTwiceGivesTheSameLogBitForBit) {
 
 namespace {
 
-/** Two sonars, and two sensors of each kind, on one vehicle; none has a seed. */
+/** Two sonars, and two sensors of each kind, on one vehicle; none has a `seed` property set. */
 std::string twins() {
     std::string text = replaced(wall_deployment, "seed: 7, ", "");
     const std::string tasks = R"(  twin: {type: noise::NoiseTask, properties: {speckle: {law: rayleigh}}}
@@ -130,7 +130,7 @@ connections:
 
 }  // namespace
 
-TEST(RunCommandTest, TasksOfOneKindHaveErrorsOfTheirOwnAndTheSameOnesAgain) {
+TEST(RunCommandTest, TasksOfOneKindHaveDifferentRepeatableErrors) {
     const WallFolder folder(twins());
     for (const auto& [out, seed] :
          {std::pair("first", "0"), std::pair("second", "0"), std::pair("other", "1"), std::pair("third", "2")})

@@ -1,4 +1,4 @@
-// What goes wrong with what a run writes.
+// Failures of a run's output.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -30,7 +30,7 @@ TEST(RunFailureTest, ASummaryThatCannotBeWrittenIsExitCode2BeforeTheRun) {
     EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(RunFailureTest, AFullDiskIsExitCode1AndWhatWasFlushedIsKept) {
+TEST(RunFailureTest, AFullDiskIsExitCode1AndFlushedSamplesAreKept) {
     const WallFolder folder;
     const std::string run = insonify::test::program("insonify") + " run wall.yml --out out --pings 400 --quiet";
     const Outcome outcome = Process({"bash", "-c", "ulimit -f 1536; exec " + run}, folder.path()).wait();
@@ -41,7 +41,7 @@ TEST(RunFailureTest, AFullDiskIsExitCode1AndWhatWasFlushedIsKept) {
     EXPECT_GT(json::parse(told.out)["streams"][0]["count"], 100);
 }
 
-/** Log and pictures go to a disk that is full for the first second. */
+/** Log and pictures are written to a disk that is full for the first second. */
 TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
     std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime");
     text =
@@ -60,7 +60,7 @@ TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("No space left on device; samples are lost until a file can be written"));
     EXPECT_THAT(outcome.err, HasSubstr("log: records again, in "));
-    EXPECT_THAT(outcome.err, HasSubstr("fan: Warning: 2 pictures are in no file; the last: cannot write "));
+    EXPECT_THAT(outcome.err, HasSubstr("fan: Warning: 2 pictures are in no file; the last reason: cannot write "));
     EXPECT_TRUE(fs::exists(folder / "out/fan_000002.png"));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 30);
@@ -75,8 +75,7 @@ TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
 
 namespace {
 
-/** A path of ten poses, 0.1 s apart, that leaves the wall for `far` after three of them, and is back after three more.
- */
+/** A path of ten poses, 0.1 s apart: after three poses it jumps from the wall to `far`, after three more it returns. */
 std::string jumpingPath(const std::string& far) {
     std::string csv = "time,x,y,z,qw,qx,qy,qz\n";
     for (int i = 0; i < 10; ++i)
@@ -84,7 +83,7 @@ std::string jumpingPath(const std::string& far) {
     return csv;
 }
 
-/** The wall's deployment with more properties of the sonar, along that path. */
+/** The wall's deployment with additional properties of the sonar, along that path. */
 class JumpingRun : public WallFolder {
 public:
     JumpingRun(const std::string& far, const std::string& more) : WallFolder(deployment(more)) {
@@ -103,7 +102,7 @@ private:
 
 }  // namespace
 
-TEST(RunFailureTest, AJumpOfThePoseEndsNoRun) {
+TEST(RunFailureTest, AJumpOfThePoseDoesNotEndTheRun) {
     for (const std::string more : {"visibility: cpu", "motion_in_ping: true", "water: {profile: profile.csv}",
                                    "speckle: {coherent: true}\n      frequency_khz: 500", "multipath: {surface: {}}",
                                    "volume: {strength_db: -70}", "pulse: {bandwidth_khz: 25, window: hann}"})

@@ -14,7 +14,7 @@ namespace {
 
 json sceneOf(const TestFolder& folder, const std::string& file) { return jsonOf(folder, {"scene", file}); }
 
-/** A floor of 40 x 30 m at height -2, with a step to -1 in its middle; its file has z up, or y up as glTF wants it. */
+/** A floor of 40 x 30 m at height -2, with a step to -1 in its middle; the file has z up, or y up as in glTF. */
 std::string floorGltf(bool z_up) {
     const std::vector<float> up{-20, -15, -2, 20, -15, -2, 20, 15, -2, -20, 15, -2,
                                 -1,  -1,  -1, 1,  -1,  -1, 1,  1,  -1, -1,  1,  -1};
@@ -28,7 +28,7 @@ std::string floorGltf(bool z_up) {
 
 }  // namespace
 
-TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
+TEST(SceneCommandTest, PrintsBoxTrianglesMaterialsAndObjects) {
     const TestFolder folder;
     const json scene = sceneOf(folder, fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb");
     EXPECT_THAT(scene["bounds"]["min"], ElementsAre(10, -20, -3));
@@ -49,7 +49,7 @@ TEST(SceneCommandTest, ASceneIsToldByBoxTrianglesMaterialsAndObjects) {
     EXPECT_THAT(words.out, HasSubstr(", roughness_slope none, "));
 }
 
-TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) {
+TEST(SceneCommandTest, WarnsOfASceneOnItsSideForAFileWithZUpOnly) {
     const TestFolder folder;
     writeFile(folder / "z_up.gltf", floorGltf(true));
     writeFile(folder / "y_up.gltf", floorGltf(false));
@@ -58,7 +58,7 @@ TEST(SceneCommandTest, AFileWithZUpIsSuspectedToLieOnItsSideAndOneWithYUpIsNot) 
     EXPECT_THAT(sceneOf(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
 }
 
-TEST(SceneCommandTest, TheDeliveredScenesDoNotLieOnTheirSides) {
+TEST(SceneCommandTest, TheDeliveredScenesAreUpright) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     for (const char* name : {"harbour.glb", "tank.glb", "two_vehicles.world", "wall.glb"})
@@ -67,7 +67,7 @@ TEST(SceneCommandTest, TheDeliveredScenesDoNotLieOnTheirSides) {
             EXPECT_THAT(warning.get<std::string>(), Not(HasSubstr("on its side"))) << name;
 }
 
-TEST(SceneCommandTest, AMaterialWithoutAcousticsIsToldWithTheValueThatItGets) {
+TEST(SceneCommandTest, ReportsTheDefaultOfAMaterialWithoutAcoustics) {
     const WallFolder folder;
     const json scene = sceneOf(folder, "wall.gltf");
     EXPECT_EQ(scene["materials"].at(0)["source"], "default");
@@ -76,7 +76,7 @@ TEST(SceneCommandTest, AMaterialWithoutAcousticsIsToldWithTheValueThatItGets) {
     EXPECT_THAT(callInsonify(folder, {"describe", "wall.gltf"}).out, HasSubstr("medium sand"));
 }
 
-TEST(SceneCommandTest, AMaterialIsTakenByItsNameAndEachObjectHasItsMaterials) {
+TEST(SceneCommandTest, RecognisesMaterialsByNameAndListsThemByObject) {
     const WallFolder folder;
     json gltf = json::parse(readFile(folder / "wall.gltf"));
     gltf["materials"] = json::array({{{"name", "Steel.001"}}});
@@ -92,7 +92,7 @@ TEST(SceneCommandTest, AMaterialIsTakenByItsNameAndEachObjectHasItsMaterials) {
     EXPECT_THAT(scene["warnings"], IsEmpty());
 }
 
-TEST(SceneCommandTest, WhatIsLeftOutIsListed) {
+TEST(SceneCommandTest, ListsOmittedParts) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "walls.sdf", R"(<sdf version="1.7"><model name="m"><link name="l"><visual name="v"><geometry>
@@ -104,7 +104,7 @@ TEST(SceneCommandTest, WhatIsLeftOutIsListed) {
     EXPECT_THAT(scene["axes"].get<std::string>(), HasSubstr("z up"));
 }
 
-TEST(SceneCommandTest, WhatIsNoSceneIsAnErrorThatNamesTheFormats) {
+TEST(SceneCommandTest, AFileThatIsNotASceneIsAnErrorThatNamesTheFormats) {
     const TestFolder folder;
     writeFile(folder / "wall.blend", "BLENDER");
     const Outcome wrong = callInsonify(folder, {"scene", "wall.blend"});

@@ -1,6 +1,6 @@
 #pragma once
-// A scene built in code, run as a user runs it: written as a glTF file, drawn by `insonify run` of a deployment with
-// one fixed pose, and read back by numpy from what `insonify log export` wrote.
+// A scene made in code and run by the command: written as a glTF file, rendered by `insonify run` of a deployment with
+// one fixed pose, and read by numpy from the output of `insonify log export`.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace insonify::deployer {
 
-/** A glTF scene with its bytes in `scene.bin`. Vertices are written in glTF's axes: x, z, -y of ours. */
+/** A glTF scene with its bytes in `scene.bin`. Vertices are written in glTF's axes: x, z, -y of the world's. */
 class GltfWriter {
 public:
     explicit GltfWriter(const types::Geometry& geometry) {
@@ -97,8 +97,8 @@ numpy.hstack(flat).astype('<f8').tofile('ping.f8'))");
     return pings;
 }
 
-/** What a sonar (its type and its properties in YAML) logs of a scene from the origin; `mount` turns it in the vehicle.
- */
+/** Returns the log of a sonar (its type and its properties in YAML) at the origin of a scene; `mount` turns it in the
+ *  vehicle. */
 inline std::vector<types::Sonar> loggedPings(const types::Geometry& scene, const std::string& type,
                                              const std::string& properties, const std::string& mount, size_t count) {
     const TestFolder folder;
@@ -124,7 +124,7 @@ connections:
     return exportedPings(folder, "out/x.0.log", "sonar.ping");
 }
 
-/** The one ping of a forward-looking sonar. */
+/** Returns the only ping of a forward-looking sonar. */
 inline types::Sonar loggedPing(const types::Geometry& scene, const std::string& properties,
                                const std::string& mount = "{yaw_deg: 0}") {
     return loggedPings(scene, "sonar::SonarTask", properties, mount, 1).at(0);

@@ -1,4 +1,4 @@
-// The schema of deployments, held against a validator that knows nothing of them: Debian's python3-jsonschema.
+// The schema of deployments, tested with a general validator, Debian's python3-jsonschema.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Wall.hpp"
@@ -22,7 +22,7 @@ protected:
         writeFile(folder_ / "schema.json", outcome.out);
         schema_ = json::parse(outcome.out);
     }
-    /** What the validator finds wrong, a line each. */
+    /** Returns the validator's errors, one per line. */
     std::string diagnosticsOf(std::vector<std::string> files) {
         files.insert(files.begin(),
                      {"/usr/bin/python3", fs::path(insonify::test::source_dir) / "tests/deployer/check_schema.py",
@@ -31,7 +31,7 @@ protected:
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome.out;
     }
-    /** Of the wall's deployment with another text in the place of one that is there. */
+    /** Returns the errors of the wall's deployment with a text replaced. */
     std::string diagnosticsWith(const std::string& from, const std::string& to) {
         writeFile(folder_ / "other.yml", replaced(wall_deployment, from, to));
         return diagnosticsOf({"other.yml"});
@@ -46,7 +46,7 @@ protected:
 
 }  // namespace
 
-TEST_F(SchemaTest, EveryDeploymentThatIsDeliveredIsValid) {
+TEST_F(SchemaTest, EveryDeliveredDeploymentIsValid) {
     INSONIFY_NEEDS("gazebo");
     std::vector<std::string> files;
     for (const auto& entry : fs::directory_iterator(fs::path(insonify::test::source_dir) / "deploy"))
@@ -59,7 +59,7 @@ TEST_F(SchemaTest, EveryDeploymentThatIsDeliveredIsValid) {
     EXPECT_EQ(diagnosticsOf(files), "");
 }
 
-TEST_F(SchemaTest, WhatTheCommandRefusesOfOneValueTheSchemaRefusesAtItsPlace) {
+TEST_F(SchemaTest, RefusesWrongValuesAtTheSamePlaceAsTheCommand) {
     EXPECT_EQ(diagnosticsWith("range: 20", "range: 30"), "");
     EXPECT_EQ(diagnosticsWith("range: 20", "range: 2000.cm"), "");
     EXPECT_EQ(diagnosticsWith("beam_height_deg: 10", "beam_height_deg: {rad: 0.2}"), "");
@@ -86,7 +86,7 @@ TEST_F(SchemaTest, WhatTheCommandRefusesOfOneValueTheSchemaRefusesAtItsPlace) {
     }
 }
 
-TEST_F(SchemaTest, EveryTaskAndPropertyIsThereWithDocumentationUnitBoundsDefaultAndNames) {
+TEST_F(SchemaTest, HasEveryPropertyWithDocumentationUnitBoundsDefaultAndNames) {
     const json tasks = json::parse(callInsonify(folder_, {"describe", "--json"}).out);
     for (const json& task : tasks) {
         const std::string type = task["type"];
@@ -109,7 +109,7 @@ TEST_F(SchemaTest, EveryTaskAndPropertyIsThereWithDocumentationUnitBoundsDefault
               -200);
 }
 
-TEST_F(SchemaTest, OtherNamesAndLibrariesOpenWhatIsBehindThem) {
+TEST_F(SchemaTest, AliasesAndLibrariesAllowOtherPropertiesAndTypes) {
     EXPECT_EQ(diagnosticsWith("    type: sonar::SonarTask\n",
                               "    type: sonar::SonarTask\n    aliases: {reach: sonar.range}\n"),
               "");

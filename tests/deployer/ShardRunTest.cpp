@@ -1,4 +1,4 @@
-// A run that is made in shards: its pings are those of the whole run, whoever makes them, and however often.
+// Runs in shards: the pings equal those of the whole run, on any machine and after repetitions.
 #include <gmock/gmock.h>
 
 #include <iterator>
@@ -27,7 +27,7 @@ connections:
   - {from: noise.noisy, to: fan.ping}
 )";
 
-/** The wall, from a vehicle that comes nearer, with pictures. */
+/** The wall, from a vehicle that approaches it, with pictures. */
 std::string movingWall(const std::string& log = "wall.0.log") {
     std::string text = replaced(wall_deployment, "connections:\n", fan);
     text = replaced(text, "[{time: 0, position: [0, 0, 0], roll_deg: 0, pitch_deg: 0, yaw_deg: 0}]",
@@ -35,7 +35,7 @@ std::string movingWall(const std::string& log = "wall.0.log") {
     return replaced(text, "wall.0.log", log);
 }
 
-/** A head that turns beside the wall, which swims past in steps of another period. */
+/** A turning head next to the wall, which moves past in steps of another period. */
 const std::string scanning_deployment = R"(tasks:
   vehicle: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [0, 0, 0]}]}}
   wall:
@@ -106,7 +106,7 @@ public:
         all[log] = readFile(path() / "joined" / log);
         return all;
     }
-    /** The same of the whole run, its log copied as well. */
+    /** The same files of the whole run, with a copy of its log. */
     std::map<std::string, std::string> whole(const std::vector<std::string>& more = {},
                                              const std::string& log = "wall.0.log") const {
         const Outcome outcome = run(more);
@@ -125,7 +125,7 @@ public:
         std::ranges::sort(all);
         return all;
     }
-    /** What the making of shards has left beside them. */
+    /** Returns the files next to the shards that making them has left. */
     std::vector<std::string> leftovers(const std::string& out = "shards") const {
         std::vector<std::string> all;
         for (const auto& entry : fs::directory_iterator(path() / out))
@@ -159,7 +159,7 @@ TEST(ShardRunTest, JoinedShardsAreTheWholeRunByteForByte) {
     EXPECT_THAT(pings, testing::ElementsAre(3, 3, 4));
 }
 
-TEST(ShardRunTest, ItIsOfRaysWhateverDeviceAMachineHasUnlessVisibilityIsWritten) {
+TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
     const auto deviceOf = [](const std::string& visibility) {
         const Shards folder(replaced(wall_deployment, "range: 20", "range: 20" + visibility));
         std::vector<std::string> words = {"env", "INSONIFY_EGL_DEVICE=software"};
@@ -177,16 +177,16 @@ TEST(ShardRunTest, ItIsOfRaysWhateverDeviceAMachineHasUnlessVisibilityIsWritten)
     EXPECT_NE(rays, drawn);
     EXPECT_EQ(deviceOf(""), rays);
     EXPECT_EQ(deviceOf("\n      visibility: auto"), rays);
-    EXPECT_EQ(deviceOf("\n      deposit: gpu"), drawn) << "which pictures alone can have";
+    EXPECT_EQ(deviceOf("\n      deposit: gpu"), drawn) << "which needs rasterisation";
 }
 
-TEST(ShardRunTest, AHeadGoesOnWhereItWouldBeAndNodesAreWhereTheyWouldBe) {
+TEST(ShardRunTest, HeadsAndNodesContinueAtTheirPlacesOfTheWholeRun) {
     const Shards folder(scanning_deployment);
     folder.makeAll(4, {"--pings", "23"});
     expectSame(folder.joined(), folder.whole({"--pings", "23"}));
 }
 
-TEST(ShardRunTest, ARunAsLongAsItsTrajectoryOrAsATimeIsCutAsWell) {
+TEST(ShardRunTest, CutsRunsLimitedByTheirTrajectoryOrATime) {
     {
         const Shards folder(movingWall());
         folder.makeAll(3);
@@ -199,7 +199,7 @@ TEST(ShardRunTest, ARunAsLongAsItsTrajectoryOrAsATimeIsCutAsWell) {
     expectSame(folder.joined(), folder.whole({"--duration", "1.2"}));
 }
 
-TEST(ShardRunTest, McapFilesAreOfTheSameBytesWhoeverMakesThemAndJoinToTheWhole) {
+TEST(ShardRunTest, McapFilesAreReproducibleAndJoinToTheWhole) {
     const Shards folder(movingWall("wall.0.mcap"));
     folder.makeAll(2, {"--pings", "8"});
     folder.makeAll(2, {"--pings", "8"}, "again");
@@ -231,18 +231,18 @@ TEST(ShardRunTest, TheManifestHasEveryFileWithItsHashAndNothingOfTheMachine) {
     EXPECT_EQ(manifest.dump().find(folder.path().string()), std::string::npos);
 }
 
-TEST(ShardRunTest, AShardThatIsDoneIsLeftAsItIs) {
+TEST(ShardRunTest, AFinishedShardIsLeftUnchanged) {
     const Shards folder(movingWall());
     folder.makeAll(2, {"--pings", "6"});
     const auto before = fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log");
     const Outcome again = folder.make("1/2", "shards", {"--pings", "6"});
     EXPECT_EQ(again.code, 0) << again.err;
     EXPECT_THAT(again.out, HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "));
-    EXPECT_THAT(again.out, HasSubstr("files were there already"));
+    EXPECT_THAT(again.out, HasSubstr("files existed already"));
     EXPECT_EQ(fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log"), before);
 }
 
-TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAnew) {
+TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAgain) {
     const Shards folder(movingWall());
     const std::vector<std::string> limit = {"--pings", "6"};
     folder.makeAll(2, limit);
@@ -251,7 +251,7 @@ TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAnew) {
     const auto expectMended = [&](const std::string& what) {
         const Outcome outcome = folder.make("0/2", "shards", limit);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr(what), HasSubstr("the shard is made anew")));
+        EXPECT_THAT(outcome.err, AllOf(HasSubstr(what), HasSubstr("the shard is made again")));
         EXPECT_TRUE(filesIn(shard) == good);
     };
     std::string bytes = readFile(log);
@@ -274,7 +274,7 @@ TEST(ShardRunTest, ABrokenFileIsFoundAndTheShardMadeAnew) {
     expectMended("its manifest.json is broken: ");
 }
 
-TEST(ShardRunTest, ShardsOfTwoRunsThatBeganTogetherAreNotMixed) {
+TEST(ShardRunTest, ShardsOfTwoSimultaneousRunsAreNotMixed) {
     const insonify::Folder folder;
     ShardFolder one(folder / "shards", Shard::read("0/2"), {{"seed", 1}});
     ShardFolder other(folder / "shards", Shard::read("1/2"), {{"seed", 2}});
@@ -290,7 +290,7 @@ TEST(ShardRunTest, ShardsOfTwoRunsThatBeganTogetherAreNotMixed) {
     EXPECT_FALSE(fs::exists(folder / "shards/shard_1_of_2"));
 }
 
-/** The name of a file that a shard is being written to; empty: nobody is at it. */
+/** Returns the name of a file that a shard is writing; empty: there is none. */
 std::string partOf(const fs::path& out) {
     if (!fs::exists(out)) return "";
     for (const auto& entry : fs::directory_iterator(out))
@@ -306,23 +306,23 @@ void awaitPicture(const fs::path& out) {
     }));
 }
 
-/** More than a test waits for. */
+/** More pings than a test waits for. */
 const std::vector<std::string> endless = {"run", "wall.yml", "--out", "shards", "--shard", "0/2", "--pings", "4000000"};
 
-TEST(ShardRunTest, AShardThatWasKilledIsMadeAnewAndLeavesNothing) {
+TEST(ShardRunTest, AKilledShardIsMadeAgainAndLeavesNothing) {
     const Shards folder(movingWall());
     const Process process(insonifyWords(endless), folder.path());
     awaitPicture(folder / "shards");
     process.signal(SIGKILL);
     EXPECT_EQ(process.wait().code, -SIGKILL);
-    EXPECT_THAT(folder.shards(), IsEmpty()) << "what is not whole has no name";
+    EXPECT_THAT(folder.shards(), IsEmpty()) << "an incomplete shard has no final name";
     EXPECT_EQ(folder.leftovers().size(), 1u);
     folder.makeAll(2, {"--pings", "40"});
     EXPECT_THAT(folder.leftovers(), IsEmpty());
     expectSame(folder.joined(), folder.whole({"--pings", "40"}));
 }
 
-TEST(ShardRunTest, OfTwoWhoMakeTheSameShardNeitherFailsAndOneRemains) {
+TEST(ShardRunTest, TwoProcessesMayMakeTheSameShardAndOneIsKept) {
     const Shards folder(movingWall());
     const TestFolder other;
     const std::string out = folder.path() / "shards";
@@ -333,10 +333,10 @@ TEST(ShardRunTest, OfTwoWhoMakeTheSameShardNeitherFailsAndOneRemains) {
     EXPECT_EQ(second.wait().code, 0);
     EXPECT_EQ(folder.shards().size(), 1u);
     EXPECT_THAT(folder.leftovers(), IsEmpty());
-    EXPECT_THAT(folder.make("0/2", "shards", {"--pings", "200"}).out, HasSubstr("there already"));
+    EXPECT_THAT(folder.make("0/2", "shards", {"--pings", "200"}).out, HasSubstr("existed already"));
 }
 
-TEST(ShardRunTest, AnInterruptedShardIsNoneAndSaysSo) {
+TEST(ShardRunTest, AnInterruptedShardIsReportedAndNotKept) {
     const Shards folder(movingWall());
     const Process process(insonifyWords(endless), folder.path());
     awaitPicture(folder / "shards");
@@ -347,7 +347,7 @@ TEST(ShardRunTest, AnInterruptedShardIsNoneAndSaysSo) {
     EXPECT_TRUE(fs::is_empty(folder / "shards"));
 }
 
-TEST(ShardRunTest, WhatIsNoShardIsToldWithTheOption) {
+TEST(ShardRunTest, ReportsAnInvalidShardWithTheOption) {
     const Shards folder;
     const std::map<std::string, std::string> wrong = {{"0/0", "N must be from 1 to"},
                                                       {"5/4", "of 4 shards i may be from 0 to 3"},
@@ -369,7 +369,7 @@ TEST(ShardRunTest, WhatIsNoShardIsToldWithTheOption) {
     EXPECT_EQ(folder.make("0/2", "shards", {"--call", "log.stop"}).code, 2);
 }
 
-TEST(ShardRunTest, AFolderTakesTheShardsOfOneRunAlone) {
+TEST(ShardRunTest, AFolderAcceptsTheShardsOfOneRunOnly) {
     const Shards folder;
     ASSERT_EQ(folder.make("0/2", "shards", {"--pings", "4"}).code, 0);
     const auto expectRefused = [&](const std::string& shard, std::vector<std::string> more, const std::string& why) {
@@ -385,7 +385,7 @@ TEST(ShardRunTest, AFolderTakesTheShardsOfOneRunAlone) {
     expectRefused("1/2", {"--pings", "4"}, "deployment_sha256 is ");
 }
 
-/** What a run in shards says of a deployment that cannot be cut. */
+/** Returns the errors of a run in shards for a deployment that cannot be cut. */
 std::string refusal(const std::string& deployment) {
     const Shards folder(deployment);
     const Outcome outcome = folder.make("0/2", "shards", {"--pings", "4"});
@@ -394,26 +394,26 @@ std::string refusal(const std::string& deployment) {
     return outcome.err;
 }
 
-TEST(ShardRunTest, TasksThatKeepWhatAShardCannotKnowAreToldEach) {
+TEST(ShardRunTest, ReportsEachTaskWhoseStateAShardCannotKnow) {
     const std::string chosen =
         replaced(movingWall(), "quality: {rows: 32, columns_per_beam: 2}", "volume: {strength_db: -70}");
     EXPECT_THAT(refusal(replaced(chosen, ", reference_db: -20", "")),
                 AllOf(HasSubstr("wall.yml: tasks.sonar: quality: is chosen from the pings before"),
-                      HasSubstr("tasks.fan: reference_db: is absent, and the brightest colour follows the echoes")));
+                      HasSubstr("tasks.fan: reference_db: is absent, so the brightest colour follows the echoes")));
     EXPECT_THAT(refusal(replaced(movingWall(), "output::FanImageTask", "output::WaterfallImageTask")),
-                HasSubstr("tasks.fan: its pictures show pings of before as well"));
+                HasSubstr("tasks.fan: its pictures also show earlier pings"));
     EXPECT_THAT(refusal(replaced(movingWall(), "every: 3", "every: 3, video: fan.avi")),
                 HasSubstr("tasks.fan: video: is one file of all pictures"));
     EXPECT_THAT(refusal(replaced(movingWall(), "type: logger::LoggerTask",
                                  "type: logger::LoggerTask\n    activity: {period: 1}")),
-                HasSubstr("tasks.log: has a period and reads from others"));
+                HasSubstr("tasks.log: has a period and reads from other tasks"));
     EXPECT_THAT(refusal(replaced(movingWall(), "schedule: lockstep", "schedule: realtime")),
                 HasSubstr("schedule: is realtime"));
     EXPECT_THAT(refusal(replaced(movingWall(), "{from: noise.noisy, to: fan.ping}",
                                  "{from: noise.noisy, to: fan.ping}\n  - {from: sonar.pose, to: xtf.pose}\n"
                                  "  - {from: noise.noisy, to: xtf.ping}")
                             .insert(movingWall().find("  fan:"), "  xtf: {type: output::XtfTask}\n")),
-                HasSubstr("tasks.xtf: is a output::XtfTask, of which a shard cannot know"));
+                HasSubstr("tasks.xtf: is a output::XtfTask, whose state depends on earlier pings"));
 }
 
 }  // namespace

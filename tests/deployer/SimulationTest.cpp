@@ -1,4 +1,4 @@
-// A simulation that begins anew, against one that has just been made.
+// A reset simulation, compared with a new one.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -38,7 +38,7 @@ protected:
     }
 };
 
-TEST_P(RestartTest, ItsPingsAreThoseOfOneThatHasJustBeenMade) {
+TEST_P(RestartTest, ItsPingsEqualThoseOfANewSimulation) {
     Simulation kept = made(), fresh = made();
     for (const double x : {4.0, 18.0, 11.0}) {
         pingsOf(kept, x, -0.4);
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class WholeLabelsTest : public testing::TestWithParam<Restarted> {};
 
-TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyIsOfAnObject) {
+TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyHasAnObject) {
     SimulationOptions options;
     options.overrides = GetParam().set;
     options.truth = true;

@@ -1,4 +1,4 @@
-// A Sonar 3D-15 before its maker's own client, PyPI's wlsonar: HTTP, unicast and multicast, and what the voxels show.
+// A Sonar 3D-15 with its maker's own client, PyPI's wlsonar: HTTP, unicast and multicast, and the received voxels.
 #include <gmock/gmock.h>
 
 #include "components/device/Http.hpp"
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 constexpr double ball_radius = 0.8;  // [m]
 
-/** The sonar at the origin looks north at a wall 5 m away, with a ball before it to port, above. */
+/** A sonar at the origin looks north at a wall 5 m away, with a ball in front of it to port, above. */
 std::string sonar3dIn(const TestFolder& folder) {
     writeFile(folder / "wall.world", wallAndBall(5, "3.5 1 0.6", ball_radius));
     writeFile(folder / "x.yml", R"(schedule: realtime
@@ -47,12 +47,12 @@ connections:
 
 class Sonar3dClientTest : public ::testing::TestWithParam<bool> {};
 
-TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
+TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndReceivesTheWallAndTheBall) {
     INSONIFY_NEEDS("sdf");
     if (!pythonHas("wlsonar, numpy"))
         GTEST_SKIP() << "PyPI's wlsonar is not in " << python() << ": scripts/setup puts it there";
     const bool unicast = GetParam();
-    const std::string group_port = std::to_string(20000 + getpid() % 20000);  // not that of a test beside this one
+    const std::string group_port = std::to_string(20000 + getpid() % 20000);  // differs from that of a parallel test
     const TestFolder folder;
     HilRun run(sonar3dIn(folder), {"device.multicast_port=" + group_port});
     const int port = run.port();
@@ -85,7 +85,7 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
     EXPECT_GT(told["wall"]["voxels"], 5000);
     EXPECT_NEAR(told["wall"]["mean"], 5, 0.002);
     EXPECT_LT(told["wall"]["worst"], 0.01) << "every voxel of a flat wall at 5 m";
-    EXPECT_LT(told["wall"]["worst_beside_ball"], 0.03) << "those of beams of which the ball hides a part too";
+    EXPECT_LT(told["wall"]["worst_beside_ball"], 0.03) << "including beams partly hidden by the ball";
     EXPECT_GT(told["ball"]["voxels"], 300);
     EXPECT_NEAR(told["ball"]["radius"], ball_radius, 0.01);
     EXPECT_NEAR(told["ball"]["centre"][0], 3.5, 0.01) << "ahead";
@@ -102,8 +102,8 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndSeesTheWallAndTheBall) {
 INSTANTIATE_TEST_SUITE_P(Ways, Sonar3dClientTest, ::testing::Bool(),
                          [](const auto& unicast) { return unicast.param ? "Unicast" : "Multicast"; });
 
-/** Clients that leave in the middle of a request, and one that asks and never reads, hold up nobody. */
-TEST(Sonar3dReconnectTest, AThousandReconnectsAndOneThatDoesNotReadLeaveItAsItWas) {
+/** Clients that leave in the middle of a request, and one that asks and never reads, delay no other client. */
+TEST(Sonar3dReconnectTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     HilRun run(sonar3dIn(folder), {});

@@ -26,7 +26,7 @@ protected:
     types::Mount randomMount() {
         return {{uniform(2), uniform(2), uniform(2)}, uniform(180), uniform(180), uniform(180)};
     }
-    /** The wall, passed by a vehicle that turns, with a mount and keys of `mcap`. */
+    /** A vehicle that turns and passes the wall, with a mount and keys of `mcap`. */
     std::string deployment(const types::Mount& mount, const std::string& mcap) {
         const auto& p = mount.position;
         const std::string angles = fmt(", roll_deg: ", mount.roll_deg) + fmt(", pitch_deg: ", mount.pitch_deg) +
@@ -40,7 +40,7 @@ protected:
                             fmt(", pitch_deg: ", uniform(80)) + fmt(", yaw_deg: ", uniform(170)) + "}]");
         return replaced(text, "wall.0.log}", "wall.0.log, mcap: {" + mcap + "}}");
     }
-    /** What follow_transforms.py finds. */
+    /** Returns the output of follow_transforms.py. */
     static json followed(const WallFolder& folder, const std::string& bag) {
         const std::string answer =
             pythonSays(test::sourceFile("tests/deployer/follow_transforms.py") + " " + (folder / bag).string(),
@@ -49,7 +49,7 @@ protected:
         ADD_FAILURE() << answer;
         return {{"pings", json::array()}};
     }
-    /** Whether each ping's frame is where pose and mount have the sonar. @param toWorld from Rock's axes. */
+    /** Whether each ping's frame is at the sonar's place by pose and mount. @param toWorld from Rock's axes */
     template <class ToWorld>
     static void expectPlaces(const json& pings, const WallFolder& folder, const types::Mount& mount,
                              const ToWorld& toWorld, bool z_forward) {
@@ -116,7 +116,7 @@ TEST_F(TransformsRunTest, LeadFromEachPingByTheMountAndThePoseToTheWorld) {
     }
 }
 
-TEST_F(TransformsRunTest, AreInBagsThatAreExportedAndCutAndNoStreamsOfThem) {
+TEST_F(TransformsRunTest, AreInExportedAndCutBagsAndNotStreams) {
     const types::Mount mount = randomMount();
     const WallFolder folder(deployment(mount, "world_frame: enu"));
     ASSERT_EQ(folder.run(six_pings).code, 0);
@@ -139,7 +139,7 @@ TEST_F(TransformsRunTest, AreInBagsThatAreExportedAndCutAndNoStreamsOfThem) {
     EXPECT_EQ(info.find("/tf"), std::string::npos) << info;
 }
 
-TEST_F(TransformsRunTest, ABagWithThemIsReplayedAndScoredAsOneWithout) {
+TEST_F(TransformsRunTest, ABagReplaysAndScoresTheSameWithAndWithoutThem) {
     const WallFolder folder(deployment(types::Mount{{0.5, 0, 0}, 0, 5, 0}, "world_frame: ned"));
     const auto call = [&](std::vector<std::string> words) {
         const Outcome outcome = callInsonify(folder, std::move(words));

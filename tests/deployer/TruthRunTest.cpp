@@ -1,4 +1,4 @@
-// deploy/truth.yml as a user runs it: the picture, and what its log and the arrays made of it hold.
+// deploy/truth.yml: the picture, the log, and the arrays made from it.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/Command.hpp"
@@ -24,7 +24,7 @@ protected:
         const Outcome outcome = callInsonify(folder_, words);
         ASSERT_EQ(outcome.code, 0) << outcome.err;
     }
-    /** What python prints with numpy and json, the arrays of a file as `x`. */
+    /** Returns the output of python with numpy and json, with the arrays of a file as `x`. */
     std::string arraysSay(const std::string& file, const std::string& program) {
         std::ofstream(folder_ / "program.py") << "import json, numpy as np\nx = np.load('" << (folder_ / file).string()
                                               << "')\nmeta = json.loads(x['meta'].item())\n"
@@ -37,7 +37,7 @@ protected:
 
 }  // namespace
 
-TEST_F(TruthRunTest, APictureAndALogAreLeft) {
+TEST_F(TruthRunTest, WritesAPictureAndALog) {
     EXPECT_TRUE(fs::exists(folder_ / "out/truth_000001.png"));
     const json info =
         json::parse(callInsonify(folder_, {"log", "info", "out/truth.0.log", "--metadata", "--json"}).out);
@@ -49,7 +49,7 @@ TEST_F(TruthRunTest, APictureAndALogAreLeft) {
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "out/truth.0.log"}).code, 0);
 }
 
-TEST_F(TruthRunTest, ArraysHoldTheTruthByTheNamesOfThePort) {
+TEST_F(TruthRunTest, ArraysHaveTheTruthByTheNamesOfThePort) {
     if (!insonify::pythonHas("numpy")) GTEST_SKIP() << "python3-numpy is not installed: the npz files are not read";
     exportTo("truth.npz", "out/truth.0.log", "sonar.truth");
     EXPECT_EQ(arraysSay("truth.npz", R"(
@@ -66,7 +66,7 @@ print(x['strongest_range'].shape, both.any(), (x['first_range'][both] <= x['stro
               "(2, 64) True True\n");
 }
 
-TEST_F(TruthRunTest, McapHoldsTheSame) {
+TEST_F(TruthRunTest, McapHasTheSame) {
     exportTo("told.mcap", "out/truth.0.log", "");
     exportTo("a.npz", "out/truth.0.log", "sonar.truth");
     exportTo("b.npz", "told.mcap", "sonar.truth");

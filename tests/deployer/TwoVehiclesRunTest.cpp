@@ -1,4 +1,4 @@
-// Two vehicles in one SDF world: the sonar of each hears the hull of the other first in the bin where it stands.
+// Two vehicles in one SDF world: each sonar receives its first echo from the other's hull at its range.
 #include <gmock/gmock.h>
 
 #include "tests/deployer/SceneRun.hpp"
@@ -14,7 +14,7 @@ const char* const world = R"(<sdf version="1.9"><world name="w">
 <model name="blue"><link name="hull"><visual name="v"><geometry><box><size>4 2 2</size></box></geometry></visual></link></model>
 </world></sdf>)";
 
-// Bins are 100 us at 1000 m/s: 0.1 m. Blue is 20 m before red and looks back at it.
+// Bins are 100 us at 1000 m/s: 0.1 m. Blue is 20 m in front of red and looks back at it.
 const char* const two_vehicles = R"(tasks:
   red:  {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [5, 0, -3], yaw_deg: 90}]}}
   blue: {type: pose::TrajectoryTask, activity: {period: 0.1}, properties: {waypoints: [{time: 0, position: [5, 20, -3], yaw_deg: -90}]}}
@@ -42,19 +42,20 @@ size_t firstEcho(const Sonar& ping) {
 
 }  // namespace
 
-TEST(TwoVehiclesRunTest, EachHearsTheOtherWhereItIs) {
+TEST(TwoVehiclesRunTest, EachReceivesTheOthersEchoAtItsRange) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
     writeFile(folder / "two.yml", two_vehicles);
     const Outcome run = callInsonify(folder, {"run", "two.yml", "--pings", "2", "--out", "out"});
     ASSERT_EQ(run.code, 0) << run.err;
-    // sonars are 1.5 and 3 m before their hulls' middles, the other's bow is 2 and 1 m before its own: 16.5 and 16 m
+    // sonars are 1.5 and 3 m in front of their hulls' middles, the other's bow is 2 and 1 m in front of its own: 16.5
+    // and 16 m
     EXPECT_EQ(firstEcho(exportedPings(folder, "out/x.0.log", "red_sonar.ping").back()), 165u);
     EXPECT_EQ(firstEcho(exportedPings(folder, "out/x.0.log", "blue_sonar.ping").back()), 160u);
 }
 
-TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLost) {
+TEST(TwoVehiclesRunTest, ReportsPosesReplacedByNewerPosesAndLosses) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
@@ -65,16 +66,15 @@ TEST(TwoVehiclesRunTest, PosesThatANewerOneTookThePlaceOfAreToldBesideWhatWasLos
     const Outcome run =
         callInsonify(folder, {"run", "two.yml", "--pings", "3", "--out", "out", "--summary", "summary.json"});
     ASSERT_EQ(run.code, 0) << run.err;
-    // Two poses of blue come between two of red, each of which takes the newer.
-    EXPECT_THAT(run.out,
-                testing::HasSubstr("passed over for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
+    // Two poses of blue arrive between two of red, each of which uses the newer one.
+    EXPECT_THAT(run.out, testing::HasSubstr("skipped for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_EQ(summary["passed_over"]["blue.pose>red_scene.blue.pose"], 2);
     EXPECT_EQ(summary["losses"]["blue.pose>red_scene.blue.pose"], 0);
     EXPECT_EQ(summary["passed_over"]["red.pose>red_scene.pose"], 0);
 }
 
-TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {
+TEST(TwoVehiclesRunTest, WithoutPosesTheOtherVehicleIsAtItsPlaceInTheWorld) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);
@@ -86,7 +86,7 @@ TEST(TwoVehiclesRunTest, WithoutItsPosesTheOtherIsWhereTheWorldHasIt) {
     EXPECT_EQ(firstEcho(ping), ping.bins.size());
 }
 
-TEST(TwoVehiclesRunTest, APortOfAModelThatTheWorldHasNotIsRefused) {
+TEST(TwoVehiclesRunTest, RefusesAPortOfAMissingModel) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     writeFile(folder / "case.world", world);

@@ -1,5 +1,5 @@
 #pragma once
-// The smallest deployment: a sonar 10 m in front of a wall, and a log.
+// A minimal deployment: a sonar 10 m in front of a wall, and a log.
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -88,15 +88,14 @@ connections:
   - {from: vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}
 )";
 
-/** `text` with the first `what` replaced; throws when there is none, so that a test cannot pass by mistake. */
+/** Returns `text` with the first `what` replaced; throws when there is none, so that a test cannot pass by mistake. */
 inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
     const size_t at = text.find(what);
     if (at == std::string::npos) throw std::runtime_error("not in the text: " + what);
     return text.replace(at, what.size(), with);
 }
 
-/** The same on the wall clock. A machine that stalls is not to look like a vehicle that has gone, nor like a hook that
- *  hangs. */
+/** The same in realtime. A slow machine must look neither like a missing vehicle nor like a hanging hook. */
 inline std::string realtimeWall() {
     const std::string text = replaced(wall_deployment, "schedule: lockstep", "schedule: realtime\nwatchdog: 1000000");
     return replaced(text, "{file: wall.gltf}", "{file: wall.gltf, pose_timeout: 60}");
@@ -109,7 +108,7 @@ public:
         writeFile(*this / "wall.yml", deployment);
         writeFile(*this / "wall.gltf", gltf);
     }
-    /** `insonify run wall.yml --out out` and more. */
+    /** Runs `insonify run wall.yml --out out` with further arguments. */
     Outcome run(std::vector<std::string> more = {"--pings", "2"}) const {
         std::vector<std::string> arguments = {"run", "wall.yml", "--out", "out"};
         arguments.insert(arguments.end(), more.begin(), more.end());

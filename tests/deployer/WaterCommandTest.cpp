@@ -23,7 +23,7 @@ std::vector<std::string> keysOf(const json& object) {
     return keys;
 }
 
-TEST(WaterCommandTest, GivesEverySpeedAndAbsorptionByTheNameOfItsLaw) {
+TEST(WaterCommandTest, PrintsEverySpeedAndAbsorptionByTheNameOfItsLaw) {
     const json water = waterOf({"--temperature-celsius", "10", "--frequency-khz", "100", "--frequency-khz", "10"});
     EXPECT_THAT(keysOf(water), ElementsAre("absorption_db_per_m", "frequency_khz", "sound_speed_m_s", "warnings"));
     const json& speeds = water["sound_speed_m_s"];
@@ -48,7 +48,7 @@ TEST(WaterCommandTest, TakesTemperatureSalinityDepthAcidityAndLatitude) {
               plain["absorption_db_per_m"]["francois_garrison"][0]);
 }
 
-TEST(WaterCommandTest, OutsideAFormulasValidityAWarningNamesTheRangeAndTheAnswerIsFinite) {
+TEST(WaterCommandTest, OutsideAFormulasValidityWarnsOfTheRangeWithAFiniteResult) {
     const json water =
         waterOf({"--temperature-celsius", "45", "--salinity-psu", "50", "--depth", "11000", "--frequency-khz", "5000"});
     EXPECT_THAT(water["warnings"], Contains(AllOf(HasSubstr("mackenzie"), HasSubstr("45 degC (-2 to 30)"),
@@ -66,7 +66,7 @@ TEST(WaterCommandTest, PrintsATableForReaders) {
                                    HasSubstr("warning: thorp at 750 kHz is extrapolated: 750 kHz (0.1 to 50)")));
 }
 
-TEST(WaterCommandTest, RefusesWhatIsNoNumberOrNotFinite) {
+TEST(WaterCommandTest, RefusesInvalidOrInfiniteNumbers) {
     const TestFolder folder;
     for (const std::vector<std::string>& options :
          std::vector<std::vector<std::string>>{{"--temperature-celsius", "warm"},

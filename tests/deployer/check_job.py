@@ -1,5 +1,5 @@
-"""Holds a Job of Kubernetes against what batch/v1 takes, as far as deploy/kubernetes uses it, and prints as JSON the words
-that the pod of an index runs: python3 check_job.py FILE INDEX"""
+"""Checks a Kubernetes Job against batch/v1, as far as deploy/kubernetes uses it, and prints as JSON the words
+of the command of an index's pod: python3 check_job.py FILE INDEX"""
 
 import json
 import sys

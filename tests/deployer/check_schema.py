@@ -1,4 +1,4 @@
-"""Prints what is wrong with YAML files by a JSON schema, a line each: python3 check_schema.py SCHEMA FILE..."""
+"""Prints the errors of YAML files by a JSON schema, one per line: python3 check_schema.py SCHEMA FILE..."""
 import json
 import sys
 

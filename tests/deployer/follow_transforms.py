@@ -1,7 +1,7 @@
 """Follows the transforms of a bag from its pings to the world: python3 follow_transforms.py FOLDER/x.0.mcap
 
-Prints a JSON object: of each ping its time, the chain of frames, and where its frame is (origin [m], axes by column);
-the topics with their counts; the times of the clock. A transform is interpolated as tf2 does it."""
+Prints a JSON object: the time, chain of frames and place of the frame (origin [m], axes by column) of each ping;
+the topics with their counts; the times of the clock. Transforms are interpolated as in tf2."""
 
 import json
 import pathlib

@@ -1,8 +1,8 @@
-"""Holds a Foxglove layout against a server: python3 foxglove_layout.py LAYOUT.json ws://HOST:PORT
+"""Checks a Foxglove layout against a server: python3 foxglove_layout.py LAYOUT.json ws://HOST:PORT
 
-Every panel of the layout has a place in it; every topic is advertised with a schema that its panel draws, and brings a
+Every panel of the layout has a place in it; every topic is advertised with a schema that its panel shows, and has a
 message; every path of a plot is a number of that message; the frame that the 3D panel follows has a transform. Prints
-what was found, as JSON."""
+the result as JSON."""
 
 import asyncio
 import json

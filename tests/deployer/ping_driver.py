@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives a Ping360 or a Ping1D with their maker's client, unmodified (PyPI bluerobotics-ping), and prints what it got as
+"""Drives a Ping360 or a Ping1D with their maker's client, unmodified (PyPI bluerobotics-ping), and prints the result as
 JSON: ping_driver.py ping360|ping1d LINE [FIRST LAST STEP] with LINE a UDP port of this machine or a serial line."""
 import contextlib
 import io
@@ -9,11 +9,11 @@ import time
 
 from brping import Ping1D, Ping360, definitions, pingmessage
 
-PATIENCE = 120  # with a machine that does other things as well [s]; the client gives up sooner, and is called again
+PATIENCE = 120  # also on a busy machine [s]; the client gives up sooner, and is called again
 
 
 def insist(action):
-    """What an action gives as soon as it gives something."""
+    """Repeats an action until it returns something, and returns that."""
     end = time.time() + PATIENCE
     while time.time() < end:
         got = action()
@@ -32,7 +32,7 @@ def connected(device, line):
 
 
 def data_of(message):
-    """The fields of a message that carries data; of a refusal none, so that it is asked for again."""
+    """The fields of a message with data; none of a refusal, so that it is requested again."""
     if message is None or message.message_id == definitions.COMMON_NACK:
         return None
     return {name: getattr(message, name) for name in message.payload_field_names if name != "data"} | {
@@ -40,7 +40,7 @@ def data_of(message):
 
 
 def echoes(device, angle, samples):
-    """Of one angle, whatever of earlier questions is still on its way."""
+    """The answer for one angle; skips late answers to earlier requests."""
     def once():
         got = data_of(device.transmitAngle(angle))
         return got if got and got["angle"] == angle and len(got["data"]) == samples else None
@@ -80,7 +80,7 @@ def ping360(line, first=0, last=399, step=1):
         insist(lambda: data_of(getattr(device, "set_" + setting)(value)))
     told["scan"] = [echoes(device, angle, 800) for angle in range(int(first), int(last) + 1, int(step))]
     told["refusals"] = [refusal(lambda: device.set_angle(400)), refusal(lambda: device.set_number_of_samples(5000))]
-    insist(device.readDeviceInformation)  # the refused values are not the device's
+    insist(device.readDeviceInformation)  # the refused values are not used
     insist(lambda: data_of(device.set_number_of_samples(400)))
     insist(lambda: data_of(device.set_sample_period(2000)))
     told["coarser"] = echoes(device, 90, 400)
@@ -89,7 +89,7 @@ def ping360(line, first=0, last=399, step=1):
 
 
 def ping1d_set(device, message, **fields):
-    """Sets what the client itself cannot: its S500 has messages of the same numbers, whose fields hide the Ping1D's."""
+    """Sends messages that the client cannot: its S500 has messages of the same numbers, whose fields hide the Ping1D's."""
     asked = pingmessage.PingMessage(message, payload_dict=definitions.payload_dict_ping1d)
     for name, value in fields.items():
         setattr(asked, name, value)
@@ -116,6 +116,6 @@ def ping1d(line):
     return told
 
 
-with contextlib.redirect_stdout(io.StringIO()):  # the client talks
+with contextlib.redirect_stdout(io.StringIO()):  # the client prints
     result = {"ping360": ping360, "ping1d": ping1d}[sys.argv[1]](*sys.argv[2:])
 print(json.dumps(result))

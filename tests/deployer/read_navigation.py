@@ -1,8 +1,8 @@
-"""Reads a bag as the SLAM package sonar_slam_cpp does with its payload of standard messages, and dead-reckons it:
+"""Reads a bag like the SLAM package sonar_slam_cpp with its payload of standard messages, and dead-reckons it:
 python3 read_navigation.py FOLDER
 
 The same checks, axes and arithmetic as its adapters (projected_sonar, dvl_standard, imu enu, depth fluid_pressure) and
-its dead reckoning of the mode that takes yaw from the IMU, written anew. Prints what it found as JSON.
+its dead reckoning in the mode that takes yaw from the IMU, reimplemented. Prints the result as JSON.
 """
 
 import json
@@ -31,7 +31,7 @@ def turn(q):
 
 
 def sonar(m):
-    """The image, a row for each range, and its bearings; or why it is dropped."""
+    """The image, a row for each range, and its bearings; or the reason why it is dropped."""
     beams, ranges = m.image.beam_count, len(m.ranges)
     if m.image.dtype != 0:
         return "not 8 bits"
@@ -60,7 +60,7 @@ def velocity(m):
 
 
 def attitude(m):
-    """Of the body with z down, in a world with z down."""
+    """The attitude of a body with z down, in a world with z down."""
     ned_from_enu, frd_from_flu = np.array([[0, 1, 0], [1, 0, 0], [0, 0, -1]]), np.diag([1, -1, -1])
     return ned_from_enu @ turn(m.orientation) @ frd_from_flu
 
@@ -104,7 +104,7 @@ for time, v in velocities:
     track.append((time, *place))
 track = np.array(track)
 
-# The truth in the same axes: north and east turned to the first heading, from the first velocity's place on.
+# The truth in the same axes: north and east turned to the first heading, relative to the place of the first velocity.
 times = np.array([time for time, _ in truths])
 north = np.array([o.pose.pose.position.y for _, o in truths])
 east = np.array([o.pose.pose.position.x for _, o in truths])

@@ -1,6 +1,6 @@
 """Talks to a Sonar 3D-15 by the maker's client: python3 sonar3d_client.py PORT unicast|MULTICAST_PORT [VOXELS.npz]
 
-Sets what the client can set, takes range images, and prints one JSON object: what was kept, what was refused, and the
+Sets all that the client can set, receives range images, and prints one JSON object: accepted and refused values, the
 wall and the ball that the voxels show (x ahead, y to starboard, z down).
 """
 
@@ -26,7 +26,7 @@ def refused(call):
 
 
 def image_of(sock, kind, fits):
-    """The first image that fits; packets of a ping that was asked for before a change do not."""
+    """The first image of the present settings; packets of earlier pings are skipped."""
     while True:
         message = rip.unpackb(sock.recv(wlsonar.UDP_MAX_DATAGRAM_SIZE))
         if isinstance(message, kind) and fits(message):

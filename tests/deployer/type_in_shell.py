@@ -1,7 +1,7 @@
 """Types lines into an interactive shell on a terminal: type_in_shell.py SHELL SETUP LINE...
 
-SETUP is a command that the shell gets first. LINE is what is typed before Enter, a tab in it the key; prints as JSON the
-words of each line as the shell then takes them.
+SETUP is the first command of the shell. LINE is the text typed before Enter, a tab is the tab key. Prints as JSON the
+words of each line as the shell receives them.
 """
 
 import json
@@ -14,7 +14,7 @@ import time
 
 PATIENCE_S = 60
 START = {"bash": ["bash", "--norc", "--noprofile", "-i"], "zsh": ["zsh", "-f", "-i"]}
-# `took` writes down its words. In zsh keys are those of bash, and completion is there once it has been asked for.
+# `took` records its words. In zsh keys are those of bash, and completion works once it has been requested.
 FIRST = {"bash": "", "zsh": "bindkey -e; autoload -U compinit && compinit -u -D; "}
 TOOK = """took() { printf '%s\\n' "$@" > words; : > words.whole; }"""
 BEGINNING_OF_LINE = "\x01"
@@ -25,7 +25,7 @@ seen = bytearray()
 
 
 def drain(terminal):
-    """All that the shell writes, or it stands still."""
+    """Reads all output of the shell, which would block otherwise."""
     try:
         while data := os.read(terminal, 4096):
             seen.extend(data)

@@ -1,4 +1,4 @@
-// Which ping answers which, and how long one is waited for.
+// Which ping answers which request, and how long a request waits.
 #include <gtest/gtest.h>
 
 #include "components/device/AskedPings.hpp"
@@ -8,10 +8,10 @@ namespace {
 
 types::Time at(double seconds) { return types::Time::fromSeconds(1e9 + seconds); }
 
-TEST(AskedPingsTest, APingAnswersTheNewestThatWasAskedForByThenAndEndsTheOlder) {
+TEST(AskedPingsTest, APingAnswersTheNewestEarlierRequestAndEndsOlderRequests) {
     AskedPings<char> asked(3);
     for (const char kept : {'a', 'b', 'c'}) asked.add(at(kept - 'a'), at(0), kept);
-    EXPECT_FALSE(asked.take(at(-1e-6))) << "nobody asked for it";
+    EXPECT_FALSE(asked.take(at(-1e-6))) << "no request for it";
     EXPECT_EQ(asked.take(at(1.5)), 'b');
     EXPECT_EQ(asked.size(), 1u);
     EXPECT_FALSE(asked.take(at(1.5))) << "once";
@@ -20,14 +20,14 @@ TEST(AskedPingsTest, APingAnswersTheNewestThatWasAskedForByThenAndEndsTheOlder) 
     EXPECT_FALSE(asked.awaits(at(9)));
 }
 
-TEST(AskedPingsTest, WhereThereAreTooManyTheOldestIsGivenUp) {
+TEST(AskedPingsTest, GivesUpTheOldestOfTooManyRequests) {
     AskedPings<char> asked(2);
     for (const char kept : {'a', 'b', 'c'}) asked.add(at(kept - 'a'), at(0), kept);
     EXPECT_FALSE(asked.take(at(0.5)));
     EXPECT_EQ(asked.take(at(1.5)), 'b');
 }
 
-TEST(AskedPingsTest, TheNewestIsLateOncePatienceHasEndedAfterItsSound) {
+TEST(AskedPingsTest, TheNewestIsLateAfterItsSoundAndThePatience) {
     AskedPings<> asked;
     EXPECT_FALSE(asked.isLate(at(100)));
     asked.add(at(0), at(0.5));

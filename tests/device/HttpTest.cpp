@@ -15,7 +15,7 @@ std::string textOf(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
 const std::string post =
     "POST /api/v1/x?a=b HTTP/1.1\r\nHost: s\r\nContent-Type: application/json\r\nContent-Length: 4\r\n\r\ntrue";
 
-TEST(HttpTest, RequestsComeWholeHoweverTheyAreCut) {
+TEST(HttpTest, ReadsCompleteRequestsFromAnyPieces) {
     HttpReader reader;
     const std::string all = post + "GET /about HTTP/1.1\r\nHost: s\r\nConnection: close\r\n\r\n";
     std::vector<HttpRequest> requests;
@@ -34,7 +34,7 @@ TEST(HttpTest, RequestsComeWholeHoweverTheyAreCut) {
     EXPECT_TRUE(reader.next() && reader.next() && !reader.next()) << "and at once";
 }
 
-TEST(HttpTest, OursComeBack) {
+TEST(HttpTest, ReadsItsOwnRequests) {
     HttpReader reader;
     reader.add(httpBytes(HttpRequest{"POST", "/a", "{\"min\": 1}", false}, "192.168.194.96"));
     const auto request = reader.next();
@@ -47,13 +47,13 @@ TEST(HttpTest, OursComeBack) {
     EXPECT_EQ(httpError(400, "what \xFF is").body, "{\"error\":\"what \xEF\xBF\xBD is\"}");
 }
 
-TEST(HttpTest, WhatIsNoRequestIsRefusedOnce) {
+TEST(HttpTest, RefusesInvalidRequestsOnce) {
     const auto statusOf = [](const std::string& text) {
         HttpReader reader;
         reader.add(bytesOf(text));
         EXPECT_FALSE(reader.next());
         reader.add(bytesOf(post));
-        EXPECT_FALSE(reader.refusal() && reader.next()) << "after which nothing is read";
+        EXPECT_FALSE(reader.refusal() && reader.next()) << "reads nothing after a refusal";
         return reader.refusal() ? reader.refusal()->status : 0;
     };
     EXPECT_EQ(statusOf("@0008\x08 not HTTP at all\r\n\r\n"), 400);
@@ -61,10 +61,10 @@ TEST(HttpTest, WhatIsNoRequestIsRefusedOnce) {
     EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: -4\r\n\r\n"), 400);
     EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: 65537\r\n\r\n"), 413);
     EXPECT_EQ(statusOf("GET / HTTP/1.1\r\nA: " + std::string(20000, 'a')), 431);
-    EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: 40\r\n\r\ntrue"), 0) << "may still become whole";
+    EXPECT_EQ(statusOf("POST / HTTP/1.1\r\nContent-Length: 40\r\n\r\ntrue"), 0) << "may still become complete";
 }
 
-TEST(HttpTest, MomentsAreReadInAnyZone) {
+TEST(HttpTest, ReadsTimesInAnyZone) {
     const types::Time moment{1'763'867'405'250'000};
     EXPECT_EQ(isoText(moment), "2025-11-23T03:10:05.250000Z");
     for (const char* text : {"2025-11-23T03:10:05.25Z", "2025-11-23T03:10:05.250000+00:00",
@@ -93,7 +93,7 @@ TEST(HttpTest, MomentsAreReadInAnyZone) {
         EXPECT_FALSE(isoTime(text)) << text;
 }
 
-TEST(HttpTest, MomentsAreReadWhateverNumbersTheHostHas) {
+TEST(HttpTest, ReadsTimesInAnyLocale) {
     const test::CommaLocale german;
     if (!german.isThere()) GTEST_SKIP() << german.why();
     const types::Time moment{1'763'867'405'250'000};

@@ -1,4 +1,4 @@
-// A Micron by bytes and a made-up clock, before what an open driver sends and checks.
+// A Micron with bytes and a simulated clock, with the messages and checks of an open driver.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -33,7 +33,7 @@ protected:
         ping_.time = now_;
         emulator_.heard(ping_);
     }
-    /** Goes on to what is due next; the sonar answers at once. */
+    /** Advances to the next due time; the sonar answers at once. */
     void wait() {
         emulator_.tick(now_);
         if (answers_ && !asked_.empty()) {
@@ -43,7 +43,7 @@ protected:
         if (const auto due = emulator_.tick(now_)) now_ = std::max(now_, *due);
         emulator_.tick(now_);
     }
-    /** Lets time go on until there is something to read, as a driver waits. */
+    /** Advances until there is something to read, as a driver waits. */
     Bytes readFor(Client whom) {
         for (int i = 0; i < 10 && sent_[whom].empty(); ++i) wait();
         if (sent_[whom].empty()) throw std::runtime_error("time out");
@@ -79,7 +79,7 @@ protected:
     MicronDriver driver_ = driverOf(client);
 };
 
-TEST_F(MicronEmulatorTest, ADriverComesThroughItsHandshakeAndScansAllRound) {
+TEST_F(MicronEmulatorTest, ADriverCompletesItsHandshakeAndScansAllRound) {
     driver_.reboot();
     EXPECT_EQ(driver_.serialNumber(), 1);
     EXPECT_TRUE(driver_.isFullDuplex());
@@ -99,7 +99,7 @@ TEST_F(MicronEmulatorTest, ADriverComesThroughItsHandshakeAndScansAllRound) {
     EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(MicronEmulatorTest, WhatIsCommandedIsAskedOfTheSonar) {
+TEST_F(MicronEmulatorTest, RequestsTheCommandedSettingsFromTheSonar) {
     SeaNetHeadCommand command;
     command.control = SeaNetControl::eight_bits;
     command.transmit[0] = 77846282;
@@ -115,7 +115,7 @@ TEST_F(MicronEmulatorTest, WhatIsCommandedIsAskedOfTheSonar) {
     EXPECT_NEAR(asked_[0].range, 250 * 64e-6 * 1500 / 2, 1e-9);
     EXPECT_EQ(asked_[0].bin_count, 250u);
     EXPECT_NEAR(asked_[0].frequency_khz, 580, 1e-4);
-    EXPECT_NEAR(asked_[0].gain_db, 8, 1e-9) << "50 % of 80 dB, where 40 % is usual";
+    EXPECT_NEAR(asked_[0].gain_db, 8, 1e-9) << "50 % of 80 dB, relative to the usual 40 %";
     EXPECT_EQ(asked_[0].bearing.rad, 0) << "ahead";
     EXPECT_EQ(asked_[0].speed_of_sound, 1500);
 }
@@ -140,7 +140,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     advance(1e-4);
     ASSERT_EQ(asked_.size(), 2u);
     advance(2 * listening);
-    EXPECT_TRUE(sent_[client].empty()) << "the ping has not come";
+    EXPECT_TRUE(sent_[client].empty()) << "the ping has not arrived";
     hear();
     advance(0);
     EXPECT_FALSE(sent_[client].empty());
@@ -173,7 +173,7 @@ TEST_F(MicronEmulatorTest, ASectorAcrossTheSternIsEnteredAtItsLimit) {
     command.bins = 10;
     emulator_.received(client, command.message().packet(), now_);
     sent_.clear();
-    EXPECT_EQ(emulator_.bearing(), 6000) << "it goes there at once";
+    EXPECT_EQ(emulator_.bearing(), 6000) << "it turns there at once";
     std::vector<int> places;
     for (int i = 0; i < 9; ++i) {
         driver_.request();
@@ -183,7 +183,7 @@ TEST_F(MicronEmulatorTest, ASectorAcrossTheSternIsEnteredAtItsLimit) {
     EXPECT_THAT(places, ElementsAre(6160, 6320, 80, 240, 400, 240, 80, 6320, 6160));
 }
 
-TEST_F(MicronEmulatorTest, FourBitsShowTheSpanThatIsCommanded) {
+TEST_F(MicronEmulatorTest, FourBitsShowTheCommandedSpan) {
     driver_.configure({.resolution = 0.1, .max_distance = 0.8, .low_resolution = true});
     const auto code = [](double of_255) { return static_cast<float>(65535 * of_255 / 255); };
     ping_ = pingOf({0, code(8), code(8 + 81 / 15.0), code(48.5), code(89), code(255), NAN});
@@ -210,7 +210,7 @@ TEST_F(MicronEmulatorTest, AnInvertedHeadTurnsTheOtherWay) {
     EXPECT_NEAR(all_asked_[1].bearing.rad, 2 * M_PI * 100 / 6400, 1e-9);
 }
 
-TEST_F(MicronEmulatorTest, WhatItCannotDoItDoesNotTake) {
+TEST_F(MicronEmulatorTest, RefusesImpossibleCommands) {
     const auto configured = [&](auto change) {
         SeaNetHeadCommand command;
         command.ad_interval = command.bins = 100;
@@ -229,7 +229,7 @@ TEST_F(MicronEmulatorTest, WhatItCannotDoItDoesNotTake) {
     sent_.clear();
     hear();
     advance(0.5);
-    EXPECT_TRUE(sent_[client].empty()) << "the line of before is dropped";
+    EXPECT_TRUE(sent_[client].empty()) << "the earlier line is dropped";
     EXPECT_FALSE(configured([](auto& command) { command.bins = 1501; }));
     EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 0; }));
     EXPECT_FALSE(configured([](auto& command) { command.ad_interval = 1501; }));
@@ -244,7 +244,7 @@ TEST_F(MicronEmulatorTest, WhatItCannotDoItDoesNotTake) {
     EXPECT_TRUE(SeaNetAlive::in(*reader.next())->unconfigured) << "no parameters, no line";
 }
 
-TEST_F(MicronEmulatorTest, TwoClientsHaveOneHead) {
+TEST_F(MicronEmulatorTest, TwoClientsShareOneHead) {
     emulator_.opened(other);
     MicronDriver second = driverOf(other);
     driver_.configure({});
@@ -256,15 +256,15 @@ TEST_F(MicronEmulatorTest, TwoClientsHaveOneHead) {
     EXPECT_EQ(second.beam().bearing, first.bearing);
     driver_.request();
     advance(0);
-    emulator_.closed(client);  // in mid-ping
+    emulator_.closed(client);  // during a ping
     hear();
     advance(1);
     EXPECT_TRUE(sent_[client].empty());
     second.request();
-    EXPECT_EQ(second.beam().bins.size(), 200u) << "and the head goes on for the other";
+    EXPECT_EQ(second.beam().bins.size(), 200u) << "and the head continues for the other";
 }
 
-TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
+TEST_F(MicronEmulatorTest, ARebootDuringAPingRestartsTheHead) {
     driver_.configure({});
     driver_.request();
     advance(0);
@@ -272,13 +272,13 @@ TEST_F(MicronEmulatorTest, OneThatRebootsInMidPingStartsAgain) {
     driver_.reboot();
     hear();
     advance(0.1);
-    EXPECT_TRUE(sent_[client].empty()) << "the line is forgotten";
+    EXPECT_TRUE(sent_[client].empty()) << "the line is dropped";
     driver_.configure({});
     driver_.request();
     EXPECT_NEAR(driver_.beam().bearing, 0, 1e-3) << "ahead again";
 }
 
-TEST_F(MicronEmulatorTest, McGillsDriverOpensAHeadThatRecentresAndScansLines) {
+TEST_F(MicronEmulatorTest, McGillsDriverOpensARecentringHeadAndScansLines) {
     MicronEmulator recentring(
         {}, {[this](const types::SonarSettings& settings) { asked_.push_back(settings); },
              [this](Client to, Bytes bytes) { sent_[to].insert(sent_[to].end(), bytes.begin(), bytes.end()); },
@@ -306,14 +306,14 @@ TEST_F(MicronEmulatorTest, AHeadReversesOnceForEachReversal) {
     const double clockwise = next(), further = next();
     EXPECT_LT(further, clockwise);
     driver_.reverse();
-    next();  // its motor was under way
+    next();  // its motor was turning
     const double turned = next(), back = next();
     EXPECT_GT(back, turned);
     EXPECT_THAT(warnings_, IsEmpty());
 }
 
-/** A driver that takes an old mtAlive for the answer to its mtReBoot goes on at once. */
-TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
+/** A driver that takes an earlier mtAlive for the answer to its mtReBoot continues at once. */
+TEST_F(MicronEmulatorTest, ACommandDuringBootIsAcceptedAndItsLineWaits) {
     emulator_.received(client, seaNetRequest(SeaNetType::Reboot).packet(), now_);
     driver_.configure({});
     driver_.request();
@@ -323,7 +323,7 @@ TEST_F(MicronEmulatorTest, ACommandWhileItBootsIsTakenAndItsLineWaits) {
     EXPECT_EQ(asked_.size(), 1u);
 }
 
-TEST_F(MicronEmulatorTest, WhereNoPingComesTheSonarIsAskedAgainAndTheLineIsAnsweredLate) {
+TEST_F(MicronEmulatorTest, RequestsAMissingPingAgainAndAnswersTheLineLate) {
     driver_.configure({});
     for (size_t outage = 1; outage <= 2; ++outage) {
         answers_ = false;
@@ -335,22 +335,22 @@ TEST_F(MicronEmulatorTest, WhereNoPingComesTheSonarIsAskedAgainAndTheLineIsAnswe
         for (const types::SonarSettings& each : asked_) EXPECT_EQ(each.bearing.rad, asked_.front().bearing.rad);
         EXPECT_EQ(sent_[client].size(), size_t{22} * 4) << "mtAlive at 3, 4, 5 and 6 s, since the first ping is late";
         ASSERT_EQ(warnings_.size(), outage);
-        EXPECT_THAT(warnings_.back(), HasSubstr("no ping came"));
+        EXPECT_THAT(warnings_.back(), HasSubstr("a requested ping did not arrive"));
         sent_.clear();
         ping_.time = asked_.front().time - types::Time{1};
         emulator_.heard(ping_);
         emulator_.tick(now_);
-        EXPECT_THAT(sent_[client], IsEmpty()) << "a ping of before is of another bearing";
+        EXPECT_THAT(sent_[client], IsEmpty()) << "an earlier ping has another bearing";
         ping_.time = asked_.front().time;
         emulator_.heard(ping_);
-        EXPECT_EQ(driver_.beam().bins.size(), 200u) << "the first that was asked for, late";
+        EXPECT_EQ(driver_.beam().bins.size(), 200u) << "the first requested ping, late";
         answers_ = true;
         driver_.request();
         EXPECT_EQ(driver_.beam().bins.size(), 200u);
     }
 }
 
-/** A head whose sonar hears nothing can be commanded and rebooted. */
+/** A head whose sonar gives no pings can still be commanded and rebooted. */
 TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
     driver_.configure({});
     answers_ = false;
@@ -360,7 +360,7 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
     sent_.clear();
     driver_.request();
     for (int i = 0; i < 3; ++i) advance(0.5);
-    EXPECT_THAT(sent_[client], IsEmpty()) << "no mtAlive of a head that scans and is not late";
+    EXPECT_THAT(sent_[client], IsEmpty()) << "a head that scans and is not late sends no mtAlive";
     driver_.reboot();
     answers_ = true;
     asked_.clear();
@@ -369,7 +369,7 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
     EXPECT_EQ(driver_.beam().bins.size(), 200u);
 }
 
-TEST_F(MicronEmulatorTest, ItTellsThatItLivesUntilItIsToldNotTo) {
+TEST_F(MicronEmulatorTest, SendsAliveUntilStopAlive) {
     const auto heard = [&] {
         const size_t size = sent_[client].size();
         sent_.clear();
@@ -382,7 +382,7 @@ TEST_F(MicronEmulatorTest, ItTellsThatItLivesUntilItIsToldNotTo) {
     EXPECT_EQ(heard(), 0u);
 }
 
-TEST_F(MicronEmulatorTest, ANoisyLineAndOtherNodesDisturbNothing) {
+TEST_F(MicronEmulatorTest, IgnoresNoiseAndOtherNodes) {
     SeaNetMessage to_another = seaNetRequest(SeaNetType::Reboot);
     to_another.to = 20;
     emulator_.received(client, to_another.packet(), now_);

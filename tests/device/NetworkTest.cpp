@@ -24,7 +24,7 @@ namespace {
 using Kind = NetworkEvent::Kind;
 using namespace std::chrono_literals;
 
-/** A driver's end of a connection, datagrams or a line. */
+/** A driver's end of a connection, of datagrams or of a line. */
 class Peer {
 public:
     Peer(int type, uint16_t port) : file_(socket(AF_INET, type, 0)) {
@@ -43,7 +43,7 @@ public:
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
     void say(const Bytes& bytes) const { EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size())); }
-    /** So many bytes, or fewer where the end closes or falls silent. */
+    /** Reads `count` bytes, or fewer if the end closes or falls silent. */
     Bytes hear(size_t count) const {
         Bytes bytes;
         for (pollfd ready{file_, POLLIN, 0}; bytes.size() < count && poll(&ready, 1, 5000) == 1;) {
@@ -55,7 +55,7 @@ public:
         return bytes;
     }
 
-    /** Whoever is still speaking stops. */
+    /** Stops the writer. */
     void hangUp() const { shutdown(file_, SHUT_RDWR); }
 
 private:
@@ -64,7 +64,7 @@ private:
 
 class NetworkTest : public testing::Test {
 protected:
-    /** The next events, as soon as there are so many of a kind; fewer after ten seconds. */
+    /** Returns the next events, as soon as there are enough of a kind; fewer after ten seconds. */
     std::vector<NetworkEvent> await(Kind kind, size_t count = 1) { return await(network_, kind, count); }
     static std::vector<NetworkEvent> await(Network& network, Kind kind, size_t count = 1) {
         std::vector<NetworkEvent> all;
@@ -81,7 +81,7 @@ protected:
     Network network_{[this] { ++woken_; }};
 };
 
-TEST_F(NetworkTest, BytesGoThereAndBackByConnectionDatagramAndLine) {
+TEST_F(NetworkTest, TransfersBytesByConnectionDatagramAndLine) {
     const Folder folder;
     const End tcp = network_.listenTcp("127.0.0.1", 0), udp = network_.listenUdp("127.0.0.1", 0);
     network_.openSerial(folder / "line");
@@ -99,7 +99,7 @@ TEST_F(NetworkTest, BytesGoThereAndBackByConnectionDatagramAndLine) {
                                      "serial line " + (folder / "line").string()));
 }
 
-TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
+TEST_F(NetworkTest, ALineOutlivesDriversAndRemovesItsLink) {
     const Folder folder;
     {
         Network network([] {});
@@ -115,14 +115,14 @@ TEST_F(NetworkTest, ALineStaysWhileDriversComeAndGoAndItsLinkGoesWithIt) {
     EXPECT_FALSE(std::filesystem::is_symlink(folder / "line"));
 }
 
-TEST_F(NetworkTest, WhoOpensALineReadsLittleOfThePastAndTheNewest) {
+TEST_F(NetworkTest, ADriverThatOpensALineReadsFewOldBytesAndTheNewest) {
     const Folder folder;
     network_.openSerial(folder / "line");
     const Client line = await(Kind::Opened).back().client;
     constexpr size_t packets = 10'000, size = 100, little = 32'768;
     for (size_t i = 0; i < packets; ++i) network_.send(line, Bytes(size, static_cast<uint8_t>(i % 200)));
     network_.send(line, Bytes(size, 255));
-    network_.listenTcp("127.0.0.1", 0);  // once all have been taken
+    network_.listenTcp("127.0.0.1", 0);  // once all have been read
     EXPECT_GT(network_.dropped(), packets / 2);
     const Peer driver(folder / "line");
     size_t past = 0;
@@ -133,7 +133,7 @@ TEST_F(NetworkTest, WhoOpensALineReadsLittleOfThePastAndTheNewest) {
     EXPECT_EQ(driver.hear(size - 1), Bytes(size - 1, 255));
 }
 
-TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
+TEST_F(NetworkTest, AThousandReconnectsLeakNoClientAndNoFile) {
     const auto openFiles = [] {
         return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
                              std::filesystem::directory_iterator());
@@ -154,7 +154,7 @@ TEST_F(NetworkTest, AThousandReconnectsLeaveNoClientAndNoFileBehind) {
     EXPECT_EQ(openFiles(), before);
 }
 
-TEST_F(NetworkTest, OneWhoDoesNotReadLosesWhatIsStreamedAndHoldsUpNobody) {
+TEST_F(NetworkTest, AClientThatDoesNotReadLosesStreamedMessagesAndDelaysNoOther) {
     const End end = network_.listenTcp("127.0.0.1", 0);
     const Peer deaf(SOCK_STREAM, network_.portOf(end));
     const Client never = await(Kind::Opened).back().client;
@@ -169,7 +169,7 @@ TEST_F(NetworkTest, OneWhoDoesNotReadLosesWhatIsStreamedAndHoldsUpNobody) {
     EXPECT_EQ(closed.client, never) << "for whom too much waits that must arrive";
 }
 
-TEST_F(NetworkTest, OneWhoSendsWithoutEndIsReadNoFasterThanTheTaskTakes) {
+TEST_F(NetworkTest, AnEndlessSenderIsReadAtTheSpeedOfTheTask) {
     const End end = network_.listenTcp("127.0.0.1", 0);
     const Peer peer(SOCK_STREAM, network_.portOf(end));
     std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
@@ -189,7 +189,7 @@ TEST_F(NetworkTest, OneWhoSendsWithoutEndIsReadNoFasterThanTheTaskTakes) {
     EXPECT_LE(largest, Network::max_received + 65536);
 }
 
-TEST_F(NetworkTest, AClosedClientHearsWhatWasSentBefore) {
+TEST_F(NetworkTest, AClosedClientReceivesEarlierMessages) {
     const End end = network_.listenTcp("127.0.0.1", 0);
     const Peer peer(SOCK_STREAM, network_.portOf(end));
     const Client client = await(Kind::Opened).back().client;
@@ -199,8 +199,8 @@ TEST_F(NetworkTest, AClosedClientHearsWhatWasSentBefore) {
     EXPECT_EQ(await(Kind::Closed).back().client, client);
 }
 
-/** Silent clients lock nobody out. */
-TEST_F(NetworkTest, OfConnectionsWhoIsLongestSilentGoesForANewOne) {
+/** Silent clients block no new clients. */
+TEST_F(NetworkTest, ANewConnectionReplacesTheOneSilentForLongest) {
     const End end = network_.listenTcp("127.0.0.1", 0);
     std::vector<std::unique_ptr<Peer>> peers;
     std::vector<Client> clients;
@@ -215,7 +215,7 @@ TEST_F(NetworkTest, OfConnectionsWhoIsLongestSilentGoesForANewOne) {
     const auto events = await(Kind::Opened);
     ASSERT_GE(events.size(), 2u);
     EXPECT_EQ(events.front().kind, Kind::Closed);
-    EXPECT_EQ(events.front().client, clients[5]) << "it has never said anything";
+    EXPECT_EQ(events.front().client, clients[5]) << "it has never sent anything";
     EXPECT_TRUE(peers[5]->hear(1).empty());
     network_.send(events.back().client, {7});
     EXPECT_THAT(newer.hear(1), testing::ElementsAre(7));
@@ -224,7 +224,7 @@ TEST_F(NetworkTest, OfConnectionsWhoIsLongestSilentGoesForANewOne) {
     EXPECT_EQ(network_.displaced(), 1u);
 }
 
-TEST_F(NetworkTest, AFailureOnTheNetworksThreadIsCountedAndEndsGoOn) {
+TEST_F(NetworkTest, CountsAFailureOfTheThreadAndContinues) {
     std::atomic<bool> fails{false};
     Network network([&] {
         if (fails.exchange(false)) throw std::bad_alloc();
@@ -244,13 +244,13 @@ TEST_F(NetworkTest, AFailureOnTheNetworksThreadIsCountedAndEndsGoOn) {
     EXPECT_EQ(network.failures(), 3u);
 }
 
-TEST_F(NetworkTest, DatagramsGoToWhomeverTheyAreFor) {
+TEST_F(NetworkTest, DatagramsReachTheirReceiver) {
     const End end = network_.listenUdp("127.0.0.1", 0);
     network_.sendTo("127.0.0.1", network_.portOf(end), {6, 6});
     EXPECT_THAT(await(Kind::Received).back().bytes, testing::ElementsAre(6, 6));
 }
 
-TEST_F(NetworkTest, OfDatagramsWhoIsLongestSilentGoesFirst) {
+TEST_F(NetworkTest, ForgetsTheDatagramClientSilentForLongest) {
     const uint16_t port = network_.portOf(network_.listenUdp("127.0.0.1", 0));
     const Peer talks(SOCK_DGRAM, port);
     talks.say({1});
@@ -270,18 +270,18 @@ TEST_F(NetworkTest, OfDatagramsWhoIsLongestSilentGoesFirst) {
     EXPECT_THAT(talks.hear(1), testing::ElementsAre(7));
 }
 
-TEST_F(NetworkTest, EmptyDatagramsAreBoundedAsWell) {
+TEST_F(NetworkTest, EmptyDatagramsAreBounded) {
     const Peer peer(SOCK_DGRAM, network_.portOf(network_.listenUdp("127.0.0.1", 0)));
     const auto end = std::chrono::steady_clock::now() + 60s;
     while (network_.dropped() == 0 && std::chrono::steady_clock::now() < end) {
         for (int i = 0; i < 100; ++i) peer.say({});
-        std::this_thread::sleep_for(1ms);  // in which they are taken
+        std::this_thread::sleep_for(1ms);  // time to read them
     }
     EXPECT_GT(network_.dropped(), 0u);
     EXPECT_LE(network_.take().size(), Network::max_received / sizeof(NetworkEvent) + 1);
 }
 
-TEST_F(NetworkTest, AConnectionIsAskedWhetherItLives) {
+TEST_F(NetworkTest, ConnectionsUseKeepAlive) {
     const uint16_t port = network_.portOf(network_.listenTcp("127.0.0.1", 0));
     const Peer peer(SOCK_STREAM, port);
     await(Kind::Opened);
@@ -308,7 +308,7 @@ TEST_F(NetworkTest, AConnectionIsAskedWhetherItLives) {
     EXPECT_EQ(found, 1);
 }
 
-TEST_F(NetworkTest, ItWakesWhenItIsAskedTo) {
+TEST_F(NetworkTest, WakesAtTheGivenTime) {
     const auto begin = std::chrono::steady_clock::now();
     network_.wakeAt(begin + 10s);
     network_.wakeAt(begin + 50ms);
@@ -317,7 +317,7 @@ TEST_F(NetworkTest, ItWakesWhenItIsAskedTo) {
     EXPECT_GE(std::chrono::steady_clock::now(), begin + 50ms);
 }
 
-TEST_F(NetworkTest, AnEndThatCannotBeHadSaysWhy) {
+TEST_F(NetworkTest, ReportsWhyAnEndCannotBeOpened) {
     const uint16_t taken = network_.portOf(network_.listenTcp("127.0.0.1", 0));
     const auto whyOf = [](auto&& open) -> std::string {
         try {

@@ -1,4 +1,4 @@
-// What a driver sees of an Oculus that is none, by bytes and a clock that is made up.
+// An emulated Oculus seen by a driver, with bytes and a simulated clock.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,14 +22,14 @@ protected:
 
     explicit OculusEmulatorTest(OculusConfig config = {}) : emulator_(config, now_) {}
 
-    /** Lets time pass. */
+    /** Advances time. */
     Due after(double seconds) {
         now_ = now_ + Time::fromSeconds(seconds);
         return emulator_.tick(now_);
     }
     void connect() { emulator_.opened(1); }
     void fire(const OculusFire& settings) { emulator_.received(1, bytesOf(settings)); }
-    /** The sonar's answer to what was asked. */
+    /** Returns the sonar's answer to a request. */
     types::Sonar heard(const types::SonarSettings& asked) const {
         types::Sonar ping;
         ping.time = asked.time + Time{20'000};
@@ -42,7 +42,7 @@ protected:
         ping.bins.assign(size_t{ping.bin_count} * ping.beam_count, 13107);
         return ping;
     }
-    /** The ping of these settings as drivers get it. */
+    /** Returns the ping of these settings as a driver receives it. */
     OculusResult pinged(const OculusFire& settings) {
         fire(settings);
         const Due due = after(1);
@@ -72,7 +72,7 @@ TEST_F(OculusEmulatorTest, AStatusIsSentEachSecondWithTheSourceOfThePings) {
     EXPECT_EQ(oculusHeader(oculusDummy(7700, 1032))->source, status->header.source);
 }
 
-TEST_F(OculusEmulatorTest, TheStatusTellsTheAddress) {
+TEST_F(OculusEmulatorTest, TheStatusHasTheAddress) {
     const auto addressOf = [&](const std::string& text) {
         OculusEmulator emulator({.device_address = text}, now_);
         return oculusStatus(emulator.tick(now_).status).value().address;
@@ -82,8 +82,8 @@ TEST_F(OculusEmulatorTest, TheStatusTellsTheAddress) {
         EXPECT_EQ(addressOf(wrong), (std::array<uint8_t, 4>{})) << wrong;
 }
 
-TEST_F(OculusEmulatorTest, ItStandsByUntilItIsFiredAndWhenItIsToldTo) {
-    EXPECT_TRUE(after(1).dummy.empty()) << "nobody is there";
+TEST_F(OculusEmulatorTest, IsInStandbyUntilAFireMessageAndOnRequest) {
+    EXPECT_TRUE(after(1).dummy.empty()) << "there is no client";
     connect();
     EXPECT_EQ(after(1).dummy.size(), 16u);
     EXPECT_FALSE(after(1).ask);
@@ -98,7 +98,7 @@ TEST_F(OculusEmulatorTest, ItStandsByUntilItIsFiredAndWhenItIsToldTo) {
     emulator_.closed(1);
     EXPECT_TRUE(emulator_.standsBy());
     connect();
-    EXPECT_FALSE(after(5).ask) << "a new client has to fire anew";
+    EXPECT_FALSE(after(5).ask) << "a new client must send a fire message again";
 }
 
 TEST_F(OculusEmulatorTest, EveryRateIsKept) {
@@ -107,7 +107,7 @@ TEST_F(OculusEmulatorTest, EveryRateIsKept) {
     for (uint8_t rate = 0; rate < 5; ++rate) {
         pinged(metres(1, rate));
         int pings = 0;
-        for (int i = 0; i < 4000; ++i)  // the task comes by every millisecond, late by as much
+        for (int i = 0; i < 4000; ++i)  // the task runs every millisecond, up to a millisecond late
             if (const Due due = after(0.001); due.ask) {
                 ++pings;
                 EXPECT_FALSE(emulator_.ping(heard(*due.ask)).empty());
@@ -116,7 +116,7 @@ TEST_F(OculusEmulatorTest, EveryRateIsKept) {
     }
 }
 
-TEST_F(OculusEmulatorTest, TheNextCycleIsAskedForWhenSomethingIsDue) {
+TEST_F(OculusEmulatorTest, RequestsTheNextCycleWhenSomethingIsDue) {
     connect();
     fire(metres(1, 2));
     Due due = after(0);
@@ -130,7 +130,7 @@ TEST_F(OculusEmulatorTest, TheNextCycleIsAskedForWhenSomethingIsDue) {
     EXPECT_NEAR((now_ - Time{1'000'000'000}).seconds(), 1, 0.03);
 }
 
-TEST_F(OculusEmulatorTest, WhatADriverSetsIsAskedOfTheSonar) {
+TEST_F(OculusEmulatorTest, RequestsTheDriversSettingsFromTheSonar) {
     connect();
     const types::SonarSettings low = asked(metres(20));
     EXPECT_EQ(low.time, now_);
@@ -145,7 +145,7 @@ TEST_F(OculusEmulatorTest, WhatADriverSetsIsAskedOfTheSonar) {
     const types::SonarSettings high =
         asked({.mode = 2, .flags = OculusFire::beams_512, .range = 5, .gain_percent = 100, .speed_of_sound = 1500});
     EXPECT_EQ(high.range, 2) << "5 % of 40 m";
-    EXPECT_EQ(asked({.flags = 0, .range = 0}).range, 0.1) << "the shortest, not one bit less";
+    EXPECT_EQ(asked({.flags = 0, .range = 0}).range, 0.1) << "exactly the min range";
     EXPECT_EQ(high.frequency_khz, 1200);
     EXPECT_NEAR(degrees(high.field_of_view.rad), 70, 1e-9);
     EXPECT_NEAR(degrees(high.beam_height.rad), 12, 1e-9);
@@ -155,7 +155,7 @@ TEST_F(OculusEmulatorTest, WhatADriverSetsIsAskedOfTheSonar) {
     EXPECT_EQ(high.speed_of_sound, 1500);
 }
 
-TEST_F(OculusEmulatorTest, WhatIsOutOfReachIsClampedAndEchoedSo) {
+TEST_F(OculusEmulatorTest, ClampsValuesAndReportsTheClampedValues) {
     connect();
     for (const auto& [range, made] : {std::pair{500.0, 120.0}, {0.0, 0.1}, {-3.0, 0.1}})
         EXPECT_EQ(pinged(metres(range)).fire.range, made);
@@ -172,11 +172,11 @@ TEST_F(OculusEmulatorTest, WhatIsOutOfReachIsClampedAndEchoedSo) {
         none.*number = std::nan("");
         fire(none);
     }
-    EXPECT_EQ(bytesOf(emulator_.fire()), bytesOf(before)) << "what is no number changes nothing";
+    EXPECT_EQ(bytesOf(emulator_.fire()), bytesOf(before)) << "values that are not numbers change nothing";
     EXPECT_EQ(emulator_.refused(), 4u);
 }
 
-TEST_F(OculusEmulatorTest, APingEchoesTheSettingsThatItWasMadeWith) {
+TEST_F(OculusEmulatorTest, APingHasTheSettingsThatItWasMadeWith) {
     connect();
     for (const uint16_t version : {0, 1, 2}) {
         OculusFire sent{.rate = 3, .gamma = 127, .flags = 0x5D, .range = 7.123, .gain_percent = 33, .salinity = 31};
@@ -204,7 +204,7 @@ TEST_F(OculusEmulatorTest, InHighFrequencyTheGainIsBetween40And100Percent) {
         OculusFire sent = metres(5, 0, 2);
         sent.gain_percent = gain;
         const double echoed = pinged(sent).fire.gain_percent;
-        EXPECT_NEAR((echoed - 40) * 100 / 60, gain, 1e-9) << "as drivers take it back";
+        EXPECT_NEAR((echoed - 40) * 100 / 60, gain, 1e-9) << "as drivers convert it back";
     }
 }
 
@@ -218,14 +218,14 @@ TEST_F(OculusEmulatorTest, PingsAreNumberedAndTimedByTheDevicesClock) {
     EXPECT_NEAR(pinged(modern).start_s, 3, 1e-6);
 }
 
-TEST_F(OculusEmulatorTest, OnlyThePingThatIsAwaitedIsSent) {
+TEST_F(OculusEmulatorTest, SendsOnlyRequestedPings) {
     connect();
     EXPECT_TRUE(emulator_.ping(heard(asked(metres(5)))).size() > 256 * 1000u);
     const types::SonarSettings before = asked(metres(6));
-    EXPECT_FALSE(after(1).ask) << "one is under way";
+    EXPECT_FALSE(after(1).ask) << "one is in progress";
     types::Sonar early = heard(before);
     early.time = before.time - Time{1};
-    EXPECT_TRUE(emulator_.ping(early).empty()) << "older than what was asked";
+    EXPECT_TRUE(emulator_.ping(early).empty()) << "older than the request";
     types::Sonar shapeless = heard(before);
     shapeless.bins.pop_back();
     EXPECT_TRUE(emulator_.ping(shapeless).empty());
@@ -233,10 +233,10 @@ TEST_F(OculusEmulatorTest, OnlyThePingThatIsAwaitedIsSent) {
     EXPECT_TRUE(emulator_.ping(heard(before)).empty()) << "once";
 }
 
-TEST_F(OculusEmulatorTest, APingThatDoesNotComeIsAskedForAnewAndSentWhenItComesLate) {
+TEST_F(OculusEmulatorTest, RequestsAMissingPingAgainAndSendsALatePing) {
     connect();
     const types::SonarSettings first = asked(metres(120));
-    EXPECT_FALSE(after(2.1).ask) << "its sound may still be under way";
+    EXPECT_FALSE(after(2.1).ask) << "its sound may not be back yet";
     fire(metres(60));
     const auto second = after(0.2).ask;
     ASSERT_TRUE(second);
@@ -247,16 +247,16 @@ TEST_F(OculusEmulatorTest, APingThatDoesNotComeIsAskedForAnewAndSentWhenItComesL
     EXPECT_EQ(oculusResult(emulator_.ping(heard(*second))).value().fire.range, 60);
     EXPECT_TRUE(after(0).ask);
     for (int i = 0; i < 10; ++i) after(100);
-    EXPECT_EQ(emulator_.lost(), 11u) << "it never ceases to ask";
+    EXPECT_EQ(emulator_.lost(), 11u) << "it continues to request";
 }
 
-TEST_F(OculusEmulatorTest, AClientThatGoesInMidPingLeavesNothingBehind) {
+TEST_F(OculusEmulatorTest, AClientThatLeavesDuringAPingLeavesNoState) {
     connect();
     const types::SonarSettings ask = asked(metres(5));
     emulator_.closed(1);
     EXPECT_TRUE(emulator_.ping(heard(ask)).empty());
     emulator_.received(1, bytesOf(metres(5)));
-    EXPECT_TRUE(emulator_.standsBy()) << "bytes of one who is gone";
+    EXPECT_TRUE(emulator_.standsBy()) << "bytes of a client that is gone";
     for (int i = 0; i < 1000; ++i) {
         emulator_.opened(static_cast<uint64_t>(i));
         emulator_.received(static_cast<uint64_t>(i), bytesOf(metres(5)));
@@ -265,14 +265,14 @@ TEST_F(OculusEmulatorTest, AClientThatGoesInMidPingLeavesNothingBehind) {
     EXPECT_FALSE(after(1).ask);
 }
 
-TEST_F(OculusEmulatorTest, TheLastFireMessageOfAllClientsCounts) {
+TEST_F(OculusEmulatorTest, TheLastFireMessageOfAllClientsApplies) {
     connect();
     emulator_.opened(2);
     fire(metres(5));
     emulator_.received(2, bytesOf(metres(8)));
     EXPECT_EQ(after(1).ask.value().range, 8);
     emulator_.closed(2);
-    EXPECT_FALSE(emulator_.standsBy()) << "the other is still there";
+    EXPECT_FALSE(emulator_.standsBy()) << "the other is still connected";
     Bytes half = bytesOf(metres(9)), rest(half.begin() + 20, half.end());
     half.resize(20);
     emulator_.received(1, half);
@@ -290,7 +290,7 @@ TEST_F(OculusEmulatorTest, NetworkSettingsAreNotCountedAsRefused) {
     EXPECT_EQ(emulator_.refused(), 1u) << "which is neither";
 }
 
-TEST_F(OculusEmulatorTest, TheSpeedOfSoundGoesBackToTheSonarsOwn) {
+TEST_F(OculusEmulatorTest, TheSpeedOfSoundReturnsToTheSonarsOwn) {
     connect();
     pinged(metres(5));
     OculusFire salt = metres(5);
@@ -307,7 +307,7 @@ TEST(OculusModelTest, EveryModelHasItsPartNumberAndModes) {
     EXPECT_EQ(part(OculusModel::M3000d), 2203);
     EXPECT_EQ(capabilitiesOf(OculusModel::M3000d).mode(2).frequency_khz, 3000);
     EXPECT_EQ(capabilitiesOf(OculusModel::M3000d).mode(2).longest_range, 5);
-    EXPECT_EQ(capabilitiesOf(OculusModel::M370s).mode(2).frequency_khz, 375) << "it has no second one";
+    EXPECT_EQ(capabilitiesOf(OculusModel::M370s).mode(2).frequency_khz, 375) << "it has no second mode";
 }
 
 }  // namespace

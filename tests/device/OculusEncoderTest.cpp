@@ -1,4 +1,4 @@
-// Codes of a receiver as an Oculus sends them, and what drivers make of them.
+// A receiver's codes as an Oculus sends them, and as drivers read them.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 
-/** Two beams, starboard first as sonars have them, of three bins in 16 bits. */
+/** Two beams, starboard first as in sonars, of three bins in 16 bits. */
 types::Sonar codes() {
     types::Sonar ping;
     ping.beam_count = 2;
@@ -23,7 +23,7 @@ types::Sonar codes() {
     return ping;
 }
 
-/** As a driver reads it. */
+/** Returns the ping as a driver reads it. */
 OculusPing sent(const types::Sonar& ping, const OculusFire& fire) {
     OculusResult result;
     result.fire = fire;
@@ -48,18 +48,18 @@ OculusFire fireOf(int bits, uint8_t flags = 0) {
     return fire;
 }
 
-TEST(OculusEncoderTest, CodesOfEveryWidthAreTheSameShareOfTheLargest) {
+TEST(OculusEncoderTest, CodesOfEveryWidthAreTheSameFractionOfTheMax) {
     for (const int bits : {8, 16, 32}) {
         const OculusPing ping = sent(codes(), fireOf(bits));
         EXPECT_EQ(ping.bits, bits);
-        EXPECT_NEAR(ping.bearings[0], types::radians(30), 1e-9) << "port comes first";
+        EXPECT_NEAR(ping.bearings[0], types::radians(30), 1e-9) << "port is first";
         const double shares[] = {0.25, 0.5, 1 / 65535., 0, 0.1, 1};
         for (size_t i = 0; i < 6; ++i)
             EXPECT_NEAR(ping.codes[i] / ping.largestCode(), shares[i], 0.5 / ping.largestCode() + 1e-5) << i;
     }
 }
 
-TEST(OculusEncoderTest, TheWireOfARandomFanAscendsAndTheBeamsComeBackWithTheirCodes) {
+TEST(OculusEncoderTest, BearingsOfARandomFanAscendAndBeamsAreReadBackWithTheirCodes) {
     for (const test::RandomFan& fan : test::randomFans(5, 4)) {
         types::Sonar ping = fan.ping;
         for (float& bin : ping.bins) bin = std::floor(65535 * bin);
@@ -100,7 +100,7 @@ TEST(OculusEncoderTest, GammaBrightensWeakEchoes) {
     EXPECT_EQ(ping.codes[3], 0u);
 }
 
-TEST(OculusEncoderTest, ByTheRootOfItsGainARowIsWhatItWasWithoutAndFiner) {
+TEST(OculusEncoderTest, ARowDividedByTheRootOfItsGainIsTheSameButFiner) {
     const OculusPing ping = sent(codes(), fireOf(8, OculusFire::row_gains));
     ASSERT_EQ(ping.row_gains.size(), 3u);
     EXPECT_THAT(ping.row_gains, ElementsAre(15, 3, 1)) << "(65535 / 16384)^2, (1 / 0.5)^2 - rounding, 1";
@@ -112,7 +112,7 @@ TEST(OculusEncoderTest, ByTheRootOfItsGainARowIsWhatItWasWithoutAndFiner) {
     EXPECT_NEAR(amplitude(1, 2), 1, 1e-9);
 }
 
-TEST(OculusEncoderTest, WhatIsSilentOrUnknownIsCodeZero) {
+TEST(OculusEncoderTest, SilentAndUnknownBinsAreCodeZero) {
     types::Sonar ping = codes();
     ping.bins = {0, -5, std::nanf(""), 1e9f, 65535, 65535};
     const OculusPing plain = sent(ping, fireOf(8)), gained = sent(ping, fireOf(32, OculusFire::row_gains));

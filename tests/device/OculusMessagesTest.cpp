@@ -1,4 +1,4 @@
-// Messages of an Oculus by their bytes, and out of streams that are damaged.
+// Messages of an Oculus by their bytes, and read from damaged streams.
 #include <gmock/gmock.h>
 
 #include "components/device/OculusMessages.hpp"
@@ -27,7 +27,7 @@ OculusFire fireOfVersion(uint16_t version) {
     return fire;
 }
 
-/** All messages that a framer finds, these bytes added so many at a time. */
+/** Returns all messages that a framer finds, with the bytes added in pieces of this size. */
 std::vector<Bytes> framed(std::span<const uint8_t> bytes, size_t step, OculusFramer framer = OculusFramer(4096)) {
     std::vector<Bytes> messages;
     for (size_t at = 0; at < bytes.size(); at += step) {
@@ -48,7 +48,7 @@ Bytes recording(const char* name) {
     return {bytes.begin(), bytes.end()};
 }
 
-TEST(OculusMessagesTest, AFireMessageHasItsFieldsWhereDriversPutThem) {
+TEST(OculusMessagesTest, AFireMessageHasItsFieldsAtTheOffsetsOfDrivers) {
     for (const uint16_t version : {1, 2}) {
         const Bytes bytes = bytesOf(fireOfVersion(version));
         ASSERT_EQ(bytes.size(), version == 2 ? 89u : 53u);
@@ -63,7 +63,7 @@ TEST(OculusMessagesTest, AFireMessageHasItsFieldsWhereDriversPutThem) {
         const auto fire = oculusFire(bytes);
         ASSERT_TRUE(fire);
         EXPECT_EQ(bytesOf(*fire), bytes);
-        EXPECT_EQ(fire->codeBytes(), version == 2 ? 4u : 2u) << "32 bits are asked for in version 2 alone";
+        EXPECT_EQ(fire->codeBytes(), version == 2 ? 4u : 2u) << "32 bits are requested in version 2 only";
         EXPECT_EQ(fire->rateHz(), 5);
         EXPECT_NEAR(fire->gammaExponent(), 0.5, 0.002);
     }
@@ -88,7 +88,7 @@ TEST(OculusMessagesTest, AFireMessageOfPayloadSizeZeroIsAsLongAsItsVersion) {
     }
 }
 
-TEST(OculusMessagesTest, AFireMessageThatIsShortOrLongIsReadAsFarAsItGoes) {
+TEST(OculusMessagesTest, ShortAndLongFireMessagesAreRead) {
     const Bytes whole = bytesOf(fireOfVersion(2));
     for (size_t size = 0; size < 53; ++size) EXPECT_FALSE(oculusFire(std::span(whole).first(size))) << size;
     EXPECT_EQ(oculusFire(std::span(whole).first(53))->extended_flags, 0u);
@@ -117,7 +117,7 @@ TEST(OculusMessagesTest, PingsOfEveryVersionAndWidthAreEncodedAsTheyWereRead) {
 TEST(OculusMessagesTest, RealPingsAreEncodedByteForByte) {
     for (const auto& [name, count] : {std::pair{"one_ping_8bit.raw", 1u}, {"three_pings_8bit.raw", 3u}}) {
         const Bytes bytes = recording(name);
-        if (bytes.empty()) GTEST_SKIP() << name << " is not there: no recording of a device is tested";
+        if (bytes.empty()) GTEST_SKIP() << name << " is missing: no recording of a device is tested";
         const auto messages = framed(bytes, 4096, OculusFramer());
         ASSERT_THAT(messages, SizeIs(count));
         Bytes again;
@@ -125,7 +125,7 @@ TEST(OculusMessagesTest, RealPingsAreEncodedByteForByte) {
             std::string diagnostic;
             const auto result = oculusResult(message, &diagnostic);
             ASSERT_TRUE(result) << diagnostic;
-            EXPECT_EQ(result->before_image.size(), 1414u) << "the device leaves what lay there before";
+            EXPECT_EQ(result->before_image.size(), 1414u) << "the device leaves old bytes there";
             EXPECT_EQ(result->fire.rate, 0xC3) << "the device does not echo the rate";
             EXPECT_EQ(result->fire.range, 2);
             again = joined({again, bytesOf(*result)});
@@ -134,7 +134,7 @@ TEST(OculusMessagesTest, RealPingsAreEncodedByteForByte) {
     }
 }
 
-TEST(OculusMessagesTest, AStatusHas142BytesAndItsFieldsWhereListenersLook) {
+TEST(OculusMessagesTest, AStatusHas142BytesWithFieldsAtTheOffsetsOfListeners) {
     OculusStatus status{.device_id = 7892, .part = 1042, .address = {192, 168, 2, 3}, .pressure_bar = 1.5};
     status.header.source = 7892;
     const Bytes bytes = bytesOf(status);
@@ -164,7 +164,7 @@ TEST(OculusMessagesTest, UserConfigDummyAndLogAreMessages) {
     EXPECT_THAT(framed(joined({bytes, oculusDummy(5, 1032), log}), 3), ElementsAre(bytes, oculusDummy(5, 1032), log));
 }
 
-TEST(OculusMessagesTest, AStreamGoesOnAfterWhatIsNoMessage) {
+TEST(OculusMessagesTest, AStreamContinuesAfterInvalidBytes) {
     const Bytes fire = bytesOf(fireOfVersion(1)), noise = {'S', 'O', 0, 'S', 0xFF, 'S', 'O'};
     for (const size_t step : {1, 7, 1000})
         EXPECT_THAT(framed(joined({noise, fire, noise, noise, fire, Bytes(40, 'S'), fire}), step),
@@ -182,7 +182,7 @@ TEST(OculusMessagesTest, AStreamGoesOnAfterWhatIsNoMessage) {
     EXPECT_THAT(framed(joined({unknown, fire}), 10), ElementsAre(fire));
 }
 
-TEST(OculusMessagesTest, AStreamThatIsCutOffGivesWhatIsWhole) {
+TEST(OculusMessagesTest, ATruncatedStreamGivesItsCompleteMessages) {
     const Bytes fire = bytesOf(fireOfVersion(2)), two = joined({fire, fire});
     for (size_t size = 0; size < two.size(); ++size)
         EXPECT_EQ(framed(std::span(two).first(size), 16).size(), size / fire.size());

@@ -42,7 +42,7 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
     EXPECT_EQ(wide.largestCode(), 65535);
 }
 
-TEST(OculusPingTest, ASpeedOfSoundThatIsNotToldIsTheUsualOne) {
+TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {
     OculusPing ping = oculusPings(Sent{}.bytes()).at(0);
     ping.speed_of_sound = 0;
     const types::Sonar sonar = sonarOf(ping, {});
@@ -50,7 +50,7 @@ TEST(OculusPingTest, ASpeedOfSoundThatIsNotToldIsTheUsualOne) {
     EXPECT_EQ(sonar.bin_duration.microseconds, 167) << "0.25 m";
 }
 
-TEST(OculusPingTest, PingsStandAmongOtherMessages) {
+TEST(OculusPingTest, FindsPingsAmongOtherMessages) {
     Bytes all = {'S', 'O', 0, 0, 'S'};
     for (int i = 0; i < 3; ++i) {
         Bytes other(40);
@@ -61,7 +61,7 @@ TEST(OculusPingTest, PingsStandAmongOtherMessages) {
     EXPECT_EQ(oculusPings(all).size(), 3u);
 }
 
-TEST(OculusPingTest, WhatContradictsItselfIsNoPing) {
+TEST(OculusPingTest, RejectsPingsThatContradictThemselves) {
     std::vector<std::string> diagnostics;
     Bytes bytes = Sent{}.bytes();
     put<uint32_t>(bytes, 114, 7);
@@ -78,7 +78,7 @@ TEST(OculusPingTest, WhatContradictsItselfIsNoPing) {
         EXPECT_THAT(oculusPings(changed, &diagnostics), IsEmpty());
         EXPECT_THAT(diagnostics, ElementsAre(HasSubstr(words)));
     }
-    for (size_t at = 16; at < 128; ++at)  // whatever stands there, no byte beyond the message is read
+    for (size_t at = 16; at < 128; ++at)  // for any value there, no byte beyond the message is read
         for (const uint8_t value : {0, 1, 127, 255}) {
             Bytes changed = Sent{}.bytes();
             changed[at] = value;
@@ -107,9 +107,9 @@ TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
     EXPECT_THROW(readOculusPings(folder / "."), types::ConfigError);
 }
 
-TEST(OculusPingTest, TheRecordingOfAnM1200dIsWhatItIsKnownToBe) {
+TEST(OculusPingTest, ReadsTheRecordingOfAnM1200d) {
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: no recording of a device is tested";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is missing: no recording of a device is tested";
     const auto pings = readOculusPings(file);
     ASSERT_EQ(pings.size(), 3u);
     for (const OculusPing& ping : pings) {

@@ -1,4 +1,4 @@
-// Recordings of an Oculus: what is written is read, byte for byte, and what is damaged costs no more than itself.
+// Recordings of an Oculus: written files are read byte for byte, and damage costs only the damaged items.
 #include <gmock/gmock.h>
 #include <zlib.h>
 
@@ -21,7 +21,7 @@ using ::testing::SizeIs;
 
 Bytes pingBytes(uint32_t number) { return test::OculusMessage{.number = number}.bytes(); }
 
-/** The messages of the three real pings; none where the recording is not there. */
+/** Returns the messages of the three real pings; none without the recording. */
 std::vector<Bytes> realPings() {
     const std::vector<char> bytes = insonify::bytesOf(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
     OculusFramer framer;
@@ -33,7 +33,7 @@ std::vector<Bytes> realPings() {
 
 class OculusRecordingTest : public ::testing::Test {
 protected:
-    /** Pings 1, 2, 3, one each tenth of a second. */
+    /** Pings 1, 2, 3, at intervals of a tenth of a second. */
     void record() const {
         OculusRecorder recorder(file_, {.time = 1700000000});
         for (uint32_t number = 1; number <= 3; ++number) recorder.write(1700000000 + 0.1 * number, pingBytes(number));
@@ -55,7 +55,7 @@ protected:
     const std::filesystem::path file_ = folder_ / "dive.oculus";
 };
 
-TEST_F(OculusRecordingTest, FieldsStandWhereOtherReadersLook) {
+TEST_F(OculusRecordingTest, FieldsAreAtTheOffsetsOfOtherReaders) {
     record();
     const std::vector<char> chars = insonify::bytesOf(file_);
     const Bytes bytes(chars.begin(), chars.end());
@@ -73,13 +73,13 @@ TEST_F(OculusRecordingTest, FieldsStandWhereOtherReadersLook) {
     EXPECT_EQ(read<uint16_t>(bytes, 88), 0x4F53) << "and the message itself";
 }
 
-TEST_F(OculusRecordingTest, WhatIsReadIsWrittenByteForByte) {
+TEST_F(OculusRecordingTest, ReadItemsAreWrittenByteForByte) {
     record();
     OculusRecording recording(file_);
     std::vector<OculusItem> items;
     while (auto item = recording.next()) items.push_back(*item);
     ASSERT_THAT(items, SizeIs(3));
-    items[1].type = 1010;  // of others, and with bytes where nothing is defined
+    items[1].type = 1010;  // of other programs, and with bytes where nothing is defined
     items[1].unused_a = 7;
     const auto copy = [&](const std::filesystem::path& to) {
         OculusRecorder recorder(to, recording.header());
@@ -97,7 +97,7 @@ TEST_F(OculusRecordingTest, WhatIsReadIsWrittenByteForByte) {
 
 TEST_F(OculusRecordingTest, RealPingsAreRecordedAndPlayedByteForByte) {
     const std::vector<Bytes> messages = realPings();
-    if (messages.empty()) GTEST_SKIP() << "three_pings_8bit.raw is not there: no recording of a device is tested";
+    if (messages.empty()) GTEST_SKIP() << "three_pings_8bit.raw is missing: no recording of a device is tested";
     {
         OculusRecorder recorder(file_, {});
         for (size_t i = 0; i < messages.size(); ++i) recorder.write(100 + 0.1 * static_cast<double>(i), messages[i]);
@@ -114,13 +114,13 @@ TEST_F(OculusRecordingTest, RealPingsAreRecordedAndPlayedByteForByte) {
 }
 
 TEST_F(OculusRecordingTest, ACaptureIsTimedByTheDevicesClock) {
-    if (realPings().empty()) GTEST_SKIP() << "three_pings_8bit.raw is not there: no recording of a device is tested";
+    if (realPings().empty()) GTEST_SKIP() << "three_pings_8bit.raw is missing: no recording of a device is tested";
     OculusPings pings(test::sharedFile("sonar/oculus/three_pings_8bit.raw"));
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(pings.next().value().time, 0.1 * i, 1e-4);
     EXPECT_FALSE(pings.next());
 }
 
-TEST_F(OculusRecordingTest, TheClockOfACaptureWrapsAndNeverGoesBack) {
+TEST_F(OculusRecordingTest, TheTimeOfACaptureNeverRunsBackwards) {
     std::vector<char> all;
     for (const uint32_t ticks : {4294900000u, 61'432'704u, 123'932'704u}) {
         OculusResult ping = oculusResult(pingBytes(1)).value();
@@ -146,7 +146,7 @@ TEST_F(OculusRecordingTest, TheClockOfACaptureWrapsAndNeverGoesBack) {
     EXPECT_EQ(times[6], times[4]);
 }
 
-TEST_F(OculusRecordingTest, ItemsThatArePackedAreUnpacked) {
+TEST_F(OculusRecordingTest, UnpacksCompressedItems) {
     const Bytes message = pingBytes(5);
     uLongf size = compressBound(message.size());
     Bytes packed(4 + size);
@@ -162,14 +162,14 @@ TEST_F(OculusRecordingTest, ItemsThatArePackedAreUnpacked) {
         recorder.write(item);
         recorder.write(0, pingBytes(6));
     }
-    EXPECT_THAT(numbers(), ElementsAre(5, 6)) << "what is damaged is passed over";
+    EXPECT_THAT(numbers(), ElementsAre(5, 6)) << "damaged items are skipped";
     item.original_size = 0xFFFFFFFF;
     EXPECT_FALSE(item.content());
     item.payload.clear();
     EXPECT_FALSE(item.content());
 }
 
-TEST_F(OculusRecordingTest, DamageCostsTheItemsThatItMeets) {
+TEST_F(OculusRecordingTest, DamageCostsOnlyTheDamagedItems) {
     record();
     const size_t item = 40 + pingBytes(1).size();
     std::string diagnostic;
@@ -192,7 +192,7 @@ TEST_F(OculusRecordingTest, DamageCostsTheItemsThatItMeets) {
     }
 }
 
-TEST_F(OculusRecordingTest, AMessageOfACaptureThatIsNotWholeAtItsEndCostsNoOther) {
+TEST_F(OculusRecordingTest, AnIncompleteMessageAtTheEndOfACaptureCostsNoOther) {
     std::vector<char> all;
     for (uint32_t number = 1; number <= 4; ++number) {
         const Bytes bytes = pingBytes(number);
@@ -212,7 +212,7 @@ TEST_F(OculusRecordingTest, AMessageOfACaptureThatIsNotWholeAtItsEndCostsNoOther
     EXPECT_THAT(diagnostic, HasSubstr("the message at byte " + std::to_string(3 * size)));
 }
 
-TEST_F(OculusRecordingTest, WhatIsNoRecordingIsRefused) {
+TEST_F(OculusRecordingTest, RefusesOtherFiles) {
     const auto messageOf = [](const auto& make) -> std::string {
         try {
             make();

@@ -1,4 +1,4 @@
-// Drivers connect to an Oculus that is none, over the network, while a sonar that is made up answers.
+// Drivers connect to an emulated Oculus over the network, while a simulated sonar answers.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -23,8 +23,8 @@ using test::UwDriver;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/** Answers settings with a ping: in each bin the code is the number of the beam, but for a target at 5 m to starboard.
- */
+/** Answers settings with a ping: the code in each bin is the number of the beam, except for a target at 5 m to
+ *  starboard. */
 class EchoTask final : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -99,7 +99,7 @@ connections:
 TEST_F(OculusTaskTest, TheDriverOfEnstaFindsItConfiguresItAndSetsItToStandby) {
     start();
     EnstaDriver driver(listener_.next(), port_);
-    EXPECT_TRUE(oculusHeader(driver.nextMessage())->is(OculusId::Dummy)) << "it stands by";
+    EXPECT_TRUE(oculusHeader(driver.nextMessage())->is(OculusId::Dummy)) << "it is in standby";
     OculusFire fire{.mode = 2, .rate = 2, .gamma = 0xFF, .flags = 0x19, .range = 7.3, .gain_percent = 20};
     EXPECT_LT(driver.request(fire), 100);
     const OculusResult ping = driver.nextPing();
@@ -113,7 +113,7 @@ TEST_F(OculusTaskTest, TheDriverOfEnstaFindsItConfiguresItAndSetsItToStandby) {
     EXPECT_LT(driver.request(fire), 100);
 }
 
-TEST_F(OculusTaskTest, ItsStatusComesEachSecondThoughNobodyIsConnected) {
+TEST_F(OculusTaskTest, SendsItsStatusEachSecondWithoutAClient) {
     start();
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < 3; ++i) EXPECT_EQ(listener_.next().part, 1032);
@@ -147,7 +147,7 @@ TEST_F(OculusTaskTest, TheDriverOfTheUniversityOfWashingtonReads32BitsOf512Beams
     EXPECT_EQ(ping.range_resolution, 0.01);
 }
 
-TEST_F(OculusTaskTest, WhatIsSentIsRecorded) {
+TEST_F(OculusTaskTest, RecordsSentPings) {
     const Folder folder;
     start({"device.record=" + (folder / "dive.oculus").string()});
     std::vector<Bytes> heard;
@@ -168,7 +168,7 @@ TEST_F(OculusTaskTest, WhatIsSentIsRecorded) {
     for (const Bytes& ping : heard) EXPECT_THAT(recorded, ::testing::Contains(ping));
 }
 
-TEST_F(OculusTaskTest, AClientThatDoesNotReadHoldsUpNobody) {
+TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
     start();
     OculusDriver deaf(port_), driver(port_);
     OculusFire fire{.rate = 2, .flags = 0x4B, .range = 10};
@@ -180,10 +180,10 @@ TEST_F(OculusTaskTest, AClientThatDoesNotReadHoldsUpNobody) {
         EXPECT_TRUE(i == 0 || number > last);
         last = number;
     }
-    EXPECT_NO_THROW(deaf.nextPing()) << "it is still connected, and reads whole messages";
+    EXPECT_NO_THROW(deaf.nextPing()) << "it is still connected, and reads complete messages";
 }
 
-TEST_F(OculusTaskTest, DamagedBytesCostNoMoreThanThemselves) {
+TEST_F(OculusTaskTest, DamagedBytesCostNoOtherMessage) {
     start();
     OculusDriver driver(port_);
     const Bytes fire = bytesOf({.rate = 2, .range = 4});
@@ -195,7 +195,7 @@ TEST_F(OculusTaskTest, DamagedBytesCostNoMoreThanThemselves) {
     EXPECT_EQ(driver.nextPing().fire.range, 4);
 }
 
-TEST_F(OculusTaskTest, AThousandDriversComeAndGoOneAfterTheOtherInMidPing) {
+TEST_F(OculusTaskTest, SurvivesAThousandDriversThatLeaveDuringAPing) {
     start();
     for (int i = 0; i < 1000; ++i) OculusDriver(port_).send(bytesOf({.rate = 2, .range = 100}));
     const auto pings = [&] {
@@ -205,14 +205,14 @@ TEST_F(OculusTaskTest, AThousandDriversComeAndGoOneAfterTheOtherInMidPing) {
             for (int i = 0; i < 10; ++i)
                 if (driver.nextPing().fire.range == 6) return true;
         } catch (const std::runtime_error&) {
-            // closed at once while so many others have not yet been
+            // closed at once while many others have not been closed yet
         }
         return false;
     };
     EXPECT_TRUE(test::comesTrue(pings));
 }
 
-TEST_F(OculusTaskTest, WhatCannotBeIsRefusedWithTheKey) {
+TEST_F(OculusTaskTest, RefusesImpossiblePropertiesWithTheirKeys) {
     const auto messageOf = [&](const std::string& set) -> std::string {
         try {
             start({set});

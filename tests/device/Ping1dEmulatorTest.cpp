@@ -20,7 +20,7 @@ protected:
         bench_.say(message);
         EXPECT_EQ(bench_.only<PingAck>().acked, Message::message);
     }
-    /** A ping with one echo at a range [m]. */
+    /** Returns a ping with one echo at a range [m]. */
     std::shared_ptr<types::Sonar> pingWithEcho(const types::SonarSettings& asked, double range, float code = 30000,
                                                float speed_of_sound = 1500) {
         auto ping = pingFor(asked, speed_of_sound);
@@ -28,7 +28,7 @@ protected:
         ping->bins.at(static_cast<size_t>(range / asked.range * asked.bin_count)) = code;
         return ping;
     }
-    /** A measurement of a scan set by hand. */
+    /** Requests a measurement of a scan that is set by hand. */
     template <class Message>
     Message measure(double range, float code = 30000) {
         bench_.say(PingGeneralRequest{Message::message});
@@ -43,7 +43,7 @@ protected:
     PingBench bench_{device_};
 };
 
-TEST_F(Ping1dEmulatorTest, WhatItIsIsTold) {
+TEST_F(Ping1dEmulatorTest, ReportsDeviceInformation) {
     EXPECT_EQ(request<PingDeviceInformation>().type, 1);
     EXPECT_EQ(request<PingProtocolVersion>().major, 1);
     EXPECT_EQ(request<Ping1dFirmwareVersion>().model, 1);
@@ -56,7 +56,7 @@ TEST_F(Ping1dEmulatorTest, WhatItIsIsTold) {
     EXPECT_EQ(bench_.only<PingNack>().nacked, 1301);
 }
 
-TEST_F(Ping1dEmulatorTest, OlderDriversAskByAMessageWithoutPayload) {
+TEST_F(Ping1dEmulatorTest, AMessageWithoutPayloadIsARequest) {
     for (const uint16_t message : {4, 5, 1200, 1204, 1210}) {
         bench_.give(PingFrame{message, 0, 0, {}}.bytes());
         const auto heard = bench_.heard();
@@ -68,7 +68,7 @@ TEST_F(Ping1dEmulatorTest, OlderDriversAskByAMessageWithoutPayload) {
     EXPECT_TRUE(bench_.asked());
 }
 
-TEST_F(Ping1dEmulatorTest, WhatIsSetIsReadBack) {
+TEST_F(Ping1dEmulatorTest, ReadsBackItsSettings) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetRange{500, 12'000});
     set(Ping1dSetSpeedOfSound{1'450'000});
@@ -87,7 +87,7 @@ TEST_F(Ping1dEmulatorTest, WhatIsSetIsReadBack) {
     EXPECT_EQ(request<Ping1dGeneralInfo>().ping_interval, 250);
 }
 
-TEST_F(Ping1dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithItsNameAndBounds) {
+TEST_F(Ping1dEmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{0, 999}), "scan_length is 999; must be 1000 to 100000");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{99'500, 1000}), "scan_start is 99500; must be 0 to 99000");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetRange{50'000, 50'001}), "scan_length is 50001; must be 1000 to 50000");
@@ -98,14 +98,14 @@ TEST_F(Ping1dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithItsNameAndBounds) {
     EXPECT_EQ(bench_.refusalOf(Ping1dSetGain{7}), "gain_setting is 7; must be 0 to 6");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetPingEnable{2}), "ping_enabled is 2; must be 0 to 1");
     EXPECT_EQ(bench_.refusalOf(Ping1dSetDeviceId{255}), "id is 255; must be 0 to 254");
-    EXPECT_EQ(bench_.refusalOf(Ping1dContinuousStart{6}), "message 6 is not sent on and on");
+    EXPECT_EQ(bench_.refusalOf(Ping1dContinuousStart{6}), "message 6 is not sent continuously");
     bench_.give(PingFrame{Ping1dSetRange::message, 0, 0, Bytes(7)}.bytes());
     EXPECT_EQ(bench_.only<PingNack>().text, "the payload is too short");
     bench_.give(PingFrame{1100, 0, 0, {}}.bytes());
     EXPECT_EQ(bench_.only<PingNack>().nacked, 1100) << "there is no bootloader";
 }
 
-TEST_F(Ping1dEmulatorTest, AMeasurementAsksForAPingOfItsScanAndTellsWhatItFinds) {
+TEST_F(Ping1dEmulatorTest, AMeasurementRequestsAPingOfItsScanAndReportsItsTarget) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetRange{5'000, 10'000});
     set(Ping1dSetGain{2});
@@ -116,7 +116,7 @@ TEST_F(Ping1dEmulatorTest, AMeasurementAsksForAPingOfItsScanAndTellsWhatItFinds)
     EXPECT_EQ(asked->bin_count, 300u) << "of which the last 200 are the scan";
     EXPECT_NEAR(asked->gain_db, 20 * std::log10(5.5), 1e-12);
     device_.hear(pingWithEcho(*asked, 8.02), bench_.now());
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the sound is under way";
+    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the sound is not back yet";
     EXPECT_GE(bench_.waitForNext(), 2 * 15 / 1500.0);
     const auto profile = bench_.only<Ping1dProfile>();
     EXPECT_NEAR(profile.measurement.distance, 8020, 25) << "half a sample";
@@ -130,7 +130,7 @@ TEST_F(Ping1dEmulatorTest, AMeasurementAsksForAPingOfItsScanAndTellsWhatItFinds)
     EXPECT_EQ(profile.data[60], 117) << "30000 of 65535";
 }
 
-TEST_F(Ping1dEmulatorTest, DistanceComesInThreeMessages) {
+TEST_F(Ping1dEmulatorTest, DistanceIsInThreeMessages) {
     set(Ping1dSetModeAuto{0});
     EXPECT_NEAR(measure<Ping1dDistance>(30.1).measurement.distance, 30'100, 250);
     EXPECT_NEAR(measure<Ping1dDistanceSimple>(30.1).distance, 30'100, 250);
@@ -138,7 +138,7 @@ TEST_F(Ping1dEmulatorTest, DistanceComesInThreeMessages) {
     EXPECT_EQ(measure<Ping1dDistance>(30.1).measurement.ping_number, 4u);
 }
 
-TEST_F(Ping1dEmulatorTest, SilenceIsNoDistance) {
+TEST_F(Ping1dEmulatorTest, SilenceHasNoDistance) {
     set(Ping1dSetModeAuto{0});
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     auto ping = pingFor(*bench_.asked());
@@ -156,13 +156,13 @@ TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
     set(Ping1dSetSpeedOfSound{3'000'000});
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     const auto asked = bench_.asked();
-    EXPECT_NEAR(asked->range, 10, 1e-6) << "sound comes half as far as the device believes";
+    EXPECT_NEAR(asked->range, 10, 1e-6) << "the true range is half of the device's";
     device_.hear(pingWithEcho(*asked, 5), bench_.now());
     bench_.wait(1);
     EXPECT_NEAR(bench_.only<Ping1dDistanceSimple>().distance, 10'000, 100);
 }
 
-TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilItIsStopped) {
+TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilStopped) {
     set(Ping1dSetModeAuto{0});
     set(Ping1dSetRange{0, 3'000});
     set(Ping1dSetPingInterval{200});
@@ -187,7 +187,7 @@ TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilItIsStopped) {
     EXPECT_FALSE(device_.wakeAt());
 }
 
-TEST_F(Ping1dEmulatorTest, WhatIsStreamedOfOnePingIsOnePieceForEachClient) {
+TEST_F(Ping1dEmulatorTest, MessagesStreamedFromOnePingAreOnePiecePerClient) {
     const auto messages = {Ping1dDistanceSimple::message, Ping1dDistance::message, Ping1dProfile::message};
     for (const uint16_t message : messages)
         for (const PingClient client : {1, 2}) bench_.say(Ping1dContinuousStart{message}, client);
@@ -218,7 +218,7 @@ TEST_F(Ping1dEmulatorTest, ALongScanIsSlowerThanTheInterval) {
     EXPECT_GE((second->time - first->time).seconds(), 2 * 100 / 1500.0);
 }
 
-TEST_F(Ping1dEmulatorTest, WhatIsSwitchedOffSendsNoSoundAndTellsTheLastDistance) {
+TEST_F(Ping1dEmulatorTest, WhenOffItSendsNoSoundAndReportsTheLastDistance) {
     set(Ping1dSetModeAuto{0});
     measure<Ping1dDistance>(42);
     set(Ping1dSetPingEnable{0});
@@ -229,7 +229,7 @@ TEST_F(Ping1dEmulatorTest, WhatIsSwitchedOffSendsNoSoundAndTellsTheLastDistance)
     EXPECT_FALSE(device_.wakeAt());
 }
 
-TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsWhatItFinds) {
+TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsItsTarget) {
     for (int i = 0; i < 3; ++i) measure<Ping1dDistance>(4, 65535);
     EXPECT_NEAR(request<Ping1dRange>().length, 8'000, 300) << "twice as far";
     EXPECT_EQ(request<Ping1dGain>().value, 0u) << "down from 3, as the echo is beyond the scale";
@@ -241,10 +241,10 @@ TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsWhatItFinds) {
     device_.hear(silent, bench_.now());
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping1dDistanceSimple>().confidence, 0);
-    EXPECT_GT(request<Ping1dRange>().length, 15'000u) << "it looks farther";
+    EXPECT_GT(request<Ping1dRange>().length, 15'000u) << "its scan is longer";
 }
 
-TEST_F(Ping1dEmulatorTest, TwoClientsAreServedByOnePingAndOneThatLeavesLeavesNothing) {
+TEST_F(Ping1dEmulatorTest, OnePingServesTwoClientsAndALeavingClientLeavesNoState) {
     bench_.say(PingGeneralRequest{Ping1dDistance::message}, 1);
     bench_.say(PingGeneralRequest{Ping1dDistance::message}, 2);
     bench_.say(Ping1dContinuousStart{Ping1dProfile::message}, 3);
@@ -256,7 +256,7 @@ TEST_F(Ping1dEmulatorTest, TwoClientsAreServedByOnePingAndOneThatLeavesLeavesNot
     EXPECT_FALSE(bench_.asked());
 }
 
-TEST_F(Ping1dEmulatorTest, APingThatDoesNotComeIsRefusedAndToldOfOnce) {
+TEST_F(Ping1dEmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
     for (int i = 0; i < 2; ++i) {
         bench_.say(PingGeneralRequest{Ping1dProfile::message});
         bench_.wait(3);
@@ -265,14 +265,14 @@ TEST_F(Ping1dEmulatorTest, APingThatDoesNotComeIsRefusedAndToldOfOnce) {
     }
 }
 
-TEST_F(Ping1dEmulatorTest, RequestsThatPileUpAreRefused) {
+TEST_F(Ping1dEmulatorTest, RefusesTooManyRequests) {
     for (int i = 0; i < 64; ++i) bench_.say(PingGeneralRequest{Ping1dProfile::message});
     EXPECT_THAT(bench_.heard(), IsEmpty());
     bench_.say(PingGeneralRequest{Ping1dProfile::message});
     EXPECT_EQ(bench_.only<PingNack>().text, "too many requests wait already");
 }
 
-TEST_F(Ping1dEmulatorTest, TheFirstStrongReturnCounts) {
+TEST_F(Ping1dEmulatorTest, ReportsTheFirstStrongReturn) {
     std::vector<float> codes(100, 1.0f);
     codes[20] = 6;
     codes[21] = 9;
@@ -283,7 +283,7 @@ TEST_F(Ping1dEmulatorTest, TheFirstStrongReturnCounts) {
     EXPECT_EQ(ping1dReturn({}).confidence, 0);
 }
 
-TEST_F(Ping1dEmulatorTest, CodesBecomeBytesOfTheSameScale) {
+TEST_F(Ping1dEmulatorTest, CodesAreScaledToBytes) {
     const std::vector<float> codes = {0, 257, 65535, 70000, -3, std::nanf("")};
     EXPECT_THAT(bytesOfCodes(codes, 65535), ElementsAre(0, 1, 255, 255, 0, 0));
     EXPECT_THAT(bytesOfCodes(std::vector<float>{0, 128, 255}, 255), ElementsAre(0, 128, 255));

@@ -15,7 +15,7 @@ Ping360Transducer transmitAt(uint16_t angle) { return {1, angle, acoustics, 1, 0
 
 class Ping360EmulatorTest : public ::testing::Test {
 protected:
-    /** The angles of a scan's next pings. */
+    /** Returns the angles of a scan's next pings. */
     std::vector<int> anglesOf(int pings) {
         std::vector<int> angles;
         for (int i = 0; i < 4 * pings && static_cast<int>(angles.size()) < pings; ++i) {
@@ -52,7 +52,7 @@ TEST_F(Ping360EmulatorTest, GeneralRequestsAreAnsweredAtOnce) {
     EXPECT_EQ(bench_.only<PingNack>().nacked, 4711);
 }
 
-TEST_F(Ping360EmulatorTest, APingIsAskedForAsTheDriverWantsIt) {
+TEST_F(Ping360EmulatorTest, RequestsPingsWithTheDriversSettings) {
     bench_.say(transmitAt(0));
     const auto asked = bench_.asked();
     ASSERT_TRUE(asked);
@@ -60,7 +60,7 @@ TEST_F(Ping360EmulatorTest, APingIsAskedForAsTheDriverWantsIt) {
     EXPECT_NEAR(asked->range, 600 * 100 * 25e-9 * 1500 / 2, 1e-9);
     EXPECT_EQ(asked->bin_count, 600u);
     EXPECT_EQ(asked->frequency_khz, 750);
-    EXPECT_EQ(asked->gain_db, 10) << "that of gain 1";
+    EXPECT_EQ(asked->gain_db, 10) << "the gain of setting 1";
     EXPECT_TRUE(std::isnan(asked->speed_of_sound));
     EXPECT_NEAR(std::abs(asked->bearing.deg()), 180, 1e-9) << "the device's 0 is aft";
 }
@@ -69,20 +69,20 @@ TEST_F(Ping360EmulatorTest, TheHeadTurnsClockwiseFromAft) {
     EXPECT_NEAR(ping360Bearing(200, 200).deg(), 0, 1e-9);
     EXPECT_NEAR(ping360Bearing(250, 200).deg(), -45, 1e-9) << "to starboard";
     EXPECT_NEAR(ping360Bearing(100, 200).deg(), 90, 1e-9) << "to port";
-    EXPECT_NEAR(ping360Bearing(100, 0).deg(), -90, 1e-9) << "one whose 0 is ahead";
+    EXPECT_NEAR(ping360Bearing(100, 0).deg(), -90, 1e-9) << "a head whose 0 is ahead";
 }
 
 TEST_F(Ping360EmulatorTest, AnAnswerTakesTheTimeOfHeadSoundAndDevice) {
     const Ping360Config config;
     bench_.say(transmitAt(300));
-    EXPECT_FALSE(bench_.asked()) << "the head is not there yet";
+    EXPECT_FALSE(bench_.asked()) << "the head has not arrived yet";
     bench_.wait(100 * config.seconds_per_gradian - 1e-6);
     EXPECT_FALSE(bench_.asked()) << "100 gradians is the shorter way to 300";
     bench_.wait(1e-6);
     const auto asked = bench_.asked();
     ASSERT_TRUE(asked);
     bench_.answer(*asked);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "however soon the sonar has it";
+    EXPECT_THAT(bench_.heard(), IsEmpty()) << "even if the sonar's ping is early";
     const double takes = 50e-6 + listened + config.overhead;
     bench_.wait(takes - 1e-6);
     EXPECT_THAT(bench_.heard(), IsEmpty());
@@ -97,7 +97,7 @@ TEST_F(Ping360EmulatorTest, AnAnswerTakesTheTimeOfHeadSoundAndDevice) {
     EXPECT_EQ(data.data[599], 255);
 }
 
-TEST_F(Ping360EmulatorTest, ALatePingIsAnsweredWhenItComes) {
+TEST_F(Ping360EmulatorTest, ALatePingIsSentOnArrival) {
     bench_.say(transmitAt(0));
     const auto asked = bench_.asked();
     bench_.wait(1);
@@ -110,17 +110,17 @@ TEST_F(Ping360EmulatorTest, WithoutTransmitTheAnswerHasNoData) {
     Ping360Transducer turn = transmitAt(50);
     turn.transmit = 0;
     bench_.say(turn);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "it turns";
+    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the head turns";
     bench_.waitForNext();
     const auto data = bench_.only<Ping360DeviceData>();
     EXPECT_EQ(data.angle, 50);
     EXPECT_THAT(data.data, IsEmpty());
     EXPECT_FALSE(bench_.asked());
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
-    EXPECT_EQ(bench_.only<Ping360DeviceData>().acoustics, acoustics) << "that holds from now on";
+    EXPECT_EQ(bench_.only<Ping360DeviceData>().acoustics, acoustics) << "of this and later pings";
 }
 
-TEST_F(Ping360EmulatorTest, Mode0IsTakenAndToldAs1) {
+TEST_F(Ping360EmulatorTest, Mode0IsAcceptedAndReportedAs1) {
     Ping360Transducer asked = transmitAt(0);
     asked.mode = 0;
     bench_.say(asked);
@@ -129,7 +129,7 @@ TEST_F(Ping360EmulatorTest, Mode0IsTakenAndToldAs1) {
     EXPECT_EQ(bench_.only<Ping360DeviceData>().mode, 1);
 }
 
-TEST_F(Ping360EmulatorTest, WhatIsOutOfBoundsIsRefusedWithItsNameAndBounds) {
+TEST_F(Ping360EmulatorTest, RefusesValuesOutOfBoundsWithNameAndBounds) {
     const auto refusal = [&](auto change) {
         Ping360Transducer asked = transmitAt(0);
         change(asked);
@@ -160,7 +160,7 @@ TEST_F(Ping360EmulatorTest, WhatIsOutOfBoundsIsRefusedWithItsNameAndBounds) {
     EXPECT_EQ(bench_.only<PingNack>().nacked, 4711);
 }
 
-TEST_F(Ping360EmulatorTest, TheBoundsThemselvesAreTaken) {
+TEST_F(Ping360EmulatorTest, AcceptsTheBounds) {
     for (const Ping360Acoustics& bound :
          {Ping360Acoustics{0, 1, 80, 500, 200}, Ping360Acoustics{2, 1000, 40000, 1000, 1200}}) {
         bench_.say(Ping360Transducer{1, 399, bound, 0, 0});
@@ -169,23 +169,23 @@ TEST_F(Ping360EmulatorTest, TheBoundsThemselvesAreTaken) {
     }
 }
 
-TEST_F(Ping360EmulatorTest, AScanOfAllRoundGoesOnAndOn) {
+TEST_F(Ping360EmulatorTest, AScanAllRoundContinues) {
     EXPECT_THAT(scanOf({398, 397, 1, 0}, 4), ElementsAre(398, 399, 0, 1));
     EXPECT_THAT(scanOf({0, 399, 10, 0}, 42).back(), 10);
 }
 
-TEST_F(Ping360EmulatorTest, AScanOfAtMostHalfATurnGoesBackTheSameWay) {
+TEST_F(Ping360EmulatorTest, AScanOfAtMostHalfATurnReverses) {
     EXPECT_THAT(scanOf({390, 10, 10, 0}, 6), ElementsAre(390, 0, 10, 0, 390, 0));
     EXPECT_THAT(scanOf({100, 100, 1, 0}, 2), ElementsAre(100, 100));
 }
 
-TEST_F(Ping360EmulatorTest, AScanOfMoreThanHalfATurnBeginsAnew) {
+TEST_F(Ping360EmulatorTest, AScanOfMoreThanHalfATurnRestarts) {
     EXPECT_THAT(scanOf({0, 210, 10, 0}, 23).at(21), 210);
     EXPECT_THAT(scanOf({0, 205, 10, 0}, 22), ::testing::Contains(200));
     EXPECT_THAT(scanOf({0, 205, 10, 0}, 22).at(21), 0);
 }
 
-TEST_F(Ping360EmulatorTest, AScanTellsItsSectorAndKeepsItsDelay) {
+TEST_F(Ping360EmulatorTest, AScanReportsItsSectorAndKeepsItsDelay) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 100}});
     bench_.answer(*bench_.asked());
     bench_.wait(1);
@@ -210,11 +210,11 @@ TEST_F(Ping360EmulatorTest, MotorOffEndsAScanAndIsAcknowledged) {
     EXPECT_FALSE(device_.wakeAt());
 }
 
-TEST_F(Ping360EmulatorTest, ANewScanTakesThePlaceOfOneInMidPing) {
+TEST_F(Ping360EmulatorTest, ANewScanReplacesOneDuringAPing) {
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}});
     bench_.answer(*bench_.asked());
     bench_.say(Ping360AutoTransmit{1, acoustics, {100, 150, 10, 0}});
-    EXPECT_THAT(anglesOf(2), ElementsAre(100, 110)) << "the ping of the old one is told to nobody";
+    EXPECT_THAT(anglesOf(2), ElementsAre(100, 110)) << "the ping of the old scan is sent to no client";
     bench_.say(transmitAt(0));
     EXPECT_FALSE(device_.scans()) << "a command by itself ends a scan";
 }
@@ -237,13 +237,13 @@ TEST_F(Ping360EmulatorTest, TwoClientsGetTheirOwnAnswersOneAfterTheOther) {
     EXPECT_THAT(bench_.heard(1), IsEmpty());
 }
 
-TEST_F(Ping360EmulatorTest, CommandsThatPileUpAreRefused) {
+TEST_F(Ping360EmulatorTest, RefusesTooManyCommands) {
     for (int i = 0; i < 16; ++i) bench_.say(transmitAt(0));
     EXPECT_THAT(bench_.heard(), IsEmpty());
     EXPECT_EQ(bench_.refusalOf(transmitAt(0)), "too many commands wait already");
 }
 
-TEST_F(Ping360EmulatorTest, ADisconnectInMidPingLeavesNothingBehind) {
+TEST_F(Ping360EmulatorTest, ADisconnectDuringAPingLeavesNoState) {
     bench_.say(transmitAt(0), 1);
     const auto asked = bench_.asked();
     bench_.say(transmitAt(1), 1);
@@ -258,7 +258,7 @@ TEST_F(Ping360EmulatorTest, ADisconnectInMidPingLeavesNothingBehind) {
     EXPECT_FALSE(device_.scans());
 }
 
-TEST_F(Ping360EmulatorTest, APingThatDoesNotComeIsRefusedAndToldOfOnce) {
+TEST_F(Ping360EmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
     for (int i = 0; i < 2; ++i) {
         bench_.say(transmitAt(0));
         EXPECT_TRUE(bench_.asked());
@@ -270,7 +270,7 @@ TEST_F(Ping360EmulatorTest, APingThatDoesNotComeIsRefusedAndToldOfOnce) {
     }
 }
 
-TEST_F(Ping360EmulatorTest, APingOfAnEarlierRequestOrOfOtherBinsIsNoAnswer) {
+TEST_F(Ping360EmulatorTest, IgnoresPingsOfEarlierRequestsOrOfOtherBins) {
     bench_.say(transmitAt(0));
     auto asked = *bench_.asked();
     asked.time = asked.time - types::Time{1};
@@ -287,21 +287,21 @@ TEST_F(Ping360EmulatorTest, APingOfAnEarlierRequestOrOfOtherBinsIsNoAnswer) {
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
 }
 
-TEST_F(Ping360EmulatorTest, SamplesAreOfTimeWhateverTheSpeedOfSoundIs) {
+TEST_F(Ping360EmulatorTest, SamplesAreByTimeForAnySpeedOfSound) {
     bench_.say(transmitAt(0));
     const auto asked = bench_.asked();
     bench_.answer(*asked, 1450);
     const auto again = bench_.asked();
-    ASSERT_TRUE(again) << "the range was that of 1500 m/s";
+    ASSERT_TRUE(again) << "the range was for 1500 m/s";
     EXPECT_NEAR(again->range, listened * 1450 / 2, 1e-9);
     bench_.answer(*again, 1450);
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
     bench_.say(transmitAt(0));
-    EXPECT_NEAR(bench_.asked()->range, listened * 1450 / 2, 1e-9) << "from now on";
+    EXPECT_NEAR(bench_.asked()->range, listened * 1450 / 2, 1e-9) << "for later pings";
 }
 
-TEST_F(Ping360EmulatorTest, ANewIdIsTheSourceOfAnswersAndFramesForOthersAreLeft) {
+TEST_F(Ping360EmulatorTest, AnswersHaveANewIdAndFramesForOthersAreIgnored) {
     bench_.say(Ping360SetDeviceId{9, 0});
     EXPECT_EQ(bench_.only<PingAck>().acked, 2000);
     const PingGeneralRequest request{PingProtocolVersion::message};
@@ -314,12 +314,12 @@ TEST_F(Ping360EmulatorTest, ANewIdIsTheSourceOfAnswersAndFramesForOthersAreLeft)
     EXPECT_THAT(bench_.heard(), IsEmpty()) << "answers are not answered";
 }
 
-TEST_F(Ping360EmulatorTest, AResetIsAsAtBoot) {
+TEST_F(Ping360EmulatorTest, AResetRestoresTheBootState) {
     bench_.say(transmitAt(100));
     bench_.say(Ping360Reset{0, 0});
     EXPECT_EQ(bench_.only<PingAck>().acked, 2600);
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "what was begun is gone";
+    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the command in progress is dropped";
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
     EXPECT_EQ(bench_.only<Ping360DeviceData>().angle, 0);
     bench_.say(Ping360Reset{1, 0});
@@ -331,7 +331,7 @@ TEST_F(Ping360EmulatorTest, AResetIsAsAtBoot) {
     EXPECT_EQ(bench_.heard().size(), 1u);
 }
 
-TEST_F(Ping360EmulatorTest, ANoisySerialLineLosesWhatIsDamagedAndNothingElse) {
+TEST_F(Ping360EmulatorTest, ANoisySerialLineLosesOnlyDamagedFrames) {
     Bytes line = {0, 'U', 'B', 'R', 20, 0};
     const auto add = [&](const Bytes& bytes) { line.insert(line.end(), bytes.begin(), bytes.end()); };
     Bytes damaged = pingBytes(PingGeneralRequest{PingDeviceInformation::message});
@@ -342,13 +342,13 @@ TEST_F(Ping360EmulatorTest, ANoisySerialLineLosesWhatIsDamagedAndNothingElse) {
     EXPECT_EQ(bench_.only<PingProtocolVersion>().major, 1);
 }
 
-TEST_F(Ping360EmulatorTest, DiscoveryIsTheTextThatFindersLookFor) {
+TEST_F(Ping360EmulatorTest, DiscoveryHasTheTextOfFinders) {
     const uint8_t mac[] = {0x54, 0x10, 0xEC, 0x79, 0x7D, 0xD1}, ip[] = {192, 168, 0, 197};
     EXPECT_EQ(ping360Discovery(mac, ip),
               "SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-D1\r\nIP Address:- 192.168.000.197\r\n");
 }
 
-TEST_F(Ping360EmulatorTest, GainsAreThree) {
+TEST_F(Ping360EmulatorTest, RequiresThreeGains) {
     types::Diagnostics diagnostics;
     Ping360Config config;
     config.check(diagnostics);

@@ -29,7 +29,7 @@ Ping360TaskConfig quickConfig() {
     return config;
 }
 
-/** A driver that reads what comes as frames. */
+/** A driver that reads frames. */
 class Driver {
 public:
     explicit Driver(DriverLine line) : line_(std::move(line)) {}
@@ -65,7 +65,7 @@ protected:
         return DriverLine::tcp("127.0.0.1", task_.portOf(PingDeviceTask::tcp), std::chrono::seconds(10));
     }
     DriverLine serial() const { return DriverLine::serial(folder_ / "line"); }
-    /** A cycle of the task, and a sonar that answers at once. */
+    /** Runs a cycle of the task and of a sonar that answers at once. */
     void cycle() {
         task_.update();
         for (types::SonarSettings asked; asked_.port.readNew(asked);) {
@@ -74,7 +74,7 @@ protected:
             pings_.port.write(ping);
         }
     }
-    /** The next message of a kind that a driver hears; messages of other kinds are passed over. */
+    /** Returns the next message of a kind that a driver receives; skips messages of other kinds. */
     template <class Message>
     Message next(Driver& driver) {
         std::optional<Message> found;
@@ -94,7 +94,7 @@ protected:
     test::Writer<types::SonarPtr> pings_{"pings"};
 };
 
-TEST_F(Ping360TaskTest, ItAnswersByDatagramConnectionAndLine) {
+TEST_F(Ping360TaskTest, AnswersByDatagramConnectionAndLine) {
     Driver drivers[] = {Driver(udp()), Driver(tcp()), Driver(serial())};
     for (Driver& driver : drivers) {
         driver.say(PingGeneralRequest{PingDeviceInformation::message});
@@ -103,13 +103,13 @@ TEST_F(Ping360TaskTest, ItAnswersByDatagramConnectionAndLine) {
         const auto data = next<Ping360DeviceData>(driver);
         EXPECT_EQ(data.angle, 250);
         EXPECT_EQ(data.data.size(), 600u);
-        EXPECT_EQ(echoOf(data), 45) << "what the sonar heard there";
+        EXPECT_EQ(echoOf(data), 45) << "the sonar's echo there";
         driver.say(Ping360Transducer{0, 400, own_acoustics, 1, 0});
         EXPECT_EQ(next<PingNack>(driver).text, "angle is 400; must be 0 to 399");
     }
 }
 
-TEST_F(Ping360TaskTest, TwoDriversHearTheirOwnEchoes) {
+TEST_F(Ping360TaskTest, TwoDriversGetTheirOwnEchoes) {
     Driver a(tcp()), b(tcp());
     for (int i = 0; i < 20; ++i) {
         a.say(Ping360Transducer{1, 250, own_acoustics, 1, 0});
@@ -119,7 +119,7 @@ TEST_F(Ping360TaskTest, TwoDriversHearTheirOwnEchoes) {
     }
 }
 
-TEST_F(Ping360TaskTest, ADriverThatLeavesInMidPingHarmsNobody) {
+TEST_F(Ping360TaskTest, ADriverThatLeavesDuringAPingHarmsNoOther) {
     for (int i = 0; i < 50; ++i) {
         Driver gone(tcp());
         gone.say(Ping360Transducer{1, 300, own_acoustics, 1, 0});
@@ -130,7 +130,7 @@ TEST_F(Ping360TaskTest, ADriverThatLeavesInMidPingHarmsNobody) {
     EXPECT_EQ(echoOf(next<Ping360DeviceData>(stays)), 45);
 }
 
-TEST_F(Ping360TaskTest, AThousandReconnectsLeaveNothingBehind) {
+TEST_F(Ping360TaskTest, AThousandReconnectsLeakNothing) {
     const auto openFiles = [] {
         return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
                              std::filesystem::directory_iterator());
@@ -148,7 +148,7 @@ TEST_F(Ping360TaskTest, AThousandReconnectsLeaveNothingBehind) {
         << " where there were " << before;
 }
 
-TEST_F(Ping360TaskTest, ANoisyLineLosesNothingThatIsWhole) {
+TEST_F(Ping360TaskTest, ANoisyLineLosesNoIntactFrame) {
     Driver driver(serial());
     std::mt19937 random(3);
     std::uniform_int_distribution<int> byte(0, 255), length(0, 30);
@@ -161,7 +161,7 @@ TEST_F(Ping360TaskTest, ANoisyLineLosesNothingThatIsWhole) {
     }
 }
 
-TEST_F(Ping360TaskTest, ADriverThatDoesNotReadHoldsUpNobody) {
+TEST_F(Ping360TaskTest, ADriverThatDoesNotReadDelaysNoOther) {
     Driver deaf(tcp()), other(udp());
     deaf.say(Ping360AutoTransmit{1, {0, 1, 80, 750, 1200}, {0, 399, 1, 0}});
     for (int i = 0; i < 300; ++i) {
@@ -172,7 +172,7 @@ TEST_F(Ping360TaskTest, ADriverThatDoesNotReadHoldsUpNobody) {
     EXPECT_EQ(next<PingAck>(other).acked, 2903);
 }
 
-TEST_F(Ping360TaskTest, FindersAreTold) {
+TEST_F(Ping360TaskTest, AnswersDiscovery) {
     const DriverLine finder = DriverLine::udp("127.0.0.1", task_.portOf(3));
     const std::string question = "Discovery";
     finder.send({reinterpret_cast<const uint8_t*>(question.data()), question.size()});
@@ -187,7 +187,7 @@ TEST_F(Ping360TaskTest, FindersAreTold) {
                            "192.168.002.010"));
 }
 
-TEST_F(Ping360TaskTest, EndsThatCannotBeHadAreOneClearDiagnostic) {
+TEST_F(Ping360TaskTest, EndsThatCannotBeOpenedAreOneClearDiagnostic) {
     Ping360Task second("second");
     Ping360TaskConfig config;
     config.ends.port = task_.portOf(PingDeviceTask::udp);
@@ -221,7 +221,7 @@ TEST_F(Ping360TaskTest, TheCommandRecognisesIt) {
     EXPECT_EQ(outcomes[0].device, "Blue Robotics Ping360, id 2, revision 1, firmware 3.3.8, protocol 1.1.0");
 }
 
-TEST(Ping1dTaskTest, ItAnswersByDatagram) {
+TEST(Ping1dTaskTest, AnswersByDatagram) {
     Ping1dTask task("ping1d");
     Ping1dTaskConfig config;
     config.ends.port = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// A device of the ping protocol with a made-up clock, its clients, and a sonar that answers.
+// A device of the ping protocol with a simulated clock, its clients, and a sonar that answers.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -10,7 +10,7 @@ namespace insonify::device {
 
 inline types::Time seconds(double s) { return types::Time::fromSeconds(1e9 + s); }
 
-/** A ping as a sonar makes it for what is asked: one beam, code k in bin k unless told else. */
+/** Returns a sonar's ping for a request: one beam, code k in bin k unless given otherwise. */
 inline std::shared_ptr<types::Sonar> pingFor(const types::SonarSettings& asked, float speed_of_sound = 1500) {
     auto ping = std::make_shared<types::Sonar>();
     ping->time = asked.time;
@@ -29,7 +29,7 @@ public:
     explicit PingBench(PingDevice& device) : device_(device) {}
 
     types::Time now() const { return now_; }
-    /** Says a message as a client. */
+    /** Sends a message as a client. */
     template <class Message>
     void say(const Message& message, PingClient client = 1, uint8_t destination = 0) {
         give(pingBytes(message, 0, destination), client, false);
@@ -41,7 +41,7 @@ public:
         now_ = now_ + types::Time::fromSeconds(s);
         device_.tick(now_);
     }
-    /** Lets time pass until the device has something to do, at most so long; how long it was [s]. */
+    /** Advances time until the device has due work, at most by the given time; returns the advanced time [s]. */
     double waitForNext(double at_most = 10) {
         const auto next = device_.wakeAt();
         const double s = next ? std::min(at_most, (*next - now_).seconds()) : at_most;
@@ -52,13 +52,13 @@ public:
     void answer(const types::SonarSettings& asked, float speed_of_sound = 1500) {
         device_.hear(pingFor(asked, speed_of_sound), now_);
     }
-    /** What a client has been sent since the last call. */
+    /** Returns the bytes sent to a client since the last call. */
     std::vector<PingFrame> heard(PingClient client = 1) {
         for (const PingOutgoing& out : device_.takeOutgoing())
             for (PingFrame& frame : pingFrames(out.bytes, 4096)) inbox_[out.client].push_back(std::move(frame));
         return std::exchange(inbox_[client], {});
     }
-    /** The one message that a client has been sent. */
+    /** Returns the only message sent to a client. */
     template <class Message>
     Message only(PingClient client = 1) {
         const auto frames = heard(client);

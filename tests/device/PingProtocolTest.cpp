@@ -27,7 +27,7 @@ std::vector<uint16_t> messagesIn(const Bytes& bytes) {
     return messagesIn(reader);
 }
 
-/** What is read of a message that was written. */
+/** Returns the message read from a written message. */
 template <class Message>
 Message there(const Message& message) {
     const auto frames = pingFrames(pingBytes(message, 2, 7), largest);
@@ -39,11 +39,11 @@ Message there(const Message& message) {
     return read.value_or(Message{});
 }
 
-TEST(PingProtocolTest, ARequestIsTheBytesThatAreKnown) {
+TEST(PingProtocolTest, ARequestHasTheKnownBytes) {
     EXPECT_THAT(pingBytes(PingGeneralRequest{5}), ElementsAre(0x42, 0x52, 2, 0, 6, 0, 0, 0, 5, 0, 0xa1, 0));
 }
 
-TEST(PingProtocolTest, AProfileIsTheBytesThatAreKnown) {
+TEST(PingProtocolTest, AProfileHasTheKnownBytes) {
     const Bytes known = {0x42, 0x52, 0x24, 0, 0x14, 5,    56, 45, 0xe8, 3,    0, 0, 93,   0, 0x3f, 8,
                          0x1c, 0x2b, 0xa6, 2, 0xa0, 0x0f, 0,  0,  0xb8, 0x88, 0, 0, 4,    0, 0,    0,
                          10,   0,    0,    1, 2,    3,    4,  5,  6,    7,    8, 9, 0xde, 5};
@@ -79,7 +79,7 @@ TEST(PingProtocolTest, MessagesHaveTheSizesOfTheirDefinitions) {
     EXPECT_EQ(payload(pingBytes(Ping1dSetRange{})), 8u);
 }
 
-TEST(PingProtocolTest, WhatIsWrittenIsReadBothWays) {
+TEST(PingProtocolTest, WrittenMessagesAreReadBack) {
     const Ping360Acoustics acoustics{2, 32, 88, 740, 1024};
     const Ping360Sector sector{10, 390, 3, 50};
     const auto data = there(Ping360DeviceData{1, 123, acoustics, {9, 8, 7}});
@@ -99,14 +99,14 @@ TEST(PingProtocolTest, WhatIsWrittenIsReadBothWays) {
     EXPECT_EQ(there(Ping1dDistanceSimple{12'345, 77}).confidence, 77);
 }
 
-TEST(PingProtocolTest, AFieldOnTheWireStandsWhereItsDefinitionHasIt) {
+TEST(PingProtocolTest, FieldsAreAtTheOffsetsOfTheirDefinitions) {
     const Bytes bytes = pingBytes(
         Ping360AutoDeviceData{1, 0x0203, {4, 0x0506, 0x0708, 0x090a, 0x0b0c}, {0x0d0e, 0x0f10, 0x11, 0x12}, {0x55}});
     EXPECT_THAT(Bytes(bytes.begin() + 8, bytes.end() - 2),
                 ElementsAre(1, 4, 3, 2, 6, 5, 8, 7, 0xa, 9, 0xe, 0xd, 0x10, 0xf, 0x11, 0x12, 0xc, 0xb, 1, 0, 0x55));
 }
 
-TEST(PingProtocolTest, AShortMessageIsNoneAndALongOneIsRead) {
+TEST(PingProtocolTest, RejectsAShortMessageAndReadsALongOne) {
     PingFrame frame{Ping360Transducer::message, 0, 0, Bytes(13)};
     EXPECT_FALSE(pingMessage<Ping360Transducer>(frame));
     frame.payload.resize(20);
@@ -114,7 +114,7 @@ TEST(PingProtocolTest, AShortMessageIsNoneAndALongOneIsRead) {
     EXPECT_FALSE(pingMessage<Ping360Reset>(frame)) << "another message";
     PingFrame data{Ping360DeviceData::message, 0, 0, Bytes(20)};
     data.payload[12] = 7;
-    EXPECT_FALSE(pingMessage<Ping360DeviceData>(data)) << "six bytes where seven are told";
+    EXPECT_FALSE(pingMessage<Ping360DeviceData>(data)) << "six bytes instead of the stated seven";
     data.payload[12] = 6;
     EXPECT_TRUE(pingMessage<Ping360DeviceData>(data));
 }
@@ -133,12 +133,12 @@ TEST(PingProtocolTest, FramesAreFoundInPiecesOfAnySize) {
     }
 }
 
-TEST(PingProtocolTest, WhatLiesBetweenFramesIsPassedOver) {
+TEST(PingProtocolTest, SkipsBytesBetweenFrames) {
     const Bytes request = pingBytes(PingGeneralRequest{5}), noise = {0, 'U', 'B', 'B', 'R', 0xff, 0xff, 'B'};
     EXPECT_THAT(messagesIn(noise + request + noise + request), ElementsAre(6, 6));
 }
 
-TEST(PingProtocolTest, AFrameThatDoesNotAddUpIsPassedOverAndTheNextIsFound) {
+TEST(PingProtocolTest, SkipsAFrameWithAWrongSumAndFindsTheNext) {
     const Bytes request = pingBytes(PingGeneralRequest{5});
     for (size_t at = 0; at < request.size(); ++at) {
         Bytes damaged = request;
@@ -148,16 +148,16 @@ TEST(PingProtocolTest, AFrameThatDoesNotAddUpIsPassedOverAndTheNextIsFound) {
     }
 }
 
-TEST(PingProtocolTest, AStrayBeginningDoesNotHoldUpAWholeFrame) {
+TEST(PingProtocolTest, AFalseBeginningDoesNotDelayACompleteFrame) {
     const Bytes stray = {'B', 'R', 30, 0, 1, 2}, request = pingBytes(PingGeneralRequest{5});
     PingFrameReader reader(64);
     reader.add(stray);
     EXPECT_THAT(messagesIn(reader), IsEmpty());
     reader.add(request);
-    EXPECT_THAT(messagesIn(reader), ElementsAre(6)) << "before the 40 bytes that the stray one told are there";
+    EXPECT_THAT(messagesIn(reader), ElementsAre(6)) << "before the 40 bytes of the false beginning have arrived";
 }
 
-TEST(PingProtocolTest, NothingIsKeptBeyondTheLongestFrame) {
+TEST(PingProtocolTest, KeepsNoMoreThanTheLongestFrame) {
     PingFrameReader reader(64);
     const Bytes junk(1 << 16, 'B');
     reader.add(junk);
@@ -165,12 +165,12 @@ TEST(PingProtocolTest, NothingIsKeptBeyondTheLongestFrame) {
     EXPECT_LE(reader.waiting(), 74u);
     reader.add(Bytes{'B', 'R', 65, 0});
     EXPECT_FALSE(reader.next());
-    EXPECT_EQ(reader.waiting(), 0u) << "longer than any that is waited for";
+    EXPECT_EQ(reader.waiting(), 0u) << "longer than any accepted frame";
     EXPECT_THAT(pingFrames(PingFrame{7, 0, 0, Bytes(65)}.bytes(), 64), IsEmpty());
     EXPECT_EQ(pingFrames(PingFrame{7, 0, 0, Bytes(64)}.bytes(), 64).size(), 1u);
 }
 
-TEST(PingProtocolTest, EveryFrameOfANoisyLineThatIsWholeIsFound) {
+TEST(PingProtocolTest, FindsEveryIntactFrameOfANoisyLine) {
     std::mt19937 random(1);
     std::uniform_int_distribution<int> byte(0, 255), length(0, 40);
     Bytes line;

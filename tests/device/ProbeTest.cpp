@@ -44,12 +44,12 @@ TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
     EXPECT_THAT(why("no.such.host.invalid"), HasSubstr("a host that this machine does not know"));
 }
 
-TEST(ProbeTest, DevicesTellWhatTheyAre) {
+TEST(ProbeTest, DevicesAreIdentified) {
     const Bytes information = pingBytes(PingDeviceInformation{1, 2, 3, 29, 0, 0}, 7),
                 version = pingBytes(PingProtocolVersion{});
     EXPECT_EQ(pingDeviceIn(information + version),
               "Blue Robotics Ping1D, id 7, revision 2, firmware 3.29.0, protocol 1.0.0");
-    EXPECT_FALSE(pingDeviceIn(information)) << "the rest is on its way";
+    EXPECT_FALSE(pingDeviceIn(information)) << "the rest has not arrived";
     EXPECT_THAT(*pingDeviceIn(pingBytes(PingDeviceInformation{9, 0, 0, 0, 0, 0}) + version), HasSubstr("of type 9"));
     EXPECT_EQ(ping360DiscoveryIn(bytesOf("SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 02-00\r\n")),
               "SONAR PING360, Blue Robotics, MAC Address:- 02-00");
@@ -67,19 +67,19 @@ TEST(ProbeTest, DevicesTellWhatTheyAre) {
               "Water Linked Sonar 3D-15, version 1.7.1");
 }
 
-TEST(ProbeTest, WhatOnlyLooksLikeAPacketOfSeaNetIsNone) {
+TEST(ProbeTest, RejectsBytesThatOnlyResembleSeaNet) {
     const Bytes alive = SeaNetAlive{}.message().packet();
-    EXPECT_FALSE(seaNetIn(std::span(alive).first(alive.size() - 1))) << "the rest is on its way";
+    EXPECT_FALSE(seaNetIn(std::span(alive).first(alive.size() - 1))) << "the rest has not arrived";
     Bytes damaged = alive;
     damaged.back() = 0;
-    EXPECT_FALSE(seaNetIn(damaged)) << "no line feed where it ends";
+    EXPECT_FALSE(seaNetIn(damaged)) << "no line feed at its end";
     damaged = alive;
     damaged[5] += 1;
     EXPECT_FALSE(seaNetIn(damaged)) << "two lengths that differ";
     EXPECT_FALSE(seaNetIn(seaNetRequest(SeaNetType::SendVersion).packet())) << "an echo of the question";
 }
 
-TEST(ProbeTest, BytesOfOthersAreNoDevice) {
+TEST(ProbeTest, ForeignBytesAreNotADevice) {
     for (const Bytes& bytes : {Bytes{}, Bytes{0}, Bytes(200, 'B'), bytesOf("HTTP/1.1 404 Not Found\r\n\r\n{}"),
                                bytesOf("SONAR"), bytesOf("SONAR PING360\x01"), Bytes(200, '@')}) {
         EXPECT_FALSE(pingDeviceIn(bytes));
@@ -90,7 +90,7 @@ TEST(ProbeTest, BytesOfOthersAreNoDevice) {
     }
 }
 
-TEST(ProbeTest, WhatDoesNotAnswerIsToldWithWhatMayBeTheMatter) {
+TEST(ProbeTest, ReportsNoAnswerWithPossibleCauses) {
     Network network([] {});
     const End end = network.listenTcp("127.0.0.1", 0);
     ProbeAddress address{"127.0.0.1", "", network.portOf(end)};
@@ -105,7 +105,7 @@ TEST(ProbeTest, WhatDoesNotAnswerIsToldWithWhatMayBeTheMatter) {
     for (const ProbeOutcome& outcome : outcomes) EXPECT_EQ(outcome.failure, "No such file or directory");
 }
 
-/** Sends a status to a port of this machine again and again, from an address of its own. */
+/** Sends a status to a port of this machine repeatedly, from its own address. */
 class StatusSender {
 public:
     StatusSender(const char* from, uint16_t port, const OculusStatus& status) {
@@ -131,7 +131,7 @@ private:
     std::thread thread_;
 };
 
-TEST(ProbeTest, ABroadcastCountsOnlyFromTheDeviceThatIsAsked) {
+TEST(ProbeTest, AcceptsBroadcastsOfTheProbedDeviceOnly) {
     const uint16_t port = test::OculusListener().port();
     const Probe question{"Oculus status", Probe::Line::Broadcast, port, {}, oculusIn, "silence"};
     const auto heardOf = [&](const char* host, int patience_ms) {
@@ -148,12 +148,12 @@ TEST(ProbeTest, ABroadcastCountsOnlyFromTheDeviceThatIsAsked) {
     EXPECT_THAT(heardOf("::1", 10000), HasSubstr("M750d"));
 }
 
-TEST(ProbeTest, NothingIsAwaitedForLessThanNoTime) {
+TEST(ProbeTest, ANegativePatienceDoesNotWait) {
     EXPECT_TRUE(DriverLine::broadcasts(0).receive(std::chrono::milliseconds(-5)).empty());
     EXPECT_TRUE(DriverLine::broadcasts(0).receiveDatagram(std::chrono::milliseconds(-5)).bytes.empty());
 }
 
-TEST(ProbeTest, EveryQuestionSaysWhySilenceMayBe) {
+TEST(ProbeTest, EveryProbeExplainsSilence) {
     for (const Probe& each : allProbes()) {
         EXPECT_NE(each.silence, "") << each.protocol;
         EXPECT_TRUE(each.read) << each.protocol;

@@ -1,4 +1,4 @@
-// The Range Image Protocol by bytes; the maker's own client reads it in Sonar3dClientTest.
+// The Range Image Protocol by bytes; Sonar3dClientTest tests it with the maker's own client.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ std::string diagnosticOf(const Bytes& bytes) {
     return diagnostics.empty() ? "" : diagnostics.front();
 }
 
-/** With its CRC-32 behind it, bit by bit. */
+/** Appends the CRC-32, computed bit by bit. */
 Bytes withSum(Bytes bytes) {
     uint32_t crc = 0xFFFFFFFF;
     for (const uint8_t byte : bytes) {
@@ -65,7 +65,7 @@ Bytes withSum(Bytes bytes) {
     return bytes;
 }
 
-/** A packet whose payload is not ours, with the right length and checksum. */
+/** Returns a packet with a foreign payload, of the right length and checksum. */
 Bytes packed(const Bytes& payload) {
     RangePixels empty;
     Bytes bytes = ripPacket(empty, RipVersion::Rip1);
@@ -83,7 +83,7 @@ Bytes wrapped(std::string_view type, const Bytes& message) {
     return packed(whole.message());
 }
 
-TEST(Rip2Test, BothImagesComeBackInBothVersions) {
+TEST(Rip2Test, BothImagesAreReadBackInBothVersions) {
     for (const RipVersion version : {RipVersion::Rip1, RipVersion::Rip2}) {
         const auto ranges = ripMessages(ripPacket(someRanges(), version));
         ASSERT_EQ(ranges.size(), 1u);
@@ -98,8 +98,8 @@ TEST(Rip2Test, BothImagesComeBackInBothVersions) {
     }
 }
 
-/** The fields by hand, from their numbers and wire types. */
-TEST(Rip2Test, ASmallPacketHasTheBytesThatItsMakersFieldsGive) {
+/** The fields made by hand, from their numbers and wire types. */
+TEST(Rip2Test, ASmallPacketHasTheBytesOfItsMakersFields) {
     RangePixels image;
     image.width = 2;
     image.height = 1;
@@ -121,7 +121,7 @@ TEST(Rip2Test, AWholeImageOfNoiseFitsIntoADatagram) {
     EXPECT_EQ(std::get<RangePixels>(ripMessages(packet).at(0)).pixels, image.pixels);
 }
 
-TEST(Rip2Test, PacketsStandAmongOtherBytesAsInLogFiles) {
+TEST(Rip2Test, FindsPacketsAmongOtherBytes) {
     Bytes all = {'R', 'I', 'P', 'R', 'I', 'P', '2'};
     const Bytes unknown = wrapped("type.googleapis.com/waterlinked.sonar.protocol.ImuBatch", {8, 1});
     for (const Bytes& packet : {ripPacket(someRanges()), unknown, ripPacket(someStrengths(), RipVersion::Rip1)})
@@ -134,7 +134,7 @@ TEST(Rip2Test, PacketsStandAmongOtherBytesAsInLogFiles) {
     EXPECT_TRUE(std::holds_alternative<StrengthPixels>(messages[2]));
 }
 
-TEST(Rip2Test, WhatIsShortLongOrHasAnotherSumIsNoPacket) {
+TEST(Rip2Test, RejectsShortLongAndDamagedPackets) {
     const Bytes whole = ripPacket(someRanges());
     for (size_t length = 4; length < whole.size(); ++length)
         EXPECT_THAT(diagnosticOf({whole.begin(), whole.begin() + static_cast<long>(length)}), HasSubstr("is cut off"))
@@ -151,13 +151,13 @@ TEST(Rip2Test, WhatIsShortLongOrHasAnotherSumIsNoPacket) {
     }
     Bytes longer = whole;
     longer.insert(longer.end(), 9, 0);
-    EXPECT_EQ(ripMessages(longer).size(), 1u) << "and what follows it is passed over";
+    EXPECT_EQ(ripMessages(longer).size(), 1u) << "and the bytes behind it are skipped";
 }
 
-TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
+TEST(Rip2Test, ReportsContradictionsWithTheirNumbers) {
     RangePixels fewer = someRanges();
     fewer.pixels.pop_back();
-    EXPECT_THAT(diagnosticOf(ripPacket(fewer)), HasSubstr("has 5 pixels where 3 x 2 are told"));
+    EXPECT_THAT(diagnosticOf(ripPacket(fewer)), HasSubstr("has 5 pixels, but its header has 3 x 2"));
     RangePixels large = someRanges();
     large.pixels[3] = 65536;
     EXPECT_THAT(diagnosticOf(ripPacket(large)), HasSubstr("has a pixel of 65536"));
@@ -166,10 +166,10 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
     EXPECT_THAT(diagnosticOf(ripPacket(unscaled)), HasSubstr("has a pixel scale of nan"));
     StrengthPixels endless = someStrengths();
     endless.range = INFINITY;
-    EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("tells inf"));
+    EXPECT_THAT(diagnosticOf(ripPacket(endless)), HasSubstr("has a value of inf"));
     StrengthPixels missing = someStrengths();
     missing.height = 4;
-    EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels where 3 x 4 are told"));
+    EXPECT_THAT(diagnosticOf(ripPacket(missing)), HasSubstr("has 6 pixels, but its header has 3 x 4"));
     EXPECT_THAT(diagnosticOf(packed({0x0A, 5, 1})), HasSubstr("holds no message"));
     EXPECT_THAT(diagnosticOf(packed({})), HasSubstr("holds no message"));
     const std::string type = "type.googleapis.com/waterlinked.sonar.protocol.RangeImage";
@@ -178,15 +178,15 @@ TEST(Rip2Test, WhatContradictsItselfIsToldWithItsNumbers) {
     EXPECT_THAT(diagnosticOf(wrapped(type, {0x0A, 4, 0x0A, 2, 0x10, 0xFF})), HasSubstr("has a stamp that is none"));
 }
 
-TEST(Rip2Test, APayloadThatIsNotSnappysIsNoPacket) {
-    Bytes changed = packed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it holds 32 GB
+TEST(Rip2Test, RejectsAPayloadThatIsNotSnappy) {
+    Bytes changed = packed({0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 1, 2, 3});  // says that it has 32 GB
     changed[3] = '2';
     changed.resize(changed.size() - 4);
     EXPECT_THAT(diagnosticOf(withSum(changed)), HasSubstr("is compressed by something else than snappy"));
 }
 
-/** Pixels one by one, in another order and with fields that are new, as other writers may have them. */
-TEST(Rip2Test, OtherWritersAreUnderstood) {
+/** Pixels one by one, in another order and with unknown fields, as other writers may send them. */
+TEST(Rip2Test, ReadsPacketsOfOtherWriters) {
     const Bytes message = {0x50, 9, 0x28, 1, 0x30, 2, 0x50, 0x80, 1, 0xF8, 7, 1, 0xF9, 7, 1, 2, 3, 4, 5, 6, 7, 8};
     const auto messages = ripMessages(wrapped("type.googleapis.com/waterlinked.sonar.protocol.RangeImage", message));
     ASSERT_EQ(messages.size(), 1u);

@@ -49,15 +49,15 @@ void expectSame(const SeaNetHeadCommand& got, const SeaNetHeadCommand& sent) {
     EXPECT_EQ(got.ad_interval, sent.ad_interval);
 }
 
-TEST(SeaNetTest, ARequestHasTheBytesThatDriversSend) {
+TEST(SeaNetTest, ARequestHasTheBytesOfDrivers) {
     EXPECT_THAT(seaNetRequest(SeaNetType::SendVersion).packet(),
                 ElementsAre('@', '0', '0', '0', '8', 8, 0, 255, 2, 3, 23, 0x80, 2, 0x0A));
     EXPECT_THAT(seaNetRequest(SeaNetType::SendData).packet(),
                 ElementsAre('@', '0', '0', '0', 'C', 12, 0, 255, 2, 7, 25, 0x80, 2, 0, 0, 0, 0, 0x0A));
 }
 
-/** Sizes and places as an open driver's parser has them. */
-TEST(SeaNetTest, AnswersHaveTheSizesThatDriversDemand) {
+/** Sizes and offsets as in an open driver's parser. */
+TEST(SeaNetTest, AnswersHaveTheSizesOfDrivers) {
     const Bytes alive = SeaNetAlive{.centred = true, .unconfigured = false, .configured = true}.message().packet();
     ASSERT_EQ(alive.size(), 22u);
     EXPECT_EQ(alive[20], 2 | 128);
@@ -87,7 +87,7 @@ TEST(SeaNetTest, AnswersHaveTheSizesThatDriversDemand) {
     EXPECT_EQ(data.back(), 0x0A);
 }
 
-TEST(SeaNetTest, EveryMessageComesBack) {
+TEST(SeaNetTest, EveryMessageIsReadBack) {
     const auto there = [](const SeaNetMessage& message) { return seaNetIn(message.packet()).at(0); };
     const auto command = SeaNetHeadCommand::in(there(someCommand().message()));
     ASSERT_TRUE(command);
@@ -114,7 +114,7 @@ TEST(SeaNetTest, EveryMessageComesBack) {
         EXPECT_EQ(SeaNetUserData::in(there(SeaNetUserData{full}.message()))->full_duplex, full);
 }
 
-TEST(SeaNetTest, WhatIsOfAnotherTypeOrSizeIsNoSuchMessage) {
+TEST(SeaNetTest, RejectsMessagesOfAnotherTypeOrSize) {
     const SeaNetMessage alive = SeaNetAlive{}.message();
     EXPECT_FALSE(SeaNetHeadCommand::in(alive) || SeaNetHeadData::in(alive) || SeaNetVersion::in(alive) ||
                  SeaNetUserData::in(alive));
@@ -129,7 +129,7 @@ TEST(SeaNetTest, WhatIsOfAnotherTypeOrSizeIsNoSuchMessage) {
     EXPECT_FALSE(SeaNetHeadData::in(line));
 }
 
-TEST(SeaNetTest, PacketsMayComeByteByByte) {
+TEST(SeaNetTest, PacketsMayArriveByteByByte) {
     Bytes all = seaNetRequest(SeaNetType::Reboot).packet();
     const Bytes command = someCommand().message().packet();
     all.insert(all.end(), command.begin(), command.end());
@@ -143,7 +143,7 @@ TEST(SeaNetTest, PacketsMayComeByteByByte) {
     EXPECT_EQ(reader.skipped(), 0u);
 }
 
-TEST(SeaNetTest, ShortLongAndMisSizedPacketsArePassedOver) {
+TEST(SeaNetTest, SkipsShortLongAndMisSizedPackets) {
     const Bytes good = seaNetRequest(SeaNetType::SendData).packet();
     const auto followed = [&](Bytes bad) {
         bad.insert(bad.end(), good.begin(), good.end());
@@ -166,7 +166,7 @@ TEST(SeaNetTest, ShortLongAndMisSizedPacketsArePassedOver) {
     EXPECT_EQ(followed(longer).size(), 1u);
 }
 
-TEST(SeaNetTest, APacketThatIsCutOffHoldsUpNoneBehindIt) {
+TEST(SeaNetTest, ATruncatedPacketDelaysNoLaterPacket) {
     const Bytes cut = someCommand().message().packet(), good = seaNetRequest(SeaNetType::SendData).packet();
     SeaNetReader reader;
     reader.add(std::span(cut).first(20));
@@ -180,19 +180,19 @@ TEST(SeaNetTest, APacketThatIsCutOffHoldsUpNoneBehindIt) {
     EXPECT_FALSE(reader.next());
 }
 
-TEST(SeaNetTest, OfBytesThatOnlyBeginPacketsNoMoreAreKeptThanMayBeOne) {
+TEST(SeaNetTest, KeepsNoMoreThanOnePossiblePacket) {
     constexpr size_t count = 1 << 20;
     SeaNetReader reader;
     reader.add(Bytes(count, '@'));
     EXPECT_FALSE(reader.next());
-    EXPECT_EQ(reader.skipped(), count - 6) << "of the last six the lengths are not known";
+    EXPECT_EQ(reader.skipped(), count - 6) << "the lengths of the last six are unknown";
     reader.add(seaNetRequest(SeaNetType::SendData).packet());
     EXPECT_TRUE(reader.next());
     EXPECT_EQ(reader.skipped(), count);
 }
 
-/** A line that changes bits and invents bytes between packets loses some; it never loses its place for good. */
-TEST(SeaNetTest, ANoisyLineLosesPacketsButNotItsPlace) {
+/** A line that changes bits and inserts bytes between packets loses some packets, but never synchronisation. */
+TEST(SeaNetTest, ANoisyLineLosesPacketsButNotSynchronisation) {
     std::mt19937 random(1);
     const Bytes good = someCommand().message().packet();
     SeaNetReader reader;
@@ -205,7 +205,7 @@ TEST(SeaNetTest, ANoisyLineLosesPacketsButNotItsPlace) {
         reader.add(sent);
         while (const auto message = reader.next()) whole += SeaNetHeadCommand::in(*message) ? 1 : 0;
     }
-    std::cout << whole << " of 1000 packets on a noisy line, " << reader.skipped() << " bytes passed over\n";
+    std::cout << whole << " of 1000 packets on a noisy line, " << reader.skipped() << " bytes skipped\n";
     EXPECT_GE(whole, 750);
 }
 

@@ -1,4 +1,4 @@
-// A Sonar 3D-15 by requests, packets and a made-up clock.
+// A Sonar 3D-15 with requests, packets and a simulated clock.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ protected:
         now_ = now_ + types::Time::fromSeconds(seconds);
         emulator_.tick(now_);
     }
-    /** 3 x 2 directions; rows from the top, columns from port. */
+    /** A map of 3 x 2 directions; rows from the top, columns from port. */
     types::DepthMap map() const {
         types::DepthMap map;
         map.time = now_;
@@ -61,7 +61,7 @@ protected:
                                [this](const std::string& text) { warnings_.push_back(text); }}};
 };
 
-TEST_F(Sonar3dEmulatorTest, ItTellsWhatItIs) {
+TEST_F(Sonar3dEmulatorTest, ReportsDeviceInformation) {
     EXPECT_EQ(json("about")["product_name"], "Sonar 3D-15");
     EXPECT_EQ(json("about")["is_ready"], true);
     for (const char* part : {"api", "temperature", "systems_check", "time"}) {
@@ -69,12 +69,12 @@ TEST_F(Sonar3dEmulatorTest, ItTellsWhatItIs) {
         EXPECT_EQ(json("status")[part]["operational"], true) << part;
     }
     EXPECT_EQ(json("temperature"), 12.0);
-    EXPECT_EQ(json("acoustics/enabled"), false) << "as when it is switched on";
+    EXPECT_EQ(json("acoustics/enabled"), false) << "as at power-on";
     EXPECT_EQ(json("acoustics/mode"), "low-frequency");
     EXPECT_EQ(json("udp")["mode"], "multicast");
 }
 
-TEST_F(Sonar3dEmulatorTest, WhatIsSetIsKept) {
+TEST_F(Sonar3dEmulatorTest, KeepsItsSettings) {
     const std::vector<std::pair<std::string, std::string>> settings = {
         {"acoustics/enabled", "true"},
         {"acoustics/range", R"({"max":7.5,"min":0.5})"},
@@ -92,7 +92,7 @@ TEST_F(Sonar3dEmulatorTest, WhatIsSetIsKept) {
     }
 }
 
-TEST_F(Sonar3dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithTheBoundAndChangesNothing) {
+TEST_F(Sonar3dEmulatorTest, RefusesValuesOutOfBoundsWithoutChanges) {
     const auto expectRefused = [&](const std::string& path, const std::string& body, const std::string& words) {
         const Json before = json(path);
         const HttpReply reply = post(path, body);
@@ -130,14 +130,14 @@ TEST_F(Sonar3dEmulatorTest, WhatIsOutOfBoundsIsRefusedWithTheBoundAndChangesNoth
     EXPECT_EQ(emulator_.answer({"DELETE", prefix + "udp", ""}, now_).status, 405);
 }
 
-TEST_F(Sonar3dEmulatorTest, ItBeginsNoFartherThanItMayBeSet) {
+TEST_F(Sonar3dEmulatorTest, TheInitialRangeIsWithinItsLimit) {
     Sonar3dDevice device;
     device.longest_range = 7;
     EXPECT_EQ(Sonar3dEmulator(device, {}).state().range_max, 7);
     EXPECT_EQ(emulator_.state().range_max, 15);
 }
 
-TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
+TEST_F(Sonar3dEmulatorTest, RequestsPingsAtTheRateOfItsModeOnceEnabled) {
     advance(1);
     EXPECT_THAT(asked_, IsEmpty());
     post("acoustics/enabled", "true");
@@ -160,7 +160,7 @@ TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     post("acoustics/mode", R"("high-frequency")");
     post("acoustics/range", R"({"min": 0, "max": 5})");
     emulator_.heard(map());
-    EXPECT_EQ(sent<RangePixels>(2).frequency_hz, 1'200'000u) << "of a ping that was asked for before";
+    EXPECT_EQ(sent<RangePixels>(2).frequency_hz, 1'200'000u) << "of an earlier request";
     advance(0);
     EXPECT_EQ(asked_.at(2).frequency_khz, 2400);
     EXPECT_EQ(asked_[2].range, 5);
@@ -170,10 +170,10 @@ TEST_F(Sonar3dEmulatorTest, ItAsksForPingsAtTheRateOfItsModeOnceItMay) {
     EXPECT_EQ(asked_.size(), 4u) << "twenty a second";
     post("acoustics/enabled", "false");
     emulator_.heard(map());
-    EXPECT_EQ(datagrams_.size(), 6u) << "what was under way is not sent";
+    EXPECT_EQ(datagrams_.size(), 6u) << "the ping in progress is not sent";
 }
 
-TEST_F(Sonar3dEmulatorTest, AnImageHasItsRowsFromBelowAndItsScale) {
+TEST_F(Sonar3dEmulatorTest, AnImageHasRowsFromBelowAndItsScale) {
     post("acoustics/enabled", "true");
     post("acoustics/range", R"({"min": 1.5, "max": 15})");
     advance(0);
@@ -189,13 +189,13 @@ TEST_F(Sonar3dEmulatorTest, AnImageHasItsRowsFromBelowAndItsScale) {
     EXPECT_NEAR(ranges.field_of_view_deg, 0.8 * 180 / M_PI, 1e-4);
     EXPECT_NEAR(ranges.vertical_opening_deg, 0.2 * 180 / M_PI, 1e-4);
     EXPECT_EQ(ranges.range, 15);
-    EXPECT_THAT(ranges.pixels, ElementsAre(4000, 5000, 0, 0, 2000, 3000)) << "1 m is nearer than the least range";
+    EXPECT_THAT(ranges.pixels, ElementsAre(4000, 5000, 0, 0, 2000, 3000)) << "1 m is less than the min range";
     const auto strengths = sent<StrengthPixels>(1);
     EXPECT_EQ(strengths.sequence, 1u);
-    EXPECT_THAT(strengths.pixels, ElementsAre(155, 1, 0, 0, 255, 55)) << "50 for each 10 dB, the loudest 255";
+    EXPECT_THAT(strengths.pixels, ElementsAre(155, 1, 0, 0, 255, 55)) << "50 for each 10 dB, the strongest 255";
 }
 
-TEST_F(Sonar3dEmulatorTest, ItSendsWhereItIsTold) {
+TEST_F(Sonar3dEmulatorTest, SendsToTheConfiguredAddress) {
     post("acoustics/enabled", "true");
     post("udp", R"({"mode":"unicast","unicast_destination_ip":"10.0.0.7","unicast_destination_port":4001})");
     advance(0);
@@ -239,13 +239,13 @@ TEST_F(Sonar3dEmulatorTest, ClientsMaySetItsClock) {
     EXPECT_EQ(post("time/ntp/force-sync", "{}").status, 400);
 }
 
-TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOncePerOutage) {
+TEST_F(Sonar3dEmulatorTest, RequestsAMissingPingAgainAndWarnsOncePerOutage) {
     post("acoustics/enabled", "true");
     advance(0);
     for (int i = 0; i < 3; ++i) advance(3);
     EXPECT_EQ(asked_.size(), 4u);
     ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_THAT(warnings_[0], HasSubstr("no range image came"));
+    EXPECT_THAT(warnings_[0], HasSubstr("a requested ping gave no range image"));
     types::DepthMap silent;
     silent.time = now_;
     emulator_.heard(silent);
@@ -261,8 +261,8 @@ TEST_F(Sonar3dEmulatorTest, APingThatNeverComesIsAskedForAnewAndToldOncePerOutag
     EXPECT_EQ(warnings_.size(), 2u) << "of the next outage";
 }
 
-/** A sonar that takes longer than the device waits: each image tells what it was asked for with. */
-TEST_F(Sonar3dEmulatorTest, AnImageThatComesLateIsOfTheSettingsOfItsTime) {
+/** A sonar slower than the device's patience: each image has the settings of its request. */
+TEST_F(Sonar3dEmulatorTest, ALateImageHasTheSettingsOfItsRequest) {
     post("acoustics/enabled", "true");
     advance(0);
     const types::DepthMap first = map();
@@ -272,7 +272,7 @@ TEST_F(Sonar3dEmulatorTest, AnImageThatComesLateIsOfTheSettingsOfItsTime) {
     types::DepthMap earlier = first;
     earlier.time = earlier.time - types::Time{1};
     emulator_.heard(earlier);
-    EXPECT_THAT(datagrams_, IsEmpty()) << "nobody asked for it";
+    EXPECT_THAT(datagrams_, IsEmpty()) << "no request for it";
     emulator_.heard(first);
     EXPECT_EQ(sent<RangePixels>(0).frequency_hz, 1'200'000u);
     emulator_.heard(map());

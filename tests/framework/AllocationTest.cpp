@@ -9,7 +9,7 @@ namespace {
 
 using Large = std::shared_ptr<const std::vector<float>>;
 
-/** Passes a large sample on, as a component does. */
+/** Copies a large sample to its output, like a component. */
 struct Copier : TaskContext {
     using TaskContext::TaskContext;
     InputPort<Large> in{this, "in", "samples"};
@@ -25,7 +25,7 @@ struct Copier : TaskContext {
     }
 };
 
-TEST(AllocationTest, CountingCountsOnTheTasksThreadOnly) {
+TEST(AllocationTest, CountsAllocationsOnTheTasksThreadOnly) {
     Copier task("copier");
     std::unique_ptr<int> kept;
     auto allocate = [&] { kept = std::make_unique<int>(1); };

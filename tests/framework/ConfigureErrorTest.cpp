@@ -1,4 +1,4 @@
-// What a task finds wrong only when it is configured.
+// Errors that a task finds only when it is configured.
 #include <gmock/gmock.h>
 
 #include "components/framework/Deployment.hpp"
@@ -8,7 +8,7 @@
 namespace insonify::framework {
 namespace {
 
-/** Finds only when it is configured that its port is taken. */
+/** Finds only in configure that its port is in use. */
 struct Stickler : TaskContext {
     using TaskContext::TaskContext;
     struct Config {
@@ -22,7 +22,7 @@ struct Stickler : TaskContext {
     bool configureHook() override { throw types::ConfigError("", name() + ".port", "is taken"); }
 };
 
-TEST(ConfigureErrorTest, WhatConfiguringFindsIsToldWhereThePropertyStands) {
+TEST(ConfigureErrorTest, ReportsConfigureErrorsAtThePlaceOfTheProperty) {
     Registry registry;
     registry.add(
         {"test::Listener", "listens", [](const std::string& name) { return std::make_unique<Stickler>(name); }});

@@ -1,4 +1,4 @@
-// What a deployment tells of itself and lets others do while it runs: this test is a program with threads.
+// A deployment's control interface during a run: this test is a program with threads.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -17,7 +17,7 @@ connections:
   - {from: source.value, to: relay.in, policy: {type: buffer, size: 4}}
 )";
 
-TEST(DeploymentControlTest, ItTellsTasksPortsAndConnections) {
+TEST(DeploymentControlTest, ReportsTasksPortsAndConnections) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
     deployment.configure();
@@ -44,7 +44,7 @@ TEST(DeploymentControlTest, ItTellsTasksPortsAndConnections) {
     EXPECT_NE(std::ranges::find(interfaces[0].operations, "stop void()"), interfaces[0].operations.end());
 }
 
-TEST(DeploymentControlTest, WarningsComeFromOtherThreadsWhileRunsBeginAndEnd) {
+TEST(DeploymentControlTest, AcceptsWarningsFromOtherThreadsWhileRunsBeginAndEnd) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
     deployment.configure();
@@ -61,14 +61,14 @@ TEST(DeploymentControlTest, WarningsComeFromOtherThreadsWhileRunsBeginAndEnd) {
     other.join();
 }
 
-TEST(DeploymentControlTest, InRealtimeNothingPausesTheWallClock) {
+TEST(DeploymentControlTest, CannotPauseInRealtime) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(std::string("schedule: realtime\n") + pair, "a.yml"), registry);
     EXPECT_THROW(deployment.pause(true), std::runtime_error);
     EXPECT_THROW(deployment.step(), std::runtime_error);
 }
 
-TEST(DeploymentControlTest, TimeStandsStillOnceAPauseHasReturned) {
+TEST(DeploymentControlTest, TimeIsPausedWhenPauseReturns) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
     deployment.configure();
@@ -81,14 +81,14 @@ TEST(DeploymentControlTest, TimeStandsStillOnceAPauseHasReturned) {
         deployment.pause(true);
         const int64_t paused = now();
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        EXPECT_EQ(now(), paused) << "nor is the instant made for which it waited";
+        EXPECT_EQ(now(), paused) << "nor is the pending instant made";
         deployment.pause(false);
     }
     stop = true;
     running.join();
 }
 
-TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) {
+TEST(DeploymentControlTest, APausedRunCanBeSteppedAndStopped) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(pair, "a.yml"), registry);
     deployment.configure();
@@ -98,7 +98,7 @@ TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) 
     std::thread running([&] { deployment.run({.duration_s = 100}, stop, [&](const Progress&) { ++instants; }); });
     const auto become = [&](int expected) {
         test::comesTrue([&] { return instants == expected; });
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // one too many would come now
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a further instant would run now
         return instants == expected;
     };
     EXPECT_TRUE(become(0));
@@ -107,7 +107,7 @@ TEST(DeploymentControlTest, APausedRunStandsStillGoesStepByStepAndCanBeStopped) 
     deployment.step();
     deployment.step();
     EXPECT_TRUE(become(3));
-    EXPECT_GE(deployment.status().tasks.size(), 2u) << "told while it runs";
+    EXPECT_GE(deployment.status().tasks.size(), 2u) << "available during the run";
     stop = true;
     running.join();
 }

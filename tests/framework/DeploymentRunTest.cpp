@@ -48,13 +48,13 @@ TEST(DeploymentRunTest, TheSameDeploymentGivesTheSameRun) {
     EXPECT_EQ(LockstepRun(chain).notes("last"), LockstepRun(chain).notes("last"));
 }
 
-TEST(DeploymentRunTest, APaceHoldsSimulatedTimeToTheWallClock) {
+TEST(DeploymentRunTest, PaceLimitsSimulatedTimePerWallClockTime) {
     LockstepRun run(chain, {.pace = 0.5});
     EXPECT_GE(run.result.wall_s, 0.4) << "0.2 s of simulated time at half the pace";
     EXPECT_EQ(run.notes("last"), LockstepRun(chain).notes("last"));
 }
 
-TEST(DeploymentRunTest, ARunThatIsToBeStoppedDoesNotWaitForItsPace) {
+TEST(DeploymentRunTest, StopDoesNotWaitForThePace) {
     Registry registry = test::testRegistry();
     Deployment deployment(DeploymentSpec::parse(chain, "a.yml"), registry);
     deployment.configure();
@@ -70,7 +70,7 @@ TEST(DeploymentRunTest, TimeStartsAtStartTimeAndInstantsDoNotDrift) {
     EXPECT_EQ(run.notes("last").back(), "last:1100@109900000");
 }
 
-TEST(DeploymentRunTest, TasksOfDifferentPeriodsMeetInFileOrder) {
+TEST(DeploymentRunTest, TasksDueAtOnceRunInFileOrder) {
     LockstepRun run(R"(
 tasks:
   slow: {type: test::Source, activity: {period: 0.3}, properties: {last: 2}}
@@ -104,7 +104,7 @@ connections:
                   {"burst.value>all.in", 0}, {"burst.value>four.in", 6}, {"burst.value>one.in", 9}}));
 }
 
-TEST(DeploymentRunTest, WhatABufferCarriesBackwardsArrivesAtTheNextInstant) {
+TEST(DeploymentRunTest, BackwardBufferedSamplesArriveAtTheNextInstant) {
     LockstepRun run(R"(
 tasks:
   source: {type: test::Source, activity: {period: 0.1}}
@@ -119,7 +119,7 @@ connections:
     EXPECT_FALSE(run.result.failed());
 }
 
-TEST(DeploymentRunTest, ATaskThatThrowsEndsTheRunAndTheRestStopsInOrder) {
+TEST(DeploymentRunTest, AThrowingTaskEndsTheRunAndTheOthersStopInOrder) {
     LockstepRun run(R"(
 tasks:
   source: {type: test::Source, activity: {period: 0.1}, properties: {last: 9}}
@@ -143,7 +143,7 @@ struct Sonar : TaskContext {
     bool finished() const override { return true; }
 };
 
-TEST(DeploymentRunTest, PingsEndTheRunWhenEverySonarHasThem) {
+TEST(DeploymentRunTest, RunEndsWhenEverySonarHasWrittenThePings) {
     Registry registry;
     registry.add<Sonar>("test::Sonar", "pings");
     const char* yaml =
@@ -154,8 +154,7 @@ TEST(DeploymentRunTest, PingsEndTheRunWhenEverySonarHasThem) {
     EXPECT_EQ(deployment.task("a")->cycles().count(), 7u);
 }
 
-/** Notes its transitions in a list shared by all; one named "bad" refuses to be configured, "writer" writes on start.
- */
+/** Records its transitions in a shared list; "bad" refuses to be configured, "writer" writes on start. */
 struct Tracer : TaskContext {
     explicit Tracer(const std::string& task, std::vector<std::string>& shared) : TaskContext(task), all(shared) {}
     std::vector<std::string>& all;
@@ -182,7 +181,7 @@ struct Tracer : TaskContext {
     void cleanupHook() override { note("cleanup"); }
 };
 
-TEST(DeploymentRunTest, ReadersStartFirstAndStopLastAndNothingThatWaitsForThemIsLost) {
+TEST(DeploymentRunTest, ReadersStartFirstStopLastAndLoseNoWaitingSample) {
     std::vector<std::string> all;
     Registry registry;
     registry.add(
@@ -200,7 +199,7 @@ TEST(DeploymentRunTest, ReadersStartFirstAndStopLastAndNothingThatWaitsForThemIs
                                              "cleanup writer", "cleanup reader"}));
 }
 
-TEST(DeploymentRunTest, TasksThatCannotBeConfiguredAreAllNamedAndTheRestIsCleanedUp) {
+TEST(DeploymentRunTest, NamesAllTasksThatFailToConfigureAndCleansUpTheOthers) {
     std::vector<std::string> all;
     Registry registry;
     registry.add(
@@ -227,7 +226,8 @@ TEST(DeploymentRunTest, WithoutLimitsARunEndsWithItsSources) {
 
 using Seeds = std::vector<uint64_t>;
 
-/** The seeds of sources a and b, with these properties of b, keys of the document, seed of the run, and --set. */
+/** Returns the seeds of sources a and b, with these properties of b, keys of the document, seed of the run, and
+ *  --set. */
 Seeds seedsOf(const std::string& of_b, const std::string& document = "", uint64_t seed = 0,
               const std::string& set = "") {
     Registry registry = test::testRegistry();
@@ -244,7 +244,7 @@ Seeds seedsOf(const std::string& of_b, const std::string& document = "", uint64_
     return seeds;
 }
 
-TEST(DeploymentRunTest, EachTaskHasASeedOfItsOwnByTheDeploymentsAndItsName) {
+TEST(DeploymentRunTest, TaskSeedsDeriveFromTheDeploymentsSeedAndTheTasksName) {
     EXPECT_EQ(seedsOf(""), (Seeds{seedOf(1, "a"), seedOf(1, "b")}));
     EXPECT_NE(seedOf(1, "a"), seedOf(1, "b"));
     EXPECT_EQ(seedsOf("", "seed: 1\n"), seedsOf(""));
@@ -255,20 +255,20 @@ TEST(DeploymentRunTest, EachTaskHasASeedOfItsOwnByTheDeploymentsAndItsName) {
                 testing::Contains(testing::StartsWith("a.yml:1:7: seed: ")));
 }
 
-TEST(DeploymentRunTest, ASeedThatIsWrittenStaysAsItIs) {
+TEST(DeploymentRunTest, KeepsAWrittenSeed) {
     EXPECT_EQ(seedsOf("seed: 7"), (Seeds{seedOf(1, "a"), 7}));
     EXPECT_EQ(seedsOf("seed: 1", "seed: 5\n"), (Seeds{seedOf(5, "a"), 1})) << "the struct's default, but written";
     EXPECT_EQ(seedsOf("", "", 0, "b.seed=7"), (Seeds{seedOf(1, "a"), 7}));
-    EXPECT_EQ(seedsOf("seed: 7", "", 0, "b.seed=null"), seedsOf("")) << "taken out again";
+    EXPECT_EQ(seedsOf("seed: 7", "", 0, "b.seed=null"), seedsOf("")) << "removed again";
 }
 
-TEST(DeploymentRunTest, ASeedOfTheRunReachesEveryTaskThatHasOne) {
+TEST(DeploymentRunTest, TheRunsSeedReachesEveryTaskWithASeed) {
     EXPECT_EQ(seedsOf("", "", 5), seedsOf("", "seed: 5\n"));
-    EXPECT_EQ(seedsOf("seed: 7", "seed: 9\n", 5), seedsOf("", "", 5)) << "whatever is written";
-    EXPECT_EQ(seedsOf("seed: 7", "", 5, "b.seed=8"), (Seeds{seedOf(5, "a"), 8})) << "but for --set";
+    EXPECT_EQ(seedsOf("seed: 7", "seed: 9\n", 5), seedsOf("", "", 5)) << "for any written seed";
+    EXPECT_EQ(seedsOf("seed: 7", "", 5, "b.seed=8"), (Seeds{seedOf(5, "a"), 8})) << "except --set";
 }
 
-/** Has a seed that holds no hash. */
+/** Has a seed with too few bits for a hash. */
 struct NarrowConfig {
     int seed = 3;
     template <class Self, class V>
@@ -281,7 +281,7 @@ struct Narrow : TaskContext {
     Properties<NarrowConfig> config{this};
 };
 
-TEST(DeploymentRunTest, ASeedThatHoldsNoHashKeepsItsDefault) {
+TEST(DeploymentRunTest, ASeedTooNarrowForAHashKeepsItsDefault) {
     Registry registry;
     registry.add<Narrow>("test::Narrow", "has 31 bits");
     const DeploymentSpec spec =

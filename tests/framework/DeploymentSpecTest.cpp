@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-/** Every diagnostic of a deployment, as told before anything starts. */
+/** Returns every diagnostic of a deployment, as reported before anything starts. */
 std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vector<std::string>& sets = {}) {
     Registry registry = test::testRegistry();
     return test::refused([&] {
@@ -24,7 +24,7 @@ std::vector<std::string> diagnosticsOf(const std::string& yaml, const std::vecto
     });
 }
 
-TEST(DeploymentSpecTest, AllDiagnosticsOfAFileAreToldInOneGo) {
+TEST(DeploymentSpecTest, ReportsAllDiagnosticsOfAFileAtOnce) {
     const char* yaml =
         "schedule: sometimes\n"
         "color: red\n"
@@ -51,12 +51,12 @@ TEST(DeploymentSpecTest, AllDiagnosticsOfAFileAreToldInOneGo) {
             "a.yml:4:51: tasks.source.activity.period: is -1 s; may be 1e-06 to 1000000 s",
             "a.yml:4:75: tasks.source.properties.last: is 0; may be 1 to 1000000",
             "a.yml:4:78: tasks.source.properties.sed: is not a key here; did you mean seed? known: last, seed",
-            "a.yml:5:3: tasks.source: stands here twice; once is allowed",
+            "a.yml:5:3: tasks.source: is given twice; once is allowed",
             HasSubstr("a.yml:6:17: tasks.ghost.type: is test::Gost; did you mean "),
             "a.yml:7:40: tasks.relay.activity.trigger: there is no input port inn; did you mean in? known: in, extra",
             HasSubstr("a.yml:8:29: tasks.idle.activty: is not a key here; did you mean activity?"),
             "a.yml:8:9: tasks.idle: input port in (/double) is not connected; it must be",
-            "a.yml:12:5: connections[1]: stands here twice: source.value>relay.in",
+            "a.yml:12:5: connections[1]: is given twice: source.value>relay.in",
             HasSubstr("a.yml:13:12: connections[2].from: source has no output port valu; did you mean value?"),
             HasSubstr("a.yml:14:12: connections[3].from: there is no task sorce; did you mean source?"),
             HasSubstr("a.yml:14:29: connections[3].to: there is no task nobody"),
@@ -82,11 +82,11 @@ TEST(DeploymentSpecTest, SchedulersPrioritiesAndProcessorsAreChecked) {
             "a.yml:4:60: tasks.a.activity.scheduler: is rr; may be other, fifo",
             HasSubstr("tasks.a.activity.cpus[0]: is -1"), HasSubstr("tasks.a.activity.deadline: is 0 s"),
             HasSubstr("tasks.b.activity: has no priority; scheduler: fifo needs one, from 1 to 99"),
-            HasSubstr("tasks.c.activity.priority: is of no use with scheduler: other"),
+            HasSubstr("tasks.c.activity.priority: has no effect with scheduler: other"),
             HasSubstr("tasks.d.activity.priority: is 100"), HasSubstr("tasks.d.activity.cpus[1]: is 2000")));
 }
 
-TEST(DeploymentSpecTest, APortThatIsNotThereIsNamedWithThoseThatAre) {
+TEST(DeploymentSpecTest, NamesAMissingPortAndTheExistingPorts) {
     EXPECT_THAT(
         diagnosticsOf("tasks:\n"
                       "  s: {type: test::Source, activity: {period: 1}}\n"
@@ -116,17 +116,17 @@ TEST(DeploymentSpecTest, ALoopNeedsABuffer) {
                 ElementsAre("a.yml:8:5: connections[2]: connects b with itself"));
 }
 
-TEST(DeploymentSpecTest, ATaskThatNothingWouldRunIsRefused) {
+TEST(DeploymentSpecTest, RefusesATaskThatNothingRuns) {
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source}}"),
                 ElementsAre(HasSubstr("has nothing that would run it")));
-    EXPECT_THAT(diagnosticsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event does";
+    EXPECT_THAT(diagnosticsOf("tasks: {d: {type: test::Doorbell}}"), testing::IsEmpty()) << "an Event runs it";
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1, trigger: [a]}}}"),
                 testing::Contains(HasSubstr("both period and trigger")));
     EXPECT_THAT(diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: .nan}}}"),
                 testing::Contains(HasSubstr("must be a finite number")));
 }
 
-TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
+TEST(DeploymentSpecTest, RefusesATextThatIsNotADeployment) {
     EXPECT_THAT(diagnosticsOf(""), ElementsAre("a.yml: is empty; a deployment needs tasks"));
     EXPECT_THAT(diagnosticsOf("# nothing\n"), ElementsAre(HasSubstr("is empty")));
     EXPECT_THAT(diagnosticsOf("tasks: {}"), ElementsAre("a.yml:1:8: tasks: is empty; a deployment needs a task"));
@@ -140,7 +140,7 @@ TEST(DeploymentSpecTest, ATextThatIsNoDeploymentIsRefused) {
     EXPECT_THAT(diagnosticsOf("tasks: 3\nconnections: 4\nlibraries: {}\n"), testing::SizeIs(3));
 }
 
-TEST(DeploymentSpecTest, WhatCannotBeginAValueIsRefusedNotReadWithoutEnd) {
+TEST(DeploymentSpecTest, RefusesInvalidStartsOfValuesInsteadOfReadingForever) {
     for (const char* text : {",", "]", "}", ", 2.5, \"x\"]\nc: {d: .nan}\n", "--- a\n---\n,", "- a\n--- ]\n"})
         EXPECT_THAT(diagnosticsOf(text), ElementsAre(HasSubstr("a.yml:"))) << text;
     EXPECT_THAT(diagnosticsOf("tasks: {source: {type: test::Source}}\n", {"source.last=,"}),
@@ -162,7 +162,7 @@ TEST(DeploymentSpecTest, AMissingFileAndADirectoryAreNamed) {
                 ElementsAre(".: is a directory; must be a deployment file"));
 }
 
-TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {
+TEST(DeploymentSpecTest, SettingsOverrideTheFile) {
     Registry registry = test::testRegistry();
     DeploymentSpec spec = DeploymentSpec::parse(
         "tasks: {s: {type: test::Source, activity: {period: 1}, properties: {last: 5}}}", "a.yml");
@@ -174,7 +174,7 @@ TEST(DeploymentSpecTest, ASettingIsALayerOverTheFile) {
     EXPECT_EQ(config->seed, 11u);
 }
 
-TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
+TEST(DeploymentSpecTest, SettingsReachIntoBlocks) {
     DeploymentSpec spec = DeploymentSpec::parse("tasks: {s: {type: t, properties: {tvg: {a: 1, b: 2}}}}", "a.yml");
     spec.set("s.tvg.b=[3]");
     spec.set("s.water.depth=8");
@@ -184,7 +184,7 @@ TEST(DeploymentSpecTest, ASettingReachesIntoBlocks) {
     EXPECT_EQ(properties["water"]["depth"].as<int>(), 8);
 }
 
-TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
+TEST(DeploymentSpecTest, NamesSettingsThatDoNotFit) {
     EXPECT_THAT(
         diagnosticsOf("tasks: {s: {type: test::Source, activity: {period: 1}}}",
                       {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
@@ -193,7 +193,7 @@ TEST(DeploymentSpecTest, ASettingThatDoesNotFitIsNamed) {
                              HasSubstr("--set: t.last=1: there is no task t; did you mean s?"),
                              "--set: s.last: must be task.property=value", "--set: s=1: must be task.property=value",
                              HasSubstr("--set: s.seed=[: is not YAML"),
-                             "--set: s.last=: has no value; null takes the property out"));
+                             "--set: s.last=: has no value; null removes the property"));
 }
 
 }  // namespace

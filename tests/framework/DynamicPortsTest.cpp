@@ -9,14 +9,14 @@ namespace {
 
 using testing::ElementsAre;
 
-/** What the tasks below keep with a port. */
+/** The data of the tasks below for each port. */
 template <class T>
 struct Noted {
     std::string source;
     std::vector<std::string> got = {};
 };
 
-/** Takes doubles, texts and pictures, whatever their ports are named. */
+/** Takes doubles, texts and pictures on ports of any name. */
 struct Collector : TaskContext {
     using TaskContext::TaskContext;
     DynamicInputs<std::tuple<double, std::string, types::Image>, Noted> inputs{this};
@@ -43,7 +43,7 @@ void connect(test::Writer<T>& writer, TaskContext& reader, const std::string& na
     ASSERT_TRUE(writer.port.connectTo(*port, ConnPolicy::buffer(4)));
 }
 
-TEST(DynamicPortsTest, AnInputIsMadeForEachConnectionInOrderWithWhatTheTaskKeeps) {
+TEST(DynamicPortsTest, MakesAnInputWithTaskDataForEachConnectionInOrder) {
     test::Writer<double> depth("depth");
     test::Writer<std::string> text("text");
     test::Writer<std::shared_ptr<const types::Image>> camera("camera");
@@ -57,7 +57,7 @@ TEST(DynamicPortsTest, AnInputIsMadeForEachConnectionInOrderWithWhatTheTaskKeeps
     EXPECT_EQ(task.input("c")->need(), Need::Optional);
 }
 
-TEST(DynamicPortsTest, SamplesOfEachTypeComeInOnTheirOwnPorts) {
+TEST(DynamicPortsTest, SamplesOfEachTypeArriveOnTheirOwnPorts) {
     test::Writer<double> depth("depth");
     test::Writer<std::shared_ptr<const types::Image>> camera("camera");
     Collector task("log");
@@ -82,7 +82,7 @@ TEST(DynamicPortsTest, ATypeThatIsNotInTheListGetsNoPort) {
     EXPECT_EQ(task.input("a"), nullptr);
 }
 
-TEST(DynamicPortsTest, AnOutputIsOfTheFirstTypeThatFits) {
+TEST(DynamicPortsTest, AnOutputHasTheFirstTypeThatFits) {
     test::Writer<double> owner("player");
     DynamicOutputs<types::SampleTypes, Noted> outputs{&owner};
     const auto* made =
@@ -101,7 +101,7 @@ TEST(DynamicPortsTest, AnOutputIsOfTheFirstTypeThatFits) {
     EXPECT_EQ(got, "hello");
 }
 
-/** Passes numbers through. */
+/** Copies numbers to its output. */
 struct Pipe : TaskContext {
     using TaskContext::TaskContext;
     DynamicInputs<types::SampleTypes> inputs{this};

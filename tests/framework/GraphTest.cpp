@@ -8,7 +8,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/** What runs are counted in. */
+/** A counted sample. */
 struct Shot {
     static constexpr const char* type_name = "/test/Shot";
     static constexpr bool counted = true;
@@ -19,7 +19,7 @@ struct Gun : TaskContext {
     OutputPort<std::shared_ptr<const Shot>> shot{this, "shot", "counted"};
 };
 
-/** Passes on what others count. */
+/** Copies counted samples to its output. */
 struct Echo : TaskContext {
     using TaskContext::TaskContext;
     InputPort<std::shared_ptr<const Shot>> in{this, "in", "counted"};
@@ -44,7 +44,7 @@ std::vector<std::string> namesInOrder(Graph& graph) {
     return names;
 }
 
-TEST(GraphTest, WritersComeBeforeReadersElseTasksAsTheyWereAdded) {
+TEST(GraphTest, OrdersWritersBeforeReadersElseAsAdded) {
     Graph graph;
     auto& last = add<Adder>(graph, "last");
     add<Adder>(graph, "alone");
@@ -62,7 +62,7 @@ TEST(GraphTest, PortsOfDifferentTypesAreNotConnected) {
     EXPECT_THAT(graph.connections(), IsEmpty());
 }
 
-TEST(GraphTest, OfALoopTheBufferGoesBackwardsAndOneWithoutIsTold) {
+TEST(GraphTest, InALoopTheBufferLeadsBackwardsAndUnbufferedLoopsAreReported) {
     Graph graph;
     auto &a = add<Adder>(graph, "a"), &b = add<Adder>(graph, "b");
     graph.connect(a.out, b.in, ConnPolicy::buffer(2));
@@ -73,7 +73,7 @@ TEST(GraphTest, OfALoopTheBufferGoesBackwardsAndOneWithoutIsTold) {
     EXPECT_EQ(graph.unbufferedLoops().size(), 2u) << "one for each task on it";
 }
 
-TEST(GraphTest, CountedAreTheSamplesThatEverySourceOfThemHasWritten) {
+TEST(GraphTest, CountsTheSamplesThatEverySourceHasWritten) {
     Graph graph;
     auto &near = add<Gun>(graph, "near"), &far = add<Gun>(graph, "far");
     auto& echo = add<Echo>(graph, "echo");
@@ -87,7 +87,7 @@ TEST(GraphTest, CountedAreTheSamplesThatEverySourceOfThemHasWritten) {
     EXPECT_EQ(Graph().countedSamples(), 0u);
 }
 
-/** Goes into error, or throws, in its cycle. */
+/** Causes an error or throws in its cycle. */
 struct Misfire : Gun {
     using Gun::Gun;
     bool throws = false;
@@ -97,7 +97,7 @@ struct Misfire : Gun {
     }
 };
 
-TEST(GraphTest, ItKnowsErrorsOfSourcesAndFailures) {
+TEST(GraphTest, ReportsErrorsOfSourcesAndFailures) {
     Graph graph;
     auto& gun = add<Misfire>(graph, "gun");
     graph.arrange();

@@ -9,7 +9,7 @@
 namespace insonify::framework {
 namespace {
 
-/** Notes which hooks ran, by their letters, and throws in, or refuses, those that the test names. */
+/** Records which hooks ran, by their letters, and throws in, or refuses, the hooks that the test names. */
 class Probe : public TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -52,7 +52,7 @@ Outcome make(Probe& task, Call call) {
     }
 }
 
-/** Brings a fresh task into a state by legal means. */
+/** Brings a new task into a state by legal transitions. */
 void bring(Probe& task, TaskState state) {
     if (state == TaskState::PreOperational) return;
     task.configure();
@@ -180,7 +180,7 @@ TEST(LifeCycleTest, ErrorRunsErrorHookUntilRecovered) {
     EXPECT_EQ(task.hooks, "CSUEU");
 }
 
-TEST(LifeCycleTest, ATaskThatFailedWhileStoppingWorksAgainOnceRecovered) {
+TEST(LifeCycleTest, RecoversAfterAFailedStop) {
     Probe task("probe");
     bring(task, TaskState::Running);
     task.throwing = "s";
@@ -216,7 +216,7 @@ TEST(LifeCycleTest, ATaskMayStopItselfButNotWithinAnotherTransition) {
     EXPECT_EQ(reason, "cannot stop: probe is in the middle of stop");
 }
 
-TEST(LifeCycleTest, AThrowAfterAFailedStopOfItsOwnIsUndoneNoSecondTime) {
+TEST(LifeCycleTest, AThrowAfterAFailedStopIsNotUndoneTwice) {
     for (const auto& [throwing, end] : {std::pair("sU", TaskState::Exception), {"sxU", TaskState::FatalError}}) {
         Probe task("probe");
         bring(task, TaskState::Running);
@@ -241,7 +241,7 @@ TEST(LifeCycleTest, NoCycleRunsWithinATransition) {
     EXPECT_EQ(task.hooks, "CSs");
 }
 
-TEST(LifeCycleTest, ADiagnosticOfTheConfigurationIsKeptWhole) {
+TEST(LifeCycleTest, KeepsTheWholeConfigurationDiagnostic) {
     Probe task("probe");
     task.during = [] { throw types::ConfigError("a.glb", "meshes[2]", "is no mesh"); };
     EXPECT_FALSE(task.configure());
@@ -259,7 +259,7 @@ TEST(LifeCycleTest, EveryChangeOfStateIsWrittenWithItsOrocosNumber) {
     EXPECT_EQ(states, (std::vector<int32_t>{4, 5, 3}));
 }
 
-TEST(LifeCycleTest, AReaderOfTheStateThatComesLaterIsToldTheLast) {
+TEST(LifeCycleTest, ALaterReaderOfTheStateGetsTheLastState) {
     Probe task("probe");
     ConnPolicy policy;
     policy.init = true;

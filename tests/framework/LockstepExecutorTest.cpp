@@ -1,4 +1,4 @@
-// The order of work on simulated time, of graphs made by hand; of whole deployments it is in DeploymentRunTest.
+// The order of tasks in simulated time, in graphs made by hand; DeploymentRunTest tests whole deployments.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using testing::ElementsAre;
 
 const std::atomic<bool> not_stopped{false};
 
-/** Plays at given times, as a log does. */
+/** Plays at given times, like a log. */
 struct Player : TaskContext, ClockSource {
     using TaskContext::TaskContext;
     OutputPort<double> value{this, "value", "its place in the list"};
@@ -36,7 +36,7 @@ struct Shell {
     static constexpr bool counted = true;
 };
 
-/** Writes what runs are counted in; in error from its third cycle on where it is to be. */
+/** Writes counted samples; may be in error from its third cycle on. */
 struct Mortar : TaskContext {
     using TaskContext::TaskContext;
     OutputPort<Shell> shot{this, "shot", "counted"};
@@ -71,13 +71,14 @@ struct Range {
         for (const auto& task : graph.tasks()) ASSERT_TRUE(task->configure() && task->start());
         executor->begin();
     }
-    Progress run(const RunLimits& limits, const std::atomic<bool>& stop = not_stopped, const Executor::Report& report = {}) {
+    Progress run(const RunLimits& limits, const std::atomic<bool>& stop = not_stopped,
+                 const Executor::Report& report = {}) {
         executor->run(limits, stop, report);
         return executor->progress();
     }
 };
 
-TEST(LockstepExecutorTest, TimeGoesFromOneInstantToTheNextAndWritersWorkFirst) {
+TEST(LockstepExecutorTest, TimeAdvancesByInstantsAndWritersRunFirst) {
     Range bench;
     auto& relay = bench.add<test::Relay>("relay");
     auto& source = bench.add<test::Source>("source", 0.25);
@@ -90,7 +91,7 @@ TEST(LockstepExecutorTest, TimeGoesFromOneInstantToTheNextAndWritersWorkFirst) {
     EXPECT_EQ(bench.environment->start_time().microseconds, 1'000'000);
 }
 
-TEST(LockstepExecutorTest, AClockSourceIsDueWhenItSaysAndEndsTheRun) {
+TEST(LockstepExecutorTest, AClockSourceSetsItsCyclesAndTheEndOfTheRun) {
     Range bench;
     auto& player = bench.add<Player>("player");
     auto& relay = bench.add<test::Relay>("relay");
@@ -101,15 +102,15 @@ TEST(LockstepExecutorTest, AClockSourceIsDueWhenItSaysAndEndsTheRun) {
     EXPECT_THAT(relay.notes, ElementsAre("relay:0@5", "relay:1@7", "relay:2@11"));
 }
 
-TEST(LockstepExecutorTest, WithALimitItGoesOnWhileASourceThatHasFinishedStillWrites) {
+TEST(LockstepExecutorTest, WithALimitItContinuesWhileAFinishedSourceStillWrites) {
     Range bench;
-    auto& source = bench.add<test::Source>("source", 0.1);  // has finished after 3, and writes on
+    auto& source = bench.add<test::Source>("source", 0.1);  // has finished after 3, and continues to write
     bench.start();
     bench.run({.duration_s = 1});
     EXPECT_EQ(source.value.written(), 10u);
 }
 
-TEST(LockstepExecutorTest, ItEndsOnceEverySourceHasWrittenSoManyCountedSamples) {
+TEST(LockstepExecutorTest, EndsAtTheNumberOfCountedSamplesOfEverySource) {
     Range bench;
     auto &fast = bench.add<Mortar>("fast", 0.1), &slow = bench.add<Mortar>("slow", 0.2);
     bench.start();
@@ -118,14 +119,14 @@ TEST(LockstepExecutorTest, ItEndsOnceEverySourceHasWrittenSoManyCountedSamples) 
     EXPECT_EQ(fast.shot.written(), 7u);
 }
 
-TEST(LockstepExecutorTest, ACountThatCannotBeReachedAnyMoreEndsTheRun) {
+TEST(LockstepExecutorTest, EndsWhenTheCountCannotBeReached) {
     Range bench;
     bench.add<Mortar>("gun", 0.1).fails = true;
     bench.start();
     EXPECT_EQ(bench.run({.samples = 4}).samples, 2u);
 }
 
-/** Gives a shot for each number that is even, and is in error at others. */
+/** Writes a shot for each even number, and is in error at odd numbers. */
 struct Picky : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "numbers"};
@@ -151,7 +152,7 @@ TEST(LockstepExecutorTest, ARefusedSampleDoesNotEndARunThatCounts) {
     EXPECT_EQ(source.value.written(), 10u);
 }
 
-/** Gives 1 for ever, of which it has said all at once. */
+/** Writes 1 forever; has finished from the beginning. */
 struct Held : TaskContext {
     using TaskContext::TaskContext;
     OutputPort<double> value{this, "value", "1"};
@@ -159,7 +160,7 @@ struct Held : TaskContext {
     bool finished() const override { return true; }
 };
 
-TEST(LockstepExecutorTest, ACountEndsWithSourcesThatHoldWhatIsRefused) {
+TEST(LockstepExecutorTest, EndsWhenSourcesOnlyHoldRefusedSamples) {
     Range bench;
     auto& held = bench.add<Held>("held", 0.1);
     auto& picky = bench.add<Picky>("picky");
@@ -169,7 +170,7 @@ TEST(LockstepExecutorTest, ACountEndsWithSourcesThatHoldWhatIsRefused) {
     EXPECT_EQ(held.value.written(), 1u);
 }
 
-TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {
+TEST(LockstepExecutorTest, ChecksTheStopFlagAndReportsAfterEachInstant) {
     Range bench;
     bench.add<test::Source>("source", 0.1);
     bench.start();
@@ -183,7 +184,7 @@ TEST(LockstepExecutorTest, TheStopFlagAndTheReportAreLookedAtAfterEachInstant) {
     EXPECT_DOUBLE_EQ(elapsed[1], 0.1);
 }
 
-TEST(LockstepExecutorTest, NoInstantBeginsWhileSomeoneHoldsTheTimeBetweenTwo) {
+TEST(LockstepExecutorTest, NoInstantBeginsWhileBetweenInstantsIsHeld) {
     Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);
     bench.start();
@@ -198,7 +199,7 @@ TEST(LockstepExecutorTest, NoInstantBeginsWhileSomeoneHoldsTheTimeBetweenTwo) {
     EXPECT_EQ(source.value.written(), 3u);
 }
 
-TEST(LockstepExecutorTest, TimeThatStandsStillGoesOnStepByStep) {
+TEST(LockstepExecutorTest, PausedTimeAdvancesByStep) {
     Range bench;
     auto& source = bench.add<test::Source>("source", 0.1);
     bench.start();
@@ -213,7 +214,7 @@ TEST(LockstepExecutorTest, TimeThatStandsStillGoesOnStepByStep) {
     EXPECT_EQ(source.value.written(), 2u);
     bench.executor->pause(false);
     bench.run({});
-    EXPECT_EQ(source.value.written(), 3u) << "time began anew, but the source had finished with its third";
+    EXPECT_EQ(source.value.written(), 3u) << "time restarted, but the source had finished with its third";
 }
 
 }  // namespace

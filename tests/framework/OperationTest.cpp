@@ -39,7 +39,7 @@ TEST(OperationTest, IsListedAndCalledByTextAsYaml) {
     EXPECT_EQ(motor.operation("rest"), nullptr);
 }
 
-TEST(OperationTest, ArgumentsThatDoNotFitAreAllNamed) {
+TEST(OperationTest, NamesAllArgumentsThatDoNotFit) {
     Motor motor("motor");
     EXPECT_THAT(
         test::refused([&] {
@@ -56,7 +56,7 @@ TEST(OperationTest, AThrowReachesTheCallerAndLeavesTheTask) {
     EXPECT_EQ(motor.state(), TaskState::Stopped);
 }
 
-TEST(OperationTest, TransitionsAreOperationsThatTellWhyTheyAreRefused) {
+TEST(OperationTest, TransitionsAreOperationsThatReportWhyTheyAreRefused) {
     Motor motor("motor");
     const auto call = [&](const char* name) {
         try {
@@ -89,7 +89,7 @@ struct WheelConfig {
     }
 };
 
-/** Takes properties over while it runs, but for a radius of 7. */
+/** Applies properties while it runs, except a radius of 7. */
 struct Wheel : TaskContext {
     using TaskContext::TaskContext;
     Properties<WheelConfig> config{this};
@@ -101,7 +101,7 @@ struct Wheel : TaskContext {
     }
 };
 
-/** What a call of "task.operation" gives, or why it does not. */
+/** Returns the result of a call of "task.operation", or why it fails. */
 std::string called(TaskContext& task, const std::string& operation, const std::vector<std::string>& arguments) {
     try {
         return task.operation(operation)->callText(arguments);
@@ -124,7 +124,7 @@ TEST(OperationTest, EveryPropertyHasASetterThatChecksItsArgument) {
     EXPECT_EQ(wheel.config->spoke_count, 8);
 }
 
-TEST(OperationTest, ARunningTaskTakesASettingOverOrKeepsTheOldOneAndSaysWhy) {
+TEST(OperationTest, ARunningTaskAppliesASettingOrKeepsTheOldOneWithAReason) {
     Wheel wheel("wheel");
     wheel.configure();
     wheel.start();

@@ -7,7 +7,7 @@
 namespace insonify::framework {
 namespace {
 
-/** What a reader gets that comes after `count` writes of 0, 1, 2... */
+/** Returns what a reader gets after `count` writes of 0, 1, 2... */
 std::pair<std::vector<int32_t>, uint64_t> slowReader(ConnPolicy policy, int count) {
     test::Writer<int32_t> writer;
     test::Reader<int32_t> reader;
@@ -27,7 +27,7 @@ TEST(PortTest, AFullCircularBufferDropsTheOldest) {
 }
 TEST(PortTest, NothingIsLostWithinCapacity) { EXPECT_EQ(slowReader(ConnPolicy::buffer(3), 3), (Got{{0, 1, 2}, 0})); }
 
-TEST(PortTest, ReadingTellsNoneOldAndNew) {
+TEST(PortTest, ReadReturnsNoOldOrNewData) {
     test::Writer<int32_t> writer;
     test::Reader<int32_t> reader;
     writer.port.connectTo(reader.port, {});
@@ -53,7 +53,7 @@ TEST(PortTest, ReadNewestDrains) {
     EXPECT_FALSE(reader.port.hasNew());
 }
 
-/** What a task works on of three samples, and how many samples its connections say it has passed over. */
+/** Returns the samples that a task processes of three, and the number of skipped samples of its connections. */
 std::pair<std::vector<int32_t>, uint64_t> workedOn(bool realtime) {
     test::Writer<int32_t> writer;
     test::Reader<int32_t> reader;
@@ -66,9 +66,9 @@ std::pair<std::vector<int32_t>, uint64_t> workedOn(bool realtime) {
 }
 
 TEST(PortTest, InLockstepTheNextSampleCounts) { EXPECT_EQ(workedOn(false), (Got{{0, 1, 2}, 0})); }
-TEST(PortTest, InRealtimeTheNewestCountsAndThoseBeforeItAreCounted) { EXPECT_EQ(workedOn(true), (Got{{2}, 2})); }
+TEST(PortTest, InRealtimeTheNewestIsReadAndSkippedSamplesAreCounted) { EXPECT_EQ(workedOn(true), (Got{{2}, 2})); }
 
-TEST(PortTest, WhatIsPassedOverIsCountedByConnection) {
+TEST(PortTest, CountsSkippedSamplesPerConnection) {
     test::Writer<int32_t> few, many;
     test::Reader<int32_t> reader;
     many.port.connectTo(reader.port, ConnPolicy::buffer(8));
@@ -124,7 +124,7 @@ TEST(PortTest, ADisconnectedPortHasNoData) {
     EXPECT_EQ(value, 2);
 }
 
-TEST(PortTest, APortThatGoesLeavesItsConnections) {
+TEST(PortTest, DisconnectsInDestructor) {
     test::Writer<int32_t> writer;
     {
         test::Reader<int32_t> reader;
@@ -147,7 +147,7 @@ TEST(PortTest, PortsOfDifferentTypesDoNotConnect) {
     EXPECT_FALSE(reader.port.connected());
 }
 
-TEST(PortTest, StartForgetsWhatCameBefore) {
+TEST(PortTest, StartClearsEarlierSamples) {
     test::Writer<int32_t> writer;
     test::Reader<int32_t> reader;
     writer.port.connectTo(reader.port, ConnPolicy::buffer(4));
@@ -158,7 +158,7 @@ TEST(PortTest, StartForgetsWhatCameBefore) {
     EXPECT_EQ(reader.port.read(value), FlowStatus::NoData);
 }
 
-/** Reads one sample a cycle. */
+/** Reads one sample per cycle. */
 struct OneByOne : TaskContext {
     using TaskContext::TaskContext;
     InputPort<int32_t> in{this, "in", "numbers"};
@@ -183,7 +183,7 @@ TEST(PortTest, TheHookRunsAgainUntilItsPortsAreEmpty) {
     EXPECT_EQ(task.cycles_run, 300);
 }
 
-TEST(PortTest, AHookThatReadsNothingIsNotRunForEver) {
+TEST(PortTest, AHookThatReadsNothingIsNotRepeatedForever) {
     test::Writer<int32_t> writer;
     OneByOne task("blind");
     task.reads = false;

@@ -1,4 +1,4 @@
-// Ports between threads; run with ThreadSanitizer as well (scripts/test).
+// Ports between threads; also run with ThreadSanitizer (scripts/test).
 #include <gtest/gtest.h>
 
 #include <future>
@@ -12,7 +12,7 @@ namespace {
 
 using test::comesTrue;
 
-/** Reads one sample a cycle on its own thread while it lives, and checks that they come in order. */
+/** Reads one sample per cycle on its own thread until destroyed, and checks their order. */
 class Listener : public TaskContext {
 public:
     explicit Listener(std::string name = "listener") : TaskContext(std::move(name)) {
@@ -21,7 +21,7 @@ public:
         activity().release();
     }
     ~Listener() override { quieten(); }
-    /** Nothing runs on its thread any more. */
+    /** Stops the cycles of its thread. */
     void quieten() {
         activity().hold();
         stop();
@@ -42,7 +42,7 @@ private:
     int64_t last_ = 0;
 };
 
-/** Writes 1, 2, 3... as fast as it can until it goes. */
+/** Writes 1, 2, 3... as fast as possible until destroyed. */
 class Chatter {
 public:
     ~Chatter() {
@@ -69,7 +69,7 @@ TEST(PortThreadsTest, EverySampleOfABurstRunsATriggeredTask) {
     EXPECT_EQ(listener.disordered, 0);
 }
 
-TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
+TEST(PortThreadsTest, ASampleFromBeforeTheReleaseRunsTheTask) {
     test::Writer<int64_t> writer;
     Listener listener;
     listener.activity().hold();
@@ -80,7 +80,7 @@ TEST(PortThreadsTest, ASampleThatCameBeforeTheThreadWasReleasedRunsTheTask) {
     EXPECT_TRUE(comesTrue([&] { return listener.samples == 1; }));
 }
 
-TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
+TEST(PortThreadsTest, AHangingReaderDoesNotDelayItsWriter) {
     test::Writer<int64_t> writer;
     Listener listener;
     std::promise<void> hanging, let_go;
@@ -91,7 +91,7 @@ TEST(PortThreadsTest, AReaderThatHangsInItsHookDoesNotHoldUpItsWriter) {
     writer.port.connectTo(listener.in, ConnPolicy::circularBuffer(2));
     writer.port.write(1);
     hanging.get_future().wait();
-    for (int64_t i = 2; i <= 10001; ++i) writer.port.write(i);  // would never end if the reader were waited for
+    for (int64_t i = 2; i <= 10001; ++i) writer.port.write(i);  // would never end if it waited for the reader
     EXPECT_EQ(listener.samples, 0);
     EXPECT_EQ(listener.in.channels().front()->lost(), 9998u);
     let_go.set_value();
@@ -125,7 +125,7 @@ TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
     EXPECT_EQ(second.disordered, 0);
 }
 
-TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
+TEST(PortThreadsTest, ADestroyedTaskDisconnectsWhileOthersWrite) {
     Chatter chatter;
     for (int i = 0; i < 50; ++i) {
         Listener listener;
@@ -135,7 +135,7 @@ TEST(PortThreadsTest, ATaskThatGoesWhileOthersWriteDisconnectsItself) {
     EXPECT_FALSE(chatter.port().connected());
 }
 
-TEST(PortThreadsTest, AnOutputMayGoRightAfterItsReaderWentOnAnotherThread) {
+TEST(PortThreadsTest, AnOutputMayBeDestroyedRightAfterItsReaderOnAnotherThread) {
     for (int i = 0; i < 50; ++i) {
         auto writer = std::make_unique<test::Writer<int64_t>>();
         auto reader = std::make_unique<test::Reader<int64_t>>();
@@ -143,7 +143,7 @@ TEST(PortThreadsTest, AnOutputMayGoRightAfterItsReaderWentOnAnotherThread) {
         std::atomic<bool> gone{false};
         std::thread other([&] {
             reader.reset();
-            gone.store(true, std::memory_order_relaxed);  // orders nothing: that is the port's affair
+            gone.store(true, std::memory_order_relaxed);  // orders nothing: the port must do that
         });
         while (!gone.load(std::memory_order_relaxed)) std::this_thread::yield();
         writer.reset();
@@ -166,7 +166,7 @@ TEST(PortThreadsTest, TransitionsFromManyThreadsAreMadeOneAfterTheOther) {
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_GT(stops, 0);
-    EXPECT_EQ(starts, stops);  // it was running before and is now
+    EXPECT_EQ(starts, stops);  // it was running before, and is running now
     EXPECT_TRUE(listener.isRunning());
 }
 

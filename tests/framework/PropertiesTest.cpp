@@ -109,7 +109,7 @@ always: {mean: 2}
     EXPECT_TRUE(config.loud);
     EXPECT_EQ(config.file, "a.glb");
     EXPECT_EQ(config.position, glm::dvec3(1, -2.5, 3));
-    ASSERT_TRUE(config.speckle);  // an empty block is a block
+    ASSERT_TRUE(config.speckle);  // an empty block is present
     EXPECT_EQ(config.speckle->mean, 0.4);
     EXPECT_EQ(config.gain, -3);
     EXPECT_EQ(config.bearings, (std::vector<double>{-10, 0, 10}));
@@ -119,8 +119,9 @@ always: {mean: 2}
     EXPECT_EQ(config.always.law, Law::Rayleigh);
 }
 
-/** What a deployment's properties, one `--set` and a live setter each make of a value, and both of them after it. */
-TEST(PropertiesTest, SettingFromOutsideAndLiveMeanTheSame) {
+/** The results of a value in a deployment's properties, in one `--set` and in a live setter, and the state after
+ *  both. */
+TEST(PropertiesTest, SettingsFromOutsideAndLiveAreEquivalent) {
     const std::string written =
         "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3, bearings: [1, 2], materials: {a: {mean: 3}, b: {mean: "
         "4}}, always: {law: gaussian, mean: 7}}";
@@ -151,7 +152,7 @@ TEST(PropertiesTest, SettingFromOutsideAndLiveMeanTheSame) {
     }
 }
 
-TEST(PropertiesTest, NullTakesOutAndWhatABlockDoesNotNameStays) {
+TEST(PropertiesTest, NullRemovesAndUnnamedFieldsOfABlockStay) {
     Task task("t");
     ASSERT_THAT(complaintsOf(task, "{range: 20, speckle: {law: gaussian, mean: 2}, gain: 3}"), testing::IsEmpty());
     framework::PropertiesBase& properties = task.config;
@@ -165,7 +166,7 @@ TEST(PropertiesTest, NullTakesOutAndWhatABlockDoesNotNameStays) {
     EXPECT_EQ(task.config->range, 50);
 }
 
-TEST(PropertiesTest, EveryDiagnosticIsReportedAtItsPlaceInOneGo) {
+TEST(PropertiesTest, ReportsEveryDiagnosticAtItsPlaceAtOnce) {
     Task task("t");
     const char* yaml =
         "rang: 3\n"
@@ -201,16 +202,16 @@ TEST(PropertiesTest, EveryDiagnosticIsReportedAtItsPlaceInOneGo) {
             "a.yml:11:20: p.bearings[2]: is x; must be a finite number",
             "a.yml:12:9: p.layers: is gaussian; must be a list",
             "a.yml:13:26: p.materials.sand.mean: is 11; may be 0 to 10",
-            "a.yml:14:19: p.always.mean: stands here twice; once is allowed"));
+            "a.yml:14:19: p.always.mean: is given twice; once is allowed"));
 }
 
-TEST(PropertiesTest, ADiagnosticOfFieldsTogetherIsReportedWhereItStands) {
+TEST(PropertiesTest, ReportsDiagnosticsOfSeveralFieldsAtTheBlock) {
     Task task("t");
     EXPECT_THAT(complaintsOf(task, "range: 1\nloud: true\nlayers:\n  - {}\n  - {law: gaussian, mean: 3}\n"),
                 testing::ElementsAre("a.yml:2:7: p.loud: needs file", "a.yml:5:27: p.layers[1].mean: is one too many"));
 }
 
-TEST(PropertiesTest, OneBlockStandsForAListOfOne) {
+TEST(PropertiesTest, OneBlockIsAListOfOne) {
     Task task("t");
     EXPECT_THAT(complaintsOf(task, "layers: {law: gaussian}"), testing::IsEmpty());
     ASSERT_EQ(task.config->layers.size(), 1u);
@@ -219,7 +220,7 @@ TEST(PropertiesTest, OneBlockStandsForAListOfOne) {
                 testing::ElementsAre("a.yml:1:16: p.layers.mean: is 11; may be 0 to 10"));
 }
 
-TEST(PropertiesTest, NumbersThatAreNoneAreRefused) {
+TEST(PropertiesTest, RefusesInvalidNumbers) {
     for (const char* number : {".inf", "-.inf", "nan", "inf", "1e999", "0x10", "1_000", "1,5", "", "1m"}) {
         Task task("t");
         EXPECT_EQ(complaintsOf(task, std::string("range: ") + number).size(), 1u) << number;
@@ -228,7 +229,7 @@ TEST(PropertiesTest, NumbersThatAreNoneAreRefused) {
     }
 }
 
-TEST(PropertiesTest, NumbersThatDoNotFitTheirTypeAreRefused) {
+TEST(PropertiesTest, RefusesNumbersBeyondTheirType) {
     framework::ConfigReader reader("a.yml");
     float narrow = 1;
     uint32_t word = 1;
@@ -242,7 +243,7 @@ TEST(PropertiesTest, NumbersThatDoNotFitTheirTypeAreRefused) {
     EXPECT_EQ(word, 4294967295u);
 }
 
-TEST(PropertiesTest, TheListingTellsAll) {
+TEST(PropertiesTest, ListsAllProperties) {
     const auto list = Task("t").config.list();
     const auto named = [&](const std::string& name) {
         return *std::find_if(list.begin(), list.end(), [&](const auto& info) { return info.name == name; });

@@ -17,7 +17,7 @@ class PropertySourcesTest : public testing::Test {
 protected:
     void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
     DeploymentSpec parse(const std::string& yaml) { return DeploymentSpec::parse(yaml, (folder_ / "a.yml").string()); }
-    /** Properties of task `t` as they come together, in one line. */
+    /** Returns the merged properties of task `t` in one line. */
     std::string properties(const std::string& yaml, const std::string& task = "t") { return text(parse(yaml), task); }
     static std::string text(const DeploymentSpec& spec, const std::string& task = "t") {
         YAML::Emitter out;
@@ -26,7 +26,7 @@ protected:
         out << spec.task(task)->properties;
         return out.c_str();
     }
-    /** Every diagnostic, without the folder. */
+    /** Returns every diagnostic, without the folder. */
     std::vector<std::string> diagnostics(const std::string& yaml, const std::vector<std::string>& sets = {}) {
         Registry registry = test::testRegistry();
         std::vector<std::string> texts = test::refused([&] {
@@ -59,7 +59,7 @@ TEST_F(PropertySourcesTest, SectionsApplyInOrderOverTheDeploymentAndBlocksAreMer
               "{gain: 2, range: 50, head: {left: 1, right: 2}, list: [1, 2, 3]}");
 }
 
-TEST_F(PropertySourcesTest, WhatASectionChainsLiesBelowIt) {
+TEST_F(PropertySourcesTest, ChainedSectionsAreTheBase) {
     write("one.yml",
           "--- name:default\na: 1\nb: 1\nc: 1\n"
           "--- name:base\nb: 2\nc: 2\n"
@@ -67,7 +67,7 @@ TEST_F(PropertySourcesTest, WhatASectionChainsLiesBelowIt) {
     EXPECT_EQ(properties(head + "    property_files: {files: [one.yml], sections: [top]}\n"), "{a: 1, b: 2, c: 3}");
 }
 
-TEST_F(PropertySourcesTest, ALaterFileIsLaidOverAnEarlierOneOrTakesItsPlace) {
+TEST_F(PropertySourcesTest, ALaterFileIsMergedOverOrReplacesAnEarlierOne) {
     write("one.yml", "--- name:default\na: 1\nb: 1\n");
     write("two.yml", "--- name:default\nb: 2\n");
     write("three.yml", "--- name:default merge:false\nb: 3\n");
@@ -75,7 +75,7 @@ TEST_F(PropertySourcesTest, ALaterFileIsLaidOverAnEarlierOneOrTakesItsPlace) {
     EXPECT_EQ(properties(head + "    property_files: {files: [one.yml, two.yml, three.yml]}\n"), "{b: 3}");
 }
 
-TEST_F(PropertySourcesTest, DiagnosticsNameTheFileAndLineOfTheValueAllAtOnce) {
+TEST_F(PropertySourcesTest, AllDiagnosticsNameTheFileAndLineOfTheValue) {
     write("one.yml", "# as Rock writes it\n--- name:default\nlast: 0\n\n--- name:more\nsed: 3\nseed: many\n");
     EXPECT_THAT(
         diagnostics(head + "    properties: {lost: 1}\n" +
@@ -86,7 +86,7 @@ TEST_F(PropertySourcesTest, DiagnosticsNameTheFileAndLineOfTheValueAllAtOnce) {
                     "one.yml:7:7: seed: is many; must be a finite number"));
 }
 
-TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
+TEST_F(PropertySourcesTest, NamesThePlaceInAnInvalidPropertyFile) {
     write("bad.yml",
           "--- name:a b:c\n"
           "last: [1\n"
@@ -101,17 +101,17 @@ TEST_F(PropertySourcesTest, APropertyFileThatIsNotOneIsNamedWithItsPlace) {
         testing::UnorderedElementsAre(
             HasSubstr("a.yml:5:21: tasks.t.property_files.sections: there is no section defalt"),
             HasSubstr("bad.yml:1:1: has b:c in the head of a section"), HasSubstr("bad.yml:3:1: is not YAML"),
-            HasSubstr("bad.yml:3:1: heads a section without a name"),
+            HasSubstr("bad.yml:3:1: starts a section without a name"),
             HasSubstr("bad.yml:5:1: loop: chains loop, which chains it"),
             HasSubstr("bad.yml:5:1: loop: chains nobody; "), HasSubstr("bad.yml:6:1: loop: is a list; must be a block"),
             HasSubstr("bad.yml:8:1: holds Ruby, which is not run"),
             HasSubstr("no.yml: cannot be opened; must be a property file")));
     write("twice.yml", "--- name:a\nlast: 1\n--- name:a\nlast: 2\n");
     EXPECT_THAT(diagnostics(head + "    property_files: {files: [twice.yml], sections: [a]}\n"),
-                ElementsAre("twice.yml:3:1: a: is a section that stands here twice; once is allowed"));
+                ElementsAre("twice.yml:3:1: a: is a section that is given twice; once is allowed"));
 }
 
-TEST_F(PropertySourcesTest, ACopyStaysAndGoesToAPropertyOfAnyTaskAsWell) {
+TEST_F(PropertySourcesTest, CopiesAValueToAPropertyOfAnyTask) {
     write("one.yml", "model: fine\n");
     const std::string yaml = head +
                              "    copies: {model: other.display.model}\n    properties: {model: coarse, last: 3}\n" +
@@ -141,7 +141,7 @@ TEST_F(PropertySourcesTest, AnAliasLeadsToAPropertyOfAnyTask) {
     EXPECT_EQ(properties(yaml, "other"), "{seed: 2, celsius: 280}");
 }
 
-TEST_F(PropertySourcesTest, ASwitchPutsABlockInOrTakesItOut) {
+TEST_F(PropertySourcesTest, ASwitchInsertsOrRemovesABlock) {
     write("one.yml", "enable_noise: false\n--- name:loud\nenable_noise: true\n");
     const auto noise = [&](const std::string& more) {
         return properties(head + "    switches: {enable_noise: t.noise}\n" + more);
@@ -152,7 +152,7 @@ TEST_F(PropertySourcesTest, ASwitchPutsABlockInOrTakesItOut) {
     EXPECT_EQ(noise("    property_files: {files: [one.yml], sections: [default, loud]}\n"), "{noise: {}}");
 }
 
-TEST_F(PropertySourcesTest, DiagnosticsOfAliasesAreToldWhereTheValueStands) {
+TEST_F(PropertySourcesTest, ReportsDiagnosticsOfAliasesAtThePlaceOfTheValue) {
     write("one.yml", "count: 0\nloud: 3\n");
     EXPECT_THAT(
         diagnostics(head + "    aliases: {count: t.last, of_nobody: nobody.x, short: last}\n"
@@ -164,7 +164,7 @@ TEST_F(PropertySourcesTest, DiagnosticsOfAliasesAreToldWhereTheValueStands) {
                     "one.yml:1:8: count: is 0; may be 1 to 1000000", "one.yml:2:7: loud: is 3; may be true or false"));
 }
 
-TEST_F(PropertySourcesTest, SettingsLieOverThePropertyFilesAndKnowTheAliases) {
+TEST_F(PropertySourcesTest, SettingsOverridePropertyFilesAndAcceptAliases) {
     write("one.yml", "last: 5\nhead: {left: 1}\n");
     DeploymentSpec spec = parse(head +
                                 "    aliases: {count: t.last}\n    switches: {loud: t.noise}\n"
@@ -178,7 +178,7 @@ TEST_F(PropertySourcesTest, SettingsLieOverThePropertyFilesAndKnowTheAliases) {
                 ElementsAre("--set: tasks.t.properties.count: is 0; may be 1 to 1000000"));
 }
 
-TEST_F(PropertySourcesTest, IgnoredPropertiesAreLeftOutAndNamed) {
+TEST_F(PropertySourcesTest, IgnoredPropertiesAreOmittedAndNamed) {
     write("one.yml", "height: 600\nlast: 5\nwater: {kelvin: 280, depth: 3}\n");
     const std::string yaml =
         head +
@@ -187,12 +187,12 @@ TEST_F(PropertySourcesTest, IgnoredPropertiesAreLeftOutAndNamed) {
     const DeploymentSpec spec = parse(yaml);
     EXPECT_THAT(spec.diagnostics, IsEmpty());
     EXPECT_EQ(text(spec), "{last: 280}");
-    EXPECT_THAT(spec.unused(), ElementsAre("t: left out, by ignored_properties: height, water.depth"));
+    EXPECT_THAT(spec.unused(), ElementsAre("t: omitted by ignored_properties: height, water.depth"));
     EXPECT_THAT(diagnostics(yaml, {"t.height=3"}),
                 ElementsAre(HasSubstr("t.height=3: is one of the task's ignored_properties")));
 }
 
-TEST_F(PropertySourcesTest, KnownNamesAreThoseOfAliasesAndSwitchesAsWell) {
+TEST_F(PropertySourcesTest, KnownNamesIncludeAliasesAndSwitches) {
     write("one.yml", "coumt: 4\nwater: {depht: 3}\n");
     EXPECT_THAT(
         diagnostics(head + "    aliases: {count: t.last, water.depth: t.last, samples: t.value}\n"
@@ -201,14 +201,14 @@ TEST_F(PropertySourcesTest, KnownNamesAreThoseOfAliasesAndSwitchesAsWell) {
                     "one.yml:2:9: water.depht: is not a key here; did you mean depth? known: depth"));
 }
 
-TEST_F(PropertySourcesTest, KnownPortsAreThoseOfAliasesAsWell) {
+TEST_F(PropertySourcesTest, KnownPortsIncludeAliases) {
     const std::string yaml =
         "tasks:\n  s: {type: test::Source, activity: {period: 1}, aliases: {samples: s.value, command: r.in}}\n"
         "  r: {type: test::Relay}\nconnections: [{from: s.sample, to: r.in}]\n";
     EXPECT_THAT(diagnostics(yaml), testing::Contains(HasSubstr("s has no output port sample; did you mean samples? ")));
 }
 
-TEST_F(PropertySourcesTest, AModelIsThatOfItsPropertyFilesOrItsType) {
+TEST_F(PropertySourcesTest, TheModelIsThatOfThePropertyFilesOrTheType) {
     write("rock::Task.yml", "last: 5\n");
     EXPECT_EQ(parse(head).task("t")->model(), "test::Source");
     EXPECT_EQ(parse(head + "    property_files: {files: [rock::Task.yml]}\n").task("t")->model(), "rock::Task");

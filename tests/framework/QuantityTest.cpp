@@ -35,7 +35,7 @@ TEST(QuantityTest, RocksUnitsPrefixesAndPowersAreUnderstood) {
     EXPECT_EQ(inUnit("701.2.cm.ceil", "m"), 8);
 }
 
-TEST(QuantityTest, OtherDimensionsAndOtherTextsAreNone) {
+TEST(QuantityTest, RejectsOtherDimensionsAndTexts) {
     for (const char* unit : {"m", "m/s", "s", "1", "dB", "psu"})
         EXPECT_TRUE(std::isnan(inUnit("20.deg", unit))) << unit;
     for (const char* text : {"20", "20.", ".deg", "deg", "20deg", "20.furlong", "20.m.s^", "20.m^x", "20.m^99", "nan.m",
@@ -57,7 +57,7 @@ struct Head {
     }
 };
 
-TEST(QuantityTest, APropertyTakesANumberWithAUnitOrABlockOfRocksThatIsOne) {
+TEST(QuantityTest, APropertyTakesANumberWithAUnitOrRocksBlockOfOne) {
     Head head;
     ConfigReader reader("a.yml");
     EXPECT_TRUE(reader.read(YAML::Load("{step_deg: 360.deg, temperature_celsius: {kelvin: 285.15}}"), "", head));
@@ -70,7 +70,7 @@ TEST(QuantityTest, APropertyTakesANumberWithAUnitOrABlockOfRocksThatIsOne) {
     EXPECT_DOUBLE_EQ(head.step_deg, 90);
 }
 
-TEST(QuantityTest, AQuantityThatDoesNotFitIsNamed) {
+TEST(QuantityTest, NamesAQuantityThatDoesNotFit) {
     Head head;
     ConfigReader reader("a.yml");
     reader.read(YAML::Load("{step_deg: 3.m, turns: 2.5.ceil.m, temperature_celsius: {rad: 1}, level_db: 3.m}"), "",

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double patience_s = std::chrono::duration<double>(test::patience).count();
 
-TEST(RealtimeExecutorTest, APeriodicTaskKeepsToTheWallClock) {
+TEST(RealtimeExecutorTest, APeriodicTaskFollowsTheWallClock) {
     Registry registry = test::testRegistry();
     const char* yaml = R"(
 schedule: realtime
@@ -29,7 +29,7 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 10
     const RunResult result = deployment.run(
         {}, stop, [&](const Progress& progress) { stop = value.written() >= 25 || progress.wall_s > patience_s; });
     EXPECT_FALSE(result.failed());
-    // A loaded machine may leave periods out, it never adds any; the first cycle comes at once.
+    // A loaded machine may skip periods, but never adds any; the first cycle is at once.
     const uint64_t cycles = deployment.task("source")->cycles().count();
     EXPECT_GE(cycles, 25u);
     EXPECT_LE(static_cast<double>(cycles - 1) * 0.02, result.wall_s);
@@ -37,7 +37,7 @@ connections: [{from: source.value, to: relay.in, policy: {type: buffer, size: 10
     EXPECT_EQ(deployment.task("relay")->state(), TaskState::Stopped);
 }
 
-TEST(RealtimeExecutorTest, ARunLastsAsLongAsItIsToLast) {
+TEST(RealtimeExecutorTest, ARunHasItsDuration) {
     Registry registry = test::testRegistry();
     const char* yaml = "schedule: realtime\ntasks: {source: {type: test::Source, activity: {period: 0.02}}}\n";
     Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
@@ -48,7 +48,7 @@ TEST(RealtimeExecutorTest, ARunLastsAsLongAsItIsToLast) {
     EXPECT_GE(result.elapsed_s, 0.2);
 }
 
-/** A source whose clock stands at 5 s. */
+/** A source whose clock is constant at 5 s. */
 struct Timekeeper : test::Source, ClockSource {
     using Source::Source;
     std::function<types::Time()> clock(std::function<types::Time()> wall) override {
@@ -56,7 +56,7 @@ struct Timekeeper : test::Source, ClockSource {
     }
 };
 
-TEST(RealtimeExecutorTest, ASourcesOwnClockIsThatOfAllTasks) {
+TEST(RealtimeExecutorTest, AllTasksUseTheClockOfASource) {
     const char* yaml = R"(
 schedule: realtime
 tasks:
@@ -124,7 +124,7 @@ struct Bench {
     ~Bench() { source->stop(), source->cleanup(); }
 };
 
-TEST(RealtimeExecutorTest, ATaskWorksByItselfFromItsReleaseOn) {
+TEST(RealtimeExecutorTest, AReleasedTaskRunsByItself) {
     Bench bench(0.001);
     RealtimeExecutor executor(bench.graph, *bench.environment, {}, {});
     executor.begin();
@@ -141,13 +141,13 @@ TEST(RealtimeExecutorTest, ATaskWorksByItselfFromItsReleaseOn) {
     EXPECT_GE(executor.progress().elapsed_s, 0);
 }
 
-TEST(RealtimeExecutorTest, TimeDoesNotStandStill) {
+TEST(RealtimeExecutorTest, CannotPauseOrStep) {
     Bench bench(1);
     RealtimeExecutor executor(bench.graph, *bench.environment, {}, {});
     EXPECT_FALSE(executor.paused());
     EXPECT_THROW(executor.pause(true), std::runtime_error);
     EXPECT_THROW(executor.step(), std::runtime_error);
-    EXPECT_FALSE(executor.betweenInstants().owns_lock()) << "nobody waits for cycles that go on all the time";
+    EXPECT_FALSE(executor.betweenInstants().owns_lock()) << "realtime cycles have no time between instants";
 }
 
 }  // namespace

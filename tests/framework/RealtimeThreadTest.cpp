@@ -1,4 +1,4 @@
-// Schedulers, processors and locked memory: had where the system permits them, a warning where it does not.
+// Schedulers, processors and locked memory: applied where the system permits them, else a warning.
 #include <gmock/gmock.h>
 #include <sched.h>
 
@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/** What a thread runs on. */
+/** The scheduling of a thread. */
 struct Thread {
     int policy = -1, priority = -1;
     std::vector<uint32_t> cpus;
@@ -33,7 +33,7 @@ struct Thread {
     }
 };
 
-/** Notes what its cycles run on, and a thread that they start. */
+/** Records the scheduling of its cycles, and of a thread that they start. */
 struct Noting : TaskContext {
     using TaskContext::TaskContext;
     Thread own, started;
@@ -54,8 +54,8 @@ bool fifoIsPermitted() {
     return permitted;
 }
 
-/** Runs a task with this activity, and what stands before the tasks; without a watchdog, which would warn of a machine
- *  that stalls. */
+/** Runs a task with this activity and these keys of the document; without a watchdog, which would warn of a slow
+ *  machine. */
 RunResult run(const std::string& head, const std::string& activity, Thread& own, Thread& started) {
     Registry registry;
     registry.add<Noting>("test::Noting", "notes");
@@ -71,7 +71,7 @@ RunResult run(const std::string& head, const std::string& activity, Thread& own,
     return result;
 }
 
-TEST(RealtimeThreadTest, ATaskAndItsThreadsRunAsTheDeploymentSaysWherePermitted) {
+TEST(RealtimeThreadTest, AppliesSchedulingToATaskAndItsThreadsWherePermitted) {
     const bool permitted = fifoIsPermitted();
     Thread own, started;
     const RunResult result = run("", ", scheduler: fifo, priority: 7", own, started);
@@ -85,7 +85,7 @@ TEST(RealtimeThreadTest, ATaskAndItsThreadsRunAsTheDeploymentSaysWherePermitted)
     EXPECT_FALSE(result.failed());
 }
 
-TEST(RealtimeThreadTest, ATaskAndItsThreadsKeepToTheirProcessors) {
+TEST(RealtimeThreadTest, ATaskAndItsThreadsRunOnTheirProcessors) {
     const uint32_t last = Thread::here().cpus.back();
     Thread own, started;
     const RunResult result = run("", ", cpus: [" + std::to_string(last) + "]", own, started);
@@ -94,15 +94,16 @@ TEST(RealtimeThreadTest, ATaskAndItsThreadsKeepToTheirProcessors) {
     EXPECT_THAT(started.cpus, ElementsAre(last));
 }
 
-TEST(RealtimeThreadTest, ProcessorsThatAreNotThereAreAWarning) {
+TEST(RealtimeThreadTest, WarnsOfMissingProcessors) {
     Thread own, started;
     const RunResult result = run("", ", cpus: [1022, 1023]", own, started);
-    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("note: does not keep to the CPUs 1022, 1023: there are none")));
+    EXPECT_THAT(result.warnings,
+                ElementsAre(HasSubstr("note: cannot run on only the CPUs 1022, 1023: they do not exist")));
     EXPECT_EQ(own.cpus, Thread::here().cpus);
     EXPECT_FALSE(result.failed());
 }
 
-/** Of this process [kB]. */
+/** Locked memory of this process [kB]. */
 int lockedMemory() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
@@ -110,9 +111,9 @@ int lockedMemory() {
     return -1;
 }
 
-TEST(RealtimeThreadTest, MemoryIsLockedOrItIsSaidWhyNot) {
+TEST(RealtimeThreadTest, LocksMemoryOrReportsWhyNot) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers leave out the locking";
+    GTEST_SKIP() << "sanitizers do not lock memory";
 #endif
     const std::string refused = lockMemory();
     const int locked = lockedMemory();

@@ -32,13 +32,13 @@ connections: [{from: plugin.value, to: relay.in}]
               (std::vector<std::string>{"relay:42@1000000", "relay:42@1100000"}));
 }
 
-TEST(RegistryTest, ALibraryThatIsNotThereOrHasNoEntryIsNamed) {
+TEST(RegistryTest, NamesALibraryThatIsMissingOrHasNoEntry) {
     Registry registry;
     const std::string yaml = std::string("libraries: [nowhere.so, ") + NO_PLUGIN + "]\ntasks: {a: {type: b::C}}\n";
-    EXPECT_THAT(test::refused([&] { Deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry); }),
-                testing::ElementsAre(testing::HasSubstr("nowhere.so: cannot be loaded"),
-                                     testing::HasSubstr("has no function insonify_register"),
-                                     testing::HasSubstr("is b::C; ")));
+    EXPECT_THAT(
+        test::refused([&] { Deployment(DeploymentSpec::parse(yaml, "plugin.yml"), registry); }),
+        testing::ElementsAre(testing::HasSubstr("nowhere.so: cannot be loaded"),
+                             testing::HasSubstr("has no function insonify_register"), testing::HasSubstr("is b::C; ")));
 }
 
 }  // namespace

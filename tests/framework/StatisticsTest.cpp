@@ -14,7 +14,7 @@ TEST(StatisticsTest, QuantilesAreWithinOnePercent) {
     EXPECT_EQ(statistics.count(), 1000u);
 }
 
-TEST(StatisticsTest, NothingAndExtremesAreFinite) {
+TEST(StatisticsTest, EmptyAndExtremeValuesAreFinite) {
     Statistics statistics;
     EXPECT_EQ(statistics.median(), 0);
     for (const double seconds : {0.0, 1e-12, 1e9}) statistics.add(seconds);

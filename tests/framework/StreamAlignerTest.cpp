@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/** Reads poses and pings in the order of their time, and notes "pose 10" and "ping 10". */
+/** Reads poses and pings in the order of their time, and records "pose 10" and "ping 10". */
 struct AligningTask : TaskContext {
     explicit AligningTask(double timeout) : TaskContext("aligning") { aligner.clear(timeout); }
     InputPort<types::Pose> pose{this, "pose", "any"};
@@ -48,7 +48,7 @@ protected:
             pings_.port.write(std::make_shared<const types::Sonar>(ping));
         }
     }
-    /** What is handed over now. */
+    /** Returns what is handed over now. */
     std::vector<std::string> update() {
         task_.aligner.update();
         return std::exchange(task_.notes, {});
@@ -59,7 +59,7 @@ protected:
     test::Writer<types::SonarPtr> pings_;
 };
 
-TEST_F(StreamAlignerTest, SamplesComeInTheOrderOfTheirTimeWhateverTheirArrival) {
+TEST_F(StreamAlignerTest, OrdersSamplesByTimeForAnyOrderOfArrival) {
     writePings({15, 25});
     writePoses({10, 20, 30});
     EXPECT_THAT(update(), ElementsAre("pose 10", "ping 15", "pose 20", "ping 25"));
@@ -67,9 +67,9 @@ TEST_F(StreamAlignerTest, SamplesComeInTheOrderOfTheirTimeWhateverTheirArrival) 
     EXPECT_THAT(update(), ElementsAre("pose 30", "ping 30"));
 }
 
-TEST_F(StreamAlignerTest, ASampleWaitsForAPortThatMaySayMoreBeforeIt) {
+TEST_F(StreamAlignerTest, ASampleWaitsForAPortThatMayHaveEarlierSamples) {
     writePings({15});
-    EXPECT_THAT(update(), IsEmpty()) << "no pose has been heard";
+    EXPECT_THAT(update(), IsEmpty()) << "no pose has arrived";
     writePoses({10});
     EXPECT_THAT(update(), ElementsAre("pose 10")) << "there may be another before 15";
     writePoses({16});
@@ -77,13 +77,13 @@ TEST_F(StreamAlignerTest, ASampleWaitsForAPortThatMaySayMoreBeforeIt) {
     EXPECT_THAT(task_.aligner.notices(), IsEmpty());
 }
 
-TEST_F(StreamAlignerTest, OfOneTimeThePortDeclaredFirstComesFirst) {
+TEST_F(StreamAlignerTest, AtEqualTimesThePortDeclaredFirstIsFirst) {
     writePings({10});
     writePoses({10});
     EXPECT_THAT(update(), ElementsAre("pose 10", "ping 10"));
 }
 
-TEST_F(StreamAlignerTest, WhatComesNextOnAPortCanBeSeenWhileASampleBeforeItIsHandedOver) {
+TEST_F(StreamAlignerTest, ThePortsNextSampleIsVisibleDuringTheHandOverOfItsPredecessor) {
     writePoses({10, 20});
     writePings({15});
     EXPECT_THAT(update(), ElementsAre("pose 10", "ping 15"));
@@ -92,14 +92,14 @@ TEST_F(StreamAlignerTest, WhatComesNextOnAPortCanBeSeenWhileASampleBeforeItIsHan
     EXPECT_EQ(task_.pings.next(), nullptr);
 }
 
-TEST_F(StreamAlignerTest, APortThatIsSilentHoldsUpTheOthersForTheTimeoutOnly) {
+TEST_F(StreamAlignerTest, ASilentPortDelaysTheOthersByTheTimeoutOnly) {
     writePoses({10});
     writePings({20, 119});
     EXPECT_THAT(update(), ElementsAre("pose 10"));
     writePings({120});
     EXPECT_THAT(update(), ElementsAre("ping 20"));
     EXPECT_EQ(task_.poses.counts().awaited, 1u);
-    EXPECT_THAT(task_.aligner.notices(), ElementsAre("pose: samples of others that went on without it: 1"));
+    EXPECT_THAT(task_.aligner.notices(), ElementsAre("pose: samples of other ports handed over without it: 1"));
 }
 
 TEST_F(StreamAlignerTest, AfterAGapThePortIsWaitedForAgain) {
@@ -116,58 +116,58 @@ TEST_F(StreamAlignerTest, LateSamplesAreDroppedAndCounted) {
     writePings({20, 120});
     update();
     writePoses({19, 20, 130, 125});
-    EXPECT_THAT(update(), ElementsAre("pose 20", "ping 120")) << "19 is before what has gone, 125 before 130";
+    EXPECT_THAT(update(), ElementsAre("pose 20", "ping 120"))
+        << "19 is before the last sample handed over, 125 before 130";
     EXPECT_EQ(task_.poses.counts().received, 4u);
     EXPECT_EQ(task_.poses.counts().late, 2u);
-    EXPECT_THAT(
-        task_.aligner.notices(),
-        ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of others that went on without "
-                    "it: 1"));
+    EXPECT_THAT(task_.aligner.notices(),
+                ElementsAre("pose: 2 of 4 samples came too late and were dropped; samples of other ports handed over "
+                            "without it: 1"));
 }
 
-TEST_F(StreamAlignerTest, AFullPortWaitsNoLongerAndLosesNothing) {
+TEST_F(StreamAlignerTest, AFullPortDoesNotWaitAndLosesNothing) {
     writePings({1, 2, 3, 4, 5, 6});
     EXPECT_THAT(update(), ElementsAre("ping 1", "ping 2", "ping 3"));
     EXPECT_EQ(task_.poses.counts().awaited, 3u);
     EXPECT_EQ(task_.pings.counts().late, 0u);
 }
 
-TEST_F(StreamAlignerTest, AnOutpacedPortIsReadBesideTheOthers) {
+TEST_F(StreamAlignerTest, AnOutpacedPortIsReadAlongWithTheOthers) {
     writePings({1, 3, 5, 7, 9, 11, 13, 15});
     writePoses({2, 4, 6, 8, 10, 12, 14, 16});
     EXPECT_EQ(update().size(), 15u);
     EXPECT_EQ(task_.poses.counts().awaited, 0u);
 }
 
-TEST_F(StreamAlignerTest, TimesBelowZeroAreTimesAsAnyOther) {
+TEST_F(StreamAlignerTest, AcceptsNegativeTimes) {
     writePings({-15, -5});
     writePoses({-20, -10, 0});
     EXPECT_THAT(update(), ElementsAre("pose -20", "ping -15", "pose -10", "ping -5"));
     EXPECT_THAT(task_.aligner.notices(), IsEmpty());
 }
 
-TEST_F(StreamAlignerTest, TimesMayBeAsFarApartAsTheyCan) {
+TEST_F(StreamAlignerTest, AcceptsTheMaxDistanceOfTimes) {
     writePings({-9'000'000'000'000'000'000, 9'000'000'000'000'000'000});
     EXPECT_THAT(update(), ElementsAre("ping -9000000000000000000")) << "the timeout is long over";
 }
 
-TEST_F(StreamAlignerTest, FlushedItHandsOverAllThatWaits) {
+TEST_F(StreamAlignerTest, FlushHandsOverAllWaitingSamples) {
     writePings({15, 16});
     writePoses({10});
     task_.aligner.flush();
     EXPECT_THAT(task_.notes, ElementsAre("pose 10", "ping 15", "ping 16"));
 }
 
-TEST_F(StreamAlignerTest, ClearedItStartsAnew) {
+TEST_F(StreamAlignerTest, ClearResets) {
     writePings({100});
     update();
     task_.aligner.clear(1);
     writePoses({10});
     writePings({9});
-    EXPECT_THAT(update(), ElementsAre("ping 9")) << "it remembers neither 100 nor that anything had been handed over";
+    EXPECT_THAT(update(), ElementsAre("ping 9")) << "neither 100 nor the last sample handed over is kept";
 }
 
-TEST(StreamAlignerPortTest, APortThatIsNotConnectedIsNotWaitedFor) {
+TEST(StreamAlignerPortTest, DoesNotWaitForAnUnconnectedPort) {
     AligningTask task(1);
     test::Writer<types::Pose> poses;
     poses.port.connectTo(task.pose, ConnPolicy::data());

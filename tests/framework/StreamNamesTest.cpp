@@ -15,7 +15,7 @@ struct Deployed {
     const Deployment deployment;
 };
 
-TEST(StreamNamesTest, APortIsCalledByTheAliasThatLeadsToItElseByItself) {
+TEST(StreamNamesTest, APortIsNamedByItsAliasElseByItsOwnName) {
     const Deployed two(
         "tasks:\n"
         "  s: {type: test::Source, activity: {period: 1}}\n"
@@ -31,7 +31,7 @@ TEST(StreamNamesTest, APortIsCalledByTheAliasThatLeadsToItElseByItself) {
     EXPECT_EQ(streamNameOf(alone.value).model, "") << "it is in no deployment";
 }
 
-TEST(StreamNamesTest, APortThatStandsForAnotherIsCalledAsThatOne) {
+TEST(StreamNamesTest, AReplacingPortHasTheNameOfTheReplacedPort) {
     struct Replay : TaskContext, StandIn {
         Replay() : TaskContext("replay") {}
         std::string streamOf(const std::string& port) const override { return "sonar." + port; }
@@ -42,7 +42,7 @@ TEST(StreamNamesTest, APortThatStandsForAnotherIsCalledAsThatOne) {
     EXPECT_EQ(streamNameOf(replay.ping).model, "p::Task");
 }
 
-TEST(StreamNamesTest, AliasesOfPropertiesAreToldWithWhereTheyLead) {
+TEST(StreamNamesTest, ReportsAliasesOfPropertiesWithTheirTargets) {
     const Deployed two(
         "tasks:\n"
         "  s: {type: test::Source, activity: {period: 1}}\n"
@@ -65,7 +65,7 @@ TEST(UpstreamTest, AValueComesFromTheNearestTaskThatHasIt) {
     ASSERT_TRUE(last);
     EXPECT_EQ(std::get<int64_t>(*last), 7);
     EXPECT_FALSE(upstreamValue(port, {"nothing"}));
-    EXPECT_FALSE(upstreamNumber(port, {"last"})) << "it is a whole one";
+    EXPECT_FALSE(upstreamNumber(port, {"last"})) << "it is a whole number";
 }
 
 TEST(UpstreamTest, AValueWithinABlockIsFoundByItsPath) {

@@ -1,5 +1,5 @@
 #pragma once
-// Small tasks of which the tests of deployments are built.
+// Small tasks for the tests of deployments.
 #include <atomic>
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ struct SourceConfig {
     }
 };
 
-/** Writes 1, 2, 3... on `value`, `last` of them until it has finished (it goes on nevertheless). */
+/** Writes 1, 2, 3... on `value`; it has finished after `last`, but continues to write. */
 class Source : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -33,7 +33,7 @@ private:
     std::atomic<int> count_{0};
 };
 
-/** Writes ten samples a cycle. */
+/** Writes ten samples per cycle. */
 class Burst : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -46,7 +46,7 @@ private:
     }
 };
 
-/** Adds 100 to what it reads, one sample a cycle, and notes "name:value@time". */
+/** Adds 100 to its samples, one per cycle, and records "name:value@time". */
 class Relay : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -65,7 +65,7 @@ private:
     }
 };
 
-/** Throws, or goes into error, at its third sample. */
+/** Throws, or causes an error, at its third sample. */
 class Throwing : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -78,7 +78,7 @@ private:
     }
 };
 
-/** Is woken by whoever rings. */
+/** Runs a cycle when rung. */
 class Doorbell : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
@@ -89,7 +89,7 @@ private:
     void updateHook() override { ++answered; }
 };
 
-/** Takes words, to differ in type. */
+/** Reads texts, to have another type. */
 class Words : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;

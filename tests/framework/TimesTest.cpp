@@ -1,4 +1,4 @@
-// What a task counts of its times in realtime. Bounds hold on a busy machine; counts are exact by construction.
+// A task's statistics of its times in realtime. Bounds hold on a busy machine; counts are exact by construction.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -45,7 +45,7 @@ struct Sleeper : TaskContext {
     }
 };
 
-/** Triggered, but by nothing. */
+/** Triggered, but without a trigger. */
 struct Waiting : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "nothing comes"};
@@ -63,7 +63,7 @@ Registry registry() {
     return registry;
 }
 
-/** Made, configured and run until `enough`. */
+/** Configures a deployment and runs it until `enough`. */
 struct Realtime {
     Registry types = registry();
     Deployment deployment;
@@ -79,17 +79,17 @@ struct Realtime {
     TaskContext& operator[](const char* task) { return *deployment.task(task); }
 };
 
-TEST(TimesTest, PeriodsLeftOutAreCountedAndTheNextCycleKeepsToTheGrid) {
+TEST(TimesTest, SkippedPeriodsAreCountedAndTheNextCycleStaysOnTheGrid) {
     Realtime run("tasks: {slow: {type: test::Slow, activity: {period: 0.01}}}\n",
                  [](Deployment& made, double) { return dynamic_cast<Slow&>(*made.task("slow")).cycles_begun >= 10; });
     const Timing& timing = run["slow"].timing();
     const uint64_t cycles = run["slow"].cycles().count();
     ASSERT_GE(cycles, 10u);
     EXPECT_EQ(timing.jitter.count(), cycles);
-    // A cycle of 25 ms leaves out one period of 10 ms at least, and is 5 ms late at least for the one it serves.
+    // A cycle of 25 ms skips at least one period of 10 ms, and the next cycle is at least 5 ms late.
     EXPECT_GE(timing.overruns, cycles - 1);
     EXPECT_GE(timing.jitter.max(), 0.005);
-    // Served and left out, no instant is counted twice: their number times the period is the time that has passed.
+    // No instant is both run and skipped: their total number times the period is the elapsed time.
     EXPECT_LE(static_cast<double>(cycles + timing.overruns - 1) * 0.01, run.result.wall_s);
     EXPECT_GE(static_cast<double>(cycles + timing.overruns) * 0.01, 0.025 * static_cast<double>(cycles - 1));
 }
@@ -109,7 +109,7 @@ TEST(TimesTest, LatencyIsFromTheStampToTheWriteAndLateIsBeyondTheDeadline) {
     EXPECT_EQ(run["lax"].timing().late, 0u);
 }
 
-TEST(TimesTest, ASleepIsNoWorkAndEndsWhenTheTaskIsHeld) {
+TEST(TimesTest, ASleepIsNotWorkAndEndsWhenTheTaskIsHeld) {
     Realtime run("tasks: {sleeper: {type: test::Sleeper, activity: {period: 0.001}}}\n", [](Deployment& made, double) {
         return dynamic_cast<Sleeper&>(*made.task("sleeper")).cycles_begun == 11;
     });
@@ -119,10 +119,10 @@ TEST(TimesTest, ASleepIsNoWorkAndEndsWhenTheTaskIsHeld) {
     EXPECT_EQ(sleeper.slept, expected);
     EXPECT_LT(run.result.wall_s, 3600);
     EXPECT_LT(sleeper.cycles().quantile(0), 0.03)
-        << "the machine may stall in some cycles, not in each beside its sleep";
+        << "the machine may stall in some cycles, not in each in addition to its sleep";
 }
 
-TEST(TimesTest, ATriggeredTaskMayAskToBeWokenWithoutASample) {
+TEST(TimesTest, ATriggeredTaskMayRequestCyclesWithoutASample) {
     Realtime run(
         "tasks:\n"
         "  waiting: {type: test::Waiting}\n"
@@ -132,7 +132,7 @@ TEST(TimesTest, ATriggeredTaskMayAskToBeWokenWithoutASample) {
     EXPECT_GT(dynamic_cast<Waiting&>(run["waiting"]).woken, 5);
 }
 
-TEST(TimesTest, AnEventFromOutsideRunsACycleOfATaskThatNothingElseWakes) {
+TEST(TimesTest, AnEventFromOutsideRunsACycle) {
     test::Doorbell task("bell");
     ASSERT_TRUE(task.configure() && task.start());
     task.activity().release();
@@ -144,7 +144,7 @@ TEST(TimesTest, AnEventFromOutsideRunsACycleOfATaskThatNothingElseWakes) {
     task.stop();
 }
 
-/** Takes what counts now, and does not come back from its first before 20 samples wait. */
+/** Reads samples as takeNext; its first cycle ends once 20 samples wait. */
 struct Latest : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "of the source"};
@@ -158,7 +158,7 @@ struct Latest : TaskContext {
     }
 };
 
-TEST(TimesTest, SamplesThatATaskPassesOverForNewerOnesAreCounted) {
+TEST(TimesTest, CountsSamplesSkippedForNewerSamples) {
     const char* yaml = R"(schedule: realtime
 tasks:
   source: {type: test::Source, activity: {period: 0.001}}
@@ -179,12 +179,12 @@ connections: [{from: source.value, to: latest.in, policy: {type: buffer, size: 1
     const uint64_t passed_over = deployment.passedOver().at("source.value>latest.in");
     EXPECT_GE(passed_over, 18u) << "all but the first and the newest of the first twenty";
     EXPECT_EQ(latest.taken.size() + passed_over, value.written());
-    EXPECT_EQ(latest.taken.back(), static_cast<double>(value.written())) << "the newest is never passed over";
+    EXPECT_EQ(latest.taken.back(), static_cast<double>(value.written())) << "the newest is never skipped";
     EXPECT_EQ(deployment.losses().at("source.value>latest.in"), 0u);
     EXPECT_EQ(deployment.status().connections.front().passed_over, passed_over);
 }
 
-/** Does not come back from its first sample until all is over. */
+/** Its first cycle ends only when the test is over. */
 struct Dawdler : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "of the source"};
@@ -198,7 +198,7 @@ struct Dawdler : TaskContext {
     }
 };
 
-TEST(TimesTest, ASubscriberThatDoesNotComeBackDelaysNobody) {
+TEST(TimesTest, AHangingReaderDelaysNoOtherTask) {
     const char* yaml = R"(schedule: realtime
 tasks:
   source: {type: test::Source, activity: {period: 0.002}}
@@ -224,7 +224,7 @@ connections:
         stop = Dawdler::over = source.output("value")->written() >= 100 || now.wall_s > patience_s;
     });
     EXPECT_FALSE(result.failed());
-    // Had one of them held up its writer, there would have been a few cycles until the end.
+    // If a reader had delayed its writer, there would have been few cycles.
     EXPECT_GE(source.cycles().count(), 100u);
     EXPECT_EQ(deployment.task("relay")->cycles().count(), source.cycles().count());
     const auto losses = deployment.losses();

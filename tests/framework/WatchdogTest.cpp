@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::MatchesRegex;
 
-/** What the warnings of the deployment have told so far; here the tasks of these tests wait for it. */
+/** The deployment's warnings so far; the tasks of these tests wait for them. */
 struct Told {
     std::mutex mutex;
     std::vector<std::string> texts;
@@ -26,7 +26,7 @@ struct Told {
 };
 Told* told = nullptr;
 
-/** Its first cycle comes back once it has been reported. */
+/** Its first cycle ends once it has been reported. */
 struct Hanging : TaskContext {
     using TaskContext::TaskContext;
     void updateHook() override {
@@ -34,7 +34,7 @@ struct Hanging : TaskContext {
     }
 };
 
-/** In error until that has been reported. */
+/** In error until the error has been reported. */
 struct Ill : TaskContext {
     using TaskContext::TaskContext;
     void updateHook() override {
@@ -63,23 +63,23 @@ struct WatchdogTest : testing::Test {
     std::unique_ptr<Deployment> deployment_;
 };
 
-TEST_F(WatchdogTest, ACycleThatHangsIsReportedOnceAndWhenItIsBack) {
+TEST_F(WatchdogTest, ReportsAHangingCycleOnceAndItsEnd) {
     const RunResult result = run("tasks: {slug: {type: test::Hanging, activity: {period: 0.01, watchdog: 0.3}}}\n");
     EXPECT_EQ(result.failures, std::vector<std::string>{});
     ASSERT_GE(result.warnings.size(), 2u);
-    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.3 s");
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has run for 0.3 s");
     EXPECT_THAT(result.warnings[1], MatchesRegex("slug: is back after 0\\.[3-9].* s|slug: is back after [1-9].* s"));
     EXPECT_EQ(result.warnings, told_.texts);
     EXPECT_GE(deployment_->task("slug")->timing().hangs, 1u);
 }
 
-TEST_F(WatchdogTest, TheDeploymentsWatchdogIsThatOfATaskWithoutItsOwn) {
+TEST_F(WatchdogTest, UsesTheDeploymentsWatchdogForATaskWithoutItsOwn) {
     const RunResult result = run("watchdog: 0.2\ntasks: {slug: {type: test::Hanging, activity: {period: 0.01}}}\n");
     ASSERT_GE(result.warnings.size(), 1u);
-    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has not come back for 0.2 s");
+    EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has run for 0.2 s");
 }
 
-TEST_F(WatchdogTest, ATaskInErrorIsReportedOnceAndWhenItHasRecovered) {
+TEST_F(WatchdogTest, ReportsATaskInErrorOnceAndItsRecovery) {
     const RunResult result = run("watchdog: 1000000\ntasks: {patient: {type: test::Ill, activity: {period: 0.001}}}\n");
     EXPECT_THAT(result.warnings, ElementsAre("patient: RunTimeError: has a cold", "patient: has recovered"));
     EXPECT_EQ(deployment_->task("patient")->timing().errors, 1u);

@@ -1,4 +1,4 @@
-// .aris files, as `insonify log import` reads them.
+// .aris files, read by `insonify log import`.
 #include <gtest/gtest.h>
 
 #include "components/output/ArisFile.hpp"

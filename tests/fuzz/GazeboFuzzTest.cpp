@@ -1,4 +1,4 @@
-// What comes by UDP and TCP from Gazebo: datagrams, poses, scenes.
+// Messages from Gazebo by UDP and TCP: datagrams, poses, scenes.
 #include <cmath>
 
 #include "components/gazebo/Discovery.hpp"

@@ -1,4 +1,4 @@
-// .glf files of a Gemini, as `insonify log import` reads them.
+// .glf files of a Gemini, read by `insonify log import`.
 #include <gtest/gtest.h>
 
 #include "components/output/GlfFile.hpp"

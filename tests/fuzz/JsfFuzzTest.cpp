@@ -1,4 +1,4 @@
-// JSF files of others, as `insonify log import` reads them.
+// External JSF files, read by `insonify log import`.
 #include <gtest/gtest.h>
 
 #include "components/output/JsfFile.hpp"

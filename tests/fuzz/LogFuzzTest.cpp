@@ -8,7 +8,7 @@
 namespace insonify::fuzz {
 namespace {
 
-/** Calls, and lets pass what a reader of logs may throw. */
+/** Calls, and ignores the exceptions that a reader of logs may throw. */
 template <class Call>
 void allowed(Call call) try {
     call();
@@ -39,14 +39,14 @@ void readAndRepair(const Input& input) {
     });
 }
 
-TEST(LogFuzzTest, EveryPocologFileIsReadAsFarAsItIsOne) {
+TEST(LogFuzzTest, EveryPocologFileIsReadUpToItsDamage) {
     push({"pocolog",
           "damaged.0.log",
           {"POCOSIM", "/base/samples/Sonar", "<typelib>", "</typelib>", "insonify_seed: 7\n"},
           readAndRepair});
 }
 
-TEST(LogFuzzTest, EveryMcapFileIsReadAsFarAsItIsOne) {
+TEST(LogFuzzTest, EveryMcapFileIsReadUpToItsDamage) {
     push({"mcap",
           "damaged.0.mcap",
           {"\x89MCAP0\r\n", "lz4", "zstd", "cdr", "ros2msg", "sensor_msgs/msg/Image", "nav_msgs/msg/Odometry"},

@@ -1,4 +1,4 @@
-// What comes by UDP where vehicles tell their poses.
+// Datagrams in which vehicles send their poses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 using mavlink::Bytes;
 using types::Time;
 
-/** A frame that is found adds up again, by either version. */
+/** Expects that the checksum of a found frame is correct, in either version. */
 void expectSound(const mavlink::Frame& frame) {
     const auto kind = std::ranges::find(mavlink::heard_kinds, frame.message, &mavlink::Kind::message);
     ASSERT_NE(kind, mavlink::heard_kinds.end());

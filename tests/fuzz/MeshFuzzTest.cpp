@@ -38,7 +38,7 @@ TEST(MeshFuzzTest, EveryStlIsAMeshOrAnError) {
           readMesh});
 }
 
-/** What the process that reads mesh files answers, as if that were an enemy. */
+/** Parses the reply of the process that reads mesh files as untrusted input. */
 void parse(const Input& input) try {
     const meshes::MeshReply reply = meshes::parseReply(std::as_bytes(input.span()));
     for (const auto& part : reply.meshes.parts)

@@ -1,4 +1,4 @@
-// What an Oculus sends, as it lies in captures and in its maker's log files, and what drivers send to one.
+// Messages of an Oculus, in captures and in its maker's log files, and messages of drivers to it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ void readOculus(const Input& input) try {
     expectOurWords(error.what());
 }
 
-/** Every ping of a stream is written as it was read. */
+/** Expects that every ping of a stream is written as it was read. */
 void frame(const Input& input) {
     device::OculusFramer framer;
     framer.add(input.octets());
@@ -46,7 +46,7 @@ void frame(const Input& input) {
     }
 }
 
-/** A sonar of two beams and two bins answers whatever the driver asks for. */
+/** Simulates a sonar of two beams and two bins that answers any request of the driver. */
 void driveOculus(const Input& input) {
     types::Time now{1'000'000};
     device::OculusEmulator emulator({}, now);

@@ -1,4 +1,4 @@
-// What comes in at a device of the ping protocol, from drivers and from noisy lines; and what a device answers.
+// Input of a device of the ping protocol, from drivers and from noisy lines, and its answers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 using device::Bytes;
 
-/** A frame that is found is one that was there, byte for byte. */
+/** Expects that a found frame was in the input, byte for byte. */
 void expectThere(const device::PingFrame& frame, std::span<const uint8_t> bytes) {
     const Bytes again = frame.bytes();
     EXPECT_FALSE(std::ranges::search(bytes, again).empty());
@@ -41,7 +41,7 @@ void readFrames(std::span<const uint8_t> bytes) {
     }
 }
 
-/** Asks for pings that a sonar can make, and sends frames alone. */
+/** Expects that the device requests possible pings only, and sends only frames. */
 void expectSound(device::PingDevice& emulator, types::Time now) {
     for (const device::PingOutgoing& out : emulator.takeOutgoing())
         EXPECT_EQ(device::pingFrames(out.bytes, 4096).size(), 1u);

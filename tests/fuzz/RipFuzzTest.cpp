@@ -1,4 +1,4 @@
-// What a Sonar 3D-15 sends, as it lies in datagrams and in its maker's log files.
+// Packets of a Sonar 3D-15, in datagrams and in its maker's log files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace device;
 
-/** Damaged packets with a length and a checksum that are right again, so that what is in them is read. */
+/** Corrects length and checksum of damaged packets, so that their content is read. */
 Bytes mended(std::span<const uint8_t> bytes) {
     Bytes whole(bytes.begin(), bytes.end());
     if (whole.size() < 12 || whole.size() > max_rip_packet) return whole;

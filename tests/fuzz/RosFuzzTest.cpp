@@ -1,4 +1,4 @@
-// What comes by DDS: CDR, which peers may fill with anything.
+// Messages by DDS: CDR, which peers may fill with anything.
 #include <gtest/gtest.h>
 
 #include "components/ros/Cdr.hpp"
@@ -29,7 +29,7 @@ void readMessage(const Input& input, const Layout&... layout) try {
     expectOurWords(error.what());
 }
 
-/** Whatever a message tells of frames, the chains between them end. */
+/** Expects that chains between frames end for any message. */
 void follow(const Input& input) try {
     ros::TFMessage message;
     ros::decode(input.span(), message);

@@ -1,12 +1,12 @@
 #pragma once
-// The door by which files of scenes come in.
+// The door for scene files.
 #include "components/scene/Scene.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Fuzz.hpp"
 
 namespace insonify::fuzz {
 
-/** A file is a sound scene, or an error in our words. */
+/** Expects that a file is a sound scene, or an error in our words. */
 inline void readScene(const Input& input) try {
     scene::expectSound(*scene::loadScene(input.file()));
 } catch (const types::ConfigError& error) {

@@ -1,4 +1,4 @@
-// What a driver of a Micron sends, and what a Micron answers.
+// Messages of a driver of a Micron, and the Micron's answers.
 #include <gtest/gtest.h>
 
 #include "components/device/MicronEmulator.hpp"
@@ -7,14 +7,13 @@
 namespace insonify::fuzz {
 namespace {
 
-/** Packets by the bytes, and a head to which they are sent: it asks for pings that a sonar can make, and whatever it
- *  answers is packets. */
+/** Parses packets, and sends them to a head: it must request possible pings only, and answer with packets only. */
 class Head {
 public:
     Head() { emulator_.opened(client_); }
 
     void take(std::span<const uint8_t> bytes) {
-        for (size_t at = 0; at < bytes.size(); at += 97) {  // as a line brings them, with time going on
+        for (size_t at = 0; at < bytes.size(); at += 97) {  // in parts, as from a line, with time passing
             emulator_.received(client_, bytes.subspan(at, std::min<size_t>(97, bytes.size() - at)), now_);
             for (int i = 0; i < 4; ++i) {
                 const auto due = emulator_.tick(now_);
@@ -73,7 +72,7 @@ void readSeaNet(const Input& input) {
     Head().take(bytes);
 }
 
-TEST(SeaNetFuzzTest, EveryLineIsPacketsAndWhatLiesBetween) {
+TEST(SeaNetFuzzTest, EveryLineIsPacketsOrNoise) {
     push({"seanet",
           "line.raw",
           {std::string("@0008\x08\0\xFF\x02\x03\x10\x80\x02\n", 14),

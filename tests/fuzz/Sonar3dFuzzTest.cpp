@@ -1,4 +1,4 @@
-// What clients of a Sonar 3D-15 send to its HTTP API.
+// Requests of clients to the HTTP API of a Sonar 3D-15.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// XTF files of others, as `insonify log import` reads them.
+// External XTF files, read by `insonify log import`.
 #include <gtest/gtest.h>
 
 #include "components/output/XtfFile.hpp"

@@ -1,6 +1,6 @@
 #pragma once
-// The message Scene of an SDF world, as Gazebo's scene broadcaster fills it: places relative to what holds them, shapes
-// without materials' scripts.
+// The message Scene of an SDF world, as Gazebo's scene broadcaster fills it: poses relative to parents, shapes without
+// scripts of materials.
 #include <ignition/msgs/scene.pb.h>
 
 #include <ignition/math/Pose3.hh>

@@ -1,4 +1,5 @@
-// Gazebo Fortress's own library on the other side: its services, its default partition, and its view of our datagrams.
+// The library of Gazebo Fortress as the other side: its services, its default partition, and how it reads our
+// datagrams.
 #include <gmock/gmock.h>
 #include <ignition/msgs/discovery.pb.h>
 
@@ -93,7 +94,7 @@ TEST_F(FortressTest, AWorldIsTheSameSceneByItsServiceAsByItsFile) {
     expectSameScene(sdf::readSdf(file), readWorld({"two_vehicles", "", 30}, "/"));
 }
 
-TEST_F(FortressTest, AServiceIsAskedAsOftenAsIsWanted) {
+TEST_F(FortressTest, AServiceCanBeCalledRepeatedly) {
     FortressWorld world;
     std::atomic<int> asked = 0;
     ASSERT_TRUE(world.serve("/world/sea/scene/info", [&](ignition::msgs::Scene& scene) {
@@ -104,15 +105,15 @@ TEST_F(FortressTest, AServiceIsAskedAsOftenAsIsWanted) {
     EXPECT_EQ(asked, 3);
 }
 
-TEST_F(FortressTest, AServiceThatFailsSaysSo) {
+TEST_F(FortressTest, ReportsTheFailureOfAService) {
     FortressWorld world;
     ASSERT_TRUE(world.serve("/world/sea/scene/info", [](ignition::msgs::Scene&) { return false; }));
     const Reply reply = request(TransportOptions::fromEnvironment(""), {"/world/sea/scene/info", "Empty", "Scene"}, "",
                                 std::chrono::seconds(30));
-    EXPECT_EQ(reply.failure, "answers that it has failed");
+    EXPECT_EQ(reply.failure, "reports a failure");
 }
 
-TEST_F(FortressTest, TheDefaultPartitionIsThatOfTheLibrary) {
+TEST_F(FortressTest, TheDefaultPartitionMatchesTheLibrary) {
     for (const char* name : {"GZ_PARTITION", "IGN_PARTITION"}) unsetenv(name);
     EXPECT_EQ(TransportOptions::fromEnvironment("").partition, ignition::transport::NodeOptions().Partition());
     EXPECT_EQ(TransportOptions::fromEnvironment("").partition,
@@ -122,7 +123,7 @@ TEST_F(FortressTest, TheDefaultPartitionIsThatOfTheLibrary) {
         << "given, and empty";
 }
 
-TEST_F(FortressTest, NamesAreThoseOfTheLibrary) {
+TEST_F(FortressTest, NamesMatchTheLibrary) {
     for (const std::string partition : {"auv", "/auv", "auv/", "", "host:user"})
         for (const std::string topic :
              {"/world/sea/pose/info", "pose", "pose/", "/a b", "/a//b", "", "/", "~a", "a@"}) {

@@ -1,5 +1,5 @@
 #pragma once
-// What stands in for Gazebo Fortress: its transport's own publishers and services.
+// A replacement of Gazebo Fortress: publishers and services of its own transport.
 #include <ignition/msgs/empty.pb.h>
 #include <ignition/msgs/odometry.pb.h>
 #include <ignition/msgs/pose_v.pb.h>
@@ -35,7 +35,7 @@ public:
     explicit FortressWorld(const std::string& topic = "/world/sea/pose/info")
         : poses_(node_.Advertise<ignition::msgs::Pose_V>(topic)),
           odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {}
-    /** Red at x along the world's x, blue 12 m beyond it. */
+    /** Publishes red at x along the world's x axis, and blue 12 m beyond red. */
     void publish(double seconds, double x) {
         ignition::msgs::Pose_V message;
         setStamp(*message.mutable_header(), seconds);

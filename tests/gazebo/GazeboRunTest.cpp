@@ -1,4 +1,4 @@
-// deploy/gazebo_world.yml and what is wrong with others, as a user sees it.
+// deploy/gazebo_world.yml, and errors of other deployments as a user sees them.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -19,7 +19,7 @@ const std::string deployment = test::sourceFile("deploy/gazebo_world.yml");
 
 class GazeboRunTest : public gazebo::OwnPartition {
 protected:
-    /** A world that answers what it holds, as Gazebo does, and says no poses by itself. */
+    /** A world that offers its scene as Gazebo does, and publishes no poses by itself. */
     std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
         auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");
         world->serve("/world/two_vehicles/scene/info", [](ignition::msgs::Scene& scene) {
@@ -59,7 +59,7 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
 }
 
-TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
+TEST_F(GazeboRunTest, PingsStopAndResumeWithTheWorld) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
     int sent = 0;
@@ -74,7 +74,7 @@ TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     EXPECT_TRUE(gazebo::comesTrue([&] { return publish(true), fs::exists(folder / "out/fan_000003.png"); }));
     EXPECT_TRUE(gazebo::comesTrue([&] {
         publish(false);
-        return readFile(folder / "stderr.txt").find("no pose of the last 2 s (pose_timeout)") != std::string::npos;
+        return readFile(folder / "stderr.txt").find("no pose in the last 2 s (pose_timeout)") != std::string::npos;
     }));
     EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);
@@ -82,7 +82,7 @@ TEST_F(GazeboRunTest, AWorldThatIsPausedStopsThePingsAndTheyGoOnWithIt) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
+TEST_F(GazeboRunTest, ReportsAMissingWorldAndEnds) {
     const Outcome outcome =
         callInsonify(folder, {"run", deployment, "--out", "out", "--set", "scene.gazebo.timeout=0.5"});
     EXPECT_EQ(outcome.code, 2);
@@ -92,7 +92,7 @@ TEST_F(GazeboRunTest, WithoutAWorldItSaysSoAndEnds) {
     EXPECT_THAT(outcome.err, HasSubstr("deploy/gazebo_world.yml:16:"));
 }
 
-TEST_F(GazeboRunTest, WithoutPosesItWaitsAndSaysSo) {
+TEST_F(GazeboRunTest, WaitsWithoutPosesAndReportsIt) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=0.2"});
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
@@ -100,18 +100,18 @@ TEST_F(GazeboRunTest, WithoutPosesItWaitsAndSaysSo) {
     EXPECT_EQ(sonar.wait().code, 0);
 }
 
-TEST_F(GazeboRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+TEST_F(GazeboRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
     const auto world = makeWorld();
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {
         return callInsonify(folder, {"run", deployment, "--out", "out", "--set", set}).err;
     };
     EXPECT_THAT(diagnosed("world.bodies=[{port: red}, {port: blue, entity: blue}]"),
-                HasSubstr("bodies[0]: must have an entity or an odometry, one of both"));
+                HasSubstr("bodies[0]: must have either an entity or an odometry"));
     EXPECT_THAT(diagnosed("world.bodies=[{port: red, entity: red}, {port: red, entity: blue}]"),
                 HasSubstr("bodies[1].port: is red a second time"));
     EXPECT_THAT(diagnosed("world.pose_topic=/poses"),
-                HasSubstr("world: must be given for the poses of entities, or pose_topic, one of both"));
+                HasSubstr("world: must be given for the poses of entities, or pose_topic, but not both"));
     EXPECT_THAT(diagnosed("world.world_frame=ecef"), HasSubstr("world_frame: is ecef"));
     EXPECT_THAT(diagnosed("scene.file=a.glb"), HasSubstr("gazebo: is given, and file as well"));
 }

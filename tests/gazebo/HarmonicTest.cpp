@@ -1,4 +1,4 @@
-// Poses and worlds over the wire, of one who speaks as Gazebo Harmonic does.
+// Poses and worlds over the wire, with a replacement of Gazebo Harmonic.
 #include <gmock/gmock.h>
 
 #include "components/gazebo/PoseTask.hpp"
@@ -42,7 +42,7 @@ protected:
         }
         return message.SerializeAsString();
     }
-    /** What the scene's task says that is wrong. */
+    /** Returns the error of the scene's task. */
     static std::string diagnosticOf(const scene::GazeboConfig& config) {
         scene::SceneTask task("scene");
         scene::SceneConfig scene;
@@ -68,7 +68,7 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     follow("rov");
     HarmonicWorld world({});
     types::Pose read;
-    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its taker is connected
+    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its receiver is connected
         world.publish(recording("poses"));
         task.update();
         return readers[0].port.readNew(read);
@@ -78,7 +78,7 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     EXPECT_NEAR(2 * std::atan2(pose->orientation.z, pose->orientation.w), 1.5707963, 1e-6);
 }
 
-TEST_F(HarmonicTest, AWorldThatStartsAgainIsFoundAnew) {
+TEST_F(HarmonicTest, FindsARestartedWorld) {
     follow("rov");
     for (const double x : {1.0, 2.0}) {
         HarmonicWorld world({});
@@ -92,7 +92,7 @@ TEST_F(HarmonicTest, AWorldThatStartsAgainIsFoundAnew) {
     }
 }
 
-TEST_F(HarmonicTest, APublisherIsToldWhenItsMessagesAreNoLongerTaken) {
+TEST_F(HarmonicTest, InformsAPublisherWhenItsMessagesAreNoLongerReceived) {
     HarmonicWorld world({});
     {
         const Subscriber subscriber(TransportOptions::fromEnvironment(""),
@@ -103,7 +103,7 @@ TEST_F(HarmonicTest, APublisherIsToldWhenItsMessagesAreNoLongerTaken) {
     EXPECT_TRUE(comesTrue([&] { return world.takers() == 0; }));
 }
 
-TEST_F(HarmonicTest, MessagesOfAnotherTypeAndDamagedOnesAreDroppedAndReported) {
+TEST_F(HarmonicTest, DropsAndReportsDamagedMessagesAndWrongTypes) {
     follow("rov");
     {
         HarmonicWorld world({.type = "gz.msgs.Image"});
@@ -119,17 +119,17 @@ TEST_F(HarmonicTest, MessagesOfAnotherTypeAndDamagedOnesAreDroppedAndReported) {
     }));
 }
 
-TEST_F(HarmonicTest, WhoWaitsInVainIsToldWhatThereIs) {
+TEST_F(HarmonicTest, ListsAvailableTopicsWhenATopicIsMissing) {
     HarmonicWorld other({.world = "harbour"});
     follow("rov");
     EXPECT_TRUE(comesTrue([&] {
         task.update();
-        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; heard are ") &&
+        return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; available are ") &&
                isWarned("/world/harbour/pose/info in partition " + partition);
     })) << warnings;
 }
 
-TEST_F(HarmonicTest, ModelsThatComeAndGoAreReported) {
+TEST_F(HarmonicTest, ReportsModelsThatAppearOrDisappear) {
     HarmonicWorld gazebo({.scene = recording("scene")});
     scene::SceneTask scene("scene");
     scene::SceneConfig config;
@@ -148,9 +148,8 @@ TEST_F(HarmonicTest, ModelsThatComeAndGoAreReported) {
         });
     };
     EXPECT_TRUE(isSaid({"rov", "link", "crate", "barrel"},
-                       "world sea has more by now than the scene, which does not show it: barrel; start again"));
-    EXPECT_TRUE(isSaid({"rov", "link"}, "world sea has less by now than the scene, which still shows it: crate"))
-        << warnings;
+                       "world sea has entities that the scene does not have: barrel; restart"));
+    EXPECT_TRUE(isSaid({"rov", "link"}, "world sea has lost entities that the scene still has: crate")) << warnings;
 }
 
 TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
@@ -168,15 +167,15 @@ TEST_F(HarmonicTest, AWorldIsTheSceneOfATask) {
     EXPECT_THAT(task.indivisible(), HasSubstr("gazebo: is the world as it is when it is asked for"));
 }
 
-TEST_F(HarmonicTest, TasksThatHoldAWorldAtOnceShareIt) {
+TEST_F(HarmonicTest, TasksShareAWorld) {
     HarmonicWorld gazebo({.scene = recording("scene")});
     const auto first = scene::sharedWorld(world("sea"), "/"), second = scene::sharedWorld(world("sea"), "/");
     EXPECT_EQ(first, second);
     EXPECT_FALSE(first->nodes.empty());
 }
 
-TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
-    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may be heard on this machine
+TEST_F(HarmonicTest, TheErrorForAMissingWorldListsTheAvailableWorlds) {
+    EXPECT_THAT(diagnosticOf(world("sea", 0.3)),  // other tests may run on this machine
                 testing::StartsWith("gazebo.world: is sea; its service /world/sea/scene/info is not offered in "
                                     "partition " +
                                     partition + " within 0.3 s (timeout); "));
@@ -186,10 +185,10 @@ TEST_F(HarmonicTest, AWorldThatIsNotThereIsAnErrorThatNamesThoseThatAre) {
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
 }
 
-TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
+TEST_F(HarmonicTest, FailingSilentAndWrongServicesHaveTheirOwnErrors) {
     {
         HarmonicWorld gazebo({.succeeds = false});
-        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info answers that it has failed"));
+        EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("/world/sea/scene/info reports a failure"));
     }
     {
         HarmonicWorld gazebo({.answers = false});
@@ -198,13 +197,13 @@ TEST_F(HarmonicTest, AServiceThatFailsOrIsSilentOrIsAnotherIsAnErrorOfItsOwn) {
     {
         HarmonicWorld gazebo({.reply_type = "gz.msgs.StringMsg"});
         EXPECT_THAT(diagnosticOf(world("sea", 2)),
-                    HasSubstr("takes gz.msgs.Empty and answers gz.msgs.StringMsg; Empty is asked for, and Scene"));
+                    HasSubstr("takes gz.msgs.Empty and returns gz.msgs.StringMsg, not Empty and Scene"));
     }
     HarmonicWorld gazebo({.scene = "no message"});
     EXPECT_THAT(diagnosticOf(world("sea")), HasSubstr("gazebo.world: has a service that answers bytes"));
 }
 
-TEST_F(HarmonicTest, AFailureIsNotWaitedForAgainUntilTheTaskIsConfigured) {
+TEST_F(HarmonicTest, AFailureIsCachedUntilTheTaskIsConfigured) {
     scene::SceneTask task("scene");
     scene::SceneConfig config;
     config.gazebo = world("sea", 0.5);
@@ -221,7 +220,7 @@ TEST_F(HarmonicTest, AFailureIsNotWaitedForAgainUntilTheTaskIsConfigured) {
     EXPECT_TRUE(task.configure()) << task.lastError();
 }
 
-TEST_F(HarmonicTest, AWorldWithoutANameAndOneNextToAFileAreErrors) {
+TEST_F(HarmonicTest, AWorldWithoutANameOrTogetherWithAFileIsAnError) {
     types::Diagnostics diagnostics;
     scene::GazeboConfig{}.check(diagnostics);
     scene::SceneConfig both;

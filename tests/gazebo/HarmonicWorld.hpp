@@ -1,6 +1,6 @@
 #pragma once
-// What stands in for Gazebo Harmonic where its transport is not to be had: the same datagrams and frames, with its
-// names of types. As gz-transport does, it sends messages only to programs that have said that they take them.
+// A replacement of Gazebo Harmonic where its transport is not available: the same datagrams and frames, with its names
+// of types. Like gz-transport, it sends messages only to programs that have announced a connection.
 #include <gazebo_messages.pb.h>
 
 #include <atomic>
@@ -25,9 +25,9 @@ class HarmonicWorld {
 public:
     struct Settings {
         std::string world = "sea";
-        std::string scene = {};                    ///< Bytes that the service answers.
-        std::string type = "gz.msgs.Pose_V";       ///< The topic's.
-        std::string reply_type = "gz.msgs.Scene";  ///< The service's.
+        std::string scene = {};                    ///< Reply of the service.
+        std::string type = "gz.msgs.Pose_V";       ///< Type of the topic.
+        std::string reply_type = "gz.msgs.Scene";  ///< Type of the service's reply.
         bool succeeds = true;
         bool answers = true;
         uint32_t version = discovery_version;
@@ -54,7 +54,7 @@ public:
     HarmonicWorld(const HarmonicWorld&) = delete;
     HarmonicWorld& operator=(const HarmonicWorld&) = delete;
 
-    /** False while nobody takes the messages of the topic. */
+    /** Publishes a message; returns false if the topic has no subscribers. */
     bool publish(const std::string& message) {
         const std::lock_guard lock(mutex_);
         if (takers_.empty()) return false;

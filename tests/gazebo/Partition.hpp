@@ -1,5 +1,5 @@
 #pragma once
-// Tests that hear nobody else, and whom nobody else hears.
+// Isolates tests from other programs on Gazebo's transport.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,7 +13,7 @@ namespace insonify::gazebo {
 
 using test::comesTrue;
 
-/** A partition of the test's own, on this machine alone. */
+/** A private partition of the test, on this machine only. */
 class OwnPartition : public testing::Test {
 protected:
     OwnPartition() {

@@ -1,4 +1,4 @@
-// A world by the transport's own publisher, and the task that reads its poses.
+// A world by the publisher of Gazebo's transport, and the task that reads its poses.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -28,7 +28,7 @@ protected:
         config.bodies = std::move(bodies);
         start(config, config.bodies);
     }
-    /** Until a message has come; then nothing of it is left. */
+    /** Waits until a message has arrived, and discards it. */
     void meet(double seconds = 1) {
         ASSERT_TRUE(comesTrue([&] {
             world.publish(seconds, 0);
@@ -130,20 +130,20 @@ TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
     EXPECT_EQ(pose->velocity, glm::dvec3(0.5, 0, 0));
 }
 
-TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
+TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     startWith({entity("rov", "red")});
     meet(100);
-    for (int i = 0; i < 5; ++i) world.publish(100, 1);  // stands still
+    for (int i = 0; i < 5; ++i) world.publish(100, 1);  // paused
     world.publish(100.02, 2);
     EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
     double stamp = 100.02;
-    const auto is_told = [&] {  // in pairs, for after a second of silence any stamp may come
+    const auto is_told = [&] {  // in pairs, because any stamp is valid after a second of silence
         world.publish(stamp += 0.1, 2);
-        world.publish(stamp - 0.05, 3);  // of another publisher, or overtaken
+        world.publish(stamp - 0.05, 3);  // from another publisher, or out of order
         task.update();
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const auto& line) {
-            return line.find("dropped: /world/sea/pose/info: the stamp lies before") != std::string::npos;
+            return line.find("dropped: /world/sea/pose/info: the stamp is before") != std::string::npos;
         });
     };
     EXPECT_TRUE(comesTrue(is_told));
@@ -151,10 +151,10 @@ TEST_F(PoseTaskTest, AWorldThatIsPausedGivesNoPoseAndOneThatIsResetBeginsAnew) {
     auto pose = next();
     while (pose && pose->position.x != 4) pose = next();
     EXPECT_EQ(pose.value_or(types::Pose{}).position.x, 4);
-    EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "of our clock";
+    EXPECT_GT(pose.value_or(types::Pose{}).time, types::Time::fromSeconds(1e9)) << "on our clock";
 }
 
-TEST_F(PoseTaskTest, PosesThatAreNotFiniteAndEntitiesThatAreNotThereAreDroppedAndTold) {
+TEST_F(PoseTaskTest, DropsAndReportsPosesThatAreNotFiniteAndMissingEntities) {
     startWith({entity("rov", "red"), entity("other", "auv")});
     meet();
     ignition::msgs::Pose_V message;
@@ -176,7 +176,7 @@ TEST_F(PoseTaskTest, PosesThatAreNotFiniteAndEntitiesThatAreNotThereAreDroppedAn
     EXPECT_EQ(pose->orientation, glm::dquat(1, 0, 0, 0));
 }
 
-TEST_F(PoseTaskTest, AMessageWithoutAStampBearsItsArrival) {
+TEST_F(PoseTaskTest, AMessageWithoutAStampGetsItsTimeOfArrival) {
     startWith({entity("rov", "red")});
     meet();
     ignition::msgs::Pose_V message;
@@ -186,7 +186,7 @@ TEST_F(PoseTaskTest, AMessageWithoutAStampBearsItsArrival) {
     EXPECT_GE(next().value_or(types::Pose{}).time, before);
 }
 
-TEST_F(PoseTaskTest, MessagesThatNobodyTakesDoNotFillTheMemory) {
+TEST_F(PoseTaskTest, UnreadMessagesDoNotFillTheMemory) {
     int woken = 0;
     Inbox inbox([&] { ++woken; });
     for (size_t i = 0; i < Inbox::capacity + 5; ++i) inbox.put({i, {}, {}, {}, ""});
@@ -197,7 +197,7 @@ TEST_F(PoseTaskTest, MessagesThatNobodyTakesDoNotFillTheMemory) {
     EXPECT_EQ(woken, int(Inbox::capacity) + 5);
 }
 
-TEST_F(PoseTaskTest, WhatTheTransportDoesNotTakeIsAnErrorOfItsProperty) {
+TEST_F(PoseTaskTest, AnInvalidNameForTheTransportIsAnErrorOfItsProperty) {
     PoseConfig config;
     config.pose_topic = "/with a space";
     config.bodies = {entity("rov", "red")};

@@ -40,7 +40,7 @@ std::optional<types::Time> stampOf(const ignition::msgs::Header* header) {
     return readPoses(message.SerializeAsString(), WorldFrame::AsIs).value_or(PoseMessage{}).stamp;
 }
 
-TEST(PosesTest, AxesAreThoseOfTheScenesFileUnlessTheyAreSaidToBeOthers) {
+TEST(PosesTest, AxesAreThoseOfTheScenesFileUnlessConfigured) {
     const types::Pose same = poseOf(placed(pi / 2), WorldFrame::AsIs);
     expectNear(same.position, {1, 2, 3});
     expectNear(same.orientation * glm::dvec3(1, 0, 0), {0, 1, 0});
@@ -90,7 +90,7 @@ TEST(PosesTest, StampsAreThoseOfTheSimulation) {
     EXPECT_EQ(stampOf(&header), std::nullopt);
 }
 
-TEST(PosesTest, AnEntityIsFoundByANameThatNoOtherHas) {
+TEST(PosesTest, FindsAnEntityByAUniqueName) {
     ignition::msgs::Pose_V message;
     setPose(*message.add_pose(), "rov", 1, 2, 3, 0);
     for (int i = 0; i < 2; ++i) setPose(*message.add_pose(), "link", 0, 0, 0, 0);

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/** Without what the machine says about the transport; puts it back. */
+/** Removes the machine's variables of the transport, and restores them. */
 class TransportTest : public testing::Test {
 protected:
     TransportTest() {
@@ -31,7 +31,7 @@ protected:
                              "GZ_DISCOVERY_MULTICAST_IP"};
 };
 
-TEST_F(TransportTest, VariablesOfHarmonicComeBeforeThoseOfFortressAndThePropertyBeforeBoth) {
+TEST_F(TransportTest, ThePropertyHasPrecedenceOverHarmonicsVariablesAndTheseOverFortresss) {
     EXPECT_THAT(TransportOptions::fromEnvironment("").partition, testing::ContainsRegex("^.+:.+$")) << "host:user";
     setenv("IGN_PARTITION", "fortress", 1);
     EXPECT_EQ(TransportOptions::fromEnvironment("").partition, "fortress");
@@ -49,7 +49,7 @@ TEST_F(TransportTest, VariablesOfHarmonicComeBeforeThoseOfFortressAndTheProperty
     EXPECT_EQ(options.group, "239.255.0.8");
 }
 
-TEST_F(TransportTest, VariablesThatAreWrongAreAnError) {
+TEST_F(TransportTest, InvalidVariablesAreAnError) {
     const auto diagnosticOf = [](const std::string& partition) -> std::string {
         try {
             TransportOptions::fromEnvironment(partition);
@@ -103,28 +103,28 @@ TEST_F(TransportTest, DatagramsOfHarmonicAreRead) {
     EXPECT_EQ(service->publication.socket, "99999999-8888-7777-6666-555555555555");
     EXPECT_EQ(readDatagram(recording("alive"), "ours", heard)->kind, Announcement::Kind::Alive);
     EXPECT_EQ(readDatagram(recording("goodbye"), "ours", heard)->kind, Announcement::Kind::Goodbye);
-    EXPECT_EQ(heard.text(), "heard are /world/sea/pose/info in partition auv");
+    EXPECT_EQ(heard.text(), "available are /world/sea/pose/info in partition auv");
 }
 
 TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
     Heard heard("/pose/info");
-    EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo's is heard"));
+    EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo is found"));
     EXPECT_FALSE(readDatagram(recording("alive_with_statistics"), "ours", heard).has_value());
-    EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are there"));
+    EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are running"));
     EXPECT_TRUE(readDatagram(recording("offer_topic"), "ours", heard).has_value());
     EXPECT_THAT(heard.text(),
-                StartsWith("heard are /world/sea/pose/info in partition auv; programs with GZ_TRANSPORT"));
+                StartsWith("available are /world/sea/pose/info in partition auv; programs with GZ_TRANSPORT"));
     Heard other("/pose/info");
     std::string datagram = recording("alive");
     datagram[3] = 77;  // after the key of the field
     EXPECT_FALSE(readDatagram(datagram, "ours", other).has_value());
-    EXPECT_EQ(other.text(), "programs that speak version 77 of Gazebo's discovery are there; version 10 is understood");
+    EXPECT_EQ(other.text(), "programs with version 77 of Gazebo's discovery are running; version 10 is supported");
     Heard nothing("/pose/info");
     EXPECT_TRUE(readDatagram(recording("alive"), "ours", nothing).has_value());
-    EXPECT_EQ(nothing.text(), "nobody offers any that ends in /pose/info");
+    EXPECT_EQ(nothing.text(), "no name that ends in /pose/info is offered");
     Heard own("/pose/info");
     EXPECT_FALSE(readDatagram(aliveDatagram("ours"), "ours", own).has_value());
-    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo's is heard")) << "but ourselves";
+    EXPECT_THAT(own.text(), StartsWith("no program of Gazebo is found")) << "except this program";
 }
 
 TEST_F(TransportTest, DamagedDatagramsAreDropped) {

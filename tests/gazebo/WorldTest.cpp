@@ -1,4 +1,4 @@
-// Scenes of the bytes that Gazebo answers.
+// Scenes from the bytes of Gazebo's replies.
 #include <gazebo_messages.pb.h>
 #include <gmock/gmock.h>
 
@@ -84,7 +84,7 @@ TEST_F(WorldTest, MaterialsAreOfTheMatterInTheNamesOfTheirScripts) {
     EXPECT_THAT(named->notices, Contains(HasSubstr("Gazebo/Steel")));
 }
 
-TEST_F(WorldTest, WithoutScriptsTheNamesOfVisualsLinksAndModelsSayWhatMatterItIs) {
+TEST_F(WorldTest, WithoutScriptsTheMatterIsInTheNamesOfVisualsLinksAndModels) {
     wire::Scene message;
     wire::Model& model = addModel(message, "concrete_pier");
     addBox(model, "pile");
@@ -98,7 +98,7 @@ TEST_F(WorldTest, WithoutScriptsTheNamesOfVisualsLinksAndModelsSayWhatMatterItIs
     EXPECT_EQ(world.scene.geometry->meshes.size(), 4u);
 }
 
-TEST_F(WorldTest, AMeshOfAnotherMachineIsFoundByTheEndOfItsPath) {
+TEST_F(WorldTest, FindsAMeshOfAnotherMachineByTheEndOfItsPath) {
     std::filesystem::create_directories(folder_ / "rov/meshes");
     write("rov/meshes/hull.gltf",
           gltf(scene::triangle() + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -121,7 +121,7 @@ TEST_F(WorldTest, AMeshOfAnotherMachineIsFoundByTheEndOfItsPath) {
     EXPECT_THAT(noticesOf(message), Contains(HasSubstr("https://fuel.gazebosim.org/hull.gltf is not found")));
 }
 
-TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
+TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
     wire::Scene message;
     wire::Model& lost = addModel(message, "lost");
     setVector(*lost.mutable_pose()->mutable_position(), nan, 0, 0);
@@ -149,12 +149,12 @@ TEST_F(WorldTest, WhatHasNoPlaceOrSizeIsLeftOutAndSaysSo) {
     addBox(bad, "empty").mutable_geometry()->set_type(wire::Geometry::EMPTY);
     EXPECT_THAT(
         noticesOf(message),
-        ElementsAre("model lost is left out: its pose is not finite, or its orientation has no length",
-                    "model unturned is left out: its pose is not finite, or its orientation has no length",
+        ElementsAre("model lost is omitted: its pose is not finite, or its orientation has no length",
+                    "model unturned is omitted: its pose is not finite, or its orientation has no length",
                     "visual bad::negative::visual is left out: its size is -1; must not be negative",
                     "visual bad::nan::visual is left out: its size is nan; must not be negative",
                     "visual bad::moved::visual is left out: its pose is not finite, or its orientation has no length",
-                    "link bad::capsule is there twice; the second is bad::capsule_2 here",
+                    "link bad::capsule exists twice; the second is named bad::capsule_2 here",
                     "visual bad::none::visual is left out: it has no geometry",
                     "visual bad::text::visual is left out: its geometry is not one of those that are drawn",
                     "visual bad::mesh::visual is left out: its scale is not finite",
@@ -167,17 +167,17 @@ TEST_F(WorldTest, AWorldWithoutVisualsIsAnEmptySea) {
     EXPECT_THAT(noticesOf({}), ElementsAre("the scene has no triangles: an empty sea"));
 }
 
-TEST_F(WorldTest, NamesThatAreThereTwiceAreReported) {
+TEST_F(WorldTest, ReportsDuplicateNames) {
     wire::Scene message;
     for (int i = 0; i < 2; ++i) addBox(addModel(message, "buoy"), "link");
     const World world = worldOf(message);
     EXPECT_THAT(world.scene.geometry->notices,
-                ElementsAre("model buoy is there twice; the second is buoy_2 here",
-                            "link buoy::link is there twice; the second is buoy::link_2 here"));
+                ElementsAre("model buoy exists twice; the second is named buoy_2 here",
+                            "link buoy::link exists twice; the second is named buoy::link_2 here"));
     EXPECT_GE(scene::findNode(world.scene, "buoy_2"), 0);
 }
 
-TEST_F(WorldTest, BytesThatAreNoSceneAndWorldsThatAreTooLargeAreErrors) {
+TEST_F(WorldTest, InvalidBytesAndTooLargeWorldsAreErrors) {
     const auto diagnosticOf = [&](const std::string& bytes) -> std::string {
         try {
             gazebo::worldOf(bytes, folder_);
@@ -200,7 +200,7 @@ PoseMessage posesOf(const std::vector<std::string>& names) {
     return message;
 }
 
-TEST(WorldWatchTest, WhatComesAndGoesAfterTheSceneWasTakenIsReportedOnce) {
+TEST(WorldWatchTest, ReportsEntitiesThatAppearOrDisappearOnce) {
     WorldWatch watch(std::set<std::string>{"rov", "link", "buoy"});
     WorldWatch::Change change = watch.take(posesOf({"rov", "link", "buoy", "crate"}));
     EXPECT_THAT(change.came, ElementsAre("crate")) << "it came before the first message";
@@ -212,7 +212,7 @@ TEST(WorldWatchTest, WhatComesAndGoesAfterTheSceneWasTakenIsReportedOnce) {
     EXPECT_TRUE(watch.take(posesOf({"rov", "link", "buoy", "crate"})).isEmpty());
 }
 
-TEST(WorldWatchTest, WithoutASceneOfGazeboTheFirstMessageCounts) {
+TEST(WorldWatchTest, ComparesWithTheFirstMessageWithoutASceneOfGazebo) {
     WorldWatch watch({});
     EXPECT_TRUE(watch.take(posesOf({"rov", "link"})).isEmpty());
     EXPECT_THAT(watch.take(posesOf({"rov", "link", "crate"})).came, ElementsAre("crate"));

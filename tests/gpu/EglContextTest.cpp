@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/** As errorOf, on a thread of its own. */
+/** Calls errorOf() on a separate thread. */
 template <class Job>
 std::string errorElsewhere(const Job& job) {
     std::string text;
@@ -73,13 +73,13 @@ TEST(EglContextTest, WithoutADeviceTheVariableChooses) {
     EXPECT_TRUE(EglContext().isSoftware());
 }
 
-TEST(EglContextTest, AnUnknownDeviceIsNamedWithWhatItMayBe) {
+TEST(EglContextTest, AnUnknownDeviceIsReportedWithTheAllowedNames) {
     for (const char* device : {"quantum", "4000000000", "99999999999999999999", "-1", "0x", "1.5", " software", "Auto"})
         EXPECT_THAT(errorOf([&] { EglContext context(device); }),
                     AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
 }
 
-TEST(EglContextTest, AnUnknownDeviceInTheVariableIsNamedToo) {
+TEST(EglContextTest, AnUnknownDeviceInTheVariableIsReportedToo) {
     for (const char* device : {"quantum", "4000000000"}) {
         const DeviceVariable variable(device);
         EXPECT_THAT(errorOf([] { EglContext context; }),
@@ -87,24 +87,24 @@ TEST(EglContextTest, AnUnknownDeviceInTheVariableIsNamedToo) {
     }
 }
 
-TEST(EglContextTest, AGivenDeviceGoesBeforeTheVariable) {
+TEST(EglContextTest, AGivenDeviceHasPrecedenceOverTheVariable) {
     const DeviceVariable variable("quantum");
     EXPECT_TRUE(EglContext("software").isSoftware());
 }
 
-TEST(EglContextTest, AnEmptyVariableIsAsGoodAsNone) {
+TEST(EglContextTest, AnEmptyVariableIsIgnored) {
     const DeviceVariable variable("");
     EXPECT_THAT(EglContext().renderer(), Not(IsEmpty()));
 }
 
-TEST(EglContextTest, AnotherThreadIsToldToMakeAContextOfItsOwn) {
+TEST(EglContextTest, RejectsUseOnAnotherThread) {
     EglContext context("software");
     EXPECT_THAT(errorElsewhere([&] { context.requireThread(); }), HasSubstr("made on another thread"));
     EXPECT_THAT(errorElsewhere([&] { context.check(); }), HasSubstr("made on another thread"));
     EXPECT_EQ(errorOf([&] { context.check(); }), "") << "its own thread may go on";
 }
 
-TEST(EglContextTest, AContextWhosePlaceALaterOneTookIsRefused) {
+TEST(EglContextTest, RejectsAContextThatIsNoLongerCurrent) {
     EglContext first("software");
     {
         EglContext second("software");
@@ -114,7 +114,7 @@ TEST(EglContextTest, AContextWhosePlaceALaterOneTookIsRefused) {
     EXPECT_THAT(errorOf([&] { first.check(); }), HasSubstr("one at a time"));
 }
 
-TEST(EglContextTest, WithTheVariableAMistakeIsThrownOnceByTheNextCheckInGlsWords) {
+TEST(EglContextTest, TheNextCheckThrowsAnErrorOnceWithGlsTextIfTheVariableIsSet) {
     const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);  // not in the core profile
@@ -122,7 +122,7 @@ TEST(EglContextTest, WithTheVariableAMistakeIsThrownOnceByTheNextCheckInGlsWords
     EXPECT_EQ(errorOf([&] { context.check(); }), "");
 }
 
-TEST(EglContextTest, WithoutItTheMistakeIsThrownWithItsNumberAndHowToLearnMore) {
+TEST(EglContextTest, WithoutTheVariableAnErrorIsThrownWithItsNumberAndARemedy) {
     const DebugVariable debug("0");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
@@ -131,18 +131,18 @@ TEST(EglContextTest, WithoutItTheMistakeIsThrownWithItsNumberAndHowToLearnMore) 
     EXPECT_EQ(errorOf([&] { context.check(); }), "");
 }
 
-TEST(EglContextTest, ItsDriverIsNamed) { EXPECT_THAT(EglContext("software").driver(), HasSubstr("Mesa")); }
+TEST(EglContextTest, NamesTheDriver) { EXPECT_THAT(EglContext("software").driver(), HasSubstr("Mesa")); }
 
-TEST(EglContextTest, ThatItDrawsInSoftwareIsToldWhereNobodyAskedForIt) {
+TEST(EglContextTest, ReportsSoftwareRasterisingWithoutARequest) {
     EXPECT_EQ(EglContext("software").fallback(), "");
     const DeviceVariable variable("auto");
     const EglContext context;
-    const std::string expected = context.isSoftware() ? "drawn in software by " + context.renderer() : "";
+    const std::string expected = context.isSoftware() ? "rasterised in software by " + context.renderer() : "";
     EXPECT_THAT(context.fallback(), HasSubstr(expected));
     EXPECT_EQ(context.fallback().empty(), expected.empty());
 }
 
-TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
+TEST(EglContextTest, ReportsTheFirstOfTwoErrors) {
     const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
@@ -150,7 +150,7 @@ TEST(EglContextTest, OfTwoMistakesTheFirstIsTold) {
     EXPECT_THAT(errorOf([&] { context.check(); }), HasSubstr("glEnable"));
 }
 
-TEST(EglContextTest, RenderersOnTheProcessorAreKnownByTheirNames) {
+TEST(EglContextTest, RecognisesSoftwareRenderersByTheirNames) {
     for (const char* renderer : {"llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe", "Software Rasterizer",
                                  "Google SwiftShader", "zink (llvmpipe (LLVM 15.0.6, 256 bits))",
                                  "zink Vulkan 1.3(llvmpipe (LLVM 19.1.7, 256 bits) (MESA_LLVMPIPE))",
@@ -163,7 +163,7 @@ TEST(EglContextTest, RenderersOnTheProcessorAreKnownByTheirNames) {
         EXPECT_FALSE(isSoftwareRenderer(renderer)) << renderer;
 }
 
-TEST(EglContextTest, ACardGoesBeforeADisplayChipThatDrawsOnTheProcessor) {
+TEST(EglContextTest, PrefersACardToADisplayChipOnTheProcessor) {
     const std::string chip = "llvmpipe (LLVM 15.0.6, 256 bits)", card = "NVIDIA L40S/PCIe/SSE2",
                       other = "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", none;
     const auto preferred = [](const std::vector<std::string>& renderers) { return preferredRenderer(renderers); };
@@ -217,7 +217,7 @@ TEST(EglContextTest, UnrelatedContextsShareNothing) {
     EXPECT_FALSE(known);
 }
 
-TEST(EglContextTest, TheSoftwareRendererDrawsSideBySideAndTransfersAlone) {
+TEST(EglContextTest, TheSoftwareRendererRasterisesConcurrentlyAndTransfersExclusively) {
     const EglContext context("software");
     auto drawing = context.drawing();
     std::atomic<bool> drawn = false, transferred = false;

@@ -5,7 +5,7 @@
 
 namespace insonify::gpu {
 
-/** What GlError says when `job` throws one; empty when it does not. */
+/** Returns the text of a GlError from `job`; empty when it throws none. */
 template <class Job>
 std::string errorOf(const Job& job) {
     try {

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::IsEmpty;
 
-TEST(LimitsTest, AContextHasAtLeastWhatOpenGl45Promises) {
+TEST(LimitsTest, AContextHasTheLimitsThatOpenGl45Guarantees) {
     const EglContext context("software");
     EXPECT_THAT(context.limits().shortfall(test::promisedLimits()), IsEmpty());
 }

@@ -29,21 +29,21 @@ std::vector<uint8_t> counted(size_t count) {
     return bytes;
 }
 
-TEST_F(ObjectsTest, ABufferHoldsWhatItWasMadeWithWhateverItsSize) {
+TEST_F(ObjectsTest, ABufferOfAnySizeContainsItsInitialData) {
     for (size_t size : {1, 4, 15, 16, 17, 1000}) {
         const auto data = counted(size);
         EXPECT_EQ(bytesOf(Buffer(size, data.data()), size), data) << size;
     }
 }
 
-TEST_F(ObjectsTest, ABufferIsNeverEmptyForShadersMayNotBindNothing) {
+TEST_F(ObjectsTest, ABufferIsNeverEmptyBecauseShadersMustBindData) {
     EXPECT_EQ(Buffer(0).bytes(), 16u);
     EXPECT_EQ(Buffer::of(std::span<const float>()).bytes(), 16u);
     EXPECT_EQ(Buffer(3).bytes(), 16u);
     EXPECT_EQ(Buffer(100).bytes(), 100u);
 }
 
-TEST_F(ObjectsTest, WritesAndReadsMayStartAnywhere) {
+TEST_F(ObjectsTest, WritesAndReadsMayHaveAnyOffset) {
     const auto data = counted(32);
     Buffer buffer(32, data.data());
     const std::array<uint8_t, 3> three = {200, 201, 202};
@@ -75,7 +75,7 @@ TEST_F(ObjectsTest, ANameIsDeletedWithItsLastOwner) {
     EXPECT_FALSE(glIsBuffer(id));
 }
 
-TEST_F(ObjectsTest, AMovedOntoObjectLeavesNothingBehind) {
+TEST_F(ObjectsTest, MoveAssignmentDeletesTheOldObject) {
     Buffer kept(64);
     const GLuint before = kept.id();
     kept = Buffer(32);
@@ -95,7 +95,7 @@ TEST_F(ObjectsTest, APictureOfIntegersIsClearedAndReadBackAsItIs) {
     for (size_t i = 0; i < words.size(); ++i) EXPECT_EQ(words[i], i % 2 ? 7u : 4'000'000'000u) << i;
 }
 
-TEST_F(ObjectsTest, ATextureHasAllLevelsOnlyWhenAsked) {
+TEST_F(ObjectsTest, ATextureHasAllLevelsOnlyIfMipmapped) {
     const Texture plain(GL_RGBA8, 64, 16), mipmapped(GL_RGBA8, 64, 16, true);
     GLint levels = 0;
     glGetTextureParameteriv(plain.id(), GL_TEXTURE_IMMUTABLE_LEVELS, &levels);
@@ -104,12 +104,12 @@ TEST_F(ObjectsTest, ATextureHasAllLevelsOnlyWhenAsked) {
     EXPECT_EQ(levels, 7) << "64, 32, 16, 8, 4, 2, 1";
 }
 
-TEST_F(ObjectsTest, PicturesThatCannotBeDrawnIntoAreRefused) {
+TEST_F(ObjectsTest, RejectsPicturesThatCannotBeRasterisedInto) {
     const Texture colour(GL_RGB9_E5, 4, 4), depth(GL_DEPTH_COMPONENT32F, 4, 4);  // shared exponents: for reading only
     EXPECT_THROW(Framebuffer(colour, depth), GlError);
 }
 
-TEST_F(ObjectsTest, AttributesComeFromTheirBuffersByVertexAndByInstance) {
+TEST_F(ObjectsTest, AttributesAreReadPerVertexAndPerInstance) {
     const Buffer positions(96), rows(96), order(16);
     const VertexArray vertices;
     vertices.attribute(0, positions, 3);

@@ -18,12 +18,12 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-TEST(ProgramTest, AnUnknownShaderFileIsNamed) {
+TEST(ProgramTest, ReportsAnUnknownShaderFile) {
     EXPECT_THAT(errorOf([] { shaderFile("sonar.glsl"); }), HasSubstr("'sonar.glsl'"));
     EXPECT_THAT(errorOf([] { shaderSource("", {}); }), HasSubstr("''"));
 }
 
-TEST(ProgramTest, AFileIsThereToTheLastLine) {
+TEST(ProgramTest, AFileIsCompleteToTheLastLine) {
     const std::string_view text = shaderFile("surface.vert.glsl");
     EXPECT_THAT(std::string(text), HasSubstr("void main()"));
     EXPECT_EQ(text.substr(text.size() - 2), "}\n");
@@ -38,7 +38,7 @@ TEST(ProgramTest, IncludesAreReplacedByTheirFiles) {
         EXPECT_THAT(source, HasSubstr(std::string(shaderFile(file)))) << file;
 }
 
-TEST(ProgramTest, DefinesStandAfterTheVersionAndBeforeTheText) {
+TEST(ProgramTest, DefinesFollowTheVersionAndPrecedeTheText) {
     const std::string source = shaderSource("surface.frag.glsl", {"HAVE_NORMAL_MAP", "ANSWER 42"});
     EXPECT_THAT(source, StartsWith("#version 450 core\n"));
     const size_t first = source.find("#define HAVE_NORMAL_MAP\n"), second = source.find("#define ANSWER 42\n");
@@ -71,7 +71,7 @@ TEST(ProgramTest, NoShaderNeedsDoubles) {
                 ElementsAre("double", "dvec3", "1e-3lf"));
 }
 
-TEST(ProgramTest, WhatTheShadersHaveCompilesInEveryCombination) {
+TEST(ProgramTest, EveryCombinationOfFeaturesCompiles) {
     EglContext context("software");
     using Defines = std::vector<std::string>;
     for (const Defines& defines : {Defines{}, Defines{"HAVE_NORMAL_MAP"}})
@@ -102,7 +102,7 @@ TEST(ProgramTest, AContextCompilesEachTextOnce) {
     EXPECT_NO_THROW(context.check());
 }
 
-TEST(ProgramTest, AMistakeInAShaderComesWithItsFileAndTheCompilersWords) {
+TEST(ProgramTest, ReportsAnErrorInAShaderWithItsFileAndTheCompilersText) {
     EglContext context("software");
     EXPECT_THAT(errorOf([] { Program::compute("deposit.comp.glsl", {"image_size no_such_thing +"}); }),
                 AllOf(StartsWith("deposit.comp.glsl: "), HasSubstr("error")));
@@ -111,7 +111,7 @@ TEST(ProgramTest, AMistakeInAShaderComesWithItsFileAndTheCompilersWords) {
         AllOf(StartsWith("surface.vert.glsl: "), HasSubstr("no_such_thing")));
 }
 
-TEST(ProgramTest, WhatTheLinkerMissesIsTold) {
+TEST(ProgramTest, ReportsErrorsOfTheLinker) {
     EglContext context("software");
     EXPECT_THAT(errorOf([] { Program::raster("surface.vert.glsl", "surface.frag.glsl", {"main not_main"}); }),
                 AllOf(StartsWith("linking: "), HasSubstr("main")));

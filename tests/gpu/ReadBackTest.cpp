@@ -16,7 +16,7 @@ std::vector<uint32_t> read(const void* bytes, size_t count) {
     return values;
 }
 
-TEST(ReadBackTest, WhatComesBackIsWhatTheBufferHeldWhenItWasAskedFor) {
+TEST(ReadBackTest, ReturnsTheContentAtTheTimeOfTheRequest) {
     EglContext context("software");
     const std::vector<uint32_t> first = {1, 2, 3}, second = {4, 5, 6};
     Buffer buffer = Buffer::of(std::span(first));
@@ -27,7 +27,7 @@ TEST(ReadBackTest, WhatComesBackIsWhatTheBufferHeldWhenItWasAskedFor) {
     EXPECT_NO_THROW(context.check());
 }
 
-TEST(ReadBackTest, AReadStaysWhileOthersAreOnTheirWay) {
+TEST(ReadBackTest, AReadStaysValidWhileOthersArePending) {
     EglContext context("software");
     std::vector<ReadBack> reads;
     for (uint32_t value = 10; value < 13; ++value) {
@@ -42,7 +42,7 @@ TEST(ReadBackTest, AReadStaysWhileOthersAreOnTheirWay) {
     EXPECT_NO_THROW(context.check());
 }
 
-TEST(ReadBackTest, APictureComesRowByRowFromBelow) {
+TEST(ReadBackTest, APictureIsReadRowByRowFromBelow) {
     EglContext context("software");
     const Texture picture(GL_RG32UI, 3, 2);
     const std::vector<uint32_t> words = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
@@ -53,7 +53,7 @@ TEST(ReadBackTest, APictureComesRowByRowFromBelow) {
     EXPECT_NO_THROW(context.check());
 }
 
-TEST(UploadListTest, ACopyHoldsWhatWasWrittenBeforeItWasAskedFor) {
+TEST(UploadListTest, ACopyContainsTheItemsWrittenBeforeItsRequest) {
     EglContext context("software");
     UploadList<uint32_t> list(4);
     ReadBack back(3 * sizeof(uint32_t));
@@ -68,7 +68,7 @@ TEST(UploadListTest, ACopyHoldsWhatWasWrittenBeforeItWasAskedFor) {
     EXPECT_NO_THROW(context.check());
 }
 
-TEST(FenceTest, NobodyWaitsForAFenceOfNothing) {
+TEST(FenceTest, AnEmptyFenceDoesNotWait) {
     const Fence none;
     none.wait();
     EglContext context("software");

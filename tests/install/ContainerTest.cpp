@@ -1,4 +1,4 @@
-// deploy/Dockerfile. It is built where a person does so; here it is held against what it is made of.
+// deploy/Dockerfile. People build it; this test compares it with its parts.
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/** The wall, heard with numbers of the effect. */
+/** The wall, with numbers of the effect. */
 std::string deploymentWith(const std::string& effects) {
     return replaced(replaced(wall_deployment, "tasks:\n", "libraries: [build/afterglow.so]\ntasks:\n"),
                     "      range: 20\n", "      range: 20\n      effects: " + effects + "\n");
@@ -34,7 +34,7 @@ target_link_libraries(afterglow PRIVATE Insonify::core)
 
 }  // namespace
 
-TEST(EffectTest, ALibrarysEffectWithStateIsPlannedHeardAndRefusedLikeOurs) {
+TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
     const WallFolder folder(deploymentWith("{afterglow: {kept: 0.5}}"));
     buildEffect(folder);
     const std::string insonify = folder / "prefix/bin/insonify";

@@ -1,4 +1,4 @@
-// What `cmake --install` puts in a prefix works there, without sources and build.
+// The files that `cmake --install` puts in a prefix work without sources and build.
 #include <gmock/gmock.h>
 
 #include "tests/install/Outside.hpp"
@@ -36,7 +36,7 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     ASSERT_EQ(
         call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "mean.mean", "--to", "mean.csv"}).code,
         0);
-    // The wall is at 10 m and all bins but those of the wall are 0, so the mean is between 0 and 1.
+    // The wall is at 10 m and all other bins are 0, so the mean is between 0 and 1.
     std::istringstream rows(readFile(folder / "mean.csv"));
     std::string row;
     std::getline(rows, row);
@@ -49,7 +49,7 @@ TEST(InstallTest, AProjectOutsideBuildsAComponentThatTheInstalledCommandRuns) {
     }
     EXPECT_EQ(count, 2);
 
-    // The command's own reader refuses what the component's property may not be.
+    // The command's own reader refuses values that the component's property may not have.
     const Outcome refused = call(folder, {insonify, "run", "wall.yml", "--set", "mean.beyond=-1"});
     EXPECT_EQ(refused.code, 2);
     EXPECT_THAT(refused.err, HasSubstr("tasks.mean.properties.beyond"));
@@ -66,7 +66,7 @@ TEST(InstallTest, TheExamplesRunFromThePrefix) {
     EXPECT_THAT(call(folder, {"ldd", insonify}).out, testing::Not(HasSubstr(insonify::test::build_dir)));
 }
 
-TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
+TEST(InstallTest, TheServiceIsInstalledWhereSystemdSearches) {
     const TestFolder folder;
     install(folder);
     EXPECT_EQ(readFile(folder / "prefix/lib/systemd/system/insonify.service"),
@@ -74,7 +74,7 @@ TEST(InstallTest, TheServiceLiesWhereSystemdLooks) {
     EXPECT_TRUE(fs::exists(folder / "prefix/share/man/man1/insonify.1")) << "which the service names";
 }
 
-TEST(InstallTest, AMeshThatAProcessOfItsOwnReadsIsReadFromThePrefix) {
+TEST(InstallTest, ReadsMeshesInAProcessFromThePrefix) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;
     install(folder);
@@ -112,7 +112,7 @@ TEST(InstallTest, AFirstDeploymentIsMadeAndRunsAndTheManualPageIsThere) {
     EXPECT_EQ(readFile(folder / "prefix/share/man/man1/insonify.1"), call(folder, {insonify, "man"}).out);
 }
 
-TEST(InstallTest, EachComponentsLibraryIsFoundWithWhatItIsBuiltOn) {
+TEST(InstallTest, FindsEachComponentsLibraryWithItsDependencies) {
     const TestFolder folder;
     install(folder);
     std::string project = "cmake_minimum_required(VERSION 3.22)\nproject(Outside CXX)\nset(all";
@@ -131,7 +131,7 @@ endforeach()
     EXPECT_EQ(built.code, 0) << built.out << built.err;
 }
 
-TEST(InstallTest, AComponentThatIsNotThereIsRefusedByItsName) {
+TEST(InstallTest, RefusesAnUnknownComponentByItsName) {
     const TestFolder folder;
     install(folder);
     writeFile(folder / "CMakeLists.txt",

@@ -17,7 +17,7 @@ inline void install(const TestFolder& folder) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
 }
 
-/** Configures the project in the folder with nothing but the prefix, and builds it in its folder `build`. */
+/** Configures the project in the folder with only the prefix, and builds it in its folder `build`. */
 inline Outcome buildOutside(const TestFolder& folder, const std::string& prefix) {
     const Outcome configured =
         call(folder, {INSONIFY_CMAKE, "-S", ".", "-B", "build", "-DCMAKE_PREFIX_PATH=" + prefix});

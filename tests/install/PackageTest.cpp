@@ -49,7 +49,7 @@ void runArchive(const WallFolder& folder) {
     EXPECT_GT(std::distance(fs::directory_iterator(package / "../insonify.libs/licences"), {}), 20);
     EXPECT_THAT(
         call(folder, {program, "check", std::string(insonify::test::source_dir) + "/deploy/survey_mission.yml"}).err,
-        HasSubstr("the component library survey, which wheels and archives do not hold"));
+        HasSubstr("the component library survey, which is not in wheels and archives"));
 }
 
 void runWheel(const WallFolder& folder) {

@@ -1,4 +1,4 @@
-// deploy/insonify.service, as systemd reads it.
+// deploy/insonify.service, checked by systemd.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -46,7 +46,7 @@ TEST(ServiceTest, StopsWithSigintComesBackAfterAFailureAndMayUseRealtime) {
 TEST(ServiceTest, SystemdFindsNothingWrongWithIt) {
     const TestFolder folder;
     if (call(folder, {"systemd-analyze", "--version"}).code != 0) GTEST_SKIP() << "there is no systemd-analyze here";
-    // The command has to be there; here it is not where systemd searches.
+    // The command must exist; here it is not where systemd searches.
     std::string text = readFile(unit);
     text = replaced(text, "ExecStart=insonify", "ExecStart=" + insonify::test::program("insonify"));
     writeFile(folder / "insonify.service", text);

@@ -1,4 +1,4 @@
-// What the project cites is in it: files, sections of components/sonar/ACOUSTICS.md, and the tests named there.
+// Citations in the project refer to existing files, sections of components/sonar/ACOUSTICS.md, and tests.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -19,7 +19,7 @@ using Names = std::vector<std::string>;
 
 const std::string reference = "components/sonar/ACOUSTICS.md";
 
-/** The files of the project, those of the user's top level among them, with one of the extensions. */
+/** The files of the project, including the root folder, with one of the extensions. */
 std::vector<Source> projectFiles(const std::vector<std::string>& extensions) {
     std::vector<Source> all;
     for (const char* folder : {"types", "components", "shaders", "deploy", "tests", "scripts", "ros2"})
@@ -31,7 +31,7 @@ std::vector<Source> projectFiles(const std::vector<std::string>& extensions) {
 
 std::vector<Source> markdownFiles() { return projectFiles({".md"}); }
 
-/** What can cite a file in a comment. */
+/** The files that can cite a file in a comment. */
 std::vector<Source> citingFiles() {
     return projectFiles(
         {".hpp", ".cpp", ".glsl", ".js", ".html", ".css", ".py", ".cmake", ".yml", ".txt", ".rs", ".service", ".md"});
@@ -47,7 +47,7 @@ Names matches(const std::string& text, const std::regex& pattern) {
 
 std::string nameOf(const std::string& path) { return fs::path(path).filename(); }
 
-/** Markdown files that are there, and those that the programs of the project write. */
+/** Existing Markdown files, and those that the programs of the project write. */
 std::set<std::string> knownMarkdown() {
     static const std::regex written(R"re("([\w./-]*\w\.md)")re");
     std::set<std::string> known;
@@ -59,7 +59,7 @@ std::set<std::string> knownMarkdown() {
     return known;
 }
 
-/** Cited Markdown files that nobody knows. */
+/** Cited Markdown files that do not exist. */
 Names missingFiles(const Source& source, const std::set<std::string>& known) {
     static const std::regex cited(R"(([\w./-]*\w\.md)\b)");
     Names missing;
@@ -78,7 +78,7 @@ std::set<std::string> sectionsOf(const Source& page) {
     return sections;
 }
 
-/** Cited sections that are not there; "" where the reference is named without one, and not as a path. */
+/** Cited sections that do not exist; "" if the reference is named without a section, and not as a path. */
 Names missingSections(const Source& source, const std::set<std::string>& sections) {
     static const std::regex cited(R"((?:^|[^/])ACOUSTICS\.md((( |, | and | to )\d+(\.\d+)*)*))");
     static const std::regex number(R"((\d+(\.\d+)*))");
@@ -99,7 +99,7 @@ std::string textOf(const Source& source) {
     return text;
 }
 
-/** A test by the name that GoogleTest gives it, and the file that is named before it. */
+/** A test by its GoogleTest name, and the file that is named before it. */
 struct NamedTest {
     std::string file, suite, name;
     bool exists() const {
@@ -134,7 +134,7 @@ std::map<std::string, std::string> textsOf(const Source& page) {
     return texts;
 }
 
-/** Paths in back quotes that are not there. */
+/** Paths in back quotes that do not exist. */
 Names missingPaths(const std::string& text) {
     static const std::regex path("`((types|components|shaders|deploy|tests|scripts)/[\\w./-]+)`");
     Names missing = matches(text, path);

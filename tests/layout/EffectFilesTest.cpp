@@ -1,4 +1,4 @@
-// An effect is a file: how many files of the product name each effect of components/sonar/effects.
+// An effect is a file: counts the files of the product that name each effect of components/sonar/effects.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -13,24 +13,24 @@ namespace {
 
 constexpr size_t max_files = 8;
 
-/** Effects that more files name, with the number of those files. It may fall, and must not rise. */
+/** Effects that more files name, with the number of those files. The number may fall, and must not rise. */
 const std::map<std::string, size_t> known{
     {"absorption", 23},  {"backscatter", 20}, {"beamPatterns", 14}, {"pulse", 19},
     {"speckle", 15},     {"multipath", 10},   {"motionInPing", 12}, {"normalMaps", 33},
     {"pointTargets", 9}, {"surfaceMaps", 20}, {"truth", 70},
 };
 
-/** Folders and files in which the word means another thing. */
+/** Folders and files in which the word has another meaning. */
 const std::multimap<std::string, std::string> other_meanings{
     {"crosstalk", "components/sonar/effects/Imperfections.cpp"},     // Between a device's neighbouring beams.
     {"crosstalk", "components/sonar/plan/ImperfectionsConfig.hpp"},  // The same.
     {"volume", "components/acoustics/Seabed"},                       // Scattering within a sediment.
     {"volume", "components/deployer/BackscatterCommand.cpp"},        // The same.
-    {"volume", "components/scene/Clusters.cpp"},                     // What a mesh encloses.
+    {"volume", "components/scene/Clusters.cpp"},                     // The inside of a mesh.
     {"volume", "components/scene/GltfFile.cpp"},                     // An extension of glTF.
-    {"volume", "components/sonar/field/"},                           // What the axes of a lattice span.
-    {"volume", "components/sonar/rays/RayVisibility.cpp"},           // What the axes of an object span.
-    {"volume", "types/MeshRays.hpp"},                                // What a triangle and a ray span.
+    {"volume", "components/sonar/field/"},                           // The space between the axes of a lattice.
+    {"volume", "components/sonar/rays/RayVisibility.cpp"},           // The space between the axes of an object.
+    {"volume", "types/MeshRays.hpp"},                                // The space between a triangle and a ray.
 };
 
 /** Code without its comments, in lower case and without underscores: one spelling for all of an effect's names. */
@@ -62,7 +62,7 @@ std::vector<std::string> effectNames() {
     return names;
 }
 
-/** Paths of the product's files with their names; studies measure the product, and are none of it. */
+/** Paths of the product's files with their names; studies measure the product, and are not part of it. */
 std::map<std::string, std::string> productNames() {
     std::map<std::string, std::string> names;
     for (const char* folder : {"types", "components", "shaders"})

@@ -1,4 +1,4 @@
-// components/framework knows tasks, ports and time, and nothing of what is simulated with them.
+// components/framework is about tasks, ports and time, but nothing about sonars.
 #include <gmock/gmock.h>
 
 #include <regex>
@@ -11,7 +11,7 @@ using ::testing::IsEmpty;
 
 namespace {
 
-/** Lines, code and comments alike, in which one of the words of the field stands: by itself, or in a name. */
+/** Lines, code and comments alike, that contain a word of the field, by itself or in a name. */
 std::vector<std::string> linesOfTheField(const Source& source) {
     static const std::regex word(R"(\b(ping|sonar|replay|bin|beam)s?(\b|_))", std::regex::icase);
     static const std::regex in_name(R"((Ping|Sonar|Replay|Beam)(s?[A-Z_]|s?\b))");

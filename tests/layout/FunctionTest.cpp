@@ -18,7 +18,7 @@ protected:
     void SetUp() override {
         if (!pythonHas("lizard")) GTEST_SKIP() << "python has no lizard; scripts/setup installs it";
     }
-    /** The functions below a folder that are too long or too branched, a line each. */
+    /** The functions below a folder that are too long or have too many branches, a line each. */
     std::string tooMuchIn(const std::string& folder) const {
         return pythonSays("-m lizard --languages cpp --warnings_only --length 60 --CCN 20 " + folder,
                           folder_ / "answer.txt");

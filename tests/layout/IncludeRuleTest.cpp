@@ -1,4 +1,4 @@
-// Who may include whom: the rule of components/README.md, read from the sources.
+// The include rule of components/README.md, checked in the sources.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -25,7 +25,7 @@ std::vector<Include> includesOf(const Source& source) {
     return found;
 }
 
-/** Folders from which those of a folder may include. */
+/** Folders from which the files of a folder may include. */
 const std::map<std::string, std::set<std::string>> neighbours = {
     {"dataset", {"command", "log", "output", "pose"}},
     {"dds", {"ros"}},
@@ -59,7 +59,7 @@ std::set<std::string> neighboursOf(const Source& source) {
     return allowed;
 }
 
-/** "pocolog" for components/log/pocolog/...: a format that a log can have; empty for what all share. */
+/** "pocolog" for components/log/pocolog/...: a format of logs; empty for the common part. */
 std::string backEndOf(const Source& source) {
     const std::string log = "components/log/";
     const size_t end = source.path.find('/', log.size());
@@ -67,7 +67,7 @@ std::string backEndOf(const Source& source) {
                                                                     : "";
 }
 
-/** A log's formats stand behind what all share: nobody outside names one, and none names the other. */
+/** Log formats are hidden behind the common part: no other folder includes a format, and no format includes another. */
 bool reachesBehindTheLog(const Source& source, const Source& target) {
     const std::string own = backEndOf(source), wanted = backEndOf(target);
     return !wanted.empty() && (source.folder() != "log" || (!own.empty() && own != wanted));
@@ -77,7 +77,7 @@ bool mayInclude(const Source& source, const Source& target) {
     if (reachesBehindTheLog(source, target)) return false;
     const std::string from = source.folder(), to = target.folder();
     if (from == "deployer" || from == "python" || source.isLibraryEntry()) return true;
-    if (source.isCommandHalf() && from != "study") return true;  // they are the deployer's, but for where they are
+    if (source.isCommandHalf() && from != "study") return true;  // commands count as part of the deployer
     if (from == to)
         return from == "framework" || source.isTaskHalf() || source.isCommandHalf() ||
                (!target.isTaskHalf() && !target.isCommandHalf());

@@ -23,13 +23,13 @@ std::string pageOf(const Source& source) {
     return (source.path.starts_with("types/") ? "" : "components/") + source.folder() + "/README.md";
 }
 
-/** What stands between "## Files" and the next heading of that level; "" where there is none. */
+/** The text between "## Files" and the next heading of that level; "" if there is none. */
 std::string filesSectionOf(const std::string& page) {
     const size_t begin = page.find("\n## Files\n");
     return begin == std::string::npos ? "" : page.substr(begin, page.find("\n## ", begin + 1) - begin);
 }
 
-/** Headers and files of code that stand in back quotes, without those that a folder comes before. */
+/** Headers and code files in back quotes, without those that have a folder before them. */
 std::set<std::string> filesNamedIn(const std::string& text) {
     static const std::regex name(R"(`(\w+\.[hc]pp)`)");
     std::set<std::string> names;
@@ -41,26 +41,10 @@ std::set<std::string> filesNamedIn(const std::string& text) {
 }  // namespace
 
 TEST(LayoutTest, TheTopLevelHoldsOnlyWhatTheDesignNames) {
-    const std::set<std::string> expected = {"CMakeLists.txt",
-                                            "README.md",
-                                            "LICENSE",
-                                            "CHANGELOG.md",
-                                            "types",
-                                            "components",
-                                            "shaders",
-                                            "deploy",
-                                            "tests",
-                                            "scripts",
-                                            "ros2",
-                                            ".ci",
-                                            ".git",
-                                            ".clang-format",
-                                            ".clang-tidy",
-                                            ".gitignore",
-                                            "out",
-                                            "pyproject.toml",
-                                            "CITATION.cff",
-                                            "CONTRIBUTING.md"};
+    const std::set<std::string> expected = {
+        "CMakeLists.txt", "README.md",  "LICENSE", "CHANGELOG.md",   "types",        "components",     "shaders",
+        "deploy",         "tests",      "scripts", "ros2",           ".ci",          ".git",           ".clang-format",
+        ".clang-tidy",    ".gitignore", "out",     "pyproject.toml", "CITATION.cff", "CONTRIBUTING.md"};
     for (const auto& entry : std::filesystem::directory_iterator(insonify::test::source_dir)) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(expected.contains(name) || name.starts_with("build")) << name;

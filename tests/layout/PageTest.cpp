@@ -1,4 +1,4 @@
-// The project's pages hang together: links and anchors, names of files, tests and messages, the way in and back.
+// The project's pages are consistent: links and anchors, names of files, tests and messages, the way in and back.
 #include <gmock/gmock.h>
 
 #include <map>
@@ -25,7 +25,7 @@ const fs::path root = insonify::test::source_dir;
 
 bool isOnTheWeb(const std::string& link) { return link.find(':') != std::string::npos; }
 
-/** The file that a link of the page leads to, from the root; "" for a place on the page itself. */
+/** The file that a link of the page refers to, from the root; "" for a place on the page itself. */
 std::string targetOf(const Page& page, const std::string& link) {
     const std::string file = link.substr(0, link.find('#'));
     return file.empty() ? "" : (fs::path(page.path()).parent_path() / file).lexically_normal().generic_string();
@@ -53,7 +53,7 @@ Texts brokenAddresses(const Page& page) {
     return broken;
 }
 
-/** Cells of a row of a table; 0 for a line that is none. */
+/** Cells of a row of a table; 0 for any other line. */
 size_t cellsOf(const std::string& line) {
     if (!line.starts_with("|")) return 0;
     size_t bars = 0;
@@ -73,7 +73,7 @@ Texts unevenRows(const Page& page) {
     return uneven;
 }
 
-/** Files and folders of the project that a page names in back quotes and that are not there. */
+/** Files and folders of the project in a page's back quotes that do not exist. */
 Texts deadLinks(const Page& page) {
     static const std::regex path("(types|components|shaders|deploy|tests|scripts)/[\\w./-]+");
     Texts missing;
@@ -115,7 +115,7 @@ std::string printingCode() {
     return std::regex_replace(code, between, "");
 }
 
-/** Parts of a quoted message, between the dots that stand for what changes, that the code does not print. */
+/** Parts of a quoted message, between the dots that represent variable text, that the code does not print. */
 Texts unprintedParts(const std::string& message, const std::string& code) {
     Texts unprinted;
     for (size_t at = 0; at < message.size();) {
@@ -175,8 +175,8 @@ TEST(PageTest, TheReadmeIsALandingPageWithATableOfItsContents) {
 }
 
 TEST(PageTest, EveryBlockOfCodeSaysWhatItIs) {
-    // Of commands, `sh` is run by tests/deployer/PagesTest.cpp; `console` is what a test cannot run: it installs, waits
-    // for others, keeps to the wall clock or takes minutes.
+    // Commands: tests/deployer/PagesTest.cpp runs `sh`; `console` cannot be tested, because it installs, waits for
+    // others, uses the wall clock or takes minutes.
     static const std::set<std::string> known = {"sh",   "console", "yaml",   "json", "cpp",
                                                 "glsl", "cmake",   "python", "text"};
     for (const Page& page : allPages())

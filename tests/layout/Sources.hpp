@@ -21,9 +21,9 @@ struct Source {
     }
     std::string stem() const { return std::filesystem::path(path).stem(); }
     bool isTaskHalf() const { return stem().ends_with("Task"); }
-    /** Of a component that brings its own part of the command: that part. */
+    /** True for a file of a component's own part of the command. */
     bool isCommandHalf() const { return path.find("/commands/") != std::string::npos; }
-    /** What joins a component library with what loads it. */
+    /** True for the entry of a component library. */
     bool isLibraryEntry() const { return stem() == "Library"; }
 };
 

@@ -1,4 +1,4 @@
-// Component libraries as users meet them: by the command and by Python, there, absent and broken.
+// Component libraries in the command and in Python: present, absent and broken.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string deploymentOf(const std::string& type) {
     return "tasks:\n  a: {type: " + type + ", activity: {period: 0.1}}\n";
 }
 
-/** Insonify as it is installed, in a folder of its own, so that libraries may be absent or broken. */
+/** An installed Insonify in its own folder, so that libraries may be absent or broken. */
 class ComponentLibraryTest : public testing::Test {
 protected:
     ComponentLibraryTest() {
@@ -30,7 +30,7 @@ protected:
     }
     void add(const std::string& name) const { fs::copy_file(components / (name + ".so"), installed(name)); }
     fs::path installed(const std::string& name) const { return folder_ / "lib/insonify" / (name + ".so"); }
-    /** Beside the user's own folder of components. */
+    /** In addition to the user's own folder of components. */
     Outcome call(std::vector<std::string> words, const std::string& path = "") const {
         std::vector<std::string> all{"env", "LD_LIBRARY_PATH=" + (folder_ / "lib").string(),
                                      "INSONIFY_COMPONENT_PATH=" + path, build / "bin/insonify"};
@@ -45,7 +45,7 @@ protected:
     void give(const std::string& part) const {
         fs::copy_file(parts / (part + ".so"), folder_ / "parts" / (part + ".so"));
     }
-    /** A library of this name with these bytes is one error at the place of its type, without a crash. */
+    /** Expects that a library of this name with these bytes is one error at the place of its type, without a crash. */
     void expectRefused(const std::string& bytes, const std::string& why) const {
         writeFile(folder_ / "parts/mine.so", bytes);
         const Outcome outcome = check("mine::Task", partsOfUser());
@@ -54,7 +54,7 @@ protected:
         EXPECT_THAT(outcome.err, HasSubstr("parts/mine.so: " + why));
     }
 
-    /** A simulation by Python with one more task: "made", or its error. */
+    /** Makes a simulation in Python with an additional task: prints "made", or its error. */
     Outcome simulate(const std::string& type) const {
         writeFile(folder_ / "wall.gltf", wallGltf());
         writeFile(folder_ / "a.yml", replaced(wall_deployment, "tasks:\n",
@@ -71,7 +71,7 @@ protected:
     const TestFolder folder_;
 };
 
-TEST_F(ComponentLibraryTest, OneOfAUserIsLoadedByTheNamespaceOfATypeAlone) {
+TEST_F(ComponentLibraryTest, AUsersLibraryIsLoadedByTheNamespaceOfAType) {
     give("one_type");
     const Outcome outcome = check("one_type::CounterTask", partsOfUser());
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -95,12 +95,12 @@ TEST_F(ComponentLibraryTest, TheWorkingFolderIsNotSearched) {
     EXPECT_EQ(check("../one_type::CounterTask", folder_.path()).code, 2);
 }
 
-TEST_F(ComponentLibraryTest, OneOfAnotherVersionIsRefusedBeforeItRuns) {
+TEST_F(ComponentLibraryTest, RefusesALibraryOfAnotherVersionBeforeItRuns) {
     give("other_version");
     const Outcome outcome = check("other_version::Task", partsOfUser());
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("other_version.so: is for Insonify 0.0.9 00000000; this is 0.1.0 "));
-    EXPECT_THAT(outcome.err, HasSubstr("build it anew"));
+    EXPECT_THAT(outcome.err, HasSubstr("rebuild it"));
     give("no_interface");
     EXPECT_THAT(check("no_interface::Task", partsOfUser()).err, HasSubstr("has no line INSONIFY_COMPONENT_LIBRARY"));
 }
@@ -113,7 +113,7 @@ TEST_F(ComponentLibraryTest, AMissingSymbolIsNamed) {
     EXPECT_THAT(outcome.err, HasSubstr("neverWritten"));
 }
 
-TEST_F(ComponentLibraryTest, BrokenOnesAreRefusedWithoutACrash) {
+TEST_F(ComponentLibraryTest, RefusesBrokenLibrariesWithoutACrash) {
     const std::string whole = readFile(parts / "one_type.so");
     expectRefused("", "cannot be loaded: it is no shared object");
     expectRefused("INPUT(/etc/passwd)\n", "cannot be loaded: it is no shared object");
@@ -122,14 +122,14 @@ TEST_F(ComponentLibraryTest, BrokenOnesAreRefusedWithoutACrash) {
     for (const size_t length : {size_t{64}, size_t{500}, whole.size() / 4, whole.size() / 2})
         expectRefused(whole.substr(0, length), "cannot be loaded: it is cut short");
     std::string other = whole;
-    other[18] = static_cast<char>(0xB7);  // of another processor
+    other[18] = static_cast<char>(0xB7);  // for another processor
     expectRefused(other, "cannot be loaded: ");
     fs::remove(folder_ / "parts/mine.so");
     fs::create_directories(folder_ / "parts/mine.so");
     EXPECT_THAT(check("mine::Task", partsOfUser()).err, HasSubstr("cannot be loaded: it is no file"));
 }
 
-TEST_F(ComponentLibraryTest, OfTwoOfOneNameNoneIsChosen) {
+TEST_F(ComponentLibraryTest, RefusesTwoLibrariesOfOneName) {
     give("one_type");
     fs::create_directories(folder_ / "more");
     fs::copy_file(parts / "one_type.so", folder_ / "more/one_type.so");
@@ -142,7 +142,7 @@ TEST_F(ComponentLibraryTest, OfTwoOfOneNameNoneIsChosen) {
     EXPECT_EQ(check("one_type::CounterTask", both).code, 0) << "the same file";
 }
 
-TEST_F(ComponentLibraryTest, AnAbsentOneIsAnsweredWithWhatInstallsIt) {
+TEST_F(ComponentLibraryTest, ReportsHowToInstallAnAbsentLibrary) {
     const std::string nav =
         "which needs the component library nav, which is not here; `apt install insonify-nav` installs it";
     const Outcome by_type = check("nav::ImuTask");
@@ -169,7 +169,7 @@ TEST_F(ComponentLibraryTest, AnAbsentOneIsAnsweredWithWhatInstallsIt) {
     EXPECT_EQ(check("nav::ImuTask").err.find("not here"), std::string::npos);
 }
 
-TEST_F(ComponentLibraryTest, APropertyThatNeedsAnAbsentOneIsAnsweredAtItsPlaceBeforeThereIsAPing) {
+TEST_F(ComponentLibraryTest, ReportsAPropertyThatNeedsAnAbsentLibraryBeforeAnyPing) {
     writeFile(folder_ / "wall.gltf", wallGltf());
     writeFile(folder_ / "a.sdf", "<sdf/>\n");
     const std::string file = "file: wall.gltf", sonar = "  sonar:\n";
@@ -191,13 +191,13 @@ TEST_F(ComponentLibraryTest, APropertyThatNeedsAnAbsentOneIsAnsweredAtItsPlaceBe
     EXPECT_EQ(call({"run", "a.yml", "--pings", "2"}).code, 0);
 }
 
-TEST_F(ComponentLibraryTest, InAPythonPackageAptInstallsNone) {
+TEST_F(ComponentLibraryTest, AptDoesNotInstallLibrariesForAPythonPackage) {
     writeFile(folder_ / "__init__.py", "");
     EXPECT_THAT(check("nav::ImuTask").err,
-                HasSubstr("nav, which wheels and archives do not hold; the Debian packages do, as insonify-nav"));
+                HasSubstr("nav, which is not in wheels and archives; it is in the Debian package insonify-nav"));
 }
 
-TEST_F(ComponentLibraryTest, TheCoreIsLinkedWithNoLibraryOfAComponents) {
+TEST_F(ComponentLibraryTest, TheCoreIsNotLinkedWithLibrariesOfComponents) {
     const std::string linked = Process({"ldd", build / "bin/insonify"}, folder_.path()).wait().out;
     ASSERT_THAT(linked, HasSubstr("libinsonify.so"));
     EXPECT_LE(std::ranges::count(linked, '\n'), 40) << linked;
@@ -206,33 +206,33 @@ TEST_F(ComponentLibraryTest, TheCoreIsLinkedWithNoLibraryOfAComponents) {
         EXPECT_THAT(linked, Not(HasSubstr(library)));
 }
 
-TEST_F(ComponentLibraryTest, PythonAnswersAsTheCommandDoes) {
+TEST_F(ComponentLibraryTest, PythonReportsTheSameErrorsAsTheCommand) {
     if (!fs::exists(build / "python/insonify")) GTEST_SKIP() << "SKIPPED: the Python module is not built";
     EXPECT_THAT(simulate("nav::ImuTask").out, HasSubstr("needs the component library nav, which is not here"));
     add("nav");
     EXPECT_THAT(simulate("nav::ImuTask").out, HasSubstr("tasks.more: input port pose")) << "it is loaded, and checked";
 }
 
-TEST_F(ComponentLibraryTest, OneThatIsLinkedWithNothingIsLoadedInPythonToo) {
+TEST_F(ComponentLibraryTest, PythonLoadsALibraryThatIsLinkedWithNothing) {
     if (!fs::exists(build / "python/insonify")) GTEST_SKIP() << "SKIPPED: the Python module is not built";
     give("one_type");
     const Outcome outcome = simulate("one_type::CounterTask");
     EXPECT_EQ(outcome.out, "made\n") << outcome.err;
 }
 
-TEST_F(ComponentLibraryTest, TheListTellsWhichAreHereAbsentAndBroken) {
+TEST_F(ComponentLibraryTest, TheListHasInstalledAbsentAndBrokenLibraries) {
     add("nav");
     writeFile(installed("study"), "no library\n");
     const std::string list = call({"libraries"}).out;
     EXPECT_THAT(list, HasSubstr("nav        here     a DVL"));
     EXPECT_THAT(list, HasSubstr("viewer     absent   the live view"));
     EXPECT_THAT(list, HasSubstr("study      broken   "));
-    EXPECT_THAT(call({"--help"}).err, HasSubstr("notice: ")) << "a broken one stands in nobody's way";
+    EXPECT_THAT(call({"--help"}).err, HasSubstr("notice: ")) << "a broken library does not prevent other commands";
     EXPECT_EQ(call({"study"}).code, 2);
     EXPECT_EQ(call({"describe"}).code, 0);
 }
 
-TEST_F(ComponentLibraryTest, ADeploymentTellsWhichItLacks) {
+TEST_F(ComponentLibraryTest, ListsTheMissingLibrariesOfADeployment) {
     add("nav");
     writeFile(folder_ / "a.yml", R"(tasks:
   scene: {type: scene::SceneTask, properties: {file: tank.world, bathymetry: {file: floor.tif}}}

@@ -30,7 +30,7 @@ types::Pose pose() {
     return sample;
 }
 
-/** A log of one stream, of samples that were received one after the other, open for reading. */
+/** A log of one stream, whose samples were received one after the other, open for reading. */
 struct Logged {
     template <class T>
     Logged(const std::string& stream, std::initializer_list<T> samples) : reader(written(stream, samples)) {}
@@ -55,7 +55,7 @@ std::string textOf(const std::filesystem::path& path) {
     return {bytes.begin(), bytes.end()};
 }
 
-/** What python prints, with numpy as `np` and the file as `x`. */
+/** Returns the output of python, with numpy as `np` and the file as `x`. */
 std::string numpySays(const std::filesystem::path& file, const std::string& expression) {
     return pythonSays("-c \"import numpy as np; x = np.load('" + file.string() + "'); print(" + expression + ")\"",
                       file.parent_path() / "answer.txt");
@@ -94,7 +94,7 @@ TEST(ExportTest, NumpyReadsPosesAndNumbers) {
     EXPECT_EQ(numpySays(folder / "never.npz", "x['value'].shape"), "(0,)\n");
 }
 
-/** One beam of two bins: a ball at 0.5 rad, and nothing, in its shadow. */
+/** One beam of two bins: a ball at 0.5 rad, and an empty bin in its shadow. */
 types::SonarTruth truth(int64_t time) {
     types::SonarTruth sample;
     sample.takeGrid(ping(time, 1, 2));
@@ -174,7 +174,7 @@ TEST(ExportTest, SignalsOfElementsAreArraysAndLines) {
               "[0.25 0.75] [-0.5  0.5] [0.002 0.002]\n");
 }
 
-TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
+TEST(ExportTest, CsvHasALineForEachBinOfTruthAndEachBeamOfReturns) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");
     log.write(log.addStream<types::SonarTruth>("sonar.truth"), {1}, truth(1'500'000));
@@ -196,7 +196,7 @@ TEST(ExportTest, CsvOfTruthHasALineForEachBinAndThatOfReturnsForEachBeam) {
                                     "strongest_level,strongest_elevation\n1.500000,0,0.5,0.04958"));
 }
 
-TEST(ExportTest, PingsOfAnotherShapeBeginANewFile) {
+TEST(ExportTest, AChangeOfShapeBeginsANewFile) {
     auto [folder, reader] = Logged("sonar.ping", {ping(1, 2, 3), ping(2, 2, 3), ping(3, 4, 3)});
     EXPECT_THAT(exportNpz(reader, "sonar.ping", folder / "x.npz"),
                 testing::ElementsAre(folder / "x.0.npz", folder / "x.1.npz"));
@@ -257,7 +257,7 @@ types::Image picture() {
     return sample;
 }
 
-TEST(ExportTest, ScansAreExportedAsPingsWhoseBearingsFall) {
+TEST(ExportTest, ScansAreExportedAsPingsWithDescendingBearings) {
     auto [folder, reader] = Logged("micron.scan", {scan()});
     exportCsv(reader, "micron.scan", folder / "x.csv");
     EXPECT_EQ(textOf(folder / "x.csv"), "time,beam,bearing,bin,value\n2.000000,0,0.5,0,1\n2.000000,1,0.25,0,0.2\n");
@@ -296,7 +296,7 @@ TEST(ExportTest, CsvOfTextsQuotesThem) {
     EXPECT_EQ(textOf(folder / "x.csv"), "time,value\n2.000000,\"say \"\"ping\"\",\ntwice\"\n");
 }
 
-TEST(ExportTest, WhatCannotBeExportedIsNamed) {
+TEST(ExportTest, NamesStreamsThatCannotBeExported) {
     Folder folder;
     pocolog::Writer log(folder / "x.0.log");
     types::Image compressed = picture();

@@ -6,7 +6,7 @@
 namespace insonify::log {
 namespace {
 
-TEST(StreamTest, TimesOfThisCenturyAreDatesTheOthersSeconds) {
+TEST(StreamTest, TimesOfThisCenturyAreDatesOthersAreSeconds) {
     EXPECT_EQ(readable({1'500'000}), "1.500000 s");
     EXPECT_EQ(readable({0}), "0.000000 s");
     EXPECT_EQ(readable({1'700'000'000'000'001}), "2023-11-14 22:13:20.000001");
@@ -23,7 +23,7 @@ TEST(StreamTest, AReadableTimeIsReadBackToTheMicrosecond) {
     EXPECT_EQ(readTime(readable(time), "--from", types::Time{7}), time) << "a date is a date";
 }
 
-TEST(StreamTest, WhatIsNoTimeIsRefusedByName) {
+TEST(StreamTest, RefusesInvalidTimesByName) {
     for (const char* text : {"noon", "", "2023-11-14", "2023-11-14T22:13:20Zulu", "1e300", "nan", "3 s"}) try {
             readTime(text, "--until");
             ADD_FAILURE() << text;

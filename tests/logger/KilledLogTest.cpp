@@ -1,4 +1,4 @@
-// A process that is killed while it logs loses what it had not flushed, and nothing else.
+// A process that is killed while it logs loses only unflushed samples.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -25,14 +25,14 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::duration<double> period(0.003);
 constexpr size_t queue = 16;
 
-/** What the process that logs tells, in memory that outlives it. */
+/** The state of the logging process, in memory that outlives it. */
 struct Told {
-    std::atomic<uint64_t> flushed = 0;   ///< Samples that flush() has returned for.
-    std::atomic<uint64_t> pushed = 0;    ///< Samples that push() has begun with.
+    std::atomic<uint64_t> flushed = 0;   ///< Samples for which flush() has returned.
+    std::atomic<uint64_t> pushed = 0;    ///< Samples for which push() has begun.
     std::atomic<uint64_t> max_late = 0;  ///< Samples written in one go after a flush was due.
 };
 
-/** A log that notes when its samples are flushed. */
+/** A log that records when its samples are flushed. */
 class WatchedLog final : public log::Writer {
 public:
     WatchedLog(std::unique_ptr<log::Writer> log, Told& told) : log_(std::move(log)), told_(told) {}
@@ -41,7 +41,7 @@ public:
         return log_->add(sample, name, metadata);
     }
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override {
-        // A flush is due a period after this at the latest: the thread has looked at its clock after the one before.
+        // A flush is due at most a period after this: the thread has read its clock after the previous flush.
         if (!due_) due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(period);
         if (Clock::now() > *due_) told_.max_late = std::max<uint64_t>(told_.max_late, ++late_);
         log_->put(stream, received, time, sample);
@@ -90,7 +90,7 @@ std::string textOf(uint64_t number) {
     }
 }
 
-/** Kills the process at a time that has nothing to do with what it is about, once it has flushed `least` samples. */
+/** Kills the process at a random time, once it has flushed `least` samples. */
 void killWhileLogging(const std::filesystem::path& path, uint64_t least, std::chrono::microseconds later, Told& told) {
     const pid_t process = fork();
     if (process == 0) logUntilKilled(path, told);
@@ -105,7 +105,7 @@ void killWhileLogging(const std::filesystem::path& path, uint64_t least, std::ch
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
 }
 
-/** Samples in the log, which must be the first that were pushed, each whole. */
+/** Returns the number of samples in the log, which must be the first pushed samples, each complete. */
 uint64_t samplesIn(const std::filesystem::path& path) {
     const auto log = log::openLog(path);
     uint64_t number = 0;
@@ -116,7 +116,7 @@ uint64_t samplesIn(const std::filesystem::path& path) {
     return number;
 }
 
-TEST(KilledLogTest, FiftyKillsAtAnyTimeLoseWhatWasNotFlushedAndNothingElse) {
+TEST(KilledLogTest, FiftyKillsLoseOnlyUnflushedSamples) {
     void* shared = mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     ASSERT_NE(shared, MAP_FAILED);
     std::minstd_rand random(9);
@@ -129,8 +129,8 @@ TEST(KilledLogTest, FiftyKillsAtAnyTimeLoseWhatWasNotFlushedAndNothingElse) {
         const uint64_t kept = samplesIn(path);
         EXPECT_GE(kept, told.flushed);
         EXPECT_LE(kept, told.pushed);
-        // With a flush each `period`, which may be a second at most, and one sample more while one is due, what was
-        // written since the last one is what is lost, and what still waits in the queue.
+        // With a flush each `period`, at most a second, and one further sample while a flush is due, the lost samples
+        // are those written since the last flush and those waiting in the queue.
         EXPECT_LE(told.max_late, 1u);
     }
     munmap(shared, sizeof(Told));

@@ -1,5 +1,5 @@
 #pragma once
-// A logger on a disk that is soon full.
+// A logger on a disk that is nearly full.
 #include <sys/resource.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace insonify::logger {
 
-/** Logs texts until the task fails, at most 5000 of them. */
+/** Logs texts until the task fails, at most 5000. */
 template <class Text>
 void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source, Text&& text) {
     for (int i = 0; i < 5000 && task.state() == framework::TaskState::Running; ++i) {
@@ -24,8 +24,8 @@ void logUntilFailure(LoggerTask& task, test::Writer<std::string>& source, Text&&
     }
 }
 
-/** Logs texts into a file that may not exceed 50000 bytes; exits 0 when the task ends in Exception and its error has
- *  `words`. With a queue of one sample the file is flushed every few samples, however the threads take turns. */
+/** Logs texts to a file limited to 50000 bytes; exits 0 when the task ends in Exception and its error has `words`. With
+ *  a queue of one sample the file is flushed every few samples, for any order of the threads. */
 template <class Text>
 [[noreturn]] void fillLimitedDisk(const std::filesystem::path& file, Text&& text, const std::string& words = "") {
     const rlimit limit{50000, 50000};

@@ -1,4 +1,4 @@
-// Disks that are full, folders that are not there.
+// Full disks and missing folders.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -63,7 +63,7 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
 
-TEST(LogFailureTest, TheSamplesThatDidNotReachTheDiskAreCounted) {
+TEST(LogFailureTest, CountsTheSamplesThatDidNotReachTheDisk) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     const auto log = log::createLog(folder / "x.0.log");
@@ -77,7 +77,7 @@ TEST(LogFailureTest, TheSamplesThatDidNotReachTheDiskAreCounted) {
                 testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("3 samples did not reach it")));
 }
 
-TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
+TEST(LogFailureTest, StopReportsADiskThatIsFullAtTheEnd) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     LoggerTask task("log");
@@ -92,7 +92,7 @@ TEST(LogFailureTest, ADiskThatIsFullOnlyAtTheEndIsToldByStop) {
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
 }
 
-TEST(LogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
+TEST(LogFailureTest, KeepsFlushedSamplesOnAFullDisk) {
     Folder folder;
     EXPECT_EXIT(fillLimitedDisk(folder / "x.0.log", thousandBytes), testing::ExitedWithCode(0), "");
     log::pocolog::Reader log(folder / "x.0.log");
@@ -102,7 +102,7 @@ TEST(LogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
                              [](const std::string& text, const log::SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
 }
 
-/** Pushes texts for a thread that heals, until something is so. */
+/** Pushes texts to a thread that heals, until a condition is met. */
 class Pushing {
 public:
     explicit Pushing(const std::filesystem::path& file)
@@ -137,7 +137,7 @@ private:
 
 size_t textsIn(const std::filesystem::path& file) { return log::openLog(file)->samples().size(); }
 
-TEST(LogFailureTest, ALogThatHealsGoesOnWhenThereIsRoomAndCountsWhatItHasLost) {
+TEST(LogFailureTest, AHealingLogContinuesWhenThereIsSpaceAndCountsItsLosses) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     Pushing pushing(folder / "x.0.log");
@@ -146,7 +146,7 @@ TEST(LogFailureTest, ALogThatHealsGoesOnWhenThereIsRoomAndCountsWhatItHasLost) {
     pushing.declare("b.texts");
     const uint64_t before = pushing.pushed;
     ASSERT_TRUE(pushing.until(1, [&] { return pushing.pushed > before + 10; }));
-    std::filesystem::remove(folder / "x.0.log");  // makes room
+    std::filesystem::remove(folder / "x.0.log");  // frees space
     ASSERT_TRUE(pushing.until(1, [&] { return !pushing.health().fails; }));
     const LogHealth healed = pushing.health();
     const uint64_t over = pushing.pushed;
@@ -155,14 +155,14 @@ TEST(LogFailureTest, ALogThatHealsGoesOnWhenThereIsRoomAndCountsWhatItHasLost) {
     pushing.close();
     EXPECT_EQ(healed.outages, 1u);
     EXPECT_GE(healed.lost, 30u);
-    EXPECT_EQ(healed.file, folder / "x.0.log") << "it held nothing";
+    EXPECT_EQ(healed.file, folder / "x.0.log") << "it was empty";
     EXPECT_EQ(textsIn(healed.file) + healed.lost, pushing.pushed) << "each is in the file or counted";
     const auto written = log::openLog(healed.file);
-    ASSERT_NE(written->find("b.texts"), nullptr) << "a stream that came in the outage";
+    ASSERT_NE(written->find("b.texts"), nullptr) << "a stream declared in the outage";
     EXPECT_GT(written->find("a.texts")->count, 90u);
 }
 
-TEST(LogFailureTest, ADiskThatStaysFullIsAnErrorAtTheEndAndHoldsUpNobody) {
+TEST(LogFailureTest, ADiskThatStaysFullIsAnErrorAtTheEndWithoutDelays) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     Pushing pushing(folder / "x.0.log");
@@ -171,7 +171,7 @@ TEST(LogFailureTest, ADiskThatStaysFullIsAnErrorAtTheEndAndHoldsUpNobody) {
                 testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("1000 samples did not reach it")));
 }
 
-/** Files of at most 20000 bytes, one after the other: whether each text is in one of them or counted as lost. */
+/** Files of at most 20000 bytes, one after the other: returns whether each text is in a file or counted as lost. */
 [[noreturn]] void logIntoSmallFiles(const std::filesystem::path& folder, const std::string& extension) {
     const rlimit limit{20000, 20000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -182,7 +182,7 @@ TEST(LogFailureTest, ADiskThatStaysFullIsAnErrorAtTheEndAndHoldsUpNobody) {
     try {
         pushing.close();
     } catch (const std::exception&) {
-        // The index may not fit; what was flushed stays.
+        // The index may not fit; flushed samples stay.
     }
     size_t kept = 0, files = 0;
     for (; std::filesystem::exists(folder / ("x." + std::to_string(files) + extension)); ++files)

@@ -1,4 +1,4 @@
-// What a log tells of the deployment that it was written in.
+// A log's metadata on the deployment that wrote it.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -48,7 +48,7 @@ struct PlannerTask : framework::TaskContext, framework::Planned {
     std::optional<types::Plan> plan_;
 };
 
-/** Stays in its hook, once it has written, until it is let go. */
+/** Stays in its hook after writing, until it is released. */
 struct LingeringTask : PlannerTask {
     using PlannerTask::PlannerTask;
     void updateHook() override {
@@ -59,7 +59,7 @@ struct LingeringTask : PlannerTask {
     std::atomic<bool> lingering{false}, let_go{false};
 };
 
-/** Sets its range anew with its third ping. */
+/** Sets another range at its third ping. */
 struct ChangingTask : PlannerTask {
     using PlannerTask::PlannerTask;
     bool propertiesHook() override { return true; }
@@ -102,7 +102,7 @@ protected:
     framework::Registry registry_;
 };
 
-TEST_F(LoggedRunTest, TheLogCarriesThePlanAndThePropertiesAreInALogBesideIt) {
+TEST_F(LoggedRunTest, TheLogHasThePlanAndThePropertyLogIsNextToIt) {
     run(R"(
 tasks:
   sonar: {type: test::PlannerTask, activity: {period: 0.1}, properties: {range: 30}}
@@ -125,7 +125,7 @@ connections:
 
     EXPECT_EQ(log::pocolog::Reader(folder_ / "y.0.log").find("sonar.ping")->count, 3u);
     log::pocolog::Reader properties(folder_ / "properties.0.log");
-    EXPECT_TRUE(properties.complete()) << "two loggers, one of them writes it";
+    EXPECT_TRUE(properties.complete()) << "one of two loggers writes it";
     std::vector<double> ranges;
     properties.forEach<double>("sonar.range", [&](double value, const log::SampleRef&) { ranges.push_back(value); });
     EXPECT_THAT(ranges, testing::ElementsAre(30));
@@ -133,7 +133,7 @@ connections:
     EXPECT_NE(properties.find("log.file"), nullptr);
 }
 
-TEST_F(LoggedRunTest, ATaskIsOfOneModelInBothLogs) {
+TEST_F(LoggedRunTest, ATaskHasTheSameModelInBothLogs) {
     std::ofstream(folder_ / "rock::Sonar.yml") << "--- name:default\nrange: 30\n";
     run(loggedSonar(
             R"({type: test::PlannerTask, activity: {period: 0.1}, property_files: {files: ["rock::Sonar.yml"]}})"),
@@ -152,7 +152,7 @@ TEST_F(LoggedRunTest, APropertyThatChangesDuringTheRunHasASampleForEachChange) {
     EXPECT_THAT(ranges, testing::ElementsAre(testing::Pair(1, 50), testing::Pair(2, 12)));
 }
 
-TEST_F(LoggedRunTest, InRealtimeLoggersWaitNeitherForEachOtherNorForTheHookOfATask) {
+TEST_F(LoggedRunTest, InRealtimeLoggersWaitForNoLoggerAndNoHook) {
     framework::Deployment deployment = deploymentOf(R"(
 schedule: realtime
 tasks:
@@ -182,7 +182,7 @@ connections:
     }
 }
 
-TEST_F(LoggedRunTest, APropertySetAtRunTimeIsInTheRecordOfItsTask) {
+TEST_F(LoggedRunTest, APropertySetDuringTheRunIsInTheTasksRecord) {
     framework::Deployment deployment = deploymentOf("tasks: {sonar: {type: test::PlannerTask, activity: {period: 1}}}");
     const auto range = [&] { return deployment.environment().records().at(0).properties.at("range"); };
     EXPECT_EQ(range(), types::PropertyValue(50.0)) << "before it is configured";

@@ -13,7 +13,7 @@ size_t diagnosticsOf(const std::string& file) {
     return diagnostics.size();
 }
 
-TEST(LoggerConfigTest, OnlyANameThatEndsInLogIsTaken) {
+TEST(LoggerConfigTest, AcceptsOnlyNamesThatEndInLog) {
     for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"})
         EXPECT_EQ(diagnosticsOf(good), 0u) << good;
     for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
@@ -32,7 +32,7 @@ TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
     EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
 }
 
-TEST(LoggerConfigTest, PropertiesGoIntoAFileOfTheirOwn) {
+TEST(LoggerConfigTest, PropertiesHaveTheirOwnFile) {
     LoggerConfig config;
     config.file = "day/x.0.log";
     for (const auto& [file, count] :

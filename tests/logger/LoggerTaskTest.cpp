@@ -50,7 +50,7 @@ types::SonarPtr ping(int64_t time) {
     return sample;
 }
 
-/** A sonar as far as a logger asks it. */
+/** The parts of a sonar that a logger reads. */
 struct Described {
     double range = 50;
     std::string range_rounding = "exact";
@@ -69,7 +69,7 @@ struct DescribedSonar : framework::TaskContext {
     framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
 };
 
-/** What a logger warns of pings of 1000 bins of 33 us. */
+/** Returns a logger's warnings for pings of 1000 bins of 33 us. */
 std::vector<std::string> warningsOf(const Described& described) {
     Bench bench;
     DescribedSonar sonar(described);
@@ -89,7 +89,7 @@ std::vector<std::string> warningsOf(const Described& described) {
     return notices;
 }
 
-TEST(LoggerTaskTest, WhatReadersOfWholeMicrosecondsGetWrongIsWarnedOfOnce) {
+TEST(LoggerTaskTest, WarnsOnceOfErrorsFromWholeMicroseconds) {
     EXPECT_THAT(warningsOf({}),
                 testing::ElementsAre(testing::HasSubstr("sonar.ping has bins of 33 us, one way, in whole microseconds; "
                                                         "a reader of bin_duration is off by 10.1 bins")));
@@ -131,19 +131,19 @@ TEST(LoggerTaskTest, EveryTypeOfTheListCanBeLogged) {
     });
 }
 
-TEST(LoggerTaskTest, ATypeThatALogCannotHoldIsRefusedByName) {
+TEST(LoggerTaskTest, RefusesATypeThatALogCannotStore) {
     Bench bench;
     test::Writer<types::SnapshotPtr> scene("scene");
     try {
         bench.task.makeInput("snapshot", scene.port);
-        FAIL() << "a snapshot was taken";
+        FAIL() << "a snapshot was accepted";
     } catch (const types::ConfigError& error) {
         EXPECT_STREQ(error.what(), "scene.port is /insonify/Snapshot, which a log cannot hold");
     }
     EXPECT_TRUE(bench.task.inputs().empty());
 }
 
-TEST(LoggerTaskTest, TheLogCarriesTheDeploymentItsSeedAndWhatTheUserAdds) {
+TEST(LoggerTaskTest, TheLogHasTheDeploymentItsSeedAndTheUsersMetadata) {
     LoggerConfig config;
     config.metadata = {{"vessel", "Kai"}};
     Bench bench(config);
@@ -159,7 +159,7 @@ TEST(LoggerTaskTest, TheLogCarriesTheDeploymentItsSeedAndWhatTheUserAdds) {
     EXPECT_EQ(metadata.at("vessel"), "Kai");
 }
 
-TEST(LoggerTaskTest, TheDeploymentStandsOnceInALogWhateverIsCutFromIt) {
+TEST(LoggerTaskTest, TheDeploymentIsOnceInALogAndInCutsOfIt) {
     Bench bench;
     bench.task.environment().deployment_text = "tasks: {}";
     Source<double> depth(bench.task, "depth");
@@ -194,7 +194,7 @@ TEST(LoggerTaskTest, AFileSlowerThanTheSamplesLosesNone) {
     EXPECT_EQ(expected, 2000);
 }
 
-TEST(LoggerTaskTest, WhatWasLoggedIsInTheFileWithinTheFlushPeriod) {
+TEST(LoggerTaskTest, LoggedSamplesAreInTheFileWithinTheFlushPeriod) {
     LoggerConfig config;
     config.flush_period = 0.05;
     Bench bench(config);
@@ -230,7 +230,7 @@ TEST(LoggerTaskTest, TheSameSamplesGiveTheSameLogBitForBit) {
     EXPECT_EQ(run(), run());
 }
 
-TEST(LoggerTaskTest, StoppedAndStartedAgainItGoesOnInTheSameFile) {
+TEST(LoggerTaskTest, ARestartContinuesTheSameFile) {
     Bench bench;
     Source<double> source(bench.task, "depth");
     ASSERT_TRUE(bench.task.configure());
@@ -244,7 +244,7 @@ TEST(LoggerTaskTest, StoppedAndStartedAgainItGoesOnInTheSameFile) {
     EXPECT_EQ(log::pocolog::Reader(bench.path()).samples().size(), 2u);
 }
 
-TEST(LoggerTaskTest, OneStreamCannotBeLoggedTwiceNorTwoStreamsOnOnePort) {
+TEST(LoggerTaskTest, RefusesAStreamTwiceAndTwoStreamsOnOnePort) {
     Bench twice;
     test::Writer<double> source("depth");
     source.port.connectTo(*twice.task.makeInput("a", source.port), {});
@@ -262,11 +262,11 @@ TEST(LoggerTaskTest, OneStreamCannotBeLoggedTwiceNorTwoStreamsOnOnePort) {
     EXPECT_THAT(shared.task.configError()->what(), testing::HasSubstr("several connections"));
 }
 
-TEST(LoggerTaskTest, ALoggerWithoutConnectionsSaysSo) {
+TEST(LoggerTaskTest, ALoggerWithoutConnectionsGivesANotice) {
     EXPECT_THAT(Bench().task.notices(), testing::ElementsAre(testing::HasSubstr("nothing is connected")));
 }
 
-TEST(LoggerTaskTest, RecordingStopsAndGoesOnWhileItRunsAndNothingElseChanges) {
+TEST(LoggerTaskTest, RecordingStopsAndResumesDuringTheRunWithoutOtherChanges) {
     Bench bench;
     Source<types::SonarPtr> sonar(bench.task, "sonar");
     ASSERT_TRUE(bench.task.configure());

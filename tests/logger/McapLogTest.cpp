@@ -58,7 +58,7 @@ protected:
     test::Writer<types::Pose> vehicle{"vehicle"};
 };
 
-TEST_F(McapLogTest, TheSameStreamsAndMetadataAsInAPocologFile) {
+TEST_F(McapLogTest, HasTheStreamsAndMetadataOfAPocologFile) {
     task.environment().deployment_text = "tasks: {}\n";
     task.environment().seed = 9;
     start();
@@ -93,7 +93,7 @@ TEST_F(McapLogTest, TheTasksThreadAllocatesNothingOnceItRuns) {
     EXPECT_EQ(log::openLog(folder / "x.0.mcap")->samples().size(), 402u);
 }
 
-TEST_F(McapLogTest, ALogGoesOnInTheNextFileWithoutLoss) {
+TEST_F(McapLogTest, ALogContinuesInTheNextFileWithoutLoss) {
     config.max_file_size = 1e6;
     start();
     for (int i = 1; i <= 400; ++i) cycle(pingAt(i));
@@ -116,7 +116,7 @@ std::string noise(std::minstd_rand& random) {
     return text;
 }
 
-TEST(McapLogFailureTest, WhatWasFlushedBeforeTheDiskWasFullIsKeptWhole) {
+TEST(McapLogFailureTest, KeepsFlushedSamplesOnAFullDisk) {
     const Folder folder;
     std::minstd_rand random(1);
     const auto noisy = [&] { return noise(random); };
@@ -139,7 +139,7 @@ TEST_F(McapLogTest, PingsMayBecomeEightBits) {
         });
 }
 
-/** A sonar with its scene, as far as a logger asks them. */
+/** The parts of a sonar and its scene that a logger reads. */
 struct Mounted {
     types::Mount mount;
     template <class Self, class V>
@@ -157,7 +157,7 @@ struct MountedSonar : framework::TaskContext {
     framework::OutputPort<types::SonarPtr> ping{this, "ping", ""};
 };
 
-TEST_F(McapLogTest, PingsHaveTheMountOfTheirSonarAndFramesOfTwoSonarsAreToldOf) {
+TEST_F(McapLogTest, PingsHaveTheirSonarsMountAndSharedFramesAreReported) {
     MountedSonar left("left", {{0.1, 2, -3.5}, 0, 12.25, 90}), right("right", {{0.1, -2, -3.5}, 0, 0, 0});
     for (MountedSonar* each : {&left, &right}) {
         vehicle.port.connectTo(each->pose, ConnPolicy::buffer(8));
@@ -185,7 +185,7 @@ TEST_F(McapLogTest, PingsHaveTheMountOfTheirSonarAndFramesOfTwoSonarsAreToldOf) 
     }
 }
 
-TEST_F(McapLogTest, TheNameOfTheFileIsJudged) {
+TEST_F(McapLogTest, ValidatesTheNameOfTheFile) {
     for (const auto& [file, right] :
          {std::pair{"x.mcap", true}, {"a/x.0.mcap", true}, {".mcap", false}, {"x.bag", false}}) {
         config.file = file;

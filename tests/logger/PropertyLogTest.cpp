@@ -35,7 +35,7 @@ TEST(PropertyLogTest, APropertyIsAStreamWithASampleForEachChange) {
     EXPECT_EQ(metadata.at("insonify_seed"), "7");
 }
 
-TEST(PropertyLogTest, ATaskIsOfRocksModelWhereThatIsKnown) {
+TEST(PropertyLogTest, ATaskHasRocksModelWhereKnown) {
     Folder folder;
     PropertyLog log(folder / "properties.0.log");
     log.record({{"sonar", "sonar::SonarTask", {{"range", 50.0}}, ""}, {"pose", "pose::PoseTask", {{"rate", 5.0}}, ""}},
@@ -47,7 +47,7 @@ TEST(PropertyLogTest, ATaskIsOfRocksModelWhereThatIsKnown) {
     EXPECT_EQ(reader.find("pose.rate")->metadatum("rock_task_model"), "pose::PoseTask");
 }
 
-TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
+TEST(PropertyLogTest, RecordsRemovalAndReturnOfAProperty) {
     Folder folder;
     PropertyLog log(folder / "properties.0.log");
     const types::TaskRecord with{"sonar", "sonar::SonarTask", {{"range", 50.0}, {"speed_of_sound", 1480.0}}, ""};
@@ -62,11 +62,11 @@ TEST(PropertyLogTest, WhatIsTakenOutAndComesBackIsTold) {
         presence.emplace_back(at.received.microseconds - 1'000'000, is_there);
     });
     EXPECT_THAT(presence, testing::ElementsAre(testing::Pair(1, false), testing::Pair(3, true)));
-    EXPECT_EQ(reader.find("sonar.speed_of_sound")->count, 2u) << "at the start and when it is back";
-    EXPECT_FALSE(reader.find("sonar.range.present")) << "it was always there";
+    EXPECT_EQ(reader.find("sonar.speed_of_sound")->count, 2u) << "at the start and at its return";
+    EXPECT_FALSE(reader.find("sonar.range.present")) << "it was always present";
 }
 
-TEST(PropertyLogTest, AnAliasIsAStreamOfItsOwnAnAngleInRadians) {
+TEST(PropertyLogTest, AnAliasHasItsOwnStreamWithAnglesInRadians) {
     Folder folder;
     PropertyLog log(folder / "properties.0.log", "tasks: {}");
     PropertyAlias gain{"rock", "gain", "p::Task", "receiver.brightness.gain", 0.5},

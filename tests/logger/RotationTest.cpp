@@ -14,7 +14,7 @@ namespace {
 
 class RotationTest : public testing::Test {
 protected:
-    /** Logs texts of 100 kB, each 0.1 s after the last, into x.0.log and on. */
+    /** Logs texts of 100 kB at intervals of 0.1 s to x.0.log and the following files. */
     void log(LoggerConfig config, int count) {
         config.file = "x.0.log";
         LoggerTask task("log");
@@ -37,7 +37,7 @@ protected:
         ASSERT_TRUE(task.cleanup());
     }
     std::filesystem::path file(int number) const { return folder / ("x." + std::to_string(number) + ".log"); }
-    /** Samples of each file, which must be valid and hold the next numbers in turn. */
+    /** Returns the samples of each file, which must be valid and have consecutive numbers. */
     std::vector<size_t> countsOf(int files) const {
         std::vector<size_t> counts;
         int expected = 0;
@@ -57,16 +57,16 @@ protected:
     const Folder folder;
 };
 
-TEST_F(RotationTest, AFileThatIsLargeEnoughIsFollowedByTheNext) {
+TEST_F(RotationTest, AFullFileIsFollowedByTheNext) {
     LoggerConfig config;
     config.max_file_size = 1e6;
     log(config, 25);
     EXPECT_THAT(countsOf(3), testing::ElementsAre(10, 10, 5));
     EXPECT_LT(std::filesystem::file_size(file(0)), 1.11e6) << "the limit and one sample";
-    EXPECT_NE(log::pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared with the last file's end";
+    EXPECT_NE(log::pocolog::Reader(file(2)).find("silent.port"), nullptr) << "declared at the end of the last file";
 }
 
-TEST_F(RotationTest, AFileThatIsOldEnoughIsFollowedByTheNext) {
+TEST_F(RotationTest, AnOldFileIsFollowedByTheNext) {
     LoggerConfig config;
     config.max_file_duration = 1;
     log(config, 25);
@@ -78,7 +78,7 @@ TEST_F(RotationTest, WithoutALimitThereIsOneFile) {
     EXPECT_THAT(countsOf(1), testing::ElementsAre(25));
 }
 
-TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithTheirIndices) {
+TEST_F(RotationTest, RemovesFilesOfAnEarlierLongerLogWithTheirIndices) {
     LoggerConfig config;
     config.max_file_size = 1e6;
     log(config, 45);
@@ -91,7 +91,7 @@ TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithTheirIndices) {
     }
 }
 
-TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithoutALimitToo) {
+TEST_F(RotationTest, RemovesFilesOfAnEarlierLongerLogWithoutALimit) {
     LoggerConfig config;
     config.max_file_size = 1e6;
     log(config, 25);
@@ -103,7 +103,7 @@ TEST_F(RotationTest, FilesOfALongerLogBeforeAreRemovedWithoutALimitToo) {
     }
 }
 
-TEST_F(RotationTest, AFileThatAnotherLoggerWritesIsNotRemovedNorAnyBeforeIt) {
+TEST_F(RotationTest, RemovesNothingIfAnotherLoggerWritesOneOfTheFiles) {
     writeBytes(file(0), {'o', 'l', 'd'});
     writeBytes(file(1), {'o', 'l', 'd'});
     const log::pocolog::Writer other(file(2));

@@ -1,4 +1,4 @@
-// What messages say of a body: axes, times, and what is refused.
+// Poses from the messages of a body: axes, times, and dropped messages.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -15,7 +15,7 @@ using types::Time;
 constexpr double pi = std::numbers::pi;
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
-/** A turn about an axis of the body in MAVLink's axes: forward, right, down. */
+/** Returns a rotation about an axis of the body in MAVLink's axes: forward, right, down. */
 AttitudeQuaternion turned(double radians, glm::vec3 axis, uint32_t ms = 0) {
     const auto s = static_cast<float>(std::sin(radians / 2));
     return {.time_boot_ms = ms,
@@ -84,7 +84,7 @@ TEST_F(BodyTest, VelocitiesAreThoseOfTheWorldAndRatesThoseOfTheBody) {
     expectNear(pose.angular_velocity, {0.1, -0.2, -0.3});
 }
 
-TEST_F(BodyTest, APositionIsCarriedOnToTheInstantOfTheAttitude) {
+TEST_F(BodyTest, APositionIsExtrapolatedToTheTimeOfTheAttitude) {
     take(LocalPositionNed{.time_boot_ms = 1000, .x = 5, .vx = 2}, 50);
     const auto [pose, diagnostic] = take(AttitudeQuaternion{.time_boot_ms = 1100}, 50.1);
     ASSERT_TRUE(pose) << diagnostic;
@@ -101,26 +101,26 @@ TEST_F(BodyTest, AnAttitudeWithoutAPositionIsNoPose) {
     EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 1501}, 50.501).pose) << "of more than half a second ago";
 }
 
-TEST_F(BodyTest, AHalfThatStaysAwayIsToldOnceThatHasGoneOnForAWhile) {
+TEST_F(BodyTest, ReportsAMissingHalfAfterAWhile) {
     std::string told;
     for (int i = 0; i < 30; ++i) {
         const auto taken = take(AttitudeQuaternion{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i);
         EXPECT_EQ(taken.diagnostic.empty(), i < 20) << i;
         told = taken.diagnostic;
     }
-    EXPECT_EQ(told, "ATTITUDE_QUATERNION comes without LOCAL_POSITION_NED: the vehicle is to stream both");
+    EXPECT_EQ(told, "ATTITUDE_QUATERNION arrives without LOCAL_POSITION_NED: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(53)), testing::ElementsAre(LocalPositionNed::kind.message));
 }
 
-TEST_F(BodyTest, PositionsWithoutAnAttitudeAreToldTheSame) {
+TEST_F(BodyTest, ReportsPositionsWithoutAnAttitudeToo) {
     std::string told;
     for (int i = 0; i < 50; ++i)
         told = take(LocalPositionNed{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i).diagnostic;
-    EXPECT_EQ(told, "LOCAL_POSITION_NED comes without ATTITUDE_QUATERNION: the vehicle is to stream both");
+    EXPECT_EQ(told, "LOCAL_POSITION_NED arrives without ATTITUDE_QUATERNION: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(55)), testing::ElementsAre(AttitudeQuaternion::kind.message));
 }
 
-TEST_F(BodyTest, QuaternionsAreMadeOfUnitLengthAndThoseWithoutALengthDropped) {
+TEST_F(BodyTest, NormalisesQuaternionsAndDropsThoseWithoutLength) {
     take(LocalPositionNed{}, 50);
     const auto taken = take(AttitudeQuaternion{.time_boot_ms = 1, .w = 3, .z = 3}, 50);
     ASSERT_TRUE(taken.pose);
@@ -132,21 +132,21 @@ TEST_F(BodyTest, QuaternionsAreMadeOfUnitLengthAndThoseWithoutALengthDropped) {
         EXPECT_THAT(take(bad, 50.1).diagnostic, HasSubstr("not finite"));
 }
 
-TEST_F(BodyTest, PositionsThatAreNotFiniteAreDroppedAndTheOneBeforeHolds) {
+TEST_F(BodyTest, DropsPositionsThatAreNotFiniteAndKeepsThePreviousPosition) {
     take(LocalPositionNed{.x = 7}, 50);
     EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 1, .y = unknown}, 50).diagnostic, HasSubstr("not finite"));
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 2}, 50).pose.value().position, {7, 0, 0});
     EXPECT_THAT(see({.usec = 1, .yaw = unknown}, 50).diagnostic, HasSubstr("not finite"));
 }
 
-TEST_F(BodyTest, AJumpIsTakenAsItIs) {
+TEST_F(BodyTest, AcceptsAJump) {
     take(LocalPositionNed{.time_boot_ms = 1000, .x = 7}, 50);
     take(AttitudeQuaternion{.time_boot_ms = 1000}, 50);
     take(LocalPositionNed{.time_boot_ms = 1100, .x = -900}, 50.1);  // an estimator that was reset
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 1100}, 50.1).pose.value().position, {-900, 0, 0});
 }
 
-TEST_F(BodyTest, MillisecondsGoOnWhenTheyBeginAgain) {
+TEST_F(BodyTest, MillisecondsContinueAcrossTheirWrapAround) {
     for (int i = -5; i < 5; ++i) {  // 100 ms apart, over 2^32
         const auto ms = static_cast<uint32_t>(i * 100);
         take(LocalPositionNed{.time_boot_ms = ms - 50, .x = 1, .vx = 1}, 50 + 0.1 * i);
@@ -157,17 +157,17 @@ TEST_F(BodyTest, MillisecondsGoOnWhenTheyBeginAgain) {
     }
 }
 
-TEST_F(BodyTest, StampsThatGoBackAreDroppedUnlessTheVehicleHasBootedAgain) {
+TEST_F(BodyTest, DropsEarlierStampsUnlessTheVehicleHasRebooted) {
     take(LocalPositionNed{.time_boot_ms = 600'000, .x = 7}, 50);
     take(AttitudeQuaternion{.time_boot_ms = 600'000}, 50);
-    EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
-    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("lies before"));
-    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position of another life";
+    EXPECT_THAT(take(AttitudeQuaternion{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
+    EXPECT_THAT(take(LocalPositionNed{.time_boot_ms = 599'900}, 50.1).diagnostic, HasSubstr("is before"));
+    EXPECT_FALSE(take(AttitudeQuaternion{.time_boot_ms = 100}, 50.2).pose) << "with a position from before the restart";
     take(LocalPositionNed{.time_boot_ms = 200, .x = 1}, 50.3);
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 200}, 50.3).pose.value().position, {1, 0, 0});
 }
 
-TEST_F(BodyTest, WhatComesTwiceIsOnePose) {
+TEST_F(BodyTest, ARepeatedMessageIsOnePose) {
     take(LocalPositionNed{.time_boot_ms = 1000}, 50);
     EXPECT_TRUE(take(AttitudeQuaternion{.time_boot_ms = 1000}, 50).pose);
     const auto again = take(AttitudeQuaternion{.time_boot_ms = 1000}, 50.001);
@@ -175,20 +175,20 @@ TEST_F(BodyTest, WhatComesTwiceIsOnePose) {
     EXPECT_EQ(again.diagnostic, "");
 }
 
-TEST_F(BodyTest, OfTwoSendersOneCountsUntilItIsSilent) {
+TEST_F(BodyTest, OneOfTwoSendersCountsUntilItIsSilent) {
     take(LocalPositionNed{.time_boot_ms = 1000, .x = 1}, 50);
     EXPECT_TRUE(take(AttitudeQuaternion{.time_boot_ms = 1000}, 50).pose);
     for (const auto& [component, way] : {std::pair{2, 1}, {1, 2}}) {
         const auto other =
             take(AttitudeQuaternion{.time_boot_ms = 1010}, 50.5, static_cast<uint8_t>(component), uint64_t(way));
         EXPECT_FALSE(other.pose);
-        EXPECT_EQ(other.diagnostic, "of another sender while the first goes on");
+        EXPECT_EQ(other.diagnostic, "from another sender while the first is still sending");
     }
     take(LocalPositionNed{.time_boot_ms = 77, .x = 2}, 51.5, 2);
     expectNear(take(AttitudeQuaternion{.time_boot_ms = 77}, 51.5, 2).pose.value().position, {2, 0, 0});
 }
 
-TEST_F(BodyTest, SystemAndComponentSayWhoseAMessageIs) {
+TEST_F(BodyTest, SystemAndComponentIdentifyTheBody) {
     const Frame of_one = frameOf(AttitudeQuaternion{}, 1, 1), of_two = frameOf(AttitudeQuaternion{}, 2, 1);
     EXPECT_TRUE(body.isOf(of_one));
     EXPECT_FALSE(body.isOf(of_two));
@@ -198,13 +198,13 @@ TEST_F(BodyTest, SystemAndComponentSayWhoseAMessageIs) {
     EXPECT_FALSE(particular.isOf(frameOf(AttitudeQuaternion{}, 1, 2)));
 }
 
-TEST_F(BodyTest, EveryVisionEstimateIsAPoseBesideTheOrigin) {
+TEST_F(BodyTest, EveryVisionEstimateIsAPoseRelativeToTheOrigin) {
     const auto [pose, diagnostic] = see({.usec = 1700000000123456, .x = 1}, 50);
     ASSERT_TRUE(pose) << diagnostic;
     expectNear(pose->position, {101, 0, 0});
-    EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "whatever its clock counts from";
+    EXPECT_EQ(pose->time, Time::fromSeconds(50)) << "any origin of its clock";
     EXPECT_EQ(see({.usec = 1700000000223456}, 50.1).pose.value().time, Time::fromSeconds(50.1));
-    EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("lies before"));
+    EXPECT_THAT(see({.usec = 1700000000200000}, 50.1).diagnostic, HasSubstr("is before"));
     EXPECT_THAT(see({.usec = ~uint64_t{0}}, 50.2).diagnostic, HasSubstr("out of bounds"));
     EXPECT_TRUE(see({.usec = 5}, 50.3).pose) << "booted again";
 }

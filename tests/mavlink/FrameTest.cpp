@@ -1,4 +1,4 @@
-// Frames as PyPI's pymavlink 2.4.50 packs them, and what may be wrong with them.
+// Frames as PyPI's pymavlink 2.4.50 packs them, and their errors.
 #include <gmock/gmock.h>
 
 #include "components/mavlink/Frame.hpp"
@@ -42,7 +42,7 @@ TEST(FrameTest, AnAttitudeOfVersionOneTwoAndSignedIsTheSame) {
     EXPECT_EQ(frame.component, 1);
 }
 
-TEST(FrameTest, ZerosThatVersionTwoLeavesOutArePutBack) {
+TEST(FrameTest, RestoresTheTrailingZerosThatVersionTwoOmits) {
     const auto position = only<LocalPositionNed>(position_2);
     EXPECT_EQ(position.x, 1.5f);
     EXPECT_EQ(position.y, -2.5f);
@@ -63,7 +63,7 @@ TEST(FrameTest, AVisionEstimateIsReadWithoutItsCovariance) {
     EXPECT_EQ(estimate.yaw, 0.5f);
 }
 
-TEST(FrameTest, WhatIsSentIsWhatPymavlinkSends) {
+TEST(FrameTest, SendsTheBytesOfPymavlink) {
     const AttitudeQuaternion attitude{123456, 0.5f, 0.5f, -0.5f, 0.5f, 0.25f, -0.5f, 1.0f};
     EXPECT_EQ(frameOf(attitude, 1, 1, 7, 1).bytes(AttitudeQuaternion::kind.crc_extra), attitude_1);
     EXPECT_EQ(frameOf(attitude, 1, 1, 7, 2).bytes(AttitudeQuaternion::kind.crc_extra), attitude_2);
@@ -75,7 +75,7 @@ TEST(FrameTest, WhatIsSentIsWhatPymavlinkSends) {
                          "0000ff010101dc73"));
 }
 
-TEST(FrameTest, AMessageThatIsNotKnownIsPassedOverWithoutAWord) {
+TEST(FrameTest, IgnoresAnUnknownMessageSilently) {
     const Datagram datagram = read(joined({attitude_euler_2, attitude_2, heartbeat_2}));
     EXPECT_EQ(datagram.diagnostic, "");
     ASSERT_THAT(datagram.frames, SizeIs(2));
@@ -83,7 +83,7 @@ TEST(FrameTest, AMessageThatIsNotKnownIsPassedOverWithoutAWord) {
     EXPECT_EQ(datagram.frames[1].message, Heartbeat::kind.message);
 }
 
-TEST(FrameTest, EveryCutOffFrameIsToldAndReadsNothing) {
+TEST(FrameTest, ReportsEveryTruncatedFrameAndReadsNothing) {
     for (const Bytes& packed : {attitude_1, attitude_2, attitude_signed})
         for (size_t size = 1; size < packed.size(); ++size) {
             const Datagram datagram = read(Bytes(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size)));
@@ -94,7 +94,7 @@ TEST(FrameTest, EveryCutOffFrameIsToldAndReadsNothing) {
     EXPECT_EQ(read({}).diagnostic, "");
 }
 
-TEST(FrameTest, NoByteOfAFrameCanBeWrong) {
+TEST(FrameTest, RejectsAFrameWithAnyWrongByte) {
     for (const Bytes& packed : {attitude_1, attitude_2})
         for (size_t at = 0; at < packed.size(); ++at) {
             Bytes wrong = packed;
@@ -104,10 +104,10 @@ TEST(FrameTest, NoByteOfAFrameCanBeWrong) {
         }
     Bytes wrong = attitude_2;
     wrong.back() ^= 1;
-    EXPECT_EQ(read(wrong).diagnostic, "a frame whose sum is wrong");
+    EXPECT_EQ(read(wrong).diagnostic, "a frame with a wrong checksum");
 }
 
-TEST(FrameTest, AFrameBehindDamageAndNoiseIsFound) {
+TEST(FrameTest, FindsAFrameBehindDamageAndNoise) {
     Bytes cut(attitude_2.begin(), attitude_2.end() - 5);
     const Datagram datagram = read(joined({{1, 2, 0xfd, 3}, cut, position_2, {0xfe}, attitude_1, {9}}));
     ASSERT_THAT(datagram.frames, SizeIs(2));
@@ -122,22 +122,22 @@ TEST(FrameTest, AFrameOfVersionOneHasTheLengthOfItsMessage) {
         frame.payload.resize(static_cast<size_t>(static_cast<int>(frame.payload.size()) + change));
         const Datagram datagram = read(frame.bytes(AttitudeQuaternion::kind.crc_extra));
         EXPECT_THAT(datagram.frames, IsEmpty());
-        EXPECT_EQ(datagram.diagnostic, "a frame of another length than its message has");
+        EXPECT_EQ(datagram.diagnostic, "a frame with a wrong length for its message");
     }
 }
 
-TEST(FrameTest, FieldsThatCameLaterArePassedOver) {
+TEST(FrameTest, IgnoresExtensionFields) {
     Frame frame = read(attitude_2).frames.at(0);
     frame.payload.resize(48, 1);  // a quaternion for displays
     EXPECT_EQ(only<AttitudeQuaternion>(frame.bytes(AttitudeQuaternion::kind.crc_extra)).yaw_speed, 1.0f);
 }
 
-TEST(FrameTest, FlagsThatMustBeUnderstoodAndAreNotMakeAFrameUnreadable) {
+TEST(FrameTest, RejectsAFrameWithUnknownIncompatibilityFlags) {
     Bytes strange = attitude_2;
     strange[2] = 2;
     const Datagram datagram = read(joined({strange, position_2}));
     EXPECT_THAT(datagram.frames, SizeIs(1));
-    EXPECT_EQ(datagram.diagnostic, "a frame with flags that are not known");
+    EXPECT_EQ(datagram.diagnostic, "a frame with unknown flags");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// deploy/mavlink_poses.yml and what is wrong with others, as a user sees it.
+// deploy/mavlink_poses.yml, and errors of other deployments as a user sees them.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -26,7 +26,7 @@ protected:
         all.insert(all.end(), more.begin(), more.end());
         return insonifyWords(all);
     }
-    /** Where the run listens, once it does. */
+    /** Waits until the run listens, and returns its port. */
     int port() const {
         std::smatch found;
         std::string text;
@@ -44,7 +44,7 @@ protected:
 
 }  // namespace
 
-TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
+TEST_F(MavlinkRunTest, RequestsPosesOfTwoVehiclesForPings) {
     INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--pings", "20", "--summary", "summary.json"}), folder.path());
@@ -61,7 +61,7 @@ TEST_F(MavlinkRunTest, TwoVehiclesThatAreAskedForTheirPosesBecomePings) {
     EXPECT_FALSE(fs::is_empty(folder / "out"));
 }
 
-TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
+TEST_F(MavlinkRunTest, WaitsWithoutAVehicleAndReportsIt) {
     INSONIFY_NEEDS("sdf");
     const Process run(words({"--set", "scene.pose_timeout=0.2"}), folder.path());
     EXPECT_TRUE(says("warning: scene: scene.pose: waits for the first pose")) << readFile(folder / "stderr.txt");
@@ -69,7 +69,7 @@ TEST_F(MavlinkRunTest, WithoutAVehicleItWaitsAndSaysSo) {
     EXPECT_EQ(run.wait().code, 0);
 }
 
-TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollowed) {
+TEST_F(MavlinkRunTest, PingsStopAndResumeWithAVehicle) {
     INSONIFY_NEEDS("sdf");
     if (!mavlink::Vehicle::available()) GTEST_SKIP() << "PyPI's pymavlink is not in " << python();
     const Process run(words({"--set", "scene.pose_timeout=2"}), folder.path());
@@ -81,7 +81,7 @@ TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollow
     auto vehicles = fly();
     EXPECT_TRUE(comesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); }));
     vehicles = {};
-    EXPECT_TRUE(says("no pose of the last 2 s (pose_timeout)"));
+    EXPECT_TRUE(says("no pose in the last 2 s (pose_timeout)"));
     vehicles = fly();
     const auto pictures = [&] {
         return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});
@@ -92,7 +92,7 @@ TEST_F(MavlinkRunTest, AVehicleThatStopsStopsThePingsAndOneThatComesBackIsFollow
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-TEST_F(MavlinkRunTest, TheDeploymentIsValidAndDiagnosticsAreToldWithTheirPlace) {
+TEST_F(MavlinkRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {
     INSONIFY_NEEDS("sdf");
     EXPECT_EQ(callInsonify(folder, {"check", deployment}).code, 0);
     const auto diagnosed = [&](const std::string& set) {
@@ -116,5 +116,5 @@ TEST_F(MavlinkRunTest, LockstepDoesNotReadPoses) {
     writeFile(folder / "x.yml", text);
     const Outcome outcome = callInsonify(folder, {"check", "x.yml"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("tasks.vehicles.properties: messages come on the wall clock's time"));
+    EXPECT_THAT(outcome.err, HasSubstr("tasks.vehicles.properties: messages arrive by the wall clock"));
 }

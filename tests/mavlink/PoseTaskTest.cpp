@@ -63,7 +63,7 @@ TEST_F(PoseTaskTest, PosesOfEveryVersionOfMavlinkAreRead) {
     EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("listens on UDP 127.0.0.1:")));
 }
 
-TEST_F(PoseTaskTest, AVehicleAndAnObjectBesideItComeOverOnePort) {
+TEST_F(PoseTaskTest, ReceivesAVehicleAndAnObjectOnOnePort) {
     startWith([](PoseConfig& config) {
         config.bodies = {{.port = "rov"}, {.port = "diver", .source = Source::Vision, .system_id = 2}};
     });
@@ -72,35 +72,34 @@ TEST_F(PoseTaskTest, AVehicleAndAnObjectBesideItComeOverOnePort) {
     expectPoses(25, 1);
 }
 
-TEST_F(PoseTaskTest, AVehicleThatSendsHeartbeatsAloneIsAskedForItsPoses) {
+TEST_F(PoseTaskTest, RequestsPosesFromAVehicleThatOnlySendsHeartbeats) {
     startWith([](PoseConfig& config) { config.request = {.rate = 50}; });
     const Vehicle vehicle(task.port(), "heartbeat");
     expectPoses(25);
 }
 
-TEST_F(PoseTaskTest, DamageIsToldAndWhatLiesBetweenIsRead) {
+TEST_F(PoseTaskTest, ReportsDamageAndReadsTheFramesBetween) {
     startWith();
     const Vehicle vehicle(task.port(), "damaged");
     expectPoses(25);
-    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame whose sum is wrong")));
+    EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame with a wrong checksum")));
     EXPECT_THAT(task.notices(), testing::Contains(HasSubstr("messages dropped: a frame that is cut off")));
 }
 
-TEST_F(PoseTaskTest, MessagesOfAnotherSystemAreToldWithItsNumber) {
+TEST_F(PoseTaskTest, ReportsMessagesOfAnotherSystemWithItsNumber) {
     startWith();
     const Vehicle vehicle(task.port(), "poses2 9");
     EXPECT_TRUE(comesTrue([&] {
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const std::string& line) {
-            return line.find("of others passed over: ATTITUDE_QUATERNION of system 9, component 1") !=
-                   std::string::npos;
+            return line.find("of others ignored: ATTITUDE_QUATERNION of system 9, component 1") != std::string::npos;
         });
     }));
     types::Pose pose;
     EXPECT_FALSE(readers[0].port.readNew(pose));
 }
 
-TEST_F(PoseTaskTest, AnAddressThatIsNoneAndAPortThatIsTakenAreErrors) {
+TEST_F(PoseTaskTest, AnInvalidAddressAndAUsedPortAreErrors) {
     startWith();
     PoseTask other("other");
     PoseConfig config;

@@ -6,10 +6,10 @@
 
 namespace insonify::mavlink {
 
-/** A program that sends until it goes. */
+/** A program that sends until its destructor. */
 class Vehicle : public test::Peer {
 public:
-    /** What vehicle.py is to do: "poses2 1". */
+    /** @param work job of vehicle.py: "poses2 1" */
     Vehicle(uint16_t port, const std::string& work)
         : Peer("tests/mavlink/vehicle.py", std::to_string(port) + " " + work) {}
     static bool available() { return pythonHas("pymavlink"); }

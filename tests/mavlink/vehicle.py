@@ -36,11 +36,11 @@ def send(message):
         try:
             link.send(piece)
         except OSError:
-            pass  # nobody listens yet, or any more
+            pass  # no receiver yet, or no longer
 
 
 def hear():
-    """What a ground station wants."""
+    """Returns the requests of a ground station."""
     try:
         heard = mavlink.parse_buffer(link.recv(2048)) or []
     except OSError:
@@ -52,7 +52,7 @@ def hear():
 
 
 for count in range(10**9):
-    k = min(count % 40, 39 - count % 40)  # to and fro
+    k = min(count % 40, 39 - count % 40)  # back and forth
     boot = int(1000 * (time.time() - START)) + 5000
     roll, pitch, yaw = 0.1, 0.2, 0.3 * k
     if WORK == "vision":

@@ -76,7 +76,7 @@ TEST_F(MeshFileTest, ASubmeshIsChosenByItsNodeOrMeshAndMayBeCentred) {
     EXPECT_TRUE(hasNotice(*submesh("rudder"), "part.dae has no submesh \"rudder\""));
 }
 
-TEST_F(MeshFileTest, AMeshThatStandsTwiceIsReadOnce) {
+TEST_F(MeshFileTest, AMeshUsedTwiceIsReadOnce) {
     writeDae("1", "Z_UP");
     const Scene scene = world(model("a", "<mesh><uri>part.dae</uri></mesh>") +
                               model("b", "<mesh><uri>part.dae</uri><scale>3 3 3</scale></mesh>"));
@@ -84,7 +84,7 @@ TEST_F(MeshFileTest, AMeshThatStandsTwiceIsReadOnce) {
     EXPECT_EQ(scene.geometry->meshes.size(), 1u);
 }
 
-TEST_F(MeshFileTest, ADamagedMeshIsNamed) {
+TEST_F(MeshFileTest, ReportsADamagedMesh) {
     const std::string whole = bytesOf<float>({1, 2, 3});
     const std::map<std::string, std::string> files = {
         {"cut.dae", "<COLLADA><asset>"},

@@ -1,4 +1,5 @@
-// Mesh files that would crash, hang or fill the library that reads them: a sentence, and the program goes on.
+// Mesh files that would crash or hang the library that reads them, or exhaust memory: a message, and the program
+// continues.
 #include <signal.h>
 
 #include <atomic>
@@ -22,7 +23,7 @@ namespace {
 
 class MeshProcessTest : public SdfFiles {
 protected:
-    /** What is wrong with a mesh file; empty where it was read, and then it must be sound. */
+    /** Returns the error of a mesh file; empty if it was read, and then it must be sound. */
     std::string diagnosticOfMesh(const std::filesystem::path& file) const {
         try {
             const types::GeometryPtr geometry = readMeshFile(file);
@@ -35,7 +36,7 @@ protected:
     }
     std::string diagnosticOf(const Dae& dae) const { return diagnosticOfMesh(write("part.dae", dae.text())); }
 
-    /** Lets a shell script stand for the program that reads. */
+    /** Uses a shell script in place of the program that reads. */
     std::string diagnosticWithReader(const std::string& script) const {
         const auto reader = write("reader", "#!/bin/sh\nulimit -c 0\n" + script + "\n");
         std::filesystem::permissions(reader, std::filesystem::perms::owner_all);
@@ -77,7 +78,7 @@ TEST_F(MeshProcessTest, ANodeThatInstancesItselfIsRefused) {
     expectPart(diagnostic, "best as .glb");
 }
 
-TEST_F(MeshProcessTest, CornersThatAreNoneOrNoNumbersEndInAnErrorOrASoundMesh) {
+TEST_F(MeshProcessTest, InvalidCornersEndInAnErrorOrASoundMesh) {
     for (const char* corners : {"0 0", "0 3", "3 0", "", "3,3", "-3 3", "1 1", "3 800000000", "99999999999 3"})
         for (const char* count : {"2", "0", "-1", "800000000", "99999999999999999999"}) {
             Dae dae;
@@ -143,7 +144,7 @@ TEST_F(MeshProcessTest, AFileThatTakesTooLongIsRefused) {
     }
 }
 
-TEST_F(MeshProcessTest, HoweverTheReaderEndsItIsTold) {
+TEST_F(MeshProcessTest, ReportsEveryEndOfTheReader) {
     expectPart(diagnosticWithReader("kill -SEGV $$"),
                "part.dae: crashes the library that reads it (assimp, SIGSEGV); ");
     expectPart(diagnosticWithReader("kill -ABRT $$"),
@@ -160,12 +161,12 @@ TEST_F(MeshProcessTest, HoweverTheReaderEndsItIsTold) {
                "damaged");
 }
 
-TEST_F(MeshProcessTest, AReaderThatIsNotThereIsTold) {
+TEST_F(MeshProcessTest, ReportsAMissingReader) {
     const Variable named("INSONIFY_MESH_READER", folder_ / "nowhere");
     expectPart(diagnosticOf(Dae()), "part.dae: cannot be read: " + (folder_ / "nowhere").string() + ": No such file");
 }
 
-TEST_F(MeshProcessTest, ManyReadAtOnceAndAProgramMayIgnoreItsChildren) {
+TEST_F(MeshProcessTest, ReadsFromManyThreadsAndWithIgnoredChildren) {
     const auto file = write("part.dae", Dae().text());
     const auto before = signal(SIGCHLD, SIG_IGN);
     std::vector<std::thread> threads;
@@ -189,7 +190,7 @@ TEST_F(MeshProcessTest, AMeshThatCannotBeReadIsTriedOnceInAWorld) {
     EXPECT_EQ(std::filesystem::file_size(folder_ / "tries"), std::string("tried\n").size());
 }
 
-TEST_F(MeshProcessTest, WhatTravelsIsCheckedLikeAnyFile) {
+TEST_F(MeshProcessTest, ChecksRepliesLikeFiles) {
     MeshReply reply;
     reply.meshes.materials = {"steel"};
     scene::Surface triangle;
@@ -243,7 +244,7 @@ TEST_F(MeshProcessTest, EveryDamageIsAMeshOrAnError) {
         }
 }
 
-TEST_F(MeshProcessTest, WhatOthersMadeIsReadAsWithoutAProcessBitForBit) {
+TEST_F(MeshProcessTest, ForeignFilesAreReadBitForBitAsWithoutAProcess) {
     const std::filesystem::path shared = test::shared_data;
     if (!std::filesystem::is_directory(shared)) GTEST_SKIP() << "NO FILES AT " << shared << ": NOTHING WAS COMPARED";
     size_t files = 0;

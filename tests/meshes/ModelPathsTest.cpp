@@ -19,7 +19,7 @@ protected:
     }
 };
 
-TEST_F(ModelPathsTest, FoldersAreAskedInTheOrderOfTheVariablesAndTheWorldLast) {
+TEST_F(ModelPathsTest, SearchesFoldersInTheOrderOfTheVariablesAndTheWorldLast) {
     const Variable ours("INSONIFY_MODEL_PATH", at("one") + "::" + at("two")), gazebo("GAZEBO_MODEL_PATH", at("gazebo")),
         sdf("SDF_PATH", at("sdf"));
     for (const char* folder : {"world", "sdf", "gazebo", "two", "one"}) {
@@ -36,7 +36,7 @@ TEST_F(ModelPathsTest, AnIncludeFollowsTheSameOrder) {
     EXPECT_GE(findNode(scene, "from_insonify"), 0);
 }
 
-TEST_F(ModelPathsTest, FileUrisAndPathsAreWhatTheySay) {
+TEST_F(ModelPathsTest, FindsFileUrisAndPaths) {
     write("world/a.dae", "");
     write("one/b.dae", "");
     const Variable ours("INSONIFY_MODEL_PATH", at("one"));

@@ -25,7 +25,7 @@ std::vector<std::string> allocationsOf(Task& task, framework::OutputPort<Out> Ta
         Out sample{};
         reader.port.readNew(sample);
     };
-    for (int64_t time = -5; time < 0; ++time) cycle(time);  // three poses, then some that are told of
+    for (int64_t time = -5; time < 0; ++time) cycle(time);  // three poses, then poses with measurements
     return test::allocationsAfterTheFirst(task, cycle);
 }
 

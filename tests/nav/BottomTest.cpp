@@ -1,4 +1,4 @@
-// Ranges of straight beams against closed forms.
+// Ranges of straight beams, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -17,7 +17,7 @@ Bottom bottomOf(types::Snapshot snapshot) {
 
 const glm::dvec3 down(0, 0, -1);
 
-TEST(BottomTest, ALevelBottomIsMetFromAboveAndFromBelow) {
+TEST(BottomTest, ALevelBottomIsHitFromAboveAndFromBelow) {
     const Bottom bottom(-20.0);
     EXPECT_EQ(bottom.range({5, 6, -8}, down, 100), 12);
     EXPECT_EQ(bottom.range({5, 6, -26}, -down, 100), 6);
@@ -40,7 +40,7 @@ TEST(BottomTest, AFloorOfTrianglesIsWhereALevelBottomIs) {
     EXPECT_FALSE(floor.range({5, 6, -8}, down, 11.9));
 }
 
-TEST(BottomTest, TheNearestOfManyIsMetWhereverObjectsHaveMoved) {
+TEST(BottomTest, FindsTheNearestOfManyMovedObjects) {
     auto geometry = test::surfaces();  // ground at -4, and a block, turned, among others
     types::Snapshot snapshot = test::snapshotOf(geometry);
     EXPECT_NEAR(*bottomOf(snapshot).range({-30, 30, 0}, down, 100), 4, 1e-6);
@@ -48,15 +48,15 @@ TEST(BottomTest, TheNearestOfManyIsMetWhereverObjectsHaveMoved) {
     snapshot.moved = {{ball, glm::translate(glm::dmat4(1), {-30, 30, -2})}};
     Bottom bottom = bottomOf(snapshot);
     EXPECT_NEAR(*bottom.range({-30, 30, 10}, down, 100), 10.5, 0.02);
-    EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "beside it";
+    EXPECT_NEAR(*bottom.range({-30, 33, 0}, down, 100), 4, 1e-6) << "next to the ball";
     EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 14, 1e-6) << "nor is it where it was";
     snapshot.moved.clear();
     bottom.take(std::make_shared<types::Snapshot>(snapshot));
-    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "where the file has it, again";
+    EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "back at its place in the file";
     EXPECT_NEAR(*bottom.range({-10, 12, 10}, down, 100), 8.5, 0.02) << "one that is mirrored and stretched";
 }
 
-TEST(BottomTest, AnotherGeometryTakesThePlaceOfTheFirst) {
+TEST(BottomTest, ANewGeometryReplacesTheFirst) {
     Bottom bottom = bottomOf(test::snapshotOf(test::sceneOf({test::ground(-20)})));
     bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(test::sceneOf({test::ground(-10)}))));
     EXPECT_NEAR(*bottom.range({0, 0, -8}, down, 100), 2, 1e-9);
@@ -66,7 +66,7 @@ TEST(BottomTest, AnotherGeometryTakesThePlaceOfTheFirst) {
     EXPECT_FALSE(bottom.range({0, 0, -8}, down, 100)) << "one without objects";
 }
 
-TEST(BottomTest, WhatIsUnderWaterIsBelowTheSurfaceOfTheScene) {
+TEST(BottomTest, UnderWaterIsBelowTheSurfaceOfTheScene) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-20)}));
     EXPECT_TRUE(bottomOf(snapshot).isUnderWater({0, 0, 5})) << "without a surface all is water";
     snapshot.water_surface = 1;

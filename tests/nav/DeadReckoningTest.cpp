@@ -1,5 +1,4 @@
-// What a navigator makes of sensors without errors: it comes back to where it has begun, by velocities as by
-// accelerations.
+// Dead reckoning with sensors without errors returns to its start, by velocities and by accelerations.
 #include <gtest/gtest.h>
 
 #include "components/nav/Dvl.hpp"
@@ -12,7 +11,7 @@
 namespace insonify::nav {
 namespace {
 
-/** A survey of two minutes that ends where it begins: round a figure of eight at 1 m/s, rolling and diving. */
+/** A survey of two minutes that ends at its start: a figure of eight at 1 m/s, rolling and diving. */
 pose::Trajectory survey() {
     std::vector<pose::Waypoint> waypoints;
     for (int i = 0; i <= 120; ++i) {
@@ -28,7 +27,7 @@ pose::Trajectory survey() {
     return pose::Trajectory(waypoints, true);
 }
 
-/** Motions at 100 Hz along it. */
+/** Returns motions at 100 Hz along the survey. */
 std::vector<Motion> motionsOf(const pose::Trajectory& path, const types::Mount& mount) {
     MotionTracker tracker(mount);
     std::vector<Motion> motions;
@@ -88,7 +87,7 @@ TEST(DeadReckoningTest, AccelerationsAndRatesLeadBackToTheStart) {
     EXPECT_LT(most, 1) << "two minutes without any aid";
 }
 
-TEST(DeadReckoningTest, PressuresAreTheDepthOfTheWay) {
+TEST(DeadReckoningTest, PressuresMatchTheDepthOfThePath) {
     const PressureConfig config;
     PressureGauge gauge(config);
     const pose::Trajectory path = survey();

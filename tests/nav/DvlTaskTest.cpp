@@ -14,7 +14,7 @@ protected:
 
     void connectScene() { scene_.port.connectTo(task_.snapshot, {}); }
     void show(types::Snapshot snapshot) { scene_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot))); }
-    /** What is told of the middle of three poses, a tenth of a second apart, up to a time. */
+    /** Returns the measurement at the middle of three poses a tenth of a second apart, the last at `time`. */
     types::DvlPtr told(double time, const Path& path) {
         answerTo(path(time - 0.2));
         answerTo(path(time - 0.1));
@@ -33,7 +33,7 @@ TEST_F(DvlTaskTest, MeasuresOverALevelBottomWithoutAScene) {
     EXPECT_NEAR(dvl->altitude, 12, 1e-9);
 }
 
-TEST_F(DvlTaskTest, WithoutABottomItDoesNotStart) {
+TEST_F(DvlTaskTest, DoesNotStartWithoutABottom) {
     task_.config.set(DvlConfig{});
     ASSERT_TRUE(task_.configure());
     EXPECT_FALSE(task_.start());
@@ -63,7 +63,7 @@ TEST_F(DvlTaskTest, BeforeTheFirstSnapshotAndAboveTheSurfaceThereIsNoBottomLock)
     EXPECT_TRUE(told(3, ahead_)->hasBottomLock());
 }
 
-TEST_F(DvlTaskTest, TheVelocityGoesToRockAsWell) {
+TEST_F(DvlTaskTest, WritesTheVelocityAsRocksTypeToo) {
     test::Reader<types::Pose> reader;
     task_.velocity_samples.connectTo(reader.port, framework::ConnPolicy::buffer(4));
     startWith({.bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
@@ -76,7 +76,7 @@ TEST_F(DvlTaskTest, TheVelocityGoesToRockAsWell) {
     EXPECT_TRUE(std::isnan(sample.position.x));
 }
 
-TEST_F(DvlTaskTest, APeriodTellsFewerAndTheSameSeedTheSameBits) {
+TEST_F(DvlTaskTest, APeriodGivesFewerSamplesAndTheSameSeedTheSameBits) {
     const auto run = [&] {
         std::vector<glm::dvec3> velocities;
         for (int i = 0; i < 200; ++i)
@@ -90,7 +90,7 @@ TEST_F(DvlTaskTest, APeriodTellsFewerAndTheSameSeedTheSameBits) {
     EXPECT_EQ(run(), first);
 }
 
-TEST_F(DvlTaskTest, APoseThatIsNotFiniteIsRefusedUntilAGoodOne) {
+TEST_F(DvlTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
     startWith({.bottom_height = -17.0});
     EXPECT_FALSE(answerTo(poseAt(1, glm::dvec3(INFINITY))));
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
@@ -98,7 +98,7 @@ TEST_F(DvlTaskTest, APoseThatIsNotFiniteIsRefusedUntilAGoodOne) {
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 
-TEST_F(DvlTaskTest, AltitudesThatLeaveNothingAreRefused) {
+TEST_F(DvlTaskTest, RejectsAnEmptyIntervalOfAltitudes) {
     types::Diagnostics diagnostics;
     DvlConfig{.min_altitude = 5, .max_altitude = 5}.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);

@@ -1,4 +1,4 @@
-// A Doppler log against the closed forms of its geometry.
+// A Doppler velocity log, compared with the closed forms of its geometry.
 #include <gmock/gmock.h>
 
 #include "components/nav/Dvl.hpp"
@@ -33,7 +33,7 @@ TEST(DvlTest, BeamsLookDownAndOutAtFourSides) {
     EXPECT_LT(glm::length(glm::dvec2(beams[0]) + glm::dvec2(beams[2])), 1e-15) << "opposite";
 }
 
-TEST(DvlTest, WithoutErrorsItIsExactOverALevelBottomHoweverItLies) {
+TEST(DvlTest, IsExactWithoutErrorsOverALevelBottomInAnyAttitude) {
     const Bottom bottom(-12.0);
     for (const glm::dquat& orientation : {turned(0), turned(40, 10, -15), turned(-160, -20, 5)})
         for (const DvlConfig& config : {DvlConfig{}, DvlConfig{.slant_deg = 22.5, .beam_azimuth_deg = 0}}) {
@@ -55,7 +55,7 @@ TEST(DvlTest, TheAltitudeOfALevelLogIsItsHeight) {
     EXPECT_EQ(told.diagnostic(), nullptr);
 }
 
-/** Covariance of velocities of many pings. */
+/** Returns the covariance of the velocities of many pings. */
 glm::dmat3 spreadOf(const Dvl& log, Motion motion, int count) {
     glm::dmat3 sum{0};
     const Bottom bottom(-12.0);
@@ -104,8 +104,8 @@ TEST(DvlTest, ThreeBeamsAreEnoughAndTwoAreNot) {
     EXPECT_FALSE(solveVelocity(beams, along, variances));
 }
 
-TEST(DvlTest, ThreeBeamsOverALevelBottomHaveNoLossOfTruth) {
-    // Rolled so far that one beam leaves the water's bottom out of reach.
+TEST(DvlTest, ThreeBeamsOverALevelBottomAreExact) {
+    // Rolled until the bottom is out of reach for one beam.
     const DvlConfig config{.beam_azimuth_deg = 0, .max_altitude = 14};
     const glm::dquat orientation = turned(0, 0, 25);
     const types::Dvl told = ping(Dvl(config), moving({1, 0.5, 0}, orientation), Bottom(-10.0));
@@ -113,7 +113,7 @@ TEST(DvlTest, ThreeBeamsOverALevelBottomHaveNoLossOfTruth) {
     EXPECT_LT(glm::distance(orientation * told.velocity, {1, 0.5, 0}), 1e-9);
 }
 
-TEST(DvlTest, OutOfItsReachThereIsNoBottomLock) {
+TEST(DvlTest, HasNoBottomLockOutOfReach) {
     const Dvl log({.min_altitude = 0.5, .max_altitude = 50});
     const auto at = [&](double height, glm::dquat orientation = {1, 0, 0, 0}) {
         return ping(log, moving({1, 0, 0}, orientation, height), Bottom(-10.0));
@@ -158,7 +158,7 @@ TEST(DvlTest, AShareOfBeamsIsLost) {
     EXPECT_NEAR(locked / double{count}, std::pow(0.8, 4) + 4 * 0.2 * std::pow(0.8, 3), 5 * std::sqrt(0.15 / count));
 }
 
-TEST(DvlTest, WhatIsWrongForLongStaysAndIsOfItsDeviation) {
+TEST(DvlTest, ConstantErrorsStayAndHaveTheirDeviation) {
     constexpr int logs = 4000;
     double scale = 0, bias = 0;
     for (uint64_t seed = 0; seed < logs; ++seed) {

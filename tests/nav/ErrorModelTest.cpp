@@ -1,4 +1,4 @@
-// Errors of sensors against the closed forms of IEEE Std 952-1997.
+// Errors of sensors, compared with the closed forms of IEEE Std 952-1997.
 #include <gmock/gmock.h>
 
 #include "components/nav/ErrorModel.hpp"
@@ -14,12 +14,13 @@ std::vector<double> seriesOf(Axis& axis, size_t count, double step, double truth
     return series;
 }
 
-/** Five deviations of an Allan deviation as a share of it, of so many averages (IEEE Std 952-1997, C.1). */
+/** Returns five standard deviations of an Allan deviation, as a share of it, for a number of averages (IEEE Std
+ *  952-1997, C.1). */
 double fiveDeviations(size_t count, size_t average) {
     return 5 / std::sqrt(2 * (static_cast<double>(count) / static_cast<double>(average) - 1));
 }
 
-TEST(ErrorModelTest, RandomNumbersAreNormalAndThoseOfOtherChannelsAreOthers) {
+TEST(ErrorModelTest, RandomNumbersAreNormalAndChannelsAreIndependent) {
     constexpr int count = 200'000;
     double sum = 0, squares = 0, fourths = 0, product = 0;
     for (int64_t i = 1; i <= count; ++i) {
@@ -77,7 +78,7 @@ TEST(ErrorModelTest, ABiasWandersTheSameWayInStepsOfAnyLength) {
     }
 }
 
-TEST(ErrorModelTest, ABiasHoldsWhereTimeDoes) {
+TEST(ErrorModelTest, ABiasIsConstantWhileTimeIs) {
     WanderingBias bias(1, 10, 3, 0);
     const double first = bias.at({1'000'000});
     EXPECT_EQ(bias.at({1'000'000}), first);
@@ -85,7 +86,7 @@ TEST(ErrorModelTest, ABiasHoldsWhereTimeDoes) {
     EXPECT_NE(bias.at({2'000'000}), first);
 }
 
-TEST(ErrorModelTest, AnAxisEndsAtItsRangeAndTellsWholeSteps) {
+TEST(ErrorModelTest, ReadingsAreWholeStepsWithinTheRange) {
     Axis axis({.resolution = 0.25, .range = 2}, 1, 0);
     EXPECT_EQ(axis.measure(1.1, 0, {1}, 1), 1.0);
     EXPECT_EQ(axis.measure(-1.2, 0, {2}, 1), -1.25);
@@ -97,7 +98,7 @@ TEST(ErrorModelTest, AnAxisEndsAtItsRangeAndTellsWholeSteps) {
     EXPECT_EQ(exact.measure(1.1, 0, {1}, 1), 1.1);
 }
 
-TEST(ErrorModelTest, TheVarianceIsThatOfWhatIsTold) {
+TEST(ErrorModelTest, TheVarianceMatchesTheReadings) {
     const AxisErrors errors{.noise_density = 0.02, .bias_deviation = 0.1, .bias_time = 0.1, .resolution = 0.2};
     Axis axis(errors, 9, 0);
     constexpr size_t count = 100'000;

@@ -19,7 +19,7 @@ protected:
         config.attitude.heading_deviation_deg = 1;
         return config;
     }
-    /** What is told of a second on a circle, by stamps from `first` on. */
+    /** Returns the measurements of a second on a circle, with stamps from `first` on. */
     std::vector<types::Imu> told(double first = 0) {
         std::vector<types::Imu> all;
         for (int i = 0; i < 100; ++i) {
@@ -31,7 +31,7 @@ protected:
     }
 };
 
-TEST_F(ImuTaskTest, TellsEachPoseOnceTheNextHasCome) {
+TEST_F(ImuTaskTest, MeasuresEachPoseWhenTheNextHasArrived) {
     startWith({});
     EXPECT_TRUE(answerTo(poseAt(1, {})).time.isNull());
     EXPECT_TRUE(answerTo(poseAt(1.01, {})).time.isNull());
@@ -40,17 +40,17 @@ TEST_F(ImuTaskTest, TellsEachPoseOnceTheNextHasCome) {
     EXPECT_NEAR(imu.linear_acceleration.z, normalGravity(45), 1e-9);
 }
 
-TEST_F(ImuTaskTest, SaysThatPosesAreTooFarApart) {
+TEST_F(ImuTaskTest, WarnsThatPosesAreTooFarApart) {
     std::vector<std::string> told;
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { told.push_back(text); };
     task_.setEnvironment(environment);
     startWith({});
     for (const double time : {1, 3, 5, 7}) EXPECT_TRUE(answerTo(poseAt(time, {})).time.isNull());
-    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart tell no motion")));
+    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart give no motion")));
 }
 
-TEST_F(ImuTaskTest, RocksSamplesSayTheSame) {
+TEST_F(ImuTaskTest, RocksSamplesHaveTheSameValues) {
     test::Reader<types::ImuSensors> sensors;
     test::Reader<types::Pose> orientations;
     task_.calibrated_sensors.connectTo(sensors.port, framework::ConnPolicy::buffer(4));
@@ -89,7 +89,7 @@ TEST_F(ImuTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
     EXPECT_NE(told()[0].angular_velocity, first[0].angular_velocity);
 }
 
-TEST_F(ImuTaskTest, WithoutBiasesNoiseBelongsToTheStampAlone) {
+TEST_F(ImuTaskTest, NoiseWithoutBiasesDependsOnlyOnTheStamp) {
     ImuConfig config;
     config.gyroscope.noise_density = 1e-3;
     startWith(config);
@@ -98,14 +98,14 @@ TEST_F(ImuTaskTest, WithoutBiasesNoiseBelongsToTheStampAlone) {
     EXPECT_EQ(told(1.5).back().angular_velocity, last.angular_velocity);
 }
 
-TEST_F(ImuTaskTest, APeriodTellsFewer) {
+TEST_F(ImuTaskTest, APeriodGivesFewerSamples) {
     ImuConfig config;
     config.sensor.period = 0.05;
     startWith(config);
     EXPECT_EQ(told().size(), 20u);
 }
 
-TEST_F(ImuTaskTest, APoseThatIsNotFiniteIsRefusedUntilAGoodOne) {
+TEST_F(ImuTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
     startWith({});
     answerTo(poseAt(1, {}));
     answerTo(poseAt(1.01, {}));

@@ -10,14 +10,14 @@ namespace {
 
 types::Imu measured(const Motion& motion, const ImuConfig& config = {}) { return Imu(config).measure(motion); }
 
-TEST(ImuTest, NormalGravityIsThatOfWgs84) {
+TEST(ImuTest, NormalGravityMatchesWgs84) {
     EXPECT_NEAR(normalGravity(0), 9.7803253359, 1e-10);
     EXPECT_NEAR(normalGravity(90), 9.8321849378, 1e-9);
     EXPECT_NEAR(normalGravity(-90), 9.8321849378, 1e-9);
     EXPECT_NEAR(normalGravity(45), 9.8061977692, 1e-8);
 }
 
-TEST(ImuTest, AtRestItFeelsGravityUpwardsWhicheverWayItLies) {
+TEST(ImuTest, MeasuresGravityUpwardsAtRestInAnyAttitude) {
     const double g = normalGravity(45);
     EXPECT_LT(glm::distance(measured(atRest(1)).linear_acceleration, {0, 0, g}), 1e-12);
     EXPECT_LT(glm::distance(measured(atRest(1, turned(0, 0, 180))).linear_acceleration, {0, 0, -g}), 1e-12);
@@ -30,13 +30,13 @@ TEST(ImuTest, AtRestItFeelsGravityUpwardsWhicheverWayItLies) {
     EXPECT_EQ(measured(atRest(1), {.latitude_deg = 0}).linear_acceleration.z, normalGravity(0));
 }
 
-TEST(ImuTest, FallingItFeelsNothing) {
+TEST(ImuTest, MeasuresNoForceInFreeFall) {
     const double g = normalGravity(45);
     const Path path = [&](double t) { return poseAt(t, {0, 0, -g * t * t / 2}, turned(10, 20, 30)); };
     EXPECT_LT(glm::length(measured(motionAt(path, 2, 0.01)).linear_acceleration), 1e-9);
 }
 
-TEST(ImuTest, OnACircleItFeelsTheWayToTheCentre) {
+TEST(ImuTest, MeasuresCentripetalAccelerationOnACircle) {
     const double radius = 6, rate = 0.5, step = 0.001;
     const types::Imu imu = measured(motionAt(circle(radius, rate), 3, step));
     EXPECT_NEAR(imu.linear_acceleration.y, radius * rate * rate, 1e-6) << "v^2 / r, to port";
@@ -44,7 +44,7 @@ TEST(ImuTest, OnACircleItFeelsTheWayToTheCentre) {
     EXPECT_LT(glm::distance(imu.angular_velocity, {0, 0, rate}), 1e-12);
 }
 
-TEST(ImuTest, TheEarthTurnsItWhereItIsToldTo) {
+TEST(ImuTest, MeasuresTheRotationOfTheEarthIfConfigured) {
     const ImuConfig config{.latitude_deg = 30, .earth_rotation = true};
     const double rate = 7.292115e-5;
     const glm::dvec3 north = measured(atRest(1), config).angular_velocity;
@@ -57,7 +57,7 @@ TEST(ImuTest, TheEarthTurnsItWhereItIsToldTo) {
         << "Coriolis: held on its way north, the unit is pushed to the west";
 }
 
-TEST(ImuTest, NoiseHasItsDensityOnEveryAxisAndTheCovarianceThatIsTold) {
+TEST(ImuTest, NoiseHasItsDensityAndReportedCovarianceOnEveryAxis) {
     ImuConfig config;
     config.sensor.seed = 3;
     config.gyroscope.noise_density = 1e-3;
@@ -99,14 +99,14 @@ TEST(ImuTest, ErrorsOfTheAttitudeHaveTheirDeviations) {
         const glm::dquat error = imu.orientation * glm::conjugate(motion.orientation);
         squares += 4.0 * glm::dvec3(error.x * error.x, error.y * error.y, error.z * error.z);
     }
-    const double bound = 5 * std::sqrt(2.0 / count) + 2e-3;  // and what a sine is less than its angle
+    const double bound = 5 * std::sqrt(2.0 / count) + 2e-3;  // plus the difference of a sine and its angle
     EXPECT_NEAR(squares.x / count / std::pow(types::radians(0.5), 2), 1, bound);
     EXPECT_NEAR(squares.y / count / std::pow(types::radians(0.5), 2), 1, bound);
     EXPECT_NEAR(squares.z / count / std::pow(types::radians(2), 2), 1, bound);
     EXPECT_NEAR(imu.cov_orientation[2][2], std::pow(types::radians(2), 2), 1e-15);
 }
 
-TEST(ImuTest, AnythingThatMovesEndsAtTheRange) {
+TEST(ImuTest, ReadingsAreLimitedByTheRange) {
     ImuConfig config;
     config.accelerometer.range = 16 * 9.81;
     config.gyroscope.range = 30;

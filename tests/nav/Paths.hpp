@@ -1,5 +1,5 @@
 #pragma once
-// Bodies that move in known ways.
+// Bodies with known motions.
 #include <cmath>
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
@@ -11,7 +11,7 @@
 
 namespace insonify::nav {
 
-/** A body at a time [s]. */
+/** Returns a body at a time [s]. */
 using Path = std::function<types::Pose(double)>;
 
 inline types::Pose poseAt(double time, glm::dvec3 position, glm::dquat orientation = {1, 0, 0, 0}) {
@@ -22,12 +22,12 @@ inline types::Pose poseAt(double time, glm::dvec3 position, glm::dquat orientati
     return pose;
 }
 
-/** Turned by yaw, then pitch, then roll [deg]. */
+/** Returns the rotation by yaw, then pitch, then roll [deg]. */
 inline glm::dquat turned(double yaw, double pitch = 0, double roll = 0) {
     return types::Mount{.roll_deg = roll, .pitch_deg = pitch, .yaw_deg = yaw}.orientation();
 }
 
-/** Round a circle at a rate [rad/s], ahead along it and to port. */
+/** Returns a path round a circle at a rate [rad/s], heading along it and turning to port. */
 inline Path circle(double radius, double rate) {
     return [=](double time) {
         const double angle = rate * time;
@@ -36,7 +36,7 @@ inline Path circle(double radius, double rate) {
     };
 }
 
-/** The motion at a time, from poses `step` apart [s]. */
+/** Returns the motion at a time, from poses `step` apart [s]. */
 inline Motion motionAt(const Path& path, double time, double step, const types::Mount& mount = {}) {
     MotionTracker tracker(mount);
     tracker.take(path(time - step));
@@ -44,7 +44,7 @@ inline Motion motionAt(const Path& path, double time, double step, const types::
     return tracker.take(path(time + step)).value();
 }
 
-/** Of a body at rest. */
+/** Returns the motion of a body at rest. */
 inline Motion atRest(double time, glm::dquat orientation = {1, 0, 0, 0}, glm::dvec3 position = {}) {
     return motionAt([=](double t) { return poseAt(t, position, orientation); }, time, 0.01);
 }

@@ -12,14 +12,14 @@ protected:
     PressureTaskTest() : TaskBench(&PressureTask::pose, &PressureTask::pressure) {}
 };
 
-TEST_F(PressureTaskTest, TellsEachPoseAtOnceFromItsPlaceInTheBody) {
+TEST_F(PressureTaskTest, MeasuresEachPoseAtOnceAtItsPlaceInTheBody) {
     startWith({.sensor = {.mount = {.position = {0, 0, -0.5}}}, .density = 1000});
     const types::Pressure told = answerTo(poseAt(3, {1, 2, -10}, turned(0, 0, 180)));
     EXPECT_EQ(told.time, types::Time::fromSeconds(3));
     EXPECT_EQ(told.pascal, static_cast<float>(pressureAt(9.5, {.density = 1000}))) << "upside down it is on top";
 }
 
-TEST_F(PressureTaskTest, TheDepthGoesToRockAsWell) {
+TEST_F(PressureTaskTest, WritesTheDepthAsRocksTypeToo) {
     test::Reader<types::Pose> reader;
     task_.depth_samples.connectTo(reader.port, framework::ConnPolicy::buffer(4));
     startWith({});
@@ -42,7 +42,7 @@ TEST_F(PressureTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
     EXPECT_NE(first[0], first[1]);
 }
 
-TEST_F(PressureTaskTest, APoseThatIsNotFiniteIsRefusedUntilAGoodOne) {
+TEST_F(PressureTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
     startWith({});
     answerTo(poseAt(1, glm::dvec3(std::nan(""))));
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);

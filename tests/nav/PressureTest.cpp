@@ -1,4 +1,4 @@
-// Pressures against the tables of UNESCO 44 and Saunders' formula.
+// Pressures, compared with the tables of UNESCO 44 and Saunders' formula.
 #include <gmock/gmock.h>
 
 #include "components/nav/Gravity.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double decibar = 1e4;
 
-TEST(PressureTest, DepthsAreThoseOfTheTableOfUnesco) {
+TEST(PressureTest, DepthsMatchUnescosTable) {
     // Fofonoff and Millard 1983, table of depth by pressure [dbar] and latitude [deg], and their check value.
     const struct {
         double pressure, latitude, depth;
@@ -38,14 +38,14 @@ TEST(PressureTest, PressureAndDepthAreEachOthersInverse) {
             EXPECT_NEAR(depthAt(pressureAt(depth, config), config), depth, 1e-9 * (1 + depth));
 }
 
-TEST(PressureTest, WaterOfOneDensityWeighsWhatItDoes) {
+TEST(PressureTest, PressureInWaterOfConstantDensityIsItsWeight) {
     const PressureConfig lake{.latitude_deg = 47, .density = 999.7, .atmosphere = 96000};
     EXPECT_NEAR(pressureAt(30, lake), 96000 + 999.7 * normalGravity(47) * 30, 1e-6);
 }
 
 TEST(PressureTest, TenMetresOfSeaAreAboutABar) { EXPECT_NEAR(pressureAt(10, {}), 101325 + 100800, 200); }
 
-TEST(PressureTest, AboveTheSurfaceThereIsAirAndBelowTheDeepestPlaceNothingMore) {
+TEST(PressureTest, PressureIsThatOfAirAboveTheSurfaceAndClampedAtMaxDepth) {
     EXPECT_EQ(pressureAt(0, {}), 101325);
     EXPECT_NEAR(pressureAt(-100, {}), 101325 * std::exp(-100 / 8434.0), 1e-6);
     EXPECT_EQ(pressureAt(-1e300, {}), 0);
@@ -54,7 +54,7 @@ TEST(PressureTest, AboveTheSurfaceThereIsAirAndBelowTheDeepestPlaceNothingMore) 
     EXPECT_EQ(depthAt(1e12, {}), deepest);
 }
 
-/** The mean and the deviation of readings at rest [Pa]. */
+/** Mean and standard deviation of readings at rest [Pa]. */
 std::pair<double, double> statisticsOf(const PressureConfig& config, int count) {
     PressureGauge gauge(config);
     double sum = 0, squares = 0;
@@ -75,14 +75,14 @@ TEST(PressureTest, ErrorsHaveTheirDeviations) {
     EXPECT_NEAR(drift / 200, 1, 5 / std::sqrt(2.0 * count));
 }
 
-TEST(PressureTest, AGaugeTellsWholeStepsWithinItsRange) {
+TEST(PressureTest, ReadingsAreWholeStepsWithinTheRange) {
     const auto reading = [](PressureConfig config, double height) {
         return PressureGauge(config).measure(poseAt(1, {0, 0, height})).pascal;
     };
     EXPECT_EQ(reading({.errors = {.resolution = 20}}, 0), 101320.0f);
     EXPECT_EQ(reading({.max_pressure = 3e6}, -1000), 3e6f);
     EXPECT_EQ(reading({.max_pressure = 110000, .errors = {.resolution = 20000}}, -1000), 100000.0f);
-    EXPECT_EQ(reading({.errors = {.offset = -1e6}}, 0), 0.0f) << "never below nothing";
+    EXPECT_EQ(reading({.errors = {.offset = -1e6}}, 0), 0.0f) << "never below 0";
     EXPECT_EQ(reading({.water_surface = 2, .density = 1000}, -8),
               static_cast<float>(pressureAt(10, {.density = 1000})));
 }

@@ -20,7 +20,7 @@ AmbientConfig windy(double wind_m_s) {
 
 double levelDb(const AmbientConfig& config) { return 10 * std::log10(ambientIntensity(config)); }
 
-TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
+TEST(AmbientTest, NoiseInABinIsThatOfTheBandMinusTheDirectivityRelativeToTheSource) {
     const double spectrum = acoustics::coatesSpectrumDb(700, 5, 0.5);
     EXPECT_NEAR(levelDb(windy(5)), spectrum + 10 * std::log10(30e3) - 25 - 210, 1e-9);
     AmbientConfig given;
@@ -28,7 +28,7 @@ TEST(AmbientTest, ABinHoldsTheBandsNoiseLessTheDirectivityRelativeToTheSource) {
     EXPECT_NEAR(levelDb(given), -112.5, 1e-9);
 }
 
-TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
+TEST(AmbientTest, NeedsEitherALevelOrAllInputsOfTheFormula) {
     const auto diagnosticsOf = [](const AmbientConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);
@@ -43,7 +43,7 @@ TEST(AmbientTest, ALevelOrAllThatTheFormulaNeedsAndNotBoth) {
     EXPECT_EQ(diagnosticsOf(both).size(), 3u);
     half.bandwidth_khz.reset();
     ASSERT_EQ(diagnosticsOf(half).size(), 1u);
-    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz; without level_db it must");
+    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz, which is needed without level_db");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Pings with noise, and how far their bins are from a distribution.
+// Pings with noise, and tests of the distribution of their bins.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,7 +63,7 @@ inline double correlation(const float* a, const float* b, size_t count) {
     return sum / static_cast<double>(count) / std::sqrt(varianceOf(first) * varianceOf(second));
 }
 
-/** Values as shares of a distribution: uniform in [0, 1] if they follow it. */
+/** Returns values as shares of a distribution: uniform in [0, 1] if they follow it. */
 template <class Cdf>
 std::vector<double> shares(const std::vector<float>& values, Cdf cdf) {
     std::vector<double> all;
@@ -72,7 +72,8 @@ std::vector<double> shares(const std::vector<float>& values, Cdf cdf) {
     return all;
 }
 
-/** Largest distance between the empirical and the true distribution, times sqrt(n); above 1.95 in 1 case of 1000. */
+/** Returns the max distance between the empirical and the true distribution, times sqrt(n); above 1.95 in 1 case of
+ *  1000. */
 inline double kolmogorovSmirnov(const std::vector<double>& sorted) {
     const double count = static_cast<double>(sorted.size());
     double worst = 0;
@@ -82,7 +83,7 @@ inline double kolmogorovSmirnov(const std::vector<double>& sorted) {
     return worst * std::sqrt(count);
 }
 
-/** Pearson's statistic over 20 equally probable cells: 19 degrees of freedom, above 43.8 in 1 case of 1000. */
+/** Returns Pearson's statistic over 20 equally probable cells: 19 degrees of freedom, above 43.8 in 1 case of 1000. */
 inline double chiSquare20(const std::vector<double>& all) {
     std::array<double, 20> cells{};
     for (const double share : all) cells[std::min<size_t>(19, static_cast<size_t>(share * 20))] += 1;
@@ -97,21 +98,22 @@ inline double normalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sq
 
 inline constexpr double ks_limit = 1.95, chi_limit = 43.8;
 
-/** Of the mean of `looks` exponential variates: Erlang's law. */
+/** Distribution of the mean of `looks` exponential variates: Erlang's law. */
 inline double gammaCdf(double x, int looks) {
     double term = 1, sum = 1;
     for (int k = 1; k < looks; ++k) sum += term *= looks * x / k;
     return 1 - std::exp(-looks * x) * sum;
 }
 
-/** Of an exponential variate of gamma distributed mean: 1 - 2/Gamma(nu) (nu x)^(nu/2) K_nu(2 sqrt(nu x)). */
+/** Distribution of an exponential variate of gamma distributed mean: 1 - 2/Gamma(nu) (nu x)^(nu/2) K_nu(2 sqrt(nu
+ *  x)). */
 inline double kCdf(double x, double shape) {
     if (!(x > 0)) return 0;
     return 1 - 2 * std::exp(shape / 2 * std::log(shape * x) - std::lgamma(shape)) *
                    std::cyl_bessel_k(shape, 2 * std::sqrt(shape * x));
 }
 
-/** Above these in 1 case of 100. */
+/** Bounds of the statistics, exceeded in 1 case of 100. */
 inline constexpr double ks_one_percent = 1.628, chi_one_percent = 36.19;
 
 }  // namespace insonify::noise

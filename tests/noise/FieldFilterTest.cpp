@@ -1,4 +1,4 @@
-// Noise that has passed a receiver's filter and its averaging of looks, against closed forms.
+// Noise after a receiver's filter and averaging of looks, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -20,7 +20,7 @@ NoiseConfig filtered(const FilterConfig& filter, std::optional<SpeckleConfig> sp
 
 types::Sonar filteredField(const FilterConfig& filter) { return noisyOf(filtered(filter), pingOf(beams, bins)); }
 
-/** Correlation of intensities so many beams and bins apart. */
+/** Returns the correlation of intensities at a distance in beams and bins. */
 double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
     double sum = 0;
     const size_t count = ping.bin_count - along;
@@ -31,7 +31,7 @@ double correlationAt(const types::Sonar& ping, size_t across, size_t along) {
     return sum / static_cast<double>(count * (ping.beam_count - across)) / varianceOf(ping.bins);
 }
 
-/** Of the logarithm of gamma variates of `looks`: psi''(L) / psi'(L)^1.5. */
+/** Returns the skew of the logarithm of gamma variates of `looks`: psi''(L) / psi'(L)^1.5. */
 double logSkewOf(int looks) {
     double trigamma = 0, tetragamma = 0;
     for (int k = looks; k < 100000; ++k) trigamma += 1 / std::pow(k, 2), tetragamma -= 2 / std::pow(k, 3);
@@ -83,7 +83,7 @@ TEST(FieldFilterTest, IntensitiesCorrelateByTheClosedFormInRangeAndAcrossBeams) 
     }
 }
 
-TEST(FieldFilterTest, LooksAreGammaDistributedWithTheSkewOfItsLogarithm) {
+TEST(FieldFilterTest, LooksAreGammaDistributedWithTheSkewOfTheLogarithm) {
     for (const int looks : {1, 2, 4, 16, 64}) {
         const types::Sonar ping = filteredField({looks, {}, {}});
         const auto all = shares(ping.bins, [&](double x) { return gammaCdf(x, looks); });
@@ -95,7 +95,7 @@ TEST(FieldFilterTest, LooksAreGammaDistributedWithTheSkewOfItsLogarithm) {
     EXPECT_NEAR(logSkewOf(1), -1.1395, 1e-3) << "of the exponential law (Gumbel's)";
 }
 
-TEST(FieldFilterTest, KSpeckleTheSeaAndAdditiveNoisePassTheFilterToo) {
+TEST(FieldFilterTest, FiltersKSpeckleTheSeaAndAdditiveNoiseToo) {
     const FilterConfig filter{4, 1.346, {}};
     const auto lagOf = [](const types::Sonar& ping) {
         return correlation(ping.bins.data(), ping.bins.data() + 1, ping.bins.size() - 1);
@@ -118,7 +118,7 @@ TEST(FieldFilterTest, KSpeckleTheSeaAndAdditiveNoisePassTheFilterToo) {
     EXPECT_NEAR(varianceOf(rayleigh_in_sea.bins), 1, 0.08) << "fields that add: (I0 + a)^2 / L";
 }
 
-TEST(FieldFilterTest, ABinsNoiseDependsOnSeedPingBeamAndBinAlone) {
+TEST(FieldFilterTest, NoiseOfABinDependsOnlyOnSeedPingBeamAndBin) {
     const NoiseConfig config = filtered({3, 2, 2});
     const types::Sonar small = noisyOf(config, pingOf(3, 70)), large = noisyOf(config, pingOf(9, 1000));
     for (size_t beam = 0; beam < 3; ++beam)
@@ -135,7 +135,7 @@ TEST(FieldFilterTest, ABinsNoiseDependsOnSeedPingBeamAndBinAlone) {
     EXPECT_LT(std::abs(correlation(first.bins.data(), noisyOf(config, pingOf(4, 300, 1, 99)).bins.data(), 1200)), 0.2);
 }
 
-TEST(FieldFilterTest, NaNStaysAndNothingBecomesNegative) {
+TEST(FieldFilterTest, NaNStaysAndNoBinBecomesNegative) {
     types::Sonar clean = pingOf(5, 300);
     clean.bins[7] = std::numeric_limits<float>::quiet_NaN();
     const types::Sonar ping = noisyOf(filtered({1, 16, 16}), clean);
@@ -149,7 +149,7 @@ std::string complaintOf(const NoiseConfig& config) {
     return diagnostics.empty() ? "" : diagnostics[0].path + " " + diagnostics[0].message;
 }
 
-TEST(FieldFilterTest, AFilterOfNothingOrOfNoFieldIsRefused) {
+TEST(FieldFilterTest, RejectsAFilterWithoutNoiseOrWithoutAField) {
     EXPECT_EQ(complaintOf(filtered({4, 1, {}})), "");
     EXPECT_EQ(complaintOf({}), "");
     EXPECT_EQ(complaintOf(filtered({4, 1, {}}, {})), "filter has nothing to filter; give speckle, ambient or additive");

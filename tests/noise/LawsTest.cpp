@@ -1,4 +1,5 @@
-// Each law of the speckle against its own distribution, at 1 %, and against those of the others, which must fail.
+// Each law of the speckle compared with its own distribution, at 1 %, and with those of the other laws, which must
+// fail.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -13,7 +14,7 @@ namespace {
 constexpr double count = 128000;
 constexpr double decibels_per_neper = 10 / std::numbers::ln10;
 
-/** psi(x) = d ln Gamma / dx by its recurrence and, above 20, its asymptotic series. */
+/** Returns psi(x) = d ln Gamma / dx by its recurrence and, above 20, its asymptotic series. */
 double digamma(double x) {
     double sum = 0;
     for (; x < 20; x += 1) sum -= 1 / x;
@@ -26,13 +27,13 @@ double trigamma(double x) {
     return sum + 1 / x + 1 / (2 * x * x) + 1 / (6 * x * x * x) - 1 / (30 * x * x * x * x * x);
 }
 
-/** A law, and what theory says of it. */
+/** A law, and its theoretical moments. */
 struct Law {
     std::string name;
     NoiseConfig config;
     std::function<double(double)> cdf;
     double scintillation;                 ///< Variance over the mean squared.
-    double decibel_mean, decibel_spread;  ///< Of 10 log10 of the factor [dB].
+    double decibel_mean, decibel_spread;  ///< Mean and deviation of 10 log10 of the factor [dB].
 };
 
 Law rayleighLaw() {
@@ -66,7 +67,7 @@ std::vector<Law> laws() {
 
 std::vector<float> drawn(const NoiseConfig& config) { return noisyOf(config, pingOf(256, 500)).bins; }
 
-TEST(LawsTest, EachLawFollowsItsOwnDistributionAndNoneOfTheOthers) {
+TEST(LawsTest, EachLawFollowsOnlyItsOwnDistribution) {
     for (const Law& law : laws()) {
         const std::vector<float> values = drawn(law.config);
         for (const Law& other : laws()) {
@@ -83,7 +84,7 @@ TEST(LawsTest, EachLawFollowsItsOwnDistributionAndNoneOfTheOthers) {
     }
 }
 
-TEST(LawsTest, TheGaussianFactorIsTheNormalLawClampedAtNothing) {
+TEST(LawsTest, TheGaussianFactorIsTheNormalLawClampedAtZero) {
     const auto all = [](double mean, double deviation) {
         return shares(drawn(gaussian(10, 1)), [=](double x) { return normalCdf((x - mean) / deviation); });
     };
@@ -114,7 +115,7 @@ Moments momentsOf(const std::vector<double>& values) {
     return moments;
 }
 
-TEST(LawsTest, ScintillationAndDecibelsAreThoseOfTheory) {
+TEST(LawsTest, ScintillationAndDecibelsMatchTheory) {
     for (const Law& law : laws()) {
         std::vector<double> factors, levels;
         for (const float value : drawn(law.config)) {
@@ -129,7 +130,7 @@ TEST(LawsTest, ScintillationAndDecibelsAreThoseOfTheory) {
     }
 }
 
-TEST(LawsTest, TheFiguresThatAreQuotedOfThemAreRight) {
+TEST(LawsTest, QuotedFiguresAreCorrect) {
     EXPECT_NEAR(rayleighLaw().decibel_mean, -2.507, 5e-4);
     EXPECT_NEAR(rayleighLaw().decibel_spread, 5.570, 5e-4);
     for (const auto& [looks, spread] : {std::pair(2, 3.49), {4, 2.31}, {8, 1.58}, {16, 1.10}})
@@ -140,12 +141,12 @@ TEST(LawsTest, TheFiguresThatAreQuotedOfThemAreRight) {
     EXPECT_NEAR(std::sqrt(1 - amplitude * amplitude) / amplitude, 0.5227, 0.005) << "its deviation over its mean";
 }
 
-/** How often a value is above x times the mean. */
+/** Returns the share of values above x times the mean. */
 double tailOf(const std::vector<float>& values, double x) {
     return static_cast<double>(std::ranges::count_if(values, [&](float value) { return value > x; })) / count;
 }
 
-TEST(LawsTest, TheTailOfKIsThatOfItsFormulaAndFarAboveTheExponential) {
+TEST(LawsTest, TheTailOfKMatchesItsFormulaAndIsFarAboveTheExponential) {
     for (const double shape : {1.0, 2.5, 8.0}) {
         const std::vector<float> values = drawn(kOf(shape));
         for (const double x : {3.0, 6.0, 10.0}) {
@@ -167,10 +168,10 @@ TEST(LawsTest, ExtremeShapesAreFiniteWithAnExtremeTailOrExponential) {
     const std::vector<float> smooth = drawn(gammaOf(1e4));
     EXPECT_NEAR(varianceOf(smooth), 1e-4, 0.02e-4);
     EXPECT_LT(kolmogorovSmirnov(shares(smooth, [](double x) { return normalCdf((x - 1) * 1e2); })), 3)
-        << "a skew of 0.02 is left";
+        << "a skew of 0.02 remains";
 }
 
-/** Correlation of what two runs of values are by their ranks, which no long tail spoils. */
+/** Returns the rank correlation of two lists of values, which is insensitive to long tails. */
 double rankCorrelation(const Law& law, const float* a, const float* b, size_t size) {
     std::vector<float> first, second;
     for (size_t i = 0; i < size; ++i) {

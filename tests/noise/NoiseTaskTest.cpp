@@ -14,13 +14,13 @@ protected:
     NoiseTaskTest() : TaskBench(&NoiseTask::clean, &NoiseTask::noisy) {}
 };
 
-TEST_F(NoiseTaskTest, WithoutNoiseThePingItselfIsPassedOn) {
+TEST_F(NoiseTaskTest, PassesOnThePingItselfWithoutNoise) {
     startWith({});
     const types::SonarPtr ping = makePing(1);
     EXPECT_EQ(answerTo(ping), ping);
 }
 
-TEST_F(NoiseTaskTest, ThePingThatCameInIsNotChangedAndItsTimeIsKept) {
+TEST_F(NoiseTaskTest, KeepsTheInputPingUnchangedAndItsTime) {
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = AdditiveConfig{-20}});
     const types::SonarPtr ping = makePing(42);
     const types::SonarPtr noisy = answerTo(ping);
@@ -29,7 +29,7 @@ TEST_F(NoiseTaskTest, ThePingThatCameInIsNotChangedAndItsTimeIsKept) {
     EXPECT_EQ(ping->bins, std::vector<float>(200, 1));
 }
 
-TEST_F(NoiseTaskTest, APingReplayedGetsTheSameNoiseWhateverCameBefore) {
+TEST_F(NoiseTaskTest, AReplayedPingGetsTheSameNoiseIndependentOfEarlierPings) {
     startWith({.seed = 5, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
     const std::vector<float> first = answerTo(makePing(7))->bins;
     EXPECT_NE(answerTo(makePing(8))->bins, first);
@@ -47,7 +47,7 @@ TEST_F(NoiseTaskTest, ClampedFactorsAreCountedFromStart) {
     EXPECT_EQ(task_.clamped(), 0u);
 }
 
-TEST_F(NoiseTaskTest, ASampleThatNobodyHoldsAnyMoreIsUsedAgain) {
+TEST_F(NoiseTaskTest, ReusesAReleasedSample) {
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
     const types::Sonar* held = nullptr;
     bool again = false;
@@ -59,7 +59,7 @@ TEST_F(NoiseTaskTest, ASampleThatNobodyHoldsAnyMoreIsUsedAgain) {
     EXPECT_TRUE(again);
 }
 
-TEST_F(NoiseTaskTest, DecibelsAreRefusedWithWhatToConnectAndTheNextIntensitiesAreTaken) {
+TEST_F(NoiseTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
     NoiseConfig speckle;
     speckle.speckle.emplace();
     for (const NoiseConfig& config : {NoiseConfig{}, speckle}) {
@@ -81,7 +81,7 @@ TEST_F(NoiseTaskTest, DecibelsAreRefusedWithWhatToConnectAndTheNextIntensitiesAr
     }
 }
 
-TEST_F(NoiseTaskTest, ALawThatIsSetWhileItRunsHoldsFromTheNextPingOn) {
+TEST_F(NoiseTaskTest, AChangedLawAppliesFromTheNextPing) {
     startWith({});
     task_.operation("setSpeckle")->callText({"{law: gamma, looks: 4}"});
     EXPECT_NE(answerTo(makePing(1))->bins, makePing(1)->bins);
@@ -93,7 +93,7 @@ AmbientConfig ambientOf(double level_db) {
     return ambient;
 }
 
-TEST_F(NoiseTaskTest, EchoesBelowTheNoiseAreToldOfOnceWithNumbersAndAgainOnceTheyHaveStoodOut) {
+TEST_F(NoiseTaskTest, WarnsOnceAboutEchoesBelowTheNoiseAndAgainAfterLouderEchoes) {
     std::vector<std::string> told;
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { told.push_back(text); };
@@ -122,7 +122,7 @@ TEST_F(NoiseTaskTest, EchoesBelowTheNoiseAreToldOfOnceWithNumbersAndAgainOnceThe
     EXPECT_EQ(told.size(), 2u);
 }
 
-TEST_F(NoiseTaskTest, OfAnEmptyPingAndWithoutAnyBackgroundNothingIsTold) {
+TEST_F(NoiseTaskTest, DoesNotWarnAboutAnEmptyPingOrWithoutBackground) {
     std::vector<std::string> told;
     const auto environment = std::make_shared<framework::Environment>();
     environment->warn = [&](const std::string& text) { told.push_back(text); };

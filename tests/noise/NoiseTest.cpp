@@ -7,7 +7,7 @@
 namespace insonify::noise {
 namespace {
 
-TEST(NoiseTest, TheSeaIsFiniteHoweverLoud) {
+TEST(NoiseTest, TheNoiseOfTheSeaIsFiniteAtAnyLevel) {
     NoiseConfig config;
     config.ambient.emplace();
     config.ambient->wind_m_s = 100;
@@ -42,13 +42,13 @@ TEST(NoiseTest, BeamsPingsSeedsAndBinsAreUncorrelated) {
         EXPECT_LT(std::abs(correlation(bins, compared, count)), 4 / std::sqrt(static_cast<double>(count)));
 }
 
-TEST(NoiseTest, ABinsNoiseDoesNotDependOnTheNumberOfBeamsOrBins) {
+TEST(NoiseTest, NoiseOfABinDoesNotDependOnTheNumberOfBeamsOrBins) {
     const types::Sonar small = noisyOf(rayleigh(), pingOf(3, 70)), large = noisyOf(rayleigh(), pingOf(5, 1000));
     for (size_t beam = 0; beam < 3; ++beam)
         for (size_t bin = 0; bin < 70; ++bin) EXPECT_EQ(small.bins[beam * 70 + bin], large.bins[beam * 1000 + bin]);
 }
 
-TEST(NoiseTest, AFactorThatWouldBeNegativeIsClampedAndCounted) {
+TEST(NoiseTest, NegativeFactorsAreClampedAndCounted) {
     types::Sonar noisy;
     const uint64_t clamped = Noise(gaussian(0.4, 10)).add(pingOf(100, 100), noisy);
     EXPECT_NEAR(static_cast<double>(clamped) / 10000, normalCdf(-0.04), 0.02);
@@ -56,14 +56,14 @@ TEST(NoiseTest, AFactorThatWouldBeNegativeIsClampedAndCounted) {
     EXPECT_EQ(clamped, static_cast<uint64_t>(std::count(noisy.bins.begin(), noisy.bins.end(), 0.0f)));
 }
 
-TEST(NoiseTest, NeutralValuesGiveThePingItself) {
+TEST(NoiseTest, NeutralValuesDoNotChangeThePing) {
     types::Sonar clean = pingOf(4, 300);
     for (size_t i = 0; i < clean.bins.size(); ++i) clean.bins[i] = static_cast<float>(i) * 0.37f;
     for (const NoiseConfig& neutral : {NoiseConfig{}, gaussian(1, 0), background(-3000), withSea({}, -3000)})
         EXPECT_EQ(noisyOf(neutral, clean).bins, clean.bins);
 }
 
-TEST(NoiseTest, UnknownBinsStayUnknownAndEmptyOnesEmpty) {
+TEST(NoiseTest, UnknownBinsStayUnknownAndEmptyBinsStayEmpty) {
     types::Sonar clean = pingOf(1, 10, 0);
     clean.bins[3] = std::numeric_limits<float>::quiet_NaN();
     for (const NoiseConfig& config :
@@ -72,7 +72,7 @@ TEST(NoiseTest, UnknownBinsStayUnknownAndEmptyOnesEmpty) {
     EXPECT_EQ(noisyOf(rayleigh(), clean).bins[2], 0);
 }
 
-TEST(NoiseTest, EverythingButTheBinsIsKept) {
+TEST(NoiseTest, KeepsEverythingExceptTheBins) {
     types::Sonar clean = pingOf(2, 3);
     clean.timestamps = {{1}, {2}};
     clean.bin_duration = {33};

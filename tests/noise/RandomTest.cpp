@@ -7,7 +7,7 @@
 namespace insonify::noise {
 namespace {
 
-TEST(RandomTest, PhiloxGivesItsAuthorsKnownAnswers) {
+TEST(RandomTest, PhiloxMatchesThePublishedAnswers) {
     constexpr uint32_t ones = 0xFFFFFFFF;
     EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Counter{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
     EXPECT_EQ(philox({ones, ones, ones, ones}, {ones, ones}),
@@ -41,7 +41,7 @@ TEST(RandomTest, TheExponentialIsFiniteAndPositiveAtBothEnds) {
         EXPECT_TRUE(exponential(bits) > 0 && std::isfinite(exponential(bits))) << bits;
 }
 
-TEST(RandomTest, TheNormalsLieOnTheCircleThatBoxAndMullerSay) {
+TEST(RandomTest, NormalsAreOnTheCircleOfBoxAndMuller) {
     double worst = 0;
     for (uint64_t bits = 0; bits < (uint64_t{1} << 32); bits += 99991) {
         const Normals drawn = normals(0x80000000, static_cast<uint32_t>(bits));

@@ -1,4 +1,4 @@
-// The laws of the noise, by their moments and by tests of their distributions.
+// The laws of the noise, compared by moments and by tests of their distributions.
 #include <gtest/gtest.h>
 
 #include "tests/noise/Distributions.hpp"
@@ -66,7 +66,7 @@ TEST(SpeckleTest, KSpeckleIsAnExponentialOfGammaDistributedMean) {
     }
 }
 
-TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
+TEST(SpeckleTest, EachLawHasOnlyItsOwnParameters) {
     const auto diagnosticsOf = [](const SpeckleConfig& speckle) {
         types::Diagnostics diagnostics;
         speckle.check(diagnostics);
@@ -84,7 +84,7 @@ TEST(SpeckleTest, ALawHasTheParametersOfItsOwn) {
     EXPECT_EQ(diagnosticsOf({.shape = 4}), "shape is given; it belongs to law: k; ");
 }
 
-TEST(SpeckleTest, TheOtherLawsAreHeldToOnePercentToo) {
+TEST(SpeckleTest, TheOtherLawsMatchToOnePercentToo) {
     const auto distance = [](const NoiseConfig& config, auto cdf) {
         return kolmogorovSmirnov(shares(noisyOf(config, pingOf(256, 500)).bins, cdf));
     };
@@ -94,7 +94,7 @@ TEST(SpeckleTest, TheOtherLawsAreHeldToOnePercentToo) {
     EXPECT_GT(distance(kOf(2), exponentialCdf), 10 * ks_one_percent);
 }
 
-TEST(SpeckleTest, TheSeaIsHeardAsAnExponentialIntensityAtEveryRange) {
+TEST(SpeckleTest, TheNoiseOfTheSeaIsExponentialAtEveryRange) {
     for (const NoiseConfig& config : {withSea({}, -20), withSea(gammaOf(4), -20), withSea(rayleigh(), -20)}) {
         const types::Sonar noisy = noisyOf(config, pingOf(256, 500, 0));
         EXPECT_NEAR(meanOf(noisy.bins), 0.01, 4 * 0.01 / std::sqrt(128000.0));
@@ -104,13 +104,13 @@ TEST(SpeckleTest, TheSeaIsHeardAsAnExponentialIntensityAtEveryRange) {
     }
 }
 
-TEST(SpeckleTest, EchoAndSeaAddAsFieldsWhereTheSpeckleIsOne) {
+TEST(SpeckleTest, EchoAndSeaAddAsFieldsIfTheSpeckleIsAField) {
     const types::Sonar noisy = noisyOf(withSea(rayleigh(), 0), pingOf(256, 500, 2));
     const auto all = shares(noisy.bins, [](double x) { return exponentialCdf(x / 3); });
     EXPECT_LT(kolmogorovSmirnov(all), ks_one_percent);
     const types::Sonar looks = noisyOf(withSea(gammaOf(16), 0), pingOf(256, 500, 2));
     EXPECT_NEAR(meanOf(looks.bins), 3, 0.02);
-    EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and a noise of one";
+    EXPECT_NEAR(varianceOf(looks.bins), 4.0 / 16 + 1, 0.03) << "an echo of 16 looks, and noise of one look";
 }
 
 TEST(SpeckleTest, AdditiveNoiseIsExponentialWithTheMeanOfItsLevel) {

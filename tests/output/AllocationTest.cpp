@@ -1,5 +1,5 @@
-// OpenCV may allocate (the contract excepts it): a call of operator new out of its libraries is left out, and one out
-// of our code counts. Picture files are written by another thread.
+// OpenCV may allocate (the contract excepts it): calls of operator new from its libraries are not counted, calls from
+// this project's code are. Another thread writes picture files.
 #include <gmock/gmock.h>
 
 #include "components/output/ScanMosaicTask.hpp"
@@ -24,7 +24,7 @@ types::Pose poseAt(int i) {
     return pose;
 }
 
-/** Those that OpenCV's libraries did not make. */
+/** Returns the allocations that OpenCV's libraries did not make. */
 std::vector<std::string> ours(std::vector<std::string> places) {
     std::erase_if(places, [](const std::string& place) { return place.starts_with("libopencv_"); });
     return places;

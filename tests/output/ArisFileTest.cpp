@@ -1,4 +1,4 @@
-// .aris files, made here by Sound Metrics' published layout, are read; so are damaged ones.
+// Reading of .aris files, made here by Sound Metrics' published layout, intact and damaged.
 #include <cmath>
 
 #include "components/output/ArisBeams.hpp"
@@ -69,7 +69,7 @@ TEST_F(ArisFileTest, TheSpacingOfBeamsFollowsTheLens) {
     EXPECT_THAT(arisBearings(ArisModel::Aris1200, 96, false), IsEmpty());
 }
 
-TEST_F(ArisFileTest, SamplesHaveTheirBeamAndRange) {
+TEST_F(ArisFileTest, SamplesAreAtTheirBeamAndRange) {
     std::mt19937 random(20);
     for (int round = 0; round < 60; ++round) {
         const uint32_t modes[] = {1, 3, 6, 9};
@@ -117,7 +117,7 @@ TEST_F(ArisFileTest, APoseHasTheCompassAndThePosition) {
     EXPECT_TRUE(isNoticed("latitude 48.0000000, longitude -68.0000000"));
 }
 
-TEST_F(ArisFileTest, AFrameWithoutAPositionStaysAtTheOriginAndOneWithoutAnyAngleHasNoPose) {
+TEST_F(ArisFileTest, WithoutPositionStaysAtTheOriginAndWithoutAnglesHasNoPose) {
     ArisFrame turned = smallFrame();
     turned.heading = 30;
     const auto frames = read(arisFile({turned, smallFrame(1)}));
@@ -125,10 +125,10 @@ TEST_F(ArisFileTest, AFrameWithoutAPositionStaysAtTheOriginAndOneWithoutAnyAngle
     EXPECT_FALSE(isUsable(frames.at(1).sonar));
     EXPECT_TRUE(isNoticed("1 pings have no pose"));
     turned.pitch = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_FALSE(isUsable(read(arisFile({turned})).at(0).sonar)) << "an angle that is none";
+    EXPECT_FALSE(isUsable(read(arisFile({turned})).at(0).sonar)) << "an invalid angle";
 }
 
-TEST_F(ArisFileTest, TheTimeIsThatOfThePcOrElseOfTheSonar) {
+TEST_F(ArisFileTest, TakesTheTimeOfThePcOrElseOfTheSonar) {
     RecordedBytes bytes = arisFile({smallFrame()});
     EXPECT_EQ(read(bytes).at(0).ping.time.microseconds, 1'700'000'000'000'000);
     putAt(bytes, first_frame + 4, uint64_t{0});
@@ -136,7 +136,7 @@ TEST_F(ArisFileTest, TheTimeIsThatOfThePcOrElseOfTheSonar) {
     EXPECT_EQ(read(bytes).at(0).ping.time.microseconds, 1'600'000'000'000'007);
 }
 
-TEST_F(ArisFileTest, AWrongFileIsRefusedWithItsByte) {
+TEST_F(ArisFileTest, RefusesAWrongFileWithItsByte) {
     const auto with = [&](size_t at, auto value) {
         RecordedBytes bytes = arisFile({smallFrame()});
         putAt(bytes, at, value);
@@ -160,7 +160,7 @@ TEST_F(ArisFileTest, AWrongFileIsRefusedWithItsByte) {
     EXPECT_THAT(refusal(RecordedBytes{'D', 'D', 'F', '\5'}), HasSubstr("byte 4: ends here"));
 }
 
-TEST_F(ArisFileTest, WhatIsBeforeDamageIsKeptWithANotice) {
+TEST_F(ArisFileTest, KeepsThePingsBeforeDamageWithANotice) {
     const auto damaged = [&](size_t at, auto value) {
         RecordedBytes bytes = arisFile({smallFrame(), smallFrame(5), smallFrame(9)});
         putAt(bytes, second_frame + at, value);
@@ -168,13 +168,13 @@ TEST_F(ArisFileTest, WhatIsBeforeDamageIsKeptWithANotice) {
     };
     EXPECT_THAT(damaged(12, uint32_t{0}), SizeIs(1));
     EXPECT_TRUE(
-        isNoticed("byte 2156: is 0x00000000; the header of a frame has 0x05464444 here; only the 1 pings "
-                  "before it are read"));
+        isNoticed("byte 2156: is 0x00000000; the header of a frame has 0x05464444 here; only the 1 earlier "
+                  "pings are read"));
     EXPECT_THAT(damaged(4, uint64_t{1'699'999'999'000'000}), SizeIs(1));
-    EXPECT_TRUE(isNoticed("byte 2148: the time is 1 s before that of the ping before"));
+    EXPECT_TRUE(isNoticed("byte 2148: the time is 1 s before that of the previous ping"));
 }
 
-TEST_F(ArisFileTest, AFileThatIsCutOffKeepsItsWholeFrames) {
+TEST_F(ArisFileTest, KeepsWholeFramesOfATruncatedFile) {
     const RecordedBytes good = arisFile({smallFrame(), smallFrame(5)});
     const auto path = write(good);
     for (size_t size = good.size(); size >= first_frame; size -= 7) {

@@ -13,12 +13,12 @@ types::Image plainGrey(uint16_t width, uint16_t height, uint8_t level) {
     return picture;
 }
 
-/** The middle of a row, a few pixels from a column on. */
+/** Returns the level in the middle of a row, a few pixels from a column on. */
 int greyAt(const types::Image& picture, int row, int column) {
     return picture.image[static_cast<size_t>(row) * picture.row_size + 3 * static_cast<size_t>(column)];
 }
 
-TEST(CanvasTest, PicturesOfDifferentHeightsStandBesideEachOther) {
+TEST(CanvasTest, PlacesPicturesOfDifferentHeightsSideBySide) {
     for (const bool is_left_lower : {true, false}) {
         const types::Image low = plainGrey(300, 100, 200), high = plainGrey(400, 160, 90);
         types::Image picture;

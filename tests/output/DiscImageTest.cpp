@@ -6,7 +6,7 @@
 namespace insonify::output {
 namespace {
 
-/** A disc in gray on a fixed scale, to which a head gives one beam after the other. */
+/** A disc in gray on a fixed scale, to which a head adds one beam after the other. */
 class DiscImageTest : public ::testing::Test {
 protected:
     DiscImageTest() : disc_(display()) {}
@@ -28,7 +28,7 @@ protected:
         disc_.paint(beamAt(bearing_deg, value, bins), picture);
         picture_ = test::pixelsOf(picture);
     }
-    /** Whether an echo shows at 42 m, away from rings. */
+    /** Returns whether an echo shows at 42 m, away from rings. */
     bool lit(double bearing_deg) const {
         const cv::Point2d at = disc_.layout().pixel(42, types::radians(bearing_deg));
         return picture_.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x))[1] > 150;
@@ -38,9 +38,9 @@ protected:
     cv::Mat picture_;
 };
 
-TEST_F(DiscImageTest, APingFillsTheSectorOfItsBeamWidthOnly) {
+TEST_F(DiscImageTest, APingFillsOnlyTheSectorOfItsBeamWidth) {
     paint(93, 1);
-    paint(-170, 0);  // takes the line of the head away
+    paint(-170, 0);  // moves the line of the head away
     EXPECT_TRUE(lit(92.2) && lit(93) && lit(93.8));
     EXPECT_FALSE(lit(90.8) || lit(95.2) || lit(-93) || lit(3));
 }
@@ -53,7 +53,7 @@ TEST_F(DiscImageTest, PortIsLeftAndAsternIsDown) {
     EXPECT_GT(astern.y, 450);
 }
 
-TEST_F(DiscImageTest, OldSectorsStayUntilTheHeadComesBack) {
+TEST_F(DiscImageTest, KeepsOldSectorsUntilTheHeadReturns) {
     paint(47, 1);
     for (double bearing = 57; bearing < 400; bearing += 10) {
         paint(bearing, 0);
@@ -71,7 +71,7 @@ TEST_F(DiscImageTest, ASectorAsternWrapsAround) {
     EXPECT_FALSE(lit(177) || lit(-178));
 }
 
-TEST_F(DiscImageTest, PingsWithoutAPictureAreNotForgotten) {
+TEST_F(DiscImageTest, KeepsPingsWithoutAPicture) {
     disc_.skip(beamAt(33, 1));
     paint(-170, 0);
     EXPECT_TRUE(lit(33));

@@ -72,7 +72,7 @@ protected:
     std::vector<std::string> notices_;
 };
 
-/** Samples of 8 bits. */
+/** Returns random samples of 8 bits. */
 inline RecordedBytes randomSamples(size_t count, std::mt19937& random) {
     RecordedBytes samples(count);
     for (char& sample : samples) sample = static_cast<char>(random());

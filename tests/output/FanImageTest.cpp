@@ -14,7 +14,7 @@ using test::emptyPing;
 using test::pixelsOf;
 using test::withEcho;
 
-/** Gray on a fixed scale, so that a pixel's value is its level. */
+/** Returns gray on a fixed scale, so that a pixel's value is its level. */
 DisplayConfig plain() {
     DisplayConfig config;
     config.width = 800;
@@ -29,7 +29,7 @@ cv::Mat paint(FanImage& fan, const types::Sonar& ping) {
     return pixelsOf(picture);
 }
 
-/** Where the echo of one bin shows, as what changes against a ping without it. */
+/** Returns the place of one bin's echo: the difference from a ping without it. */
 cv::Point2d placeOf(FanImage& fan, const types::Sonar& empty, uint32_t beam, uint32_t bin) {
     return centreOfDifference(paint(fan, empty), paint(fan, withEcho(empty, beam, bin)));
 }
@@ -50,7 +50,7 @@ TEST(FanImageTest, AheadIsUpAndPortIsLeft) {
     EXPECT_NEAR(port.y, starboard.y, 1);
 }
 
-TEST(FanImageTest, AnEchoIsShownAtItsBearingAndRange) {
+TEST(FanImageTest, ShowsAnEchoAtItsBearingAndRange) {
     FanImage fan(plain());
     const types::Sonar empty = emptyPing(130, 128);
     paint(fan, empty);
@@ -65,7 +65,7 @@ TEST(FanImageTest, AnEchoIsShownAtItsBearingAndRange) {
         }
 }
 
-TEST(FanImageTest, RingsLieAtRoundRanges) {
+TEST(FanImageTest, DrawsRingsAtRoundRanges) {
     FanImage fan(plain());
     const cv::Mat picture = paint(fan, emptyPing(120, 60, 1000));
     const double range = fan.layout().range();
@@ -88,7 +88,7 @@ TEST(FanImageTest, TheLevelOfAnEchoIsItsDecibelsWithinTheDynamicRange) {
     }
 }
 
-TEST(FanImageTest, TablesAreKeptUntilTheShapeChanges) {
+TEST(FanImageTest, KeepsTablesUntilTheShapeChanges) {
     FanImage fan(plain());
     types::Sonar ping = emptyPing(120, 60);
     for (int i = 0; i < 3; ++i) paint(fan, withEcho(ping, 3, static_cast<uint32_t>(i)));
@@ -101,7 +101,7 @@ TEST(FanImageTest, TablesAreKeptUntilTheShapeChanges) {
     EXPECT_EQ(fan.tablesBuilt(), 3);
 }
 
-TEST(FanImageTest, UnevenBearingsInAnyOrderAreShownWhereTheyAre) {
+TEST(FanImageTest, ShowsUnevenBearingsInAnyOrderAtTheirPlace) {
     FanImage fan(plain());
     types::Sonar ping = emptyPing(100, 5);
     const double bearings[] = {40, -45, 5, std::numeric_limits<double>::quiet_NaN(), -10};
@@ -110,14 +110,14 @@ TEST(FanImageTest, UnevenBearingsInAnyOrderAreShownWhereTheyAre) {
     paint(fan, ping);
     for (const uint32_t beam : {0u, 1u, 2u, 4u}) {
         const cv::Mat picture = paint(fan, withEcho(ping, beam, 80));
-        // Half a degree aside, where no spoke is.
+        // Half a degree aside, away from spokes.
         EXPECT_GT(levelAt(picture, fan.layout().pixel(40.25, types::radians(bearings[beam] + 0.7))), 200) << beam;
     }
     EXPECT_NEAR(types::degrees(fan.layout().left()), 42, 1e-9);
     EXPECT_NEAR(types::degrees(fan.layout().right()), -47, 1e-9);
 }
 
-TEST(FanImageTest, OutsideTheFanIsGround) {
+TEST(FanImageTest, PaintsBackgroundOutsideTheFan) {
     FanImage fan(plain());
     types::Sonar ping = emptyPing(120, 60);
     ping.bins.assign(ping.bins.size(), 1);
@@ -137,7 +137,7 @@ TEST(FanImageTest, AFullCircleHasNoSeamAstern) {
         EXPECT_GE(levelAt(picture, {origin.x + offset, origin.y + 200}), 200) << offset;
 }
 
-TEST(FanImageTest, ThePictureSaysWhatItIs) {
+TEST(FanImageTest, ATitleDescribesThePicture) {
     FanImage fan(plain());
     types::Image picture;
     fan.paint(emptyPing(120, 60), picture);
@@ -160,7 +160,7 @@ TEST(FanImageTest, SizesAreEvenForVideoCodecs) {
     }
 }
 
-TEST(FanImageTest, StrangePingsAreDrawnAllTheSame) {
+TEST(FanImageTest, DrawsUnusualPings) {
     types::Sonar one = emptyPing(1, 1, 1), unknown = emptyPing(90, 3), nothing;
     unknown.bins.assign(unknown.bins.size(), std::numeric_limits<float>::quiet_NaN());
     types::Sonar infinite = withEcho(emptyPing(90, 3), 1, 1, std::numeric_limits<float>::infinity());

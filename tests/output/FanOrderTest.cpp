@@ -1,4 +1,4 @@
-// Pictures of fans whose beams are at random bearings, in any order.
+// Pictures of fans whose beams have random bearings, in any order.
 #include <gmock/gmock.h>
 
 #include "components/output/DiscImage.hpp"
@@ -17,7 +17,7 @@ using test::nearestBeam;
 using test::RandomFan;
 using test::randomFans;
 
-/** Gray on a fixed scale, so that a pixel's value is its level. */
+/** Returns gray on a fixed scale, so that a pixel's value is its level. */
 DisplayConfig wholeFan() {
     DisplayConfig config;
     config.width = 400;
@@ -41,14 +41,14 @@ types::Sonar filled(types::Sonar ping, float value) {
 
 void paintInto(FanImage& painter, const types::Sonar& ping, types::Image& picture) { painter.paint(ping, picture); }
 
-/** Without the line of the head, which hides echoes. */
+/** Paints without the line of the head, which hides echoes. */
 void paintInto(DiscImage& painter, types::Sonar ping, types::Image& picture) {
     painter.skip(ping);
     ping.bearings.assign(ping.beam_count, types::Angle{});
     painter.paint(ping, picture);
 }
 
-/** Expects that a picture shows echoes where a beam is and nothing in gaps. */
+/** Expects that a picture shows echoes at beams and nothing in gaps. */
 template <class Picture>
 void expectWater(const types::Sonar& ping, const std::string& name, double margin) {
     Picture loud_picture(wholeFan()), silent_picture(wholeFan());
@@ -68,12 +68,12 @@ void expectWater(const types::Sonar& ping, const std::string& name, double margi
         }
 }
 
-TEST(FanOrderTest, AFanPictureIsThatOfTheSameBeamsInAscendingOrder) {
+TEST(FanOrderTest, AFanPictureEqualsThatOfTheBeamsInAscendingOrder) {
     for (const RandomFan& fan : randomFans(3, 40))
         EXPECT_EQ(fanPicture<FanImage>(fan.ping).image, fanPicture<FanImage>(fan.ascending).image) << fan.name;
 }
 
-TEST(FanOrderTest, AFanPictureShowsEchoesWhereABeamIsAndNothingInGaps) {
+TEST(FanOrderTest, AFanPictureShowsEchoesAtBeamsAndNothingInGaps) {
     for (const RandomFan& fan : randomFans(3, 40)) expectWater<FanImage>(fan.ping, fan.name, 1e-9);
 }
 
@@ -85,7 +85,7 @@ TEST(FanOrderTest, ADiscShowsEachDirectionsNearestBeam) {
     }
 }
 
-TEST(FanOrderTest, EachPixelOfAPlainFanIsTheNearestBeams) {
+TEST(FanOrderTest, EachPixelOfAPlainFanShowsTheNearestBeam) {
     for (const RandomFan& fan : randomFans(3, 40)) {
         PlainConfig config;
         config.height = 150;
@@ -115,7 +115,7 @@ TEST(FanOrderTest, EachPixelOfAPlainFanIsTheNearestBeams) {
     }
 }
 
-TEST(FanOrderTest, ATruthPictureIsThatOfTheSameBeamsInAscendingOrder) {
+TEST(FanOrderTest, ATruthPictureEqualsThatOfTheBeamsInAscendingOrder) {
     const auto paint = [](const types::Sonar& ping) {
         types::SonarTruth truth;
         truth.takeGrid(ping);
@@ -132,7 +132,7 @@ TEST(FanOrderTest, ATruthPictureIsThatOfTheSameBeamsInAscendingOrder) {
     for (const RandomFan& fan : randomFans(1, 40)) EXPECT_EQ(paint(fan.ping), paint(fan.ascending)) << fan.name;
 }
 
-TEST(FanOrderTest, AMapIsThatOfTheSameBeamsInAscendingOrderAndTheNearestBeamCounts) {
+TEST(FanOrderTest, AMapEqualsThatOfTheBeamsInAscendingOrderAndShowsTheNearestBeam) {
     types::Pose pose;
     pose.position = {0, 0, 0};
     for (const RandomFan& fan : randomFans(2, 40)) {

@@ -8,7 +8,7 @@
 namespace insonify::output {
 namespace {
 
-TEST(FanLayoutTest, TheWholeFanLiesInThePicture) {
+TEST(FanLayoutTest, TheWholeFanIsInThePicture) {
     for (const double half : {0.005, 0.2, 1.0, 1.5, 2.0, 3.0, std::numbers::pi}) {
         const FanLayout layout(600, -half, half, 50);
         for (int step = -10; step <= 10; ++step) {
@@ -20,7 +20,7 @@ TEST(FanLayoutTest, TheWholeFanLiesInThePicture) {
     }
 }
 
-TEST(FanLayoutTest, AFanAcrossTheSeamIsInThePictureBehindTheSonar) {
+TEST(FanLayoutTest, AFanAcrossTheSeamIsBehindTheSonarInThePicture) {
     const FanLayout layout(600, types::radians(150), types::radians(210), 50);
     for (const double bearing : {150, 180, 210}) {
         const cv::Point2d at = layout.pixel(50, types::radians(bearing));

@@ -1,4 +1,4 @@
-// .glf files of a Gemini, made here by its layout, are read; so are damaged ones.
+// Reading of .glf files of a Gemini, made here by their layout, intact and damaged.
 #include <zlib.h>
 
 #include <cmath>
@@ -22,7 +22,8 @@ RecordedBytes packedByZlib(const RecordedBytes& bytes) {
     return packed;
 }
 
-/** As archives have it: without zlib's header. @param level 0: blocks that are not packed, as in the maker's files */
+/** Deflates as in archives: without zlib's header. @param level 0: blocks that are not packed, as in the maker's
+ *  files */
 RecordedBytes deflatedOf(RecordedBytes bytes, int level) {
     z_stream stream{};
     deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
@@ -51,7 +52,7 @@ protected:
     GlfFileTest() : FanFileTest("dive.glf") {}
 };
 
-TEST_F(GlfFileTest, BeamsComeFromStarboardWithTheirBearings) {
+TEST_F(GlfFileTest, OrdersBeamsFromStarboardWithTheirBearings) {
     const FanFrame read = this->read(glfFile({glfRecord(smallImage())})).at(0);
     EXPECT_THAT(read.ping.bins, ElementsAre(3, 6, 2, 5, 1, 4));
     EXPECT_DOUBLE_EQ(read.ping.bearings[0].rad, -0.6);
@@ -63,7 +64,7 @@ TEST_F(GlfFileTest, BeamsComeFromStarboardWithTheirBearings) {
     EXPECT_THAT(notices_, ElementsAre(HasSubstr("bins are 13.33 us long")));
 }
 
-TEST_F(GlfFileTest, SamplesAreTheSameHoweverTheyArePacked) {
+TEST_F(GlfFileTest, SamplesDoNotDependOnThePacking) {
     std::mt19937 random(5);
     for (int round = 0; round < 40; ++round) {
         GlfImage image{.device = 7};
@@ -103,7 +104,7 @@ TEST_F(GlfFileTest, SamplesAreTheSameHoweverTheyArePacked) {
     }
 }
 
-TEST_F(GlfFileTest, ThousandsOfBytesOfOtherRecordsArePassedOver) {
+TEST_F(GlfFileTest, SkipsThousandsOfBytesOfOtherRecords) {
     std::mt19937 random(9);
     std::vector<RecordedBytes> records;
     for (int i = 0; i < 8; ++i) {
@@ -118,7 +119,7 @@ TEST_F(GlfFileTest, ThousandsOfBytesOfOtherRecordsArePassedOver) {
     EXPECT_TRUE(isNoticed("4 records of type 99 are omitted"));
 }
 
-TEST_F(GlfFileTest, WhatIsNotReadIsOmittedWithANotice) {
+TEST_F(GlfFileTest, OmitsUnknownRecordsWithANotice) {
     GlfImage other = smallImage(1), video = smallImage(2), zoomed = smallImage(3), inverted = smallImage(4);
     other.device = 8;
     video.compression = 2;
@@ -133,7 +134,7 @@ TEST_F(GlfFileTest, WhatIsNotReadIsOmittedWithANotice) {
     EXPECT_TRUE(isNoticed("1 images state that the sonar hung upside down"));
 }
 
-TEST_F(GlfFileTest, AWrongFileIsRefusedWithItsByte) {
+TEST_F(GlfFileTest, RefusesAWrongFileWithItsByte) {
     const auto with = [&](size_t at, auto value) {
         RecordedBytes record = glfRecord(smallImage());
         putAt(record, at, value);
@@ -156,8 +157,9 @@ TEST_F(GlfFileTest, AWrongFileIsRefusedWithItsByte) {
     EXPECT_THAT(with(tail + 32, uint16_t{1}), HasSubstr("is 0x0001; an image ends with 0xDEDE"));
 }
 
-TEST_F(GlfFileTest, AnArchiveWithoutALogIsRefused) {
-    EXPECT_THAT(refusal(zipped("log.cfg", {'a'}, 1, 0)), HasSubstr("dive.glf: is an archive without a file *.dat"));
+TEST_F(GlfFileTest, RefusesAnArchiveWithoutALog) {
+    EXPECT_THAT(refusal(zipped("log.cfg", {'a'}, 1, 0)),
+                HasSubstr("dive.glf: is an archive without a file whose name ends in .dat"));
     EXPECT_THAT(refusal(zipped("a.dat", {'a'}, 1, 0, 12)), HasSubstr("a.dat: is packed by method 12"));
     RecordedBytes streamed = zipped("a.dat", {'a'}, 1, 0);
     putAt(streamed, 6, uint16_t{8});
@@ -165,17 +167,17 @@ TEST_F(GlfFileTest, AnArchiveWithoutALogIsRefused) {
     EXPECT_THAT(read(glfFile({})), SizeIs(0)) << "no record";
 }
 
-TEST_F(GlfFileTest, WhatIsBeforeDamageIsKeptWithANotice) {
+TEST_F(GlfFileTest, KeepsThePingsBeforeDamageWithANotice) {
     GlfImage late = smallImage(-3);
     EXPECT_THAT(read(glfFile({glfRecord(smallImage()), glfRecord(late)})), SizeIs(1));
-    EXPECT_TRUE(isNoticed("the time is 3 s before that of the ping before; only the 1 pings before it are read"));
+    EXPECT_TRUE(isNoticed("the time is 3 s before that of the previous ping; only the 1 earlier pings are read"));
     RecordedBytes wrong = glfRecord(smallImage(1));
     wrong[0] = '+';
     EXPECT_THAT(read(glfFile({glfRecord(smallImage()), wrong})), SizeIs(1));
     EXPECT_TRUE(isNoticed("is 0x2B02; a record begins with 0x2A"));
 }
 
-TEST_F(GlfFileTest, AFileThatIsCutOffKeepsItsWholeImages) {
+TEST_F(GlfFileTest, KeepsWholeImagesOfATruncatedFile) {
     const RecordedBytes log = glfLog({glfRecord(smallImage()), glfRecord(smallImage(1))});
     const size_t image = (log.size() - 2) / 2;
     for (const int level : {-1, 0, 6}) {
@@ -202,7 +204,7 @@ TEST_F(GlfFileTest, EveryDamagedByteGivesPingsOrOneError) {
     refusedOf(zipped("a.dat", deflatedOf(log, 6), size, test::zipChecksum(log), 8), 4);
 }
 
-TEST_F(GlfFileTest, AWrongByteOfTheSamplesIsNoticedByTheChecksum) {
+TEST_F(GlfFileTest, NoticesAWrongByteOfTheSamplesByTheChecksum) {
     RecordedBytes bytes = glfFile({glfRecord(smallImage())});
     const auto sample = std::ranges::search(bytes, RecordedBytes{1, 2, 3, 4, 5, 6}).begin();
     *sample = 9;

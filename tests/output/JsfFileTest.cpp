@@ -1,4 +1,4 @@
-// JSF files, made here by EdgeTech's published layout, are read; so are damaged ones.
+// Reading of JSF files, made here by EdgeTech's published layout, intact and damaged.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -31,7 +31,7 @@ std::vector<char> sonarData(uint32_t number, uint8_t channel, uint16_t begin, ui
     putAt(bytes, 12, static_cast<uint32_t>(bytes.size() - 16));
     putAt(bytes, 16 + 0, int32_t{1'700'000'000 + static_cast<int32_t>(number)});
     putAt(bytes, 16 + 8, number);
-    putAt(bytes, 16 + 30, uint16_t{1 | 8 | 32 | 64 | 512 | 1 << 14});  // all is valid
+    putAt(bytes, 16 + 30, uint16_t{1 | 8 | 32 | 64 | 512 | 1 << 14});  // all fields are valid
     putAt(bytes, 16 + 80, int32_t{-68 * 600'000});                     // longitude, 10000 * minutes
     putAt(bytes, 16 + 84, int32_t{48 * 600'000 + static_cast<int32_t>(number) * 600});
     putAt(bytes, 16 + 88, int16_t{2});
@@ -62,7 +62,7 @@ protected:
     JsfFileTest() : SideScanFileTest("line.jsf") {}
 };
 
-TEST_F(JsfFileTest, BothSidesOfAPingBecomeOne) {
+TEST_F(JsfFileTest, JoinsBothSidesOfAPing) {
     const std::vector<SideScanLine> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(0, 1, 100), sonarData(1, 0, 2000), sonarData(1, 1, 200)}));
     ASSERT_EQ(lines.size(), 2u);
@@ -78,7 +78,7 @@ TEST_F(JsfFileTest, BothSidesOfAPingBecomeOne) {
     EXPECT_EQ(lines[1].ping.time.microseconds, 1'700'000'001'250'000);
 }
 
-TEST_F(JsfFileTest, PosesAreInRocksFrames) {
+TEST_F(JsfFileTest, ConvertsPosesToRocksFrames) {
     const std::vector<SideScanLine> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(0, 1, 100), sonarData(1, 0, 2000), sonarData(1, 1, 200)}));
     const types::Pose& pose = lines[1].record.sonar;
@@ -92,7 +92,7 @@ TEST_F(JsfFileTest, PosesAreInRocksFrames) {
     EXPECT_THAT(notices_, Contains(HasSubstr("latitude 48.0000000, longitude -68.0000000")));
 }
 
-TEST_F(JsfFileTest, EveryPingIsKeptWhenASideIsMissingOrSettingsChange) {
+TEST_F(JsfFileTest, KeepsEveryPingIfASideIsMissingOrSettingsChange) {
     const std::vector<SideScanLine> lines =
         read(joined({sonarData(0, 0, 1000), sonarData(1, 0, 2000), sonarData(1, 1, 200, 6), sonarData(2, 1, 300, 9)}));
     ASSERT_EQ(lines.size(), 3u);
@@ -102,7 +102,7 @@ TEST_F(JsfFileTest, EveryPingIsKeptWhenASideIsMissingOrSettingsChange) {
     EXPECT_EQ(lines[2].ping.bin_count, 9u);
 }
 
-TEST_F(JsfFileTest, AnalyticDataAreMagnitudesAndAWindowBeginsLater) {
+TEST_F(JsfFileTest, ReadsTheMagnitudeOfAnalyticDataAndALaterWindow) {
     std::vector<char> message = sonarData(0, 1, 0, 4);
     putAt(message, 16 + 34, int16_t{1});
     putAt(message, 16 + 114, uint16_t{2});
@@ -111,7 +111,7 @@ TEST_F(JsfFileTest, AnalyticDataAreMagnitudesAndAWindowBeginsLater) {
     EXPECT_THAT(read(message).front().ping.bins, ElementsAre(0, 0, 0, 5, 5));
 }
 
-TEST_F(JsfFileTest, WhatIsNoSideScanIsOmittedWithANotice) {
+TEST_F(JsfFileTest, OmitsOtherMessagesWithANotice) {
     std::vector<char> navigation = sonarData(0, 0, 0), high = sonarData(0, 0, 0), raw = sonarData(0, 0, 0);
     putAt(navigation, 4, uint16_t{2002});
     putAt(high, 7, uint8_t{21});
@@ -122,7 +122,7 @@ TEST_F(JsfFileTest, WhatIsNoSideScanIsOmittedWithANotice) {
                       Contains(HasSubstr("1 messages of data format 2"))));
 }
 
-TEST_F(JsfFileTest, AWrongFileIsRefusedWithItsByte) {
+TEST_F(JsfFileTest, RefusesAWrongFileWithItsByte) {
     const auto with = [&](size_t at, auto value) {
         std::vector<char> bytes = joined({sonarData(0, 0, 1), sonarData(0, 1, 1)});
         putAt(bytes, at, value);
@@ -138,7 +138,7 @@ TEST_F(JsfFileTest, AWrongFileIsRefusedWithItsByte) {
     EXPECT_THAT(with(16 + 0, int32_t{0}), HasSubstr("neither the time since 1970 nor year 0"));
 }
 
-TEST_F(JsfFileTest, AFileThatIsCutOffKeepsItsWholeMessages) {
+TEST_F(JsfFileTest, KeepsWholeMessagesOfATruncatedFile) {
     const std::vector<char> good = joined({sonarData(0, 0, 1), sonarData(0, 1, 1), sonarData(1, 0, 1)});
     const auto path = write(good);
     for (size_t size = good.size() - 1; size > 2; --size) {

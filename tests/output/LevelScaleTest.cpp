@@ -30,14 +30,14 @@ TEST(LevelScaleTest, LevelsAreProportionalToDecibelsBelowTheReference) {
     EXPECT_EQ(levelOf(config, std::pow(10, -7.2)), 0);
 }
 
-TEST(LevelScaleTest, WhatIsOutsideIsClippedAndWhatIsUnknownIsDark) {
+TEST(LevelScaleTest, ClipsLevelsOutsideAndShowsUnknownBinsDark) {
     const DisplayConfig config = fixed(0, 40);
     EXPECT_EQ(levelOf(config, 1e30), 255);
     for (const double bin : {0.0, -1.0, 1e-30, std::nan("")}) EXPECT_EQ(levelOf(config, bin), 0) << bin;
     EXPECT_EQ(levelOf(config, std::numeric_limits<float>::infinity()), 255);
 }
 
-TEST(LevelScaleTest, CodesAreTakenAsTheyAre) {
+TEST(LevelScaleTest, ShowsCodesUnchanged) {
     DisplayConfig config;
     config.scale = BinScale::Code;
     for (const int code : {0, 1, 64, 128, 255}) EXPECT_EQ(levelOf(config, code), code);
@@ -61,7 +61,7 @@ TEST(LevelScaleTest, CodesHaveNoReferenceLevel) {
     EXPECT_EQ(diagnostics[0].path, "reference_db");
 }
 
-TEST(LevelScaleTest, BinsInDecibelsAreTakenAsTheyAre) {
+TEST(LevelScaleTest, ShowsBinsInDecibelsUnchanged) {
     DisplayConfig config = fixed(100, 51);
     config.scale = BinScale::Decibel;
     EXPECT_EQ(levelOf(config, 90), 205);
@@ -69,7 +69,7 @@ TEST(LevelScaleTest, BinsInDecibelsAreTakenAsTheyAre) {
     EXPECT_EQ(levelOf(config, std::nan("")), 0);
 }
 
-TEST(LevelScaleTest, WithoutAReferenceItIsThatOfTheStrongestEchoesSmoothed) {
+TEST(LevelScaleTest, WithoutAReferenceFollowsTheStrongestEchoesSmoothed) {
     LevelScale scale({});
     cv::Mat bins(100, 100, CV_32F, cv::Scalar(1e-3)), levels;
     bins.rowRange(0, 1) = 1;   // one in a hundred

@@ -1,5 +1,5 @@
 #pragma once
-// A lone task that makes pictures of pings and of another stream beside them.
+// A lone task that makes pictures of pings and another stream.
 #include <gtest/gtest.h>
 
 #include "tests/support/Ports.hpp"
@@ -28,7 +28,7 @@ protected:
         beside_.port.write(sample);
         task_.update();
     }
-    /** How many pictures have come since the last call; the newest is `last_`. */
+    /** Returns the number of pictures since the last call; the newest is `last_`. */
     size_t pictures() {
         size_t count = 0;
         for (types::ImagePtr picture; out_.port.readNew(picture); ++count) last_ = picture;

@@ -26,7 +26,7 @@ RecordingConfig recording(std::optional<std::string> file, std::optional<std::st
     return {.file = file, .video = video, .video_rate = {}};
 }
 
-TEST(PictureFilesTest, PngFilesHoldThePicturesPixels) {
+TEST(PictureFilesTest, PngFilesHaveThePicturesPixels) {
     const Folder folder;
     PictureFiles files(recording("deep/er/fan_%03d.png"), folder.path());
     files.write(fanPicture());
@@ -58,7 +58,7 @@ TEST(PictureFilesTest, AVideoHasEveryPictureAndTheRateOfThePings) {
     }
 }
 
-TEST(PictureFilesTest, AVideoOfOnePictureIsAVideo) {
+TEST(PictureFilesTest, WritesAVideoOfOnePicture) {
     const Folder folder;
     PictureFiles files(recording({}, "fan.avi"), folder.path());
     files.write(fanPicture());
@@ -67,7 +67,7 @@ TEST(PictureFilesTest, AVideoOfOnePictureIsAVideo) {
     EXPECT_TRUE(cv::VideoCapture((folder.path() / "fan.avi").string()).read(frame));
 }
 
-TEST(PictureFilesTest, AFileThatCannotBeWrittenIsNamed) {
+TEST(PictureFilesTest, NamesAFileThatCannotBeWritten) {
     try {
         writePng("/dev/full", fanPicture());
         FAIL();
@@ -77,7 +77,7 @@ TEST(PictureFilesTest, AFileThatCannotBeWrittenIsNamed) {
     EXPECT_THROW(writePng("no/such/folder.png", fanPicture()), std::runtime_error);
 }
 
-TEST(PictureWriterTest, EverythingThatWasGivenIsWrittenBeforeTheEnd) {
+TEST(PictureWriterTest, WritesEveryPictureBeforeTheEnd) {
     const Folder folder;
     const auto picture = std::make_shared<const types::Image>(fanPicture());
     PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()));
@@ -87,9 +87,9 @@ TEST(PictureWriterTest, EverythingThatWasGivenIsWrittenBeforeTheEnd) {
     EXPECT_EQ(picture.use_count(), 1);
 }
 
-TEST(PictureWriterTest, AnErrorReachesTheGiver) {
+TEST(PictureWriterTest, AnErrorReachesTheCaller) {
     const Folder folder;
-    std::filesystem::create_directories(folder.path() / "0.png");  // in the way of the first file
+    std::filesystem::create_directories(folder.path() / "0.png");  // blocks the first file
     const auto picture = std::make_shared<const types::Image>(fanPicture());
     PictureWriter writer(PictureFiles(recording("%d.png"), folder.path()));
     EXPECT_THROW(

@@ -40,7 +40,7 @@ protected:
     PictureConfig config_;
 };
 
-TEST_F(PictureTaskTest, APictureCarriesThePingsTime) {
+TEST_F(PictureTaskTest, APictureHasThePingsTime) {
     task_.image.connectTo(out_.port, {});
     start();
     give(1234567);
@@ -51,14 +51,14 @@ TEST_F(PictureTaskTest, APictureCarriesThePingsTime) {
     EXPECT_EQ(filesWritten(), 0u);
 }
 
-TEST_F(PictureTaskTest, NothingIsPaintedForNobody) {
+TEST_F(PictureTaskTest, PaintsNothingWithoutAReceiver) {
     start();
     give(1);
     EXPECT_EQ(task_.stages().count("paint"), 0u);
     EXPECT_EQ(task_.image.written(), 0u);
 }
 
-TEST_F(PictureTaskTest, EveryThirdPingGetsAFile) {
+TEST_F(PictureTaskTest, WritesAFileForEveryThirdPing) {
     config_.file = "fan_%06d.png";
     config_.every = 3;
     start();
@@ -78,7 +78,7 @@ TEST_F(PictureTaskTest, AFileThatCannotBeWrittenEndsInException) {
     EXPECT_NE(task_.lastError().find("0.png"), std::string::npos) << task_.lastError();
 }
 
-TEST_F(PictureTaskTest, PicturesThatNobodyHoldsAnyMoreAreUsedAgain) {
+TEST_F(PictureTaskTest, ReusesPicturesThatNobodyHolds) {
     task_.image.connectTo(out_.port, {});
     start();
     const types::Image* first = nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures as pixels, for the tests of what is shown.
+// Pixels of pictures, for tests.
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
@@ -16,10 +16,10 @@ inline cv::Mat pixelsOf(const types::Image& picture) {
         .clone();
 }
 
-/** The green of a pixel. */
+/** Returns the green of a pixel. */
 inline int levelAt(const types::Image& picture, cv::Point at) { return pixelsOf(picture).at<cv::Vec3b>(at)[1]; }
 
-/** Centre of gravity of where two pictures differ. */
+/** Returns the centre of gravity of the difference of two pictures. */
 inline cv::Point2d centreOfDifference(const cv::Mat& a, const cv::Mat& b) {
     double sum = 0;
     cv::Point2d moment;

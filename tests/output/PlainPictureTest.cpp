@@ -26,7 +26,7 @@ PlainPicture pictureOf(const types::Sonar& ping, const PlainConfig& config) {
     return picture;
 }
 
-/** Middle of the pixels that are not black, {column, row}. */
+/** Returns the middle of the pixels that are not black, {column, row}. */
 cv::Point2d middleOf(const types::Image& picture) {
     cv::Point2d sum;
     double count = 0;
@@ -37,7 +37,7 @@ cv::Point2d middleOf(const types::Image& picture) {
     return sum / count;
 }
 
-TEST(PlainPictureTest, AFanHasNothingButTheWaterAheadIsUpAndPortIsLeft) {
+TEST(PlainPictureTest, AFanHasOnlyWaterAheadIsUpAndPortIsLeft) {
     const types::Sonar empty = emptyPing(120, 121);
     const PlainConfig config = configOf(PlainShape::Fan, 100);
     const PlainPicture nothing = pictureOf(empty, config);
@@ -60,7 +60,7 @@ TEST(PlainPictureTest, APolarPictureHasAPixelForEachBin) {
     EXPECT_EQ(picture.pixelOf(110, 80), cv::Point(10, 19));
 }
 
-TEST(PlainPictureTest, FinerBinsShareACellAndTheirMeanIsShown) {
+TEST(PlainPictureTest, FinerBinsShareACellThatShowsTheirMean) {
     const types::Sonar empty = emptyPing(120, 4);
     const PlainPicture picture = pictureOf(withEcho(empty, 2, 99), configOf(PlainShape::Polar, 32));
     EXPECT_EQ(picture.binsPerCell(), 4u);
@@ -69,7 +69,7 @@ TEST(PlainPictureTest, FinerBinsShareACellAndTheirMeanIsShown) {
     EXPECT_NEAR(picture.levels()[2 * 25 + 24], std::clamp(255 + 10 * std::log10(mean) * 255 / 50, 0.0, 255.0), 1);
 }
 
-TEST(PlainPictureTest, EachPixelTellsItsCellAndTheCellItsPixel) {
+TEST(PlainPictureTest, MapsPixelsToCellsAndCellsToPixels) {
     const types::Sonar ping = emptyPing(130, 64);
     for (const PlainShape shape : {PlainShape::Fan, PlainShape::Polar}) {
         const PlainPicture picture = pictureOf(ping, configOf(shape, 200));
@@ -88,9 +88,9 @@ TEST(PlainPictureTest, EachPixelTellsItsCellAndTheCellItsPixel) {
     }
 }
 
-/** Lines whose sides come in either order, with a port side alone, or without one. */
+/** Lines whose sides are in either order, with only a port side, or without one. */
 TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
-    const double sides[][2] = {{-90, 90}, {90, -90}, {60, 60}, {-80, -80}};  // [deg]; twice the same: one beam a line
+    const double sides[][2] = {{-90, 90}, {90, -90}, {60, 60}, {-80, -80}};  // [deg]; equal: one beam a line
     for (const auto& [first, second] : sides) {
         constexpr uint32_t lines = 7, bins = 50;
         const bool is_pair = first != second;
@@ -111,7 +111,7 @@ TEST(PlainPictureTest, AWaterfallHasARowForEachLineTheNewestOnTopAndPortLeft) {
     }
 }
 
-TEST(PlainPictureTest, GroupsAreOfCellsThatTouchWhateverTheOrderOfTheBeams) {
+TEST(PlainPictureTest, GroupsAreCellsThatTouchForAnyOrderOfBeams) {
     const types::Sonar ping = emptyPing(120, 30, 40);
     const std::vector<std::pair<uint32_t, uint32_t>> chosen = {{3, 5}, {4, 6}, {5, 6}, {20, 30}, {22, 30}};
     for (const uint32_t step : {1u, 7u, 11u}) {  // beam k of the fan is beam k * step % 30 of the ping
@@ -131,7 +131,7 @@ TEST(PlainPictureTest, GroupsAreOfCellsThatTouchWhateverTheOrderOfTheBeams) {
     }
 }
 
-TEST(PlainPictureTest, ItsScaleIsThatOfThePingWhateverCameBefore) {
+TEST(PlainPictureTest, ScalesEachPingIndependently) {
     const types::Sonar loud = withEcho(emptyPing(120, 31), 3, 50);
     types::Sonar faint = loud;
     for (float& bin : faint.bins) bin *= 1e-6f;
@@ -144,7 +144,7 @@ TEST(PlainPictureTest, ItsScaleIsThatOfThePingWhateverCameBefore) {
     EXPECT_NEAR(both.referenceDb(), pictureOf(loud, config).referenceDb() - 60, 1e-4);
 }
 
-TEST(PlainPictureTest, NoPictureIsMadeOfAPingWithoutBins) {
+TEST(PlainPictureTest, RefusesAPingWithoutBins) {
     EXPECT_THROW(pictureOf(types::Sonar{}, configOf(PlainShape::Fan, 100)), std::runtime_error);
 }
 

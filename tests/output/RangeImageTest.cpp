@@ -18,13 +18,13 @@ types::DepthMapPtr smallMap() {
     return map;
 }
 
-/** The middle of a cell. */
+/** Returns the level in the middle of a cell. */
 int cellLevel(const types::Image& picture, const cv::Rect& cells, int row, int column) {
     const cv::Point at(cells.x + cells.width * (2 * column + 1) / 6, cells.y + cells.height * (2 * row + 1) / 4);
     return test::pixelsOf(picture).at<cv::Vec3b>(at)[1];
 }
 
-TEST(RangeImageTest, TheNearestIsBrightestAndWhereNothingIsHeardIsBlack) {
+TEST(RangeImageTest, TheNearestIsBrightestAndNoReturnIsBlack) {
     RangeImage image(400, ColourMap::Gray);
     image.add(smallMap());
     types::Image picture;
@@ -37,7 +37,7 @@ TEST(RangeImageTest, TheNearestIsBrightestAndWhereNothingIsHeardIsBlack) {
     EXPECT_EQ(cellLevel(picture, image.cells(), 1, 2), 255);
 }
 
-TEST(RangeImageTest, AnEmptyMapAndOneWithoutReturnsAreDrawnAllTheSame) {
+TEST(RangeImageTest, DrawsAnEmptyMapAndAMapWithoutReturns) {
     RangeImage image(256, ColourMap::Turbo);
     types::Image picture;
     image.paint(picture);
@@ -49,7 +49,7 @@ TEST(RangeImageTest, AnEmptyMapAndOneWithoutReturnsAreDrawnAllTheSame) {
     EXPECT_TRUE(picture.holdsPixels());
 }
 
-TEST(RangeImageTest, AMapThatContradictsItselfEndsTheTaskWithItsReason) {
+TEST(RangeImageTest, AnInconsistentMapEndsTheTaskWithAReason) {
     RangeImageTask task("image");
     test::Writer<types::DepthMapPtr> maps;
     test::Reader<types::ImagePtr> pictures;

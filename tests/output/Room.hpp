@@ -1,5 +1,5 @@
 #pragma once
-// A scanning sonar that moves and turns in a room of four walls, and how straight a picture shows them.
+// A scanning sonar that moves and turns in a room of four walls, and a measure of how straight a picture shows them.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,16 +12,16 @@
 namespace insonify::test {
 
 struct Room {
-    double north = 13.2, west = 9;  ///< Of the walls; the others are at the negative [m].
+    double north = 13.2, west = 9;  ///< Places of two walls; the others are at the negative [m].
 
-    /** Slant range of the wall in a direction of the world [m]. */
+    /** Returns the slant range of the wall in a direction of the world [m]. */
     double range(const glm::dvec3& from, double heading) const {
         const double x = std::cos(heading), y = std::sin(heading);
         return std::min(((x > 0 ? north : -north) - from.x) / x, ((y > 0 ? west : -west) - from.y) / y);
     }
 };
 
-/** Where the vehicle is while the head goes round once, `share` from 0 to 1: 6 m on and about, to starboard. */
+/** Returns the vehicle's pose at a `share` (0 to 1) of one turn of the head: it moves 6 m and turns by 180 degrees. */
 inline types::Pose poseInRoom(double share) {
     types::Pose pose;
     pose.time = types::Time::fromSeconds(1 + 20 * share);
@@ -33,7 +33,7 @@ inline types::Pose poseInRoom(double share) {
 constexpr int pings_in_room = 400;
 constexpr double room_bin = 0.2;  ///< [m]
 
-/** Ping of a head that turns by 0.9 degrees between two: 1 in the bins where the beam meets the wall. */
+/** Returns a ping of a head that turns by 0.9 degrees per ping: 1 in the bins where the beam meets the wall. */
 inline types::Sonar pingInRoom(const Room& room, int number) {
     const double step = types::radians(0.9), bearing = std::numbers::pi - number * step;
     const types::Pose pose = poseInRoom(static_cast<double>(number) / pings_in_room);
@@ -55,7 +55,7 @@ inline types::Sonar pingInRoom(const Room& room, int number) {
     return ping;
 }
 
-/** Centres of gravity of what is bright between two rows, in pieces of so many columns. */
+/** Returns centres of gravity of bright pixels between two rows, in pieces of `piece` columns. */
 inline std::vector<cv::Point2d> ridge(const cv::Mat& gray, cv::Rect part, int piece = 1) {
     std::vector<cv::Point2d> points;
     for (int column = part.x; column + piece <= part.x + part.width; column += piece) {
@@ -68,7 +68,7 @@ inline std::vector<cv::Point2d> ridge(const cv::Mat& gray, cv::Rect part, int pi
     return points;
 }
 
-/** The line nearest to points, and how far the farthest of them is from it, and their rms [px]. */
+/** The line nearest to points, the max distance of a point from it, and their rms [px]. */
 struct LineFit {
     cv::Point2d middle, direction;
     double farthest = 0, rms = 0;

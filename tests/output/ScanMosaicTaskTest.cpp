@@ -11,7 +11,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/** Where the task lays an echo 10 m straight ahead. */
+/** Checks where the task shows an echo 10 m straight ahead. */
 class ScanMosaicTaskTest : public test::PictureBench<ScanMosaicTask, types::Pose> {
 protected:
     ScanMosaicTaskTest() : PictureBench(&ScanMosaicTask::pose) {
@@ -37,7 +37,7 @@ protected:
     }
 };
 
-TEST_F(ScanMosaicTaskTest, APingWaitsForThePoseAfterItAndIsLaidBetweenTheTwo) {
+TEST_F(ScanMosaicTaskTest, APingWaitsForTheNextPoseAndIsShownAtTheInterpolatedPose) {
     start();
     givePose(1, 0, 0);
     givePing(1.3);
@@ -61,7 +61,7 @@ TEST_F(ScanMosaicTaskTest, APingWaitsForThePoseAfterItAndIsLaidBetweenTheTwo) {
     EXPECT_EQ(cv::norm(test::pixelsOf(*last_), test::pixelsOf(picture), cv::NORM_INF), 0);
 }
 
-TEST_F(ScanMosaicTaskTest, APoseOfThePingsOwnTimeIsEnough) {
+TEST_F(ScanMosaicTaskTest, APoseAtThePingsTimeIsEnough) {
     start();
     givePose(1, 0);
     givePing(1);
@@ -69,7 +69,7 @@ TEST_F(ScanMosaicTaskTest, APoseOfThePingsOwnTimeIsEnough) {
     EXPECT_THAT(task_.notices(), IsEmpty());
 }
 
-TEST_F(ScanMosaicTaskTest, APoseThatIsHeldIsCountedAndTold) {
+TEST_F(ScanMosaicTaskTest, CountsAndReportsAHeldPose) {
     start();
     givePose(1, 0);
     givePing(1.2);
@@ -80,11 +80,11 @@ TEST_F(ScanMosaicTaskTest, APoseThatIsHeldIsCountedAndTold) {
     ASSERT_TRUE(task_.stop());
     EXPECT_EQ(pictures(), 2u);
     EXPECT_THAT(task_.notices(),
-                ElementsAre("pose: samples of others that went on without it: 1",
+                ElementsAre("pose: samples of other ports handed over without it: 1",
                             "Warning: each ping at its pose, north up: 3 pings, 3 at a pose held for up to 0.7 s"));
 }
 
-TEST_F(ScanMosaicTaskTest, BeforeTheFirstPoseThatOneIsHeld) {
+TEST_F(ScanMosaicTaskTest, UsesTheFirstPoseForEarlierPings) {
     start();
     givePing(0.9);
     givePose(1, 0);
@@ -92,17 +92,17 @@ TEST_F(ScanMosaicTaskTest, BeforeTheFirstPoseThatOneIsHeld) {
     EXPECT_THAT(task_.notices(), ElementsAre(HasSubstr("1 at a pose held for up to 0.1 s")));
 }
 
-TEST_F(ScanMosaicTaskTest, APingWithoutAnyPoseOrWithOneThatIsNoneIsLeftOutAndTold) {
+TEST_F(ScanMosaicTaskTest, OmitsAndReportsAPingWithoutAUsablePose) {
     start();
     givePing(1);
     givePing(2);
     givePose(3, std::nan(""));
     givePing(3);
     EXPECT_EQ(pictures(), 3u);
-    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("0 pings, 3 not shown for want of a pose")));
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("0 pings, 3 not shown because they have no usable pose")));
 }
 
-TEST_F(ScanMosaicTaskTest, ALatePoseIsTold) {
+TEST_F(ScanMosaicTaskTest, ReportsALatePose) {
     start();
     givePing(1);
     givePing(2);
@@ -110,7 +110,7 @@ TEST_F(ScanMosaicTaskTest, ALatePoseIsTold) {
     EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("pose: 1 of 1 samples came too late")));
 }
 
-TEST_F(ScanMosaicTaskTest, HalvesThatAreTooNarrowAreRefused) {
+TEST_F(ScanMosaicTaskTest, RefusesHalvesThatAreTooNarrow) {
     MosaicConfig config;
     types::Diagnostics diagnostics;
     config.check(diagnostics);
@@ -121,7 +121,7 @@ TEST_F(ScanMosaicTaskTest, HalvesThatAreTooNarrowAreRefused) {
     EXPECT_EQ(diagnostics[0].path, "width");
 }
 
-TEST_F(ScanMosaicTaskTest, StartedAgainItHasForgotten) {
+TEST_F(ScanMosaicTaskTest, ARestartForgetsEarlierPings) {
     start();
     givePing(1);
     ASSERT_TRUE(task_.stop());

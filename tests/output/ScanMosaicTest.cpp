@@ -6,7 +6,7 @@
 namespace insonify::output {
 namespace {
 
-/** In gray on a fixed scale; 3 pixels a bin. */
+/** A mosaic in gray on a fixed scale; 3 pixels a bin. */
 class ScanMosaicTest : public ::testing::Test {
 protected:
     ScanMosaicTest() : mosaic_(display()) {}
@@ -27,14 +27,14 @@ protected:
         show(picture);
     }
     void show(const types::Image& picture) { cv::cvtColor(test::pixelsOf(picture), gray_, cv::COLOR_BGR2GRAY); }
-    /** Part of the map between two corners in the world. */
+    /** Returns the part of the map between two corners in the world. */
     cv::Rect part(glm::dvec2 north_west, glm::dvec2 south_east) const {
         return {cv::Point(mosaic_.pixel(north_west)), cv::Point(mosaic_.pixel(south_east))};
     }
     double pixelsPerBin() const { return test::room_bin * mosaic_.layout().radius() / mosaic_.layout().range(); }
-    /** Of a beam along a wall 14 m away that it meets at 45 degrees [px]. */
+    /** Returns the footprint of a beam along a wall 14 m away that it meets at 45 degrees [px]. */
     int footprint() const { return cvRound(14 * types::radians(0.9) / 0.5 / test::room_bin * pixelsPerBin()); }
-    /** What is heard of one wall on the disc, at bearings that look to it all along. */
+    /** Returns the echoes of one wall on the disc, at bearings that see only that wall. */
     std::vector<cv::Point2d> heardOnDisc(double from_deg, double to_deg) const {
         std::vector<cv::Point2d> points;
         for (double bearing = from_deg; bearing < to_deg; bearing += 0.9)
@@ -46,7 +46,7 @@ protected:
             }
         return points;
     }
-    /** Columns with an echo to the east of the middle. */
+    /** Returns the number of columns with an echo east of the middle. */
     size_t brightOnMap() const { return test::ridge(gray_, part({1, -3}, {-1, -20})).size(); }
     int brightAt(glm::dvec2 place) const {
         const cv::Point2d at = mosaic_.pixel(place);
@@ -58,7 +58,7 @@ protected:
     cv::Mat gray_;
 };
 
-TEST_F(ScanMosaicTest, WallsAreStraightOnTheMapWithinOneBinAndWhereTheyBelong) {
+TEST_F(ScanMosaicTest, WallsAreStraightOnTheMapWithinOneBinAndAtTheirPlace) {
     turnInRoom();
     for (const double side : {1.0, -1.0}) {
         const double north = side * room_.north;
@@ -78,15 +78,15 @@ TEST_F(ScanMosaicTest, WallsAreStraightOnTheMapWithinOneBinAndWhereTheyBelong) {
     }
 }
 
-TEST_F(ScanMosaicTest, OnTheDiscTheSameWallsBendByMoreThanTenBins) {
+TEST_F(ScanMosaicTest, TheSameWallsBendByMoreThanTenBinsOnTheDisc) {
     turnInRoom();
-    // The head comes by the western wall again at the end of its turn, from -83 degrees on.
+    // The head sees the western wall again at the end of its turn, from -83 degrees on.
     const test::LineFit fit(heardOnDisc(-155, -83));
     RecordProperty("disc_bins", std::to_string(fit.farthest / pixelsPerBin()));
     EXPECT_GT(fit.farthest, 10 * pixelsPerBin());
 }
 
-TEST_F(ScanMosaicTest, WithoutAPoseThePingIsOnTheDiscOnly) {
+TEST_F(ScanMosaicTest, APingWithoutAPoseIsOnlyOnTheDisc) {
     types::Image picture;
     EXPECT_TRUE(mosaic_.place(std::nullopt));
     mosaic_.paint(test::pingInRoom(room_, 300), picture);
@@ -99,7 +99,7 @@ TEST_F(ScanMosaicTest, WithoutAPoseThePingIsOnTheDiscOnly) {
     EXPECT_GT(brightOnMap(), 0u);
 }
 
-TEST_F(ScanMosaicTest, APoseThatCannotBeUsedIsRefused) {
+TEST_F(ScanMosaicTest, RefusesAnUnusablePose) {
     const auto refused = [&](const auto& spoil) {
         types::Pose pose;
         spoil(pose);
@@ -112,7 +112,7 @@ TEST_F(ScanMosaicTest, APoseThatCannotBeUsedIsRefused) {
     EXPECT_FALSE(refused([](types::Pose& pose) { pose.orientation.w = 3; })) << "made one of unit length";
 }
 
-TEST_F(ScanMosaicTest, TheMapGoesAlongWithTheSonarAndKeepsWhatStaysInSight) {
+TEST_F(ScanMosaicTest, TheMapMovesWithTheSonarAndKeepsCellsWithinIt) {
     types::Pose pose;
     types::Sonar ping = test::pingInRoom(room_, 200);  // straight ahead, 0 degrees
     std::fill(ping.bins.begin(), ping.bins.end(), 0.f);
@@ -141,7 +141,7 @@ TEST_F(ScanMosaicTest, TheMapGoesAlongWithTheSonarAndKeepsWhatStaysInSight) {
     EXPECT_LT(brightAt(echo), 150) << "it was out of sight in between";
 }
 
-TEST_F(ScanMosaicTest, ASonarThatLooksStraightDownIsNotShownOnTheMap) {
+TEST_F(ScanMosaicTest, DoesNotMapASonarThatLooksStraightDown) {
     types::Pose pose;
     pose.orientation = glm::angleAxis(std::numbers::pi / 2, glm::dvec3(0, 1, 0));
     types::Image picture;

@@ -12,7 +12,7 @@ namespace {
 
 using test::levelAt;
 
-/** A line of 50 m with single echoes to starboard and to port, in bins of half a metre. */
+/** Returns a line of 50 m with single echoes to starboard and to port, in bins of half a metre. */
 types::Sonar lineWith(uint32_t starboard, uint32_t port) {
     types::Sonar ping = test::withEcho(test::withEcho(test::emptyPing(3, 2), 0, starboard), 1, port);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
@@ -27,13 +27,13 @@ SideScanPictureConfig display() {
     return config;
 }
 
-/** Of the newest row, where range lies; positive to starboard [m]. */
+/** Returns the pixel of a range in the newest row; positive to starboard [m]. */
 cv::Point at(const SideScanImage& image, double range) {
     const cv::Rect water = image.water();
     return {water.x + static_cast<int>(std::floor(water.width * (0.5 + range / 100))), water.y};
 }
 
-TEST(SideScanImageTest, PortLiesToTheLeftAndStarboardToTheRightOfTheMiddle) {
+TEST(SideScanImageTest, PortIsLeftAndStarboardIsRightOfTheMiddle) {
     SideScanImage image(display());
     types::Image picture;
     const types::Sonar ping = lineWith(20, 60);
@@ -59,12 +59,12 @@ TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
     EXPECT_EQ(levelAt(picture, at(image, 40.5 * bin)), 0) << "its slant range";
 }
 
-TEST(SideScanImageTest, TheHeightIsThatOfTheFirstReturnOrAsMeasured) {
+TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
     SideScanPictureConfig config = display();
     config.ground_range.emplace();
     SideScanImage image(config);
     types::Image picture;
-    types::Sonar ping = test::withEcho(lineWith(40, 60), 1, 24);  // the first of both sides: the bottom
+    types::Sonar ping = test::withEcho(lineWith(40, 60), 1, 24);  // the first return of both sides: the bottom
     ping = test::withEcho(ping, 1, 10, 1e-3f);                    // weaker than the threshold
     const double bin = ping.binStart(1), height = 24.5 * bin;
     image.paint(ping, picture);
@@ -74,7 +74,7 @@ TEST(SideScanImageTest, TheHeightIsThatOfTheFirstReturnOrAsMeasured) {
     EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - 100))), 200);
 }
 
-TEST(SideScanImageTest, ThePortAltitudeTakesThePlaceOfTheFirstReturn) {
+TEST(SideScanImageTest, ThePortAltitudeReplacesTheFirstReturn) {
     SideScanImageTask task("side_scan");
     SideScanPictureConfig config = display();
     config.ground_range.emplace();
@@ -98,7 +98,7 @@ TEST(SideScanImageTest, ThePortAltitudeTakesThePlaceOfTheFirstReturn) {
     EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - 144))), 200);
 }
 
-TEST(SideScanImageTest, EachPingHasTheAltitudeAtItsTimeHoweverManyHaveCome) {
+TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
     SideScanImageTask task("side_scan");
     SideScanPictureConfig config = display();
     config.ground_range.emplace();

@@ -18,7 +18,7 @@ TEST(SimilarityTest, TheSamePingIsFullySimilar) {
     EXPECT_DOUBLE_EQ(structuralSimilarity(speckle(1, 1), speckle(1, 1), {}), 1);
 }
 
-TEST(SimilarityTest, OtherSpeckleIsLessSimilarAndAnotherBrightnessHardlyChangesIt) {
+TEST(SimilarityTest, OtherSpeckleIsLessSimilarAndBrightnessHardlyMatters) {
     types::Sonar brighter = speckle(1, 1);
     for (float& bin : brighter.bins) bin *= 1.1f;
     const double speckled = structuralSimilarity(speckle(1, 1), speckle(2, 1), {});
@@ -35,13 +35,13 @@ TEST(SimilarityTest, WhiteAndBlackFollowTheFormula) {
     EXPECT_NEAR(structuralSimilarity(white, black, display), c1 / (255.0 * 255 + c1), 1e-9);
 }
 
-TEST(SimilarityTest, BothAreShownOnTheScaleOfTheFirst) {
+TEST(SimilarityTest, BothUseTheScaleOfTheFirst) {
     types::Sonar loud = test::withEcho(test::emptyPing(120, 60), 30, 50, 1e6f);
     EXPECT_NEAR(referenceLevel(loud, {}), 60, 0.2);
     EXPECT_LT(structuralSimilarity(loud, test::withEcho(test::emptyPing(120, 60), 30, 50, 1), {}), 1);
 }
 
-TEST(SimilarityTest, APingOfOneBeamIsComparedAsWell) {
+TEST(SimilarityTest, ComparesAPingOfOneBeam) {
     const types::Sonar ping = test::withEcho(test::emptyPing(3, 1), 0, 50);
     EXPECT_DOUBLE_EQ(structuralSimilarity(ping, ping, {}), 1);
     EXPECT_LT(structuralSimilarity(ping, test::withEcho(test::emptyPing(3, 1), 0, 80), {}), 1);

@@ -1,4 +1,4 @@
-// Every kind of picture at every width from the smallest, of fans and ranges of all sizes: none ends in an exception.
+// Every kind of picture at every width from the min on, of fans and ranges of all sizes: none throws.
 #include <gtest/gtest.h>
 
 #include "components/output/DiscImage.hpp"
@@ -15,7 +15,7 @@ namespace {
 constexpr double fields_of_view[] = {0.1, 1, 20, 60, 90, 120, 130, 150, 179.9, 180, 181, 270, 359, 360};
 constexpr double ranges[] = {0, 1e-3, 0.7, 50, 3e4, 1e9};
 
-/** The ranges as the widths come, so that every width meets every fan, and each fan every range at some width. */
+/** Returns pings whose ranges cycle with the widths, so that every width meets every fan, and each fan every range. */
 types::Sonar pingOf(double field_of_view, size_t number) {
     types::Sonar ping = test::emptyPing(field_of_view, 7, 20);
     ping.speed_of_sound *= ranges[number % std::size(ranges)] / 50;
@@ -42,7 +42,7 @@ void expectPictures(uint32_t width, int expected_width, size_t& number) {
 
 int even(uint32_t width) { return static_cast<int>(width + width % 2); }
 
-TEST(SmallPictureTest, EveryWidthFanAndRangeIsDrawn) {
+TEST(SmallPictureTest, DrawsEveryWidthFanAndRange) {
     size_t number = 0;
     for (uint32_t width = 256; width < 320; ++width) {
         expectPictures<FanImage>(width, even(width), number);
@@ -57,7 +57,7 @@ TEST(SmallPictureTest, EveryWidthFanAndRangeIsDrawn) {
         expectPictures<ScanMosaic>(width, 2 * even(width / 2), number);
 }
 
-TEST(SmallPictureTest, EveryDynamicRangeIsDrawnSmall) {
+TEST(SmallPictureTest, DrawsEveryDynamicRangeSmall) {
     types::Image picture;
     for (const double dynamic_range : {1.0, 3.0, 40.0, 299.0, 300.0}) {
         DisplayConfig config = widthConfig(256);
@@ -67,7 +67,7 @@ TEST(SmallPictureTest, EveryDynamicRangeIsDrawnSmall) {
     }
 }
 
-/** Whether the brightest colour stands where the bar of colours begins. */
+/** Returns whether the brightest colour is at the start of the colour bar. */
 bool showsColourBar(uint32_t width, double field_of_view) {
     DisplayConfig config = widthConfig(width);
     config.colour_map = ColourMap::Gray;
@@ -76,7 +76,7 @@ bool showsColourBar(uint32_t width, double field_of_view) {
     return test::pixelsOf(picture).at<cv::Vec3b>(FanLayout::title_height + 19, 16)[1] > 200;
 }
 
-TEST(SmallPictureTest, TheBarOfColoursIsLeftOutWhereItDoesNotFit) {
+TEST(SmallPictureTest, OmitsTheColourBarIfItDoesNotFit) {
     EXPECT_FALSE(showsColourBar(256, 120));
     EXPECT_FALSE(showsColourBar(280, 180));
     EXPECT_TRUE(showsColourBar(320, 120));
@@ -90,7 +90,7 @@ public:
     void paint(const types::Sonar& /*ping*/, types::Image& /*picture*/) override { cv::Mat(2, 2, CV_8U).row(5); }
 };
 
-TEST(SmallPictureTest, WhatOpenCvRefusesIsToldInOurWords) {
+TEST(SmallPictureTest, ReportsErrorsOfOpenCvInPlainWords) {
     PingPictureTask<RefusedPicture> task("fan");
     test::Writer<types::SonarPtr> in;
     test::Reader<types::ImagePtr> out;

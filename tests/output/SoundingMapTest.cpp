@@ -31,7 +31,7 @@ TEST(SoundingMapTest, NorthIsUpWestIsLeftAndTheHighestPointIsBrightest) {
     EXPECT_EQ(colourAt(picture, map.pixel(0, 0))[1], 0);
 }
 
-TEST(SoundingMapTest, PointsThatAreNotFiniteAndNoPointsAtAllAreDrawnAllTheSame) {
+TEST(SoundingMapTest, DrawsPointsThatAreNotFiniteAndNoPoints) {
     SoundingMap map(301, ColourMap::Turbo);
     types::Image picture;
     map.paint(picture);
@@ -42,7 +42,7 @@ TEST(SoundingMapTest, PointsThatAreNotFiniteAndNoPointsAtAllAreDrawnAllTheSame) 
     EXPECT_TRUE(picture.holdsPixels());
 }
 
-TEST(SoundingMapTest, OldPointsAreForgotten) {
+TEST(SoundingMapTest, ForgetsOldPoints) {
     SoundingMap map(600, ColourMap::Gray);
     types::Image picture;
     map.add(cloudOf({{1e6, 1e6, 0}}));
@@ -51,7 +51,7 @@ TEST(SoundingMapTest, OldPointsAreForgotten) {
     EXPECT_GT(map.pixel(0, 0).x - map.pixel(0, 10).x, 100) << "the chart fits the points that are left";
 }
 
-TEST(SoundingMapTest, ATaskMakesAPictureForSoManyClouds) {
+TEST(SoundingMapTest, MakesAPictureForEveryFewClouds) {
     SoundingMapTask task("chart");
     SamplePictureConfig config;
     config.every = 3;

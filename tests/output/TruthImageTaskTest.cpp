@@ -10,8 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/** 60 beams over 120 deg, 100 bins. Beams 0 to 29, to starboard, show object 0 from 30 bins on, the others object 1
- *  from 60 bins on; what is nearer lies in shadow. */
+/** Returns 60 beams over 120 deg, 100 bins. Beams 0 to 29, to starboard, show object 0 from 30 bins on; the others show
+ *  object 1 from 60 bins on. Nearer bins are in shadow. */
 types::Sonar truthAt(double seconds) {
     types::Sonar ping = test::emptyPing(120, 60);
     ping.time = types::Time::fromSeconds(seconds);
@@ -45,7 +45,7 @@ protected:
     void giveTruth(double seconds) { giveBeside(std::make_shared<const types::SonarTruth>(truthOf(truthAt(seconds)))); }
 };
 
-TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
+TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
     start();
     giveTruth(1);
     givePing(1);
@@ -63,7 +63,7 @@ TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
         const cv::Point2d at = fan.layout().pixel(share * fan.layout().range(), types::radians(bearing_deg));
         return picture.at<cv::Vec3b>(cvRound(at.y), cvRound(at.x) + 600 * half);
     };
-    EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "what is heard, in grey";
+    EXPECT_EQ(pixel(0.86, -23, 0), cv::Vec3b(255, 255, 255)) << "the echoes, in grey";
     EXPECT_EQ(pixel(0.86, -23, 1), TruthImage::colourOf(0));
     EXPECT_EQ(pixel(0.86, 23, 1), TruthImage::colourOf(1));
     EXPECT_EQ(pixel(0.46, -23, 1), TruthImage::colourOf(0));
@@ -71,7 +71,7 @@ TEST_F(TruthImageTaskTest, ObjectsHaveTheirColoursBesideTheFan) {
     EXPECT_GT(cv::norm(TruthImage::colourOf(0), TruthImage::colourOf(1)), 100);
 }
 
-TEST_F(TruthImageTaskTest, TheLegendNamesWhatIsShown) {
+TEST_F(TruthImageTaskTest, TheLegendNamesTheObjectsShown) {
     start();
     giveTruth(1);
     givePing(1);
@@ -87,7 +87,7 @@ TEST_F(TruthImageTaskTest, TheLegendNamesWhatIsShown) {
     EXPECT_FALSE(hasSwatch(2)) << "no bin shows it";
 }
 
-TEST_F(TruthImageTaskTest, APingWaitsForItsTruthAndIsLeftOutWithoutOne) {
+TEST_F(TruthImageTaskTest, APingWaitsForItsTruthAndIsOmittedWithoutIt) {
     start();
     givePing(1);
     EXPECT_EQ(pictures(), 0u);
@@ -98,10 +98,10 @@ TEST_F(TruthImageTaskTest, APingWaitsForItsTruthAndIsLeftOutWithoutOne) {
     givePing(1.2);
     EXPECT_EQ(pictures(), 1u);
     EXPECT_EQ(last_->time, types::Time::fromSeconds(1.2));
-    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings not shown for want of their truth")));
+    EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings not shown because their truth is missing")));
 }
 
-TEST_F(TruthImageTaskTest, ATruthOfAnotherSonarIsRefused) {
+TEST_F(TruthImageTaskTest, RefusesTheTruthOfAnotherSonar) {
     start();
     types::Sonar other = truthAt(1);
     other.resize(50, 60);

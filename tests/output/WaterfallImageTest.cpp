@@ -51,7 +51,7 @@ TEST(WaterfallImageTest, OldPingsLeaveAtTheBottom) {
     EXPECT_EQ(levelAt(picture, bottom), 0);
 }
 
-TEST(WaterfallImageTest, APingWithoutBeamsIsDrawnAllTheSame) {
+TEST(WaterfallImageTest, DrawsAPingWithoutBeams) {
     WaterfallImage waterfall(shownAs());
     types::Image picture;
     waterfall.paint(types::Sonar{}, picture);

@@ -1,4 +1,4 @@
-// XTF files are read back: our own, those of other programs, and damaged ones.
+// Reading of XTF files: files written here, those of other programs, and damaged files.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ namespace channel_header = xtf::channel_header;
 constexpr int64_t first_time = 1'700'000'000'250'000;
 constexpr size_t first_ping = xtf::file_header::size;
 
-/** Starboard counts up from 100, port from 1000. */
+/** Returns a line in which starboard counts up from 100, port from 1000. */
 types::Sonar line(int number, uint32_t bins = 5, double speed_of_sound = 1500) {
     types::Sonar ping = test::pingOf(2, bins, 0, first_time + number * 500'000);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
@@ -51,7 +51,7 @@ types::Pose headed(double yaw_deg) {
 class XtfFileTest : public SideScanFileTest {
 protected:
     XtfFileTest() : SideScanFileTest("line.xtf") {}
-    /** A file of these lines, all at one place. */
+    /** Returns a file of these lines, all at one place. */
     static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
         std::vector<char> bytes = xtfHeader(format, lines.front());
@@ -63,7 +63,7 @@ protected:
     }
 };
 
-TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
+TEST_F(XtfFileTest, ReadsAnOwnFileBackBinByBin) {
     for (const XtfSamples samples : {XtfSamples::Uint16, XtfSamples::Float32}) {
         const std::vector<types::Sonar> written{line(0), line(1), line(2)};
         const std::vector<SideScanLine> lines = read(fileOf(written, samples));
@@ -86,7 +86,7 @@ TEST_F(XtfFileTest, OurOwnFileComesBackBinByBin) {
     }
 }
 
-TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
+TEST_F(XtfFileTest, ReadsAPoseBackInRocksFrames) {
     const SideScanLine read_back = read(fileOf({line(0)})).front();
     const types::Pose &pose = read_back.record.sonar, expected = headed(30);
     EXPECT_NEAR(glm::length(pose.position - expected.position), 0, 1e-6);
@@ -95,7 +95,7 @@ TEST_F(XtfFileTest, APoseComesBackInRocksFrames) {
     EXPECT_EQ(read_back.record.altitude, 6.5);
 }
 
-TEST_F(XtfFileTest, EveryPingIsKeptWhenSettingsChange) {
+TEST_F(XtfFileTest, KeepsEveryPingIfSettingsChange) {
     const std::vector<types::Sonar> written{line(0), line(1, 7), line(2, 5, 1450), line(3)};
     const std::vector<SideScanLine> lines = read(fileOf(written));
     ASSERT_EQ(lines.size(), 4u);
@@ -105,18 +105,19 @@ TEST_F(XtfFileTest, EveryPingIsKeptWhenSettingsChange) {
     }
 }
 
-TEST_F(XtfFileTest, RangesHoldWhereABinIsNoWholeMicroseconds) {
+TEST_F(XtfFileTest, KeepsRangesIfABinIsNotWholeMicroseconds) {
     types::Sonar fine = line(0);
     std::vector<char> bytes = fileOf({fine});
     for (const size_t channel : {0, 1})  // 19.5 us
-        putAt(bytes, first_ping + ping_header::size + channel * (channel_header::size + 10) + channel_header::slant_range,
-            5 * 0.02925f);
+        putAt(bytes,
+              first_ping + ping_header::size + channel * (channel_header::size + 10) + channel_header::slant_range,
+              5 * 0.02925f);
     const types::Sonar ping = read(bytes).front().ping;
     EXPECT_NEAR(ping.binStart(5), 5 * 0.02925, 1e-7);
     EXPECT_THAT(notices_, Contains(HasSubstr("bins are 19.50 us long")));
 }
 
-TEST_F(XtfFileTest, LatitudesAndLongitudesBecomeMetres) {
+TEST_F(XtfFileTest, ConvertsLatitudesAndLongitudesToMetres) {
     std::vector<char> bytes = fileOf({line(0), line(1)});
     putAt(bytes, xtf::file_header::nav_units, xtf::file_header::degrees);
     const size_t size = (bytes.size() - first_ping) / 2;
@@ -131,7 +132,7 @@ TEST_F(XtfFileTest, LatitudesAndLongitudesBecomeMetres) {
     EXPECT_THAT(notices_, Contains(HasSubstr("latitude 48.0000000, longitude -69.0000000 (WGS 84)")));
 }
 
-TEST_F(XtfFileTest, ProjectedCoordinatesBeginAtTheirFirstPlace) {
+TEST_F(XtfFileTest, StartsProjectedCoordinatesAtTheirFirstPlace) {
     std::vector<char> bytes = fileOf({line(0)});
     putAt(bytes, first_ping + ping_header::sonar, 5'367'000.5);
     putAt(bytes, first_ping + ping_header::sonar + 8, 412'000.25);
@@ -139,15 +140,15 @@ TEST_F(XtfFileTest, ProjectedCoordinatesBeginAtTheirFirstPlace) {
     EXPECT_THAT(notices_, Contains(HasSubstr("north 5367000.50 m, east 412000.25 m")));
 }
 
-TEST_F(XtfFileTest, OtherWaysToStateTheSameAreRead) {
+TEST_F(XtfFileTest, ReadsOtherWaysToStateTheSame) {
     std::vector<char> bytes = fileOf({line(0)});
     const size_t port = first_ping + ping_header::size, starboard = port + channel_header::size + 10;
     putAt(bytes, first_ping + ping_header::sound_speed, 750.0f);  // half of it
     for (const size_t side : {port, starboard})
-        putAt(bytes, side + channel_header::slant_range, 0.0f);  // by the duration
+        putAt(bytes, side + channel_header::slant_range, 0.0f);  // from the duration
     for (const size_t i : {0, 1})
         putAt(bytes, xtf::file_header::channel_infos + i * xtf::channel_info::size + xtf::channel_info::sample_format,
-            xtf::channel_info::legacy);
+              xtf::channel_info::legacy);
     for (const size_t side : {port, starboard}) putAt(bytes, side + channel_header::weight, int16_t{2});
     const types::Sonar ping = read(bytes).front().ping;
     EXPECT_EQ(ping.speed_of_sound, 1500);
@@ -155,7 +156,7 @@ TEST_F(XtfFileTest, OtherWaysToStateTheSameAreRead) {
     EXPECT_EQ(ping.bins[1], 101 / 4.0f) << "times 2^-2";
 }
 
-TEST_F(XtfFileTest, WhatIsUnknownOrOmittedIsNoticed) {
+TEST_F(XtfFileTest, NoticesUnknownAndOmittedData) {
     std::vector<char> bytes = fileOf({line(0), line(1), line(2)});
     const size_t size = (bytes.size() - first_ping) / 3;
     putAt(bytes, first_ping + xtf::packet::type, uint8_t{42});
@@ -171,7 +172,7 @@ TEST_F(XtfFileTest, WhatIsUnknownOrOmittedIsNoticed) {
                                 Contains(HasSubstr("1 pings have no pose"))));
 }
 
-TEST_F(XtfFileTest, AWrongFileIsRefusedWithItsByte) {
+TEST_F(XtfFileTest, RefusesAWrongFileWithItsByte) {
     const std::vector<char> good = fileOf({line(0)});
     const auto with = [&](size_t at, auto value) {
         std::vector<char> bytes = good;
@@ -192,7 +193,7 @@ TEST_F(XtfFileTest, AWrongFileIsRefusedWithItsByte) {
                 HasSubstr("byte 330: the samples of channel 0 have format 1"));
 }
 
-TEST_F(XtfFileTest, AFileThatIsCutOffKeepsItsWholePings) {
+TEST_F(XtfFileTest, KeepsWholePingsOfATruncatedFile) {
     const std::vector<char> good = fileOf({line(0), line(1)});
     const size_t packet = (good.size() - first_ping) / 2;
     const auto path = write(good);
@@ -234,7 +235,7 @@ TEST_F(XtfFileTest, EveryDamagedByteGivesPingsOrOneError) {
     EXPECT_GT(refused, 20u);
 }
 
-TEST_F(XtfFileTest, ARealFileHasAllItsPings) {
+TEST_F(XtfFileTest, ReadsAllPingsOfARealFile) {
     const std::filesystem::path real = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!std::filesystem::exists(real)) GTEST_SKIP() << real << " is not there: no real XTF file is tested";
     XtfFile file(real);
@@ -252,7 +253,7 @@ TEST_F(XtfFileTest, ARealFileHasAllItsPings) {
     EXPECT_EQ(file.origin(), "latitude 48.4454500, longitude -68.8279350 (WGS 84)");
 }
 
-/** Mean of the bins between two slant ranges, of both sides [m]. */
+/** Returns the mean of the bins of both sides between two slant ranges [m]. */
 double meanBetween(const types::Sonar& ping, double from, double to) {
     double sum = 0, count = 0;
     for (uint32_t beam = 0; beam < 2; ++beam)
@@ -264,7 +265,7 @@ double meanBetween(const types::Sonar& ping, double from, double to) {
     return sum / count;
 }
 
-TEST_F(XtfFileTest, TheWaterColumnOfARealFileIsDarkAndEndsBehindTheAltitude) {
+TEST_F(XtfFileTest, TheWaterColumnOfARealFileIsDarkUpToTheAltitude) {
     const std::filesystem::path real = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!std::filesystem::exists(real)) GTEST_SKIP() << real << " is not there: no real XTF file is tested";
     XtfFile file(real);
@@ -279,7 +280,7 @@ TEST_F(XtfFileTest, TheWaterColumnOfARealFileIsDarkAndEndsBehindTheAltitude) {
         double first = pulse_end;
         while (meanBetween(ping, first, first + 0.15) < 4 * water) first += 0.1;
         const glm::dvec3 ahead = line->record.sonar.orientation * glm::dvec3(1, 0, 0);
-        const double to_floor = altitude / std::hypot(ahead.x, ahead.y);  // in the plane of the beams, which pitches
+        const double to_floor = altitude / std::hypot(ahead.x, ahead.y);  // in the pitching plane of the beams
         EXPECT_GT(first, 0.95 * to_floor);
         EXPECT_LT(first, 1.25 * to_floor);
         ++checked;

@@ -17,7 +17,7 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/** Starboard counts up from 100, port from 1000. */
+/** Returns a line in which starboard counts up from 100, port from 1000. */
 types::Sonar pingLine(int64_t time, uint32_t bins = 5) {
     types::Sonar ping = test::pingOf(2, bins, 0, time);
     ping.bearings = {types::Angle::fromDeg(-90), types::Angle::fromDeg(90)};
@@ -69,7 +69,7 @@ protected:
         poses_.port.write(pose);
         task_.update();
     }
-    /** What PyPI's pyxtf reads of the file. */
+    /** Returns what PyPI's pyxtf reads from the file. */
     json readBack() {
         return json::parse(pythonSays(test::sourceFile("tests/output/read_xtf.py ") + (folder_ / "line.xtf").string(),
                                       folder_ / "answer"));
@@ -85,7 +85,7 @@ protected:
 #define NEED_PYXTF() \
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it"
 
-TEST_F(XtfTest, PyxtfReadsBackLinesAndWhatIsToldOfThem) {
+TEST_F(XtfTest, PyxtfReadsBackLinesAndTheirAttributes) {
     NEED_PYXTF();
     start();
     types::Range measured;
@@ -122,7 +122,7 @@ TEST_F(XtfTest, PyxtfReadsBackLinesAndWhatIsToldOfThem) {
     EXPECT_THAT(task_.notices(), testing::IsEmpty());
 }
 
-TEST_F(XtfTest, PyxtfReadsBackIntensitiesAsTheyAre) {
+TEST_F(XtfTest, PyxtfReadsBackIntensitiesUnchanged) {
     NEED_PYXTF();
     start(XtfSamples::Float32);
     types::Sonar ping = pingLine(2'000'000);
@@ -147,7 +147,7 @@ TEST_F(XtfTest, AFileIsAHeaderOf1024BytesAndRecordsOfWholeUnits) {
     EXPECT_EQ(static_cast<uint8_t>(bytes[1025]), 0xFA);
 }
 
-TEST_F(XtfTest, WhatIsNoCodeOrNoLineEndsTheFileWithItsReason) {
+TEST_F(XtfTest, ABinThatIsNotACodeOrAPingWithoutSidesEndsTheFileWithAReason) {
     const auto reasonOf = [&](types::Sonar ping) {
         start();
         give(towed(ping.time.microseconds));
@@ -167,7 +167,7 @@ TEST_F(XtfTest, WhatIsNoCodeOrNoLineEndsTheFileWithItsReason) {
     EXPECT_THAT(reasonOf(ahead), HasSubstr("no beam to port"));
 }
 
-TEST_F(XtfTest, APingBeforeAnyPoseIsWrittenWithoutOneAndTold) {
+TEST_F(XtfTest, WritesAndReportsAPingBeforeAnyPose) {
     start();
     give(pingLine(1'000'000));
     task_.stop();
@@ -175,7 +175,7 @@ TEST_F(XtfTest, APingBeforeAnyPoseIsWrittenWithoutOneAndTold) {
     EXPECT_THAT(task_.notices(), testing::Contains(HasSubstr("1 pings of line.xtf have no pose")));
 }
 
-TEST(XtfConfigTest, TheFileIsNamedSo) {
+TEST(XtfConfigTest, RequiresTheFileExtension) {
     XtfConfig config;
     types::Diagnostics diagnostics;
     config.check(diagnostics);

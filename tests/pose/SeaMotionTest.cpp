@@ -26,7 +26,7 @@ types::Pose moved(const SeaMotion& motion, double time) {
     return pose;
 }
 
-TEST(SeaMotionTest, TheRootMeanSquareIsThatWhichIsAskedFor) {
+TEST(SeaMotionTest, HasTheConfiguredRootMeanSquare) {
     for (const SeaSpectrum spectrum : spectra)
         for (uint64_t seed = 1; seed <= 5; ++seed) {
             const WaveSum waves(0.5, 6, spectrum, seed);
@@ -50,7 +50,7 @@ double density(SeaSpectrum spectrum, double x) {
                : pm * std::pow(3.3, std::exp(-0.5 * std::pow((x - 1) / width, 2)));
 }
 
-TEST(SeaMotionTest, SharesOfTheEnergyAreThoseOfThePublishedSpectrum) {
+TEST(SeaMotionTest, SharesOfTheEnergyMatchThePublishedSpectrum) {
     for (const SeaSpectrum spectrum : spectra) {
         double all = 0;
         for (double x = 5e-4; x < 60; x += 1e-3) all += 1e-3 * density(spectrum, x);
@@ -114,7 +114,7 @@ TEST(SeaMotionTest, AMovingBodyKeepsItsOwnVelocities) {
     }
 }
 
-TEST(SeaMotionTest, OneSeedIsOneMotionAndAnotherAnother) {
+TEST(SeaMotionTest, EachSeedGivesItsOwnMotion) {
     const SeaMotionConfig config{.heave_m = 1, .roll_deg = 3, .seed = 7};
     SeaMotionConfig other = config;
     other.seed = 8;
@@ -138,7 +138,7 @@ TEST(SeaMotionTest, ExtremesAreFinite) {
             }
 }
 
-TEST(SeaMotionTest, AMotionOfNothingIsRefused) {
+TEST(SeaMotionTest, RejectsAMotionWithoutAmplitudes) {
     types::Diagnostics diagnostics;
     SeaMotionConfig{}.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);

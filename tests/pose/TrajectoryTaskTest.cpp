@@ -46,7 +46,7 @@ TEST_F(TrajectoryTaskTest, TimesCountFromTheStartOfTheRun) {
     EXPECT_EQ(pose.time, types::Time::fromSeconds(1.5));
 }
 
-TEST_F(TrajectoryTaskTest, ItHasFinishedWithTheLastPoseThatLiesOnTheTrajectory) {
+TEST_F(TrajectoryTaskTest, IsFinishedWithTheLastPoseOnTheTrajectory) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
     task_.activity().configure({.period = 0.3, .trigger = {}, .cpus = {}});
     ASSERT_TRUE(task_.configure());
@@ -71,7 +71,7 @@ TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
     EXPECT_TRUE(task_.finished());
 }
 
-TEST_F(TrajectoryTaskTest, AFixedPoseHasFinishedAfterOnePose) {
+TEST_F(TrajectoryTaskTest, AFixedPoseIsFinishedAfterOnePose) {
     task_.config.set({.file = {}, .waypoints = {{.time = 100, .position = {1, 2, 3}}}});
     ASSERT_TRUE(task_.configure());
     ASSERT_TRUE(task_.start());
@@ -80,7 +80,7 @@ TEST_F(TrajectoryTaskTest, AFixedPoseHasFinishedAfterOnePose) {
     EXPECT_TRUE(task_.finished());
 }
 
-TEST_F(TrajectoryTaskTest, ALoopGoesOnFromItsFirstStampForEver) {
+TEST_F(TrajectoryTaskTest, ALoopRestartsAtItsFirstStamp) {
     task_.config.set(
         {.file = {},
          .waypoints = {{.time = 2}, {.time = 4, .position = {4, 0, 0}}, {.time = 6, .position = {0, 0, 0}}},
@@ -97,7 +97,7 @@ TEST_F(TrajectoryTaskTest, ALoopGoesOnFromItsFirstStampForEver) {
     }
 }
 
-TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPoseForEver) {
+TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPose) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0, .position = {1, 2, 3}}}, .loop = true});
     ASSERT_TRUE(task_.configure());
     ASSERT_TRUE(task_.start());
@@ -107,7 +107,7 @@ TEST_F(TrajectoryTaskTest, ALoopOfOneWaypointHoldsItsPoseForEver) {
     }
 }
 
-TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
+TEST_F(TrajectoryTaskTest, FindsAFileNextToTheDeployment) {
     std::ofstream(folder_ / "trajectory.csv") << "time,x,y,z,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n";
     task_.config.set({.file = "trajectory.csv", .waypoints = {}});
     ASSERT_TRUE(task_.configure());
@@ -115,7 +115,7 @@ TEST_F(TrajectoryTaskTest, AFileIsFoundBesideTheDeployment) {
     EXPECT_EQ(poseAt(1).position, glm::dvec3(7, 8, 9));
 }
 
-TEST_F(TrajectoryTaskTest, AFileThatIsNotThereIsSeenBeforeAndRefusedByConfigure) {
+TEST_F(TrajectoryTaskTest, AMissingFileIsADiagnosticAndAnErrorOfConfigure) {
     task_.config.set({.file = "no_such.csv", .waypoints = {}});
     types::Diagnostics diagnostics;
     task_.check(diagnostics);

@@ -49,7 +49,7 @@ TEST(TrajectoryTest, PositionIsLinearBetweenStampsAndHeldOutside) {
     EXPECT_EQ(path.at(3).position, glm::dvec3(4, -2, 1));
 }
 
-/** Rounds of a circle of 5 m, one in 20 s, that looks along its way, with a stamp each `step` seconds. */
+/** Returns laps on a circle of 5 m, 20 s each, heading along the path, with a stamp each `step` seconds. */
 std::vector<Trajectory::Stamp> circle(double step) {
     std::vector<Trajectory::Stamp> stamps;
     for (int i = 0; i * step <= 40; ++i) {
@@ -60,7 +60,7 @@ std::vector<Trajectory::Stamp> circle(double step) {
     return stamps;
 }
 
-TEST(TrajectoryTest, ASmoothPathPassesThroughItsStampsAndKeepsToTheCurveBetween) {
+TEST(TrajectoryTest, ASmoothPathPassesThroughItsStampsAndFollowsTheCurveBetween) {
     const double turn_rate = 2 * std::numbers::pi / 20;
     double error_before = 0;
     for (const double step : {2.0, 1.0, 0.5}) {
@@ -84,7 +84,7 @@ TEST(TrajectoryTest, ASmoothPathPassesThroughItsStampsAndKeepsToTheCurveBetween)
     }
 }
 
-TEST(TrajectoryTest, VelocitiesOfASmoothPathAreThoseOfItsPlacesAndDoNotJump) {
+TEST(TrajectoryTest, VelocitiesOfASmoothPathAreDerivativesOfItsPositionsAndDoNotJump) {
     const Trajectory path({Waypoint{.time = 0}, Waypoint{.time = 1, .position = {1, 0, 0}, .yaw_deg = 30},
                            Waypoint{.time = 2.5, .position = {1, 2, -1}, .roll_deg = 10, .yaw_deg = 100},
                            Waypoint{.time = 4, .position = {0, 2, -1}, .yaw_deg = 200}},
@@ -106,7 +106,7 @@ TEST(TrajectoryTest, ASmoothPathOfOneOrTwoStampsIsAPointOrALine) {
     EXPECT_EQ(line.at(3).velocity, glm::dvec3(0)) << "after the last stamp it holds still";
 }
 
-TEST(TrajectoryTest, VelocityIsThatOfTheSegmentAndZeroWhereItHolds) {
+TEST(TrajectoryTest, VelocityIsThatOfTheSegmentAndZeroOutside) {
     const Trajectory path({Waypoint{.time = 0}, Waypoint{.time = 2, .position = {4, 0, -2}, .yaw_deg = 90}});
     EXPECT_LT(glm::distance(path.at(1).velocity, {2, 0, -1}), tiny);
     EXPECT_LT(glm::distance(path.at(1).angular_velocity, {0, 0, std::numbers::pi / 4}), tiny);
@@ -133,7 +133,7 @@ TEST(TrajectoryTest, PositivePitchLooksDownPositiveYawTurnsToPortPositiveRollLow
     EXPECT_LT(turned({.pitch_deg = 30}, {1, 0, 0}).z, -0.49);
     EXPECT_GT(turned({.yaw_deg = 30}, {1, 0, 0}).y, 0.49);
     EXPECT_LT(turned({.roll_deg = 30}, {0, -1, 0}).z, -0.49);
-    // Rz(90) Ry(90): the nose points down, and the belly to the west, where the yaw had turned it.
+    // Rz(90) Ry(90): the nose points down, and the belly to the west, as turned by the yaw.
     EXPECT_LT(glm::distance(turned({.pitch_deg = 90, .yaw_deg = 90}, {0, 0, 1}), {0, 1, 0}), tiny);
 }
 
@@ -144,7 +144,7 @@ TEST(TrajectoryTest, OneWaypointIsAFixedPose) {
     EXPECT_EQ(path.at(0).target_frame, "world");
 }
 
-TEST(TrajectoryTest, StampsThatDoNotIncreaseAreRefused) {
+TEST(TrajectoryTest, RejectsStampsThatDoNotIncrease) {
     EXPECT_THROW(Trajectory(std::vector<Waypoint>{}), std::invalid_argument);
     EXPECT_THROW(Trajectory({Waypoint{.time = 1}, Waypoint{.time = 1}}), std::invalid_argument);
 }
@@ -164,7 +164,7 @@ TEST(TrajectoryTest, AQuaternionThatIsNotQuiteUnitIsNormalised) {
     EXPECT_NEAR(path.stamps()[1].orientation.z, 1, tiny);
 }
 
-TEST(TrajectoryTest, EveryDiagnosticOfAFileIsToldWithItsPlace) {
+TEST(TrajectoryTest, ReportsEveryErrorOfAFileWithItsPlace) {
     const auto diagnostics = diagnosticsOf(header +
                                            "0,0,0,0,1,0,0,0\n"      // 2: good
                                            "1,0,abc,0,1,0,0,0\n"    // 3: no number
@@ -189,12 +189,12 @@ TEST(TrajectoryTest, EveryDiagnosticOfAFileIsToldWithItsPlace) {
     }
 }
 
-TEST(TrajectoryTest, AFileWithoutHeaderStampsOrContentIsRefused) {
+TEST(TrajectoryTest, RejectsAFileWithoutHeaderStampsOrContent) {
     for (const char* text : {"", "\n\n", "time,x,y,z,qw,qx,qy,qz\n", "t,x\n0,0,0,0,1,0,0,0\n"})
         EXPECT_EQ(diagnosticsOf(text).size(), 1u) << text;
 }
 
-TEST(TrajectoryTest, AFolderAndAFileThatIsNotThereAreRefused) {
+TEST(TrajectoryTest, RejectsAFolderAndAMissingFile) {
     EXPECT_THROW(Trajectory::fromCsv(std::filesystem::temp_directory_path()), types::ConfigError);
     EXPECT_THROW(Trajectory::fromCsv("no/such/file.csv"), types::ConfigError);
 }
@@ -205,7 +205,7 @@ TEST(TrajectoryTest, AHundredDiagnosticsAreEnough) {
     EXPECT_LE(diagnosticsOf(text).size(), 108u);
 }
 
-TEST(TrajectoryConfigTest, ExactlyOneSourceIsAskedForAndTimesMustIncrease) {
+TEST(TrajectoryConfigTest, NeedsExactlyOneSourceAndIncreasingTimes) {
     const auto diagnosticsOf = [](const TrajectoryConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);

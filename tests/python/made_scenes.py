@@ -1,4 +1,4 @@
-"""Makes scenes as `insonify scene make` does, and reads the files back by code of its own."""
+"""Makes scenes with `insonify scene make`, and reads the files back with independent code."""
 
 import json
 import os
@@ -84,7 +84,7 @@ class Glb:
 
 
 def unbalanced_edges(points, faces):
-    """Edges that are not run along as often one way as the other: none on a closed surface of one sense of turning."""
+    """Edges that do not occur equally often in both directions: none on a closed surface with consistent winding."""
     _, same = np.unique(points.round(6) + 0.0, axis=0, return_inverse=True)
     faces = same.reshape(-1)[faces]
     ends = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])

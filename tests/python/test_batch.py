@@ -1,4 +1,4 @@
-"""Many simulations on one scene, against single ones."""
+"""Many simulations on one scene, compared with single simulations."""
 
 import subprocess
 import sys
@@ -105,7 +105,7 @@ def test_what_is_wrong_has_one_clear_error(deploy):
         batch.reset([0, 1], [5])
     with pytest.raises(RuntimeError, match="simulation 1: .*quaternion"):
         batch.step(np.vstack([here[0], [0, 0, 0, 0, 0, 0, 0]]))
-    assert batch.step(here).bins.max() > 0  # the next good poses are answered
+    assert batch.step(here).bins.max() > 0  # the next valid poses give pings
 
 
 def test_one_scene_is_loaded_for_all(deploy):
@@ -145,7 +145,7 @@ def test_the_vector_environment_is_many_single_ones(deploy):
         assert (truncated == (step == 3)).all() and not terminated.any()
         ways += rewards
     assert ways[0] > ways[1] > ways[2] == 0
-    observations, rewards, terminated, truncated, info = many.step(actions)  # which begins them anew
+    observations, rewards, terminated, truncated, info = many.step(actions)  # which resets them
     assert (rewards == 0).all() and not truncated.any() and np.allclose(info["position"], 0)
     again, _ = many.reset(seed=1)
     np.testing.assert_array_equal(again, many.reset(seed=1)[0])

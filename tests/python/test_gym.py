@@ -1,4 +1,4 @@
-"""The environment for agents, by gymnasium's own checker."""
+"""The environment for agents, checked by gymnasium's checker."""
 
 import insonify
 import numpy as np

@@ -1,4 +1,4 @@
-"""Reports of studies and of beams, drawn by scripts/plot."""
+"""Reports of studies and of beams, plotted by scripts/plot."""
 
 import subprocess
 import sys
@@ -47,4 +47,4 @@ def test_a_beam_is_drawn(tmp_path):
 def test_a_folder_without_a_report_is_refused(tmp_path):
     done = plot(tmp_path)
     assert done.returncode == 2
-    assert "holds no report of a study" in done.stderr
+    assert "has no report of a study" in done.stderr

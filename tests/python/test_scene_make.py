@@ -1,4 +1,4 @@
-"""The command `insonify scene make`: bad recipes and options, pings of what it makes, and sweeps of recipes."""
+"""The command `insonify scene make`: bad recipes and options, pings of its scenes, and sweeps of recipes."""
 
 import json
 import random
@@ -50,7 +50,7 @@ BAD = [
     ("floor: {size_m: [40, 40]}\nmax_triangles: 100", "max_triangles: is 100; the recipe makes at least 80000"),
     ("floor: {depth_m: 1_0}", "1:18: floor.depth_m: is 1_0; must be a number"),
     ("floor: {size_m: [9, 9]}\nthings: [{thing: can, x_m: 20, y_m: 0}]", "2:10: things[0]: asks for 1, of which 0 found room at its place"),
-    ("[" * 5000, "has blocks in blocks without end"),
+    ("[" * 5000, "has blocks that are nested too deep"),
 ]
 
 
@@ -123,7 +123,7 @@ def test_a_list_may_be_read_in_part():
 
 def test_without_the_packages_the_answer_says_what_installs_them(tmp_path):
     python = tmp_path / "python3"
-    python.write_text("#!/bin/sh\nexit 97\n")  # as the package does where an import fails
+    python.write_text("#!/bin/sh\nexit 97\n")  # as the package exits if an import fails
     python.chmod(0o755)
     done = insonify("scene", "make", "--list", INSONIFY_PYTHON=str(python))
     assert done.returncode == 2
@@ -200,10 +200,10 @@ def test_a_sweep_makes_its_scenes_by_recipe(tmp_path):
 @pytest.mark.parametrize(
     "scene, expected",
     [
-        ("{make: bay.yml}", "must have one of seeds and count beside make"),
-        ("{make: bay.yml, seeds: [1], count: 2}", "must have one of seeds and count beside make"),
+        ("{make: bay.yml}", "must have one of seeds and count with make"),
+        ("{make: bay.yml, seeds: [1], count: 2}", "must have one of seeds and count with make"),
         ("{file: bay.yml, count: 2}", "has seeds or count without make"),
-        ("{file: bay.yml, make: bay.yml, count: 2}", "is given beside file; give one of them"),
+        ("{file: bay.yml, make: bay.yml, count: 2}", "is given with file; give one of them"),
         ("{make: none.yml, count: 2}", "is none.yml; there is no such file, which is relative to the sweep"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Scripts in Python, of which most run only by hand: each is Python that Debian's understands."""
+"""Scripts in Python, most of which people run by hand: each compiles with Debian's Python."""
 
 import pytest
 from conftest import ROOT

@@ -1,4 +1,5 @@
-"""What scripts/setup and scripts/run install and build. Commands that note what they are asked stand in for the system."""
+"""Installations and builds by scripts/setup and scripts/run. Stand-ins for the system's commands record their
+arguments."""
 
 import os
 import shutil
@@ -54,7 +55,7 @@ def stand_in(file, line):
 
 
 def asked(system, script, *arguments):
-    """What it asked of the system, and what it said."""
+    """Returns the commands that the script ran, and its output."""
     (system / "asked").write_text("")
     done = subprocess.run(
         [f"scripts/{script}", *arguments],
@@ -83,7 +84,7 @@ def test_what_the_core_lacks_is_installed_first(system):
     code, lines, _ = asked(system, "setup", "insonify")
     assert code == 0
     assert [sorted(names) for names in installed(lines)] == [sorted(lacks)]
-    assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake looks anew"
+    assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake searches again"
 
 
 def test_a_component_library_brings_its_own_packages_alone(system):
@@ -106,10 +107,10 @@ def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
     code, lines, said = asked(system, "setup", "sdf")
     assert code == 0
     assert lines[-1] == "cmake --build build --target insonify_component_meshes"
-    assert "scripts/setup: sdf cannot be built on this system, see above; it is left out" in said
+    assert "scripts/setup: sdf cannot be built on this system, see above; it is omitted" in said
     assert installed(lines) == [packages("components/meshes")]
     for name in packages("components/sdf"):
-        assert f"this system has no package {name}; what of components/sdf needs it is left out" in said
+        assert f"this system has no package {name}; the parts of components/sdf that need it are omitted" in said
 
 
 def test_without_a_package_of_the_core_it_ends_and_says_so(system):

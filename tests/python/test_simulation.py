@@ -1,4 +1,4 @@
-"""Stepping a deployment from Python, held against what the command makes of the same poses."""
+"""Stepping a deployment from Python, compared with the command at the same poses."""
 
 import subprocess
 import threading
@@ -146,7 +146,7 @@ def test_a_pose_that_cannot_be_is_an_error_and_the_next_is_good(minimal):
 
 
 def test_several_simulations_do_not_meet(deploy):
-    """Each on a thread of its own, with the poses of the others in between."""
+    """Each runs on its own thread, interleaved with the poses of the others."""
     poses = [insonify.Pose([0.2 * step, 0, 0]) for step in range(10)]
     alone = insonify.Simulation(deploy / "minimal.yml", seed=2)
     wanted = [alone.step(pose).bins.copy() for pose in poses]
@@ -165,7 +165,7 @@ def test_several_simulations_do_not_meet(deploy):
 
 
 def test_others_run_while_a_step_renders(deploy):
-    """A thread of Python's goes on during a step: the lock of the interpreter is free for most of it."""
+    """Another Python thread runs during a step: the lock of the interpreter is free for most of it."""
     simulation = insonify.Simulation(
         deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 2048, "columns_per_beam": 16}}
     )
@@ -180,7 +180,7 @@ def test_others_run_while_a_step_renders(deploy):
     thread = threading.Thread(target=watch)
     thread.start()
     gaps = []
-    for step in range(1, 6):  # one of them, on a machine that does other things as well
+    for step in range(1, 6):  # only one, because the machine may be busy
         begin = time.perf_counter()
         simulation.step(insonify.Pose([step, 0, 0]))
         end = time.perf_counter()

@@ -1,4 +1,4 @@
-"""The site of the project's pages, built as a user builds it."""
+"""The site of the project's pages, built like a user would."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""USD to glTF, held against what `insonify scene` reads of the result."""
+"""USD to glTF, compared with the output of `insonify scene`."""
 
 import json
 import subprocess
@@ -14,7 +14,7 @@ HEAD = '#usda 1.0\n(\n    metersPerUnit = {metres}\n    upAxis = "{up}"\n)\n'
 
 
 def converted(folder, body, metres=1, up="Z", name="scene.usda"):
-    """The script's outcome, and what the scene holds."""
+    """Returns the script's outcome, and the content of the scene."""
     (folder / name).write_text(HEAD.format(metres=metres, up=up) + body)
     return run(folder, name)
 
@@ -64,7 +64,8 @@ def test_units_axes_and_transforms_are_those_of_the_world(tmp_path):
     _, scene = converted(tmp_path, body, metres=0.01)
     assert box_of(objects(scene)["hull"]) == [[4.5, -3, 0.5], [5.5, -1, 1.5]]  # two metres along y, once turned
     _, scene = converted(tmp_path, body, metres=0.01, up="Y")
-    # In a world whose y is up, the file's (x, y, z) is (x, -z, y): it is 2 m below, and turned about what looks back.
+    # In a world with y up, the file's (x, y, z) is (x, -z, y): it is 2 m below, and turned about the axis that points
+    # back.
     assert box_of(objects(scene)["hull"]) == [[4.5, -1.5, -3], [5.5, -0.5, -1]]
 
 

@@ -1,4 +1,4 @@
-"""Sea floors and things on them, as `insonify scene make` writes them."""
+"""Sea floors with things on them, made by `insonify scene make`."""
 
 import itertools
 import json
@@ -23,7 +23,7 @@ def is_number(parameter):
     return " to " in parameter["may_be"] and "[" not in parameter["may_be"]
 
 
-# What a random value of these would make of no use here: too many triangles, or too large for a floor of 60 m.
+# Parameters without random values: they would give too many triangles, or sizes too large for a floor of 60 m.
 KEPT = {"line_m", "height_m", "count", "heading_deg", "length_m", "tilt_deg", "freeboard_m"}
 
 
@@ -44,7 +44,7 @@ def random_values(rng, thing):
 
 @pytest.fixture(scope="module")
 def one_of_each(tmp_path_factory):
-    """Every thing as it is, and with random values."""
+    """Every thing with default and with random values."""
     rng, scenes = np.random.default_rng(5), []
     for number in range(3):
         entries = [{"thing": name} | (random_values(rng, thing) if number else {}) for name, thing in THINGS.items()]

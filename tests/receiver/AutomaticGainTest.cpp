@@ -10,7 +10,7 @@
 namespace insonify::receiver {
 namespace {
 
-/** Three beams of these intensities, whose mean is theirs. */
+/** Returns three beams with these intensities as their mean. */
 types::Sonar beamsOf(const std::vector<float>& bins) {
     types::Sonar ping = test::pingOf(3, static_cast<uint32_t>(bins.size()));
     for (size_t i = 0; i < ping.bins.size(); ++i)
@@ -35,7 +35,7 @@ double levelOf(const std::vector<float>& bins, size_t count, size_t bin) {
     return static_cast<double>(bins[count + bin]);  // of the beam in the middle
 }
 
-TEST(AutomaticGainTest, ASteadyLevelComesOutAtTheTarget) {
+TEST(AutomaticGainTest, ASteadyLevelReachesTheTarget) {
     for (const float level : {1e-6f, 1e-2f, 1.0f, 1e5f}) {
         const std::vector<float> bins = heldBins(following(), beamsOf(std::vector<float>(200, level)));
         for (size_t bin = 0; bin < 200; ++bin) EXPECT_NEAR(levelOf(bins, 200, bin), -20, 1e-3) << level;
@@ -58,7 +58,7 @@ TEST(AutomaticGainTest, AJumpIsFollowedInTheTimesOfAttackAndRelease) {
     }
 }
 
-TEST(AutomaticGainTest, ItsGainIsBoundedAndEmptyPingsStayEmpty) {
+TEST(AutomaticGainTest, TheGainIsBoundedAndEmptyPingsStayEmpty) {
     ReceiverConfig config = following(Output::Intensity);
     config.automatic_gain->max_db = 10;
     for (const float bin : heldBins(config, beamsOf(std::vector<float>(50, 1e-9f)))) EXPECT_LE(bin, 1.6e-8f);
@@ -72,7 +72,7 @@ TEST(AutomaticGainTest, ItsGainIsBoundedAndEmptyPingsStayEmpty) {
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_TRUE(i % 50 == 7 || std::isfinite(bins[i])) << i;
 }
 
-TEST(AutomaticGainTest, TheSamePingGetsTheSameGainWhateverCameBefore) {
+TEST(AutomaticGainTest, TheGainOfAPingDoesNotDependOnEarlierPings) {
     Receiver receiver(following());
     types::Sonar first, between, again;
     receiver.receive(beamsOf(std::vector<float>(100, 3)), first);
@@ -81,14 +81,14 @@ TEST(AutomaticGainTest, TheSamePingGetsTheSameGainWhateverCameBefore) {
     EXPECT_EQ(first.bins, again.bins);
 }
 
-TEST(AutomaticGainTest, CodesComeOutAtTheTargetBelowFullScale) {
+TEST(AutomaticGainTest, CodesReachTheTargetBelowFullScale) {
     ReceiverConfig config = following(Output::Code);
     config.code = CodeConfig{.bits = 16, .law = CodeLaw::Log, .full_scale_db = -10, .dynamic_range_db = 60};
     const std::vector<float> bins = heldBins(config, beamsOf(std::vector<float>(40, 7e-5f)));
     EXPECT_NEAR(levelOf(bins, 40, 20), 65535 * (1 - 10.0 / 60), 2);
 }
 
-TEST(AutomaticGainTest, NothingExceedsTheSaturation) {
+TEST(AutomaticGainTest, NoBinExceedsTheSaturation) {
     const types::Sonar ping = beamsOf({1e-6f, 1e-2f, 1, 1e3f});
     ReceiverConfig config;
     config.saturation_db = -10;
@@ -102,11 +102,11 @@ TEST(AutomaticGainTest, NothingExceedsTheSaturation) {
         EXPECT_NEAR(bins[i], std::min(-10.0, 3 + 10 * std::log10(static_cast<double>(ping.bins[i]))), 1e-3);
     config.output = Output::Code;
     config.code = CodeConfig{.bits = 8, .law = CodeLaw::Linear, .full_scale_db = 0};
-    EXPECT_EQ(heldBins(config, ping)[3], std::round(0.1f * 255)) << "below the largest code";
+    EXPECT_EQ(heldBins(config, ping)[3], std::round(0.1f * 255)) << "below the max code";
     EXPECT_FALSE(Receiver(config).isNeutral());
 }
 
-TEST(AutomaticGainTest, ABrightnessRefusesBoth) {
+TEST(AutomaticGainTest, BrightnessExcludesAutomaticGainAndSaturation) {
     ReceiverConfig config;
     config.brightness.emplace();
     config.automatic_gain.emplace();

@@ -1,4 +1,4 @@
-// Noise before the receiver: it grows with the gain, and the other way round is told as an error.
+// Noise before the receiver grows with the gain; noise after the receiver is an error.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace insonify::receiver {
 namespace {
 
-constexpr double level_db = -90;  ///< Of the sea.
+constexpr double level_db = -90;  ///< Level of the noise of the sea.
 constexpr uint32_t bins = 400;
 
 ReceiverConfig amplifying() {
@@ -29,8 +29,8 @@ noise::NoiseConfig sea() {
     return config;
 }
 
-/** Largest distance between the mean level of the noise in 20 bins side by side, in all beams, and the sea's plus the
- *  gain there [dB]. */
+/** Returns the max difference between the mean level of the noise in 20 adjacent bins of all beams, and the level of
+ *  the sea plus the gain of these bins [dB]. */
 double offTheLaw(const types::Sonar& ping) {
     double worst = 0;
     for (uint32_t from = 20; from + 20 <= bins; from += 20) {

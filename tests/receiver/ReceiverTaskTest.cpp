@@ -14,13 +14,13 @@ protected:
     ReceiverTaskTest() : TaskBench(&ReceiverTask::intensity, &ReceiverTask::ping) {}
 };
 
-TEST_F(ReceiverTaskTest, WithNothingToDoThePingItselfIsPassedOn) {
+TEST_F(ReceiverTaskTest, PassesOnThePingItselfWithoutConfiguration) {
     startWith({});
     const types::SonarPtr ping = test::shared(test::pingOf(2, 10));
     EXPECT_EQ(answerTo(ping), ping);
 }
 
-TEST_F(ReceiverTaskTest, ThePingThatCameInIsNotChangedAndItsTimeIsKept) {
+TEST_F(ReceiverTaskTest, KeepsTheInputPingUnchangedAndItsTime) {
     ReceiverConfig config;
     config.gain_db = 10;
     startWith(config);
@@ -31,7 +31,7 @@ TEST_F(ReceiverTaskTest, ThePingThatCameInIsNotChangedAndItsTimeIsKept) {
     EXPECT_EQ(ping->bins, std::vector<float>(20, 1));
 }
 
-TEST_F(ReceiverTaskTest, TheGainThatADriverAsksForHoldsFromTheNextPingOn) {
+TEST_F(ReceiverTaskTest, TheGainOfADriverAppliesFromTheNextPing) {
     test::Writer<types::SonarSettings> driver{"driver"};
     driver.port.connectTo(task_.settings, {});
     startWith({});
@@ -44,11 +44,11 @@ TEST_F(ReceiverTaskTest, TheGainThatADriverAsksForHoldsFromTheNextPingOn) {
     ASSERT_TRUE(louder);
     EXPECT_EQ(louder->bins, std::vector<float>(20, 10));
     driver.port.write({});
-    EXPECT_EQ(answerTo(ping)->bins, louder->bins) << "who asks for none leaves it";
+    EXPECT_EQ(answerTo(ping)->bins, louder->bins) << "NaN leaves the gain unchanged";
     EXPECT_EQ(task_.config->gain_db, 10);
 }
 
-TEST_F(ReceiverTaskTest, DecibelsAreRefusedWithWhatToConnectAndTheNextIntensitiesAreTaken) {
+TEST_F(ReceiverTaskTest, RejectsDecibelsWithARemedyAndRecoversWithIntensities) {
     startWith({});
     EXPECT_FALSE(answerTo(test::shared(test::pingOf(2, 10, -60))));
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
@@ -58,7 +58,7 @@ TEST_F(ReceiverTaskTest, DecibelsAreRefusedWithWhatToConnectAndTheNextIntensitie
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 
-TEST_F(ReceiverTaskTest, APingThatIsShorterThanItSaysIsRefused) {
+TEST_F(ReceiverTaskTest, RejectsAPingShorterThanItsCounts) {
     ReceiverConfig config;
     config.gain_db = 10;
     startWith(config);
@@ -68,13 +68,13 @@ TEST_F(ReceiverTaskTest, APingThatIsShorterThanItSaysIsRefused) {
     EXPECT_THAT(task_.lastError(), HasSubstr("more or fewer bins than the counts say"));
 }
 
-TEST_F(ReceiverTaskTest, AGainThatIsSetWhileItRunsHoldsFromTheNextPingOn) {
+TEST_F(ReceiverTaskTest, AChangedGainAppliesFromTheNextPing) {
     startWith({});
     task_.operation("setGain_db")->callText({"20"});
     EXPECT_EQ(answerTo(test::shared(test::pingOf(1, 3)))->bins, std::vector<float>(3, 100));
 }
 
-TEST_F(ReceiverTaskTest, WhereTheGainIsClampedWithinThePingIsTold) {
+TEST_F(ReceiverTaskTest, ReportsTheRangeOfTheGainsClamp) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 20, .db_per_m = 0, .max_db = 20};
     startWith(config);
@@ -94,7 +94,8 @@ protected:
         config_.output = Output::Code;
         config_.code = CodeConfig{.bits = 8, .law = CodeLaw::Log, .full_scale_db = -20, .dynamic_range_db = 60};
     }
-    /** Pings of 200 bins: so many of them of an intensity, the others of 1e-5, half way down the codes. */
+    /** Sends pings of 200 bins: a number of bins with an intensity, the others with 1e-5, in the middle of the
+     *  codes. */
     void receive(int bins, float intensity, int pings = 1) {
         for (int i = 0; i < pings; ++i) {
             types::Sonar ping = test::pingOf(2, 100, 1e-5f);
@@ -107,7 +108,7 @@ protected:
     std::vector<std::string> told_;
 };
 
-TEST_F(FlawTest, CodesThatSaturateAreToldOfOnceWithTheirShareAndAgainOnceTheyHaveBeenGood) {
+TEST_F(FlawTest, WarnsOnceAboutSaturatedCodesAndAgainAfterGoodPings) {
     startWith(config_);
     receive(20, 1);
     EXPECT_TRUE(told_.empty()) << "a tenth";
@@ -121,7 +122,7 @@ TEST_F(FlawTest, CodesThatSaturateAreToldOfOnceWithTheirShareAndAgainOnceTheyHav
     EXPECT_EQ(told_.size(), 2u);
 }
 
-TEST_F(FlawTest, CodesThatAreAllZeroAreToldOfWithHowFarTheLoudestIsBelow) {
+TEST_F(FlawTest, WarnsAboutCodesOfZeroWithTheDistanceOfTheLoudestBin) {
     config_.gain_db = -50;
     startWith(config_);
     receive(1, 1e-4f, 3);
@@ -131,7 +132,7 @@ TEST_F(FlawTest, CodesThatAreAllZeroAreToldOfWithHowFarTheLoudestIsBelow) {
               "dB below it; raise gain_db, or lower full_scale_db");
 }
 
-TEST_F(FlawTest, LinearAndRootCodesBeginWhereTheirLawSays) {
+TEST_F(FlawTest, LinearAndRootCodesBeginAtTheLevelOfTheirLaw) {
     for (const auto& [law, begin] :
          {std::pair{CodeLaw::Linear, "codes begin 27.1 dB"}, {CodeLaw::Sqrt, "codes begin 54.2 dB"}}) {
         config_.code->law = law;
@@ -152,7 +153,7 @@ TEST_F(FlawTest, AnEmptyPingHasCodesOfZeroAndNoFlaw) {
     EXPECT_TRUE(told_.empty());
 }
 
-TEST_F(FlawTest, ABlankingBeyondTheRangeIsToldOfWhateverTheOutput) {
+TEST_F(FlawTest, WarnsAboutBlankingBeyondTheRangeWithAnyOutput) {
     config_.output = Output::Intensity;
     config_.code.reset();
     config_.blanking = BlankingConfig{12};
@@ -162,7 +163,7 @@ TEST_F(FlawTest, ABlankingBeyondTheRangeIsToldOfWhateverTheOutput) {
     EXPECT_EQ(told_[0], "task: silences everything: blanking.range_min is 12 m, the range ends at 10 m");
 }
 
-TEST_F(FlawTest, ARingDownIsSilencedByBlanking) {
+TEST_F(FlawTest, BlankingSilencesARingDown) {
     config_ = {};
     config_.blanking = BlankingConfig{0.5};
     startWith(config_);

@@ -22,7 +22,7 @@ types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensit
     return ping;
 }
 
-/** One beam of these intensities. */
+/** Returns one beam with these intensities. */
 types::Sonar beamOf(const std::vector<float>& bins) {
     types::Sonar ping = test::pingOf(1, static_cast<uint32_t>(bins.size()));
     ping.bins = bins;
@@ -73,7 +73,7 @@ TEST(ReceiverTest, TheGainOfABinIsThatOfItsMiddle) {
     }
 }
 
-TEST(ReceiverTest, TheGainIsClampedWhereItReachesItsMost) {
+TEST(ReceiverTest, TheGainIsClampedAtItsMax) {
     const TvgConfig tvg{.log_coefficient = 40, .db_per_m = 0.5, .max_db = 100};
     EXPECT_DOUBLE_EQ(tvgDb(tvg, 1), 1);
     EXPECT_DOUBLE_EQ(tvgDb(tvg, 10), 50);
@@ -83,7 +83,7 @@ TEST(ReceiverTest, TheGainIsClampedWhereItReachesItsMost) {
     EXPECT_FALSE(clampRange(tvg, 20));
 }
 
-TEST(ReceiverTest, NothingOverflowsAndNoEchoStaysNone) {
+TEST(ReceiverTest, NoBinOverflowsAndNoEchoStaysZero) {
     ReceiverConfig config;
     config.tvg = TvgConfig{.log_coefficient = 0, .db_per_m = 1000, .max_db = 1000};
     const auto bins = received(config, beamOf({0, 1e-30f, 1, nan, std::numeric_limits<float>::infinity()})).bins;
@@ -94,7 +94,7 @@ TEST(ReceiverTest, NothingOverflowsAndNoEchoStaysNone) {
     EXPECT_TRUE(std::isfinite(bins[1]));
 }
 
-TEST(ReceiverTest, WhatIsNearerThanTheBlankingIsSilentInEveryOutput) {
+TEST(ReceiverTest, BinsNearerThanTheBlankingAreSilentInEveryOutput) {
     for (const auto& [output, silence] : {std::pair(Output::Intensity, 0.0f),
                                           {Output::Amplitude, 0.0f},
                                           {Output::LevelDb, -3000.0f},
@@ -107,7 +107,7 @@ TEST(ReceiverTest, WhatIsNearerThanTheBlankingIsSilentInEveryOutput) {
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(bins[k], silence) << "the bin of 0.3 to 0.4 m begins before";
         for (size_t k = 4; k < 10; ++k) EXPECT_NE(bins[10 + k], silence);
         config.blanking->range_min = 0.3;
-        EXPECT_NE(received(config, ping).bins[3], silence) << "a bin that begins there is heard";
+        EXPECT_NE(received(config, ping).bins[3], silence) << "a bin that begins at range_min is not silent";
     }
 }
 
@@ -169,7 +169,7 @@ TEST(ReceiverTest, GammaIsThePowerOfACode) {
               received(coding({.law = CodeLaw::Sqrt}), beamOf(intensities)).bins);
 }
 
-TEST(ReceiverTest, FullScaleIsTheLevelOfTheLargestCodeWithAllGain) {
+TEST(ReceiverTest, FullScaleIsTheLevelOfTheMaxCodeWithAllGain) {
     for (const CodeLaw law : {CodeLaw::Linear, CodeLaw::Sqrt, CodeLaw::Log}) {
         ReceiverConfig config = coding({.law = law, .full_scale_db = -20});
         config.gain_db = 10;
@@ -179,7 +179,7 @@ TEST(ReceiverTest, FullScaleIsTheLevelOfTheLargestCodeWithAllGain) {
     }
 }
 
-TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
+TEST(ReceiverTest, RejectsContradictionsAndReportsUnusedConfiguration) {
     types::Diagnostics diagnostics;
     CodeConfig({.law = CodeLaw::Log, .gamma = 0.5}).check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
@@ -188,11 +188,11 @@ TEST(ReceiverTest, WhatMakesNoSenseIsRefusedAndWhatHasNoUseTold) {
     config.brightness.emplace();
     config.tvg.emplace();
     EXPECT_THAT(diagnosticsOf(config),
-                testing::ElementsAre("brightness: is given with tvg; it makes up for spreading itself",
+                testing::ElementsAre("brightness: is given with tvg; it compensates for spreading itself",
                                      "brightness: is given with another output; it scales output: intensity"));
     config = {};
     config.code.emplace();
-    EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, and used by output: code alone"));
+    EXPECT_THAT(Receiver(config).notices(), testing::ElementsAre("code is configured, but only output: code uses it"));
 }
 
 TEST(ReceiverTest, ABrightnessOfOneHalfShowsACellOfMediumSandFaceOnAsOneAtEveryRange) {
@@ -235,7 +235,7 @@ TEST(ReceiverTest, APingOfAnotherShapeOrRangeHasItsOwnGain) {
     EXPECT_EQ(ping.bins, before);
 }
 
-TEST(ReceiverTest, EverythingButTheBinsIsKept) {
+TEST(ReceiverTest, KeepsEverythingExceptTheBins) {
     types::Sonar ping = test::pingOf(2, 3);
     ping.timestamps = {{1}, {2}};
     ping.beam_height = types::Angle{0.2};

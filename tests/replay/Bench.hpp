@@ -1,5 +1,5 @@
 #pragma once
-// A log and a task that replays it, for the tests of the task.
+// A log and a task that replays it.
 #include <gtest/gtest.h>
 
 #include "components/framework/Activity.hpp"

@@ -14,7 +14,7 @@ TEST(ReplayClockTest, PaceScalesTheWallClock) {
     bench.start("vehicle.pose", poses);
     EXPECT_TRUE(bench.task.activity().settings().periodic()) << "nothing else would run it";
     bench.updateAt(1'000'004);
-    EXPECT_THAT(stampsIn(poses), ElementsAre(10)) << "8 us of the log have gone by";
+    EXPECT_THAT(stampsIn(poses), ElementsAre(10)) << "8 us of the log have passed";
     bench.updateAt(1'000'005);
     EXPECT_THAT(stampsIn(poses), ElementsAre(20));
     bench.updateAt(1'000'010);
@@ -47,7 +47,7 @@ TEST(ReplayClockTest, InRealtimeAllTasksReadTheLogsTime) {
     EXPECT_EQ(now(), types::Time{18});
 }
 
-TEST(ReplayClockTest, WithoutPaceTheLogsTimeIsThatOfTheInstantThatIsPlayed) {
+TEST(ReplayClockTest, WithoutPaceTheLogsTimeIsThatOfThePlayedInstant) {
     Bench bench(false, {.file = {}, .pace = 0});
     test::Reader<types::Pose> poses;
     bench.start("vehicle.pose", poses);
@@ -57,7 +57,7 @@ TEST(ReplayClockTest, WithoutPaceTheLogsTimeIsThatOfTheInstantThatIsPlayed) {
     }
 }
 
-TEST(ReplayClockTest, ItStartsWhereItIsToldTo) {
+TEST(ReplayClockTest, StartsAtTheGivenTime) {
     Bench bench(true, {.file = {}, .from = 10e-6});
     test::Reader<types::Pose> poses;
     test::Reader<types::SonarPtr> pings;
@@ -66,10 +66,10 @@ TEST(ReplayClockTest, ItStartsWhereItIsToldTo) {
     EXPECT_EQ(bench.task.nextTime(), types::Time{20});
     bench.updateAt(100);
     EXPECT_THAT(stampsIn(poses), ElementsAre(20, 30));
-    EXPECT_THAT(stampsIn(pings), ElementsAre(10, 20)) << "in the file they come after the pose at 20";
+    EXPECT_THAT(stampsIn(pings), ElementsAre(10, 20)) << "in the file they are after the pose at 20";
 }
 
-TEST(ReplayClockTest, AStartBeyondTheEndIsSeenBeforeAnythingStarts) {
+TEST(ReplayClockTest, ReportsAStartAfterTheEndBeforeAnythingStarts) {
     Bench bench(true, {.file = {}, .from = 1});
     types::Diagnostics diagnostics;
     bench.task.check(diagnostics);
@@ -77,7 +77,7 @@ TEST(ReplayClockTest, AStartBeyondTheEndIsSeenBeforeAnythingStarts) {
     EXPECT_EQ(diagnostics[0].path, "from");
 }
 
-TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {
+TEST(ReplayClockTest, InALoopStampsContinueAndTimeNeverRunsBackwards) {
     Bench bench(true, {.file = {}, .loop = true});
     test::Reader<types::Pose> poses;
     bench.start("vehicle.pose", poses);
@@ -98,7 +98,7 @@ TEST(ReplayClockTest, InALoopStampsGoOnAndTimeNeverGoesBack) {
     EXPECT_THAT(places, ElementsAre(10, 20, 30, 10, 20, 30, 10));
 }
 
-TEST(ReplayClockTest, SeekGoesOnElsewhereInTheLogWhileTimeGoesOn) {
+TEST(ReplayClockTest, SeekJumpsInTheLogWhileTimeContinues) {
     Bench bench;
     test::Reader<types::Pose> poses;
     bench.start("vehicle.pose", poses);
@@ -122,10 +122,10 @@ TEST(ReplayClockTest, ASeekOutsideOfTheLogIsRefused) {
     bench.updateAt(10);
     for (const double place : {-1.0, 22e-6, 1e300, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(bench.task.seek(place), std::runtime_error) << place;
-    EXPECT_EQ(bench.task.nextTime(), types::Time{20}) << "it goes on where it was";
+    EXPECT_EQ(bench.task.nextTime(), types::Time{20}) << "it continues at its place";
 }
 
-TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
+TEST(ReplayClockTest, ASeekAfterAPauseContinuesFromNowWithoutABurst) {
     Bench bench(false, {.file = {}, .pace = 2});
     test::Reader<types::Pose> poses;
     bench.clock = {1'000'000};
@@ -138,10 +138,10 @@ TEST(ReplayClockTest, AfterAPauseASeekInRealtimeGoesOnFromNowWithoutABurst) {
     EXPECT_THAT(stampsIn(poses), ElementsAre(2010));
     bench.task.seek(0);
     bench.updateAt(1'001'005);
-    EXPECT_THAT(stampsIn(poses), ElementsAre(2020)) << "the pause counts for no gap";
+    EXPECT_THAT(stampsIn(poses), ElementsAre(2020)) << "the pause is not part of a gap";
 }
 
-TEST(ReplayClockTest, WhilePausedTheLogsTimeStandsStillAndGoesOnStepByStep) {
+TEST(ReplayClockTest, PausedLogTimeAdvancesByStep) {
     for (const double pace : {0.0, 2.0}) {
         Bench bench(false, {.file = {}, .pace = pace});
         test::Reader<types::Pose> poses;

@@ -1,4 +1,4 @@
-// A log replayed in a deployment and logged again.
+// A log that is replayed in a deployment and logged again.
 #include <gmock/gmock.h>
 
 #include "components/framework/Deployment.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 const std::atomic<bool> never{false};
 
-/** Poses each 0.1 s from 100 s on, and a ping for each, a little later in the file. */
+/** Writes poses every 0.1 s from 100 s on, and a ping for each, a little later in the file. */
 void writeLog(const std::filesystem::path& path) {
     log::pocolog::Writer log(path);
     const size_t vehicle = log.addStream<types::Pose>("vehicle.pose");
@@ -50,7 +50,7 @@ connections:
   - {from: replay.sonar.ping, to: log.ping, policy: {type: buffer, size: 8}}
 )";
 
-TEST(ReplayDeploymentTest, AReplayedLogIsTheSameLogAgainAndTheRunEndsWithIt) {
+TEST(ReplayDeploymentTest, AReplayedLogIsTheSameAndEndsTheRun) {
     Folder folder;
     writeLog(folder / "a.0.log");
     const framework::RunResult result = runIn(folder, again);
@@ -68,7 +68,7 @@ TEST(ReplayDeploymentTest, AReplayedLogIsTheSameLogAgainAndTheRunEndsWithIt) {
         "vehicle.pose", [&](const types::Pose& pose, const log::SampleRef& at) { EXPECT_EQ(at.received, pose.time); });
 }
 
-TEST(ReplayDeploymentTest, OlderBeamsAndScansComeAsPingsUnderTheirNamesAndModels) {
+TEST(ReplayDeploymentTest, OlderBeamsAndScansBecomePingsWithTheirNamesAndModels) {
     Folder folder;
     {
         log::pocolog::Writer log(folder / "a.0.log");
@@ -112,7 +112,7 @@ TEST(ReplayDeploymentTest, TwoReplaysGiveTheSameLogBitForBit) {
     EXPECT_EQ(bytesOf(folder / "b.0.log"), first);
 }
 
-TEST(ReplayDeploymentTest, ALogThatIsNotThereIsTheOnlyDiagnostic) {
+TEST(ReplayDeploymentTest, AMissingLogIsTheOnlyDiagnostic) {
     Folder folder;
     try {
         runIn(folder, again);

@@ -10,7 +10,7 @@ using framework::TaskState;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(ReplayTaskTest, WhatWasLoggedComesOutInTheOrderOfTheFileWhenItsTimeHasCome) {
+TEST(ReplayTaskTest, PublishesSamplesInFileOrderWhenDue) {
     Bench bench;
     test::Reader<types::Pose> poses;
     test::Reader<types::SonarPtr> pings;
@@ -21,7 +21,7 @@ TEST(ReplayTaskTest, WhatWasLoggedComesOutInTheOrderOfTheFileWhenItsTimeHasCome)
     EXPECT_THAT(stampsIn(poses), ElementsAre());
     bench.updateAt(10);
     EXPECT_THAT(stampsIn(poses), ElementsAre(10));
-    EXPECT_THAT(stampsIn(pings), ElementsAre()) << "in the file it comes after the pose at 20";
+    EXPECT_THAT(stampsIn(pings), ElementsAre()) << "in the file it is after the pose at 20";
     EXPECT_EQ(bench.task.nextTime(), types::Time{20});
     bench.updateAt(20);
     EXPECT_THAT(stampsIn(poses), ElementsAre(20));
@@ -46,9 +46,9 @@ TEST(ReplayTaskTest, SamplesAreTheRecordedOnes) {
     EXPECT_EQ(second->bins, std::vector<float>{20});
 }
 
-TEST(ReplayTaskTest, ItTellsWhereItIsInTheLog) {
+TEST(ReplayTaskTest, ReportsItsPositionInTheLog) {
     Bench bench;
-    EXPECT_FALSE(bench.task.playback()) << "nothing is open";
+    EXPECT_FALSE(bench.task.playback()) << "no log is open";
     test::Reader<types::Pose> poses;
     bench.start("vehicle.pose", poses);
     const auto at = [&] { return std::lround(bench.task.playback()->at_s * 1e6); };
@@ -57,12 +57,12 @@ TEST(ReplayTaskTest, ItTellsWhereItIsInTheLog) {
     bench.updateAt(20);
     EXPECT_EQ(at(), 10);
     bench.task.seek(0);
-    EXPECT_EQ(at(), 0) << "it goes on from there";
+    EXPECT_EQ(at(), 0) << "it continues from there";
     bench.updateAt(1000);
-    EXPECT_EQ(at(), 20) << "of the log, whose stamps were moved by the jump";
+    EXPECT_EQ(at(), 20) << "in the log, whose stamps were shifted by the jump";
 }
 
-TEST(ReplayTaskTest, StartedAgainItPlaysFromTheStart) {
+TEST(ReplayTaskTest, ARestartPlaysFromTheStart) {
     Bench bench;
     test::Reader<types::Pose> poses;
     bench.connect("vehicle.pose", poses);
@@ -75,7 +75,7 @@ TEST(ReplayTaskTest, StartedAgainItPlaysFromTheStart) {
     }
 }
 
-TEST(ReplayTaskTest, ALogThatWasCutOffPlaysUpToItsLastWholeBlockAndSaysSo) {
+TEST(ReplayTaskTest, ATruncatedLogPlaysUpToItsLastCompleteBlockWithANotice) {
     Bench bench;
     std::filesystem::resize_file(bench.folder / "x.0.log", std::filesystem::file_size(bench.folder / "x.0.log") - 1);
     test::Reader<types::Pose> poses;
@@ -99,17 +99,17 @@ TEST(ReplayTaskTest, StreamsThatAreNotReplayedAreListed) {
     EXPECT_THAT(bench.task.notices(), ElementsAre("stream sonar.ping (/base/samples/Sonar) is not replayed"));
 }
 
-TEST(ReplayTaskTest, AStreamThatIsNotThereIsAnsweredWithThoseThatAre) {
+TEST(ReplayTaskTest, AMissingStreamIsReportedWithTheExistingStreams) {
     Bench bench;
     try {
         bench.task.makeOutput("sonar.pong");
-        FAIL() << "found what is not there";
+        FAIL() << "found a missing stream";
     } catch (const types::ConfigError& error) {
         EXPECT_THAT(error.what(), HasSubstr("vehicle.pose, sonar.ping"));
     }
 }
 
-TEST(ReplayTaskTest, AFileThatIsNoLogIsSeenBeforeAnythingStarts) {
+TEST(ReplayTaskTest, ReportsAFileThatIsNotALogBeforeAnythingStarts) {
     Bench bench;
     writeBytes(bench.folder / "x.0.log", std::vector<char>(100, 'g'));
     types::Diagnostics diagnostics;

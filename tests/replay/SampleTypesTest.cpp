@@ -1,5 +1,4 @@
-// Every type of types::SampleTypes, through a log of each format, from one to the other, through the exports and
-// replayed.
+// Every type of types::SampleTypes in a log of each format, converted from one to the other, exported and replayed.
 #include <gmock/gmock.h>
 
 #include "components/log/Check.hpp"
@@ -199,14 +198,14 @@ std::vector<char> marshalled(const T& sample) {
 
 constexpr const char* stream = "task.port";
 
-/** Which gives back every bit of an orientation: as Rock has it. */
+/** This frame keeps every bit of an orientation. */
 log::McapConfig asItIs() {
     log::McapConfig config;
     config.world_frame = ros::WorldFrame::AsIs;
     return config;
 }
 
-/** The one sample of a log, which must be valid. */
+/** Returns the only sample of a log, which must be valid. */
 template <class T>
 T readOnly(const std::filesystem::path& path) {
     const log::Verdict verdict = log::check(path);
@@ -218,7 +217,7 @@ T readOnly(const std::filesystem::path& path) {
     return sample;
 }
 
-/** What a task that replays the log writes. */
+/** Returns the samples of a task that replays the log. */
 template <class T>
 T replayed(const Folder& folder, const std::string& file) {
     ReplayTask task("replay");
@@ -240,7 +239,7 @@ T replayed(const Folder& folder, const std::string& file) {
 template <class T>
 class SampleTypesTest : public testing::Test {
 protected:
-    /** What MCAP files and replays give back: Rock's older sonar samples become pings. */
+    /** Returns the sample as MCAP files and replays return it: Rock's older sonar samples become pings. */
     using Read = typename ros::MessagesOf<T>::read_as;
     static Read asRead(const T& sample) {
         if constexpr (std::is_same_v<T, Read>)

@@ -13,7 +13,7 @@ std::vector<char> bytesOf(const T& message) {
     return bytes;
 }
 
-/** "Time(1 0)" in hexadecimal, without the header. */
+/** Returns a message such as "Time(1 0)" in hexadecimal, without the header. */
 template <class T>
 std::string bodyOf(const T& message) {
     std::string text;
@@ -47,11 +47,11 @@ PointCloud2 smallCloud() {
     return cloud;
 }
 
-TEST(CdrTest, AMessageBeginsWithTheNameOfItsEncoding) {
+TEST(CdrTest, AMessageBeginsWithItsEncoding) {
     EXPECT_THAT(bytesOf(Time{1, 2}), testing::ElementsAre(0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0));
 }
 
-TEST(CdrTest, ATextIsItsLengthWithTheFinalNulAndItsCharacters) {
+TEST(CdrTest, EncodesATextAsLengthWithFinalNulAndCharacters) {
     EXPECT_EQ(bodyOf(Header{{-1, 0x11223344}, "ab"}),
               "ffffffff44332211"
               "03000000"
@@ -62,8 +62,8 @@ TEST(CdrTest, ATextIsItsLengthWithTheFinalNulAndItsCharacters) {
               "00");
 }
 
-TEST(CdrTest, NumbersAreAlignedFromTheStartOfTheBody) {
-    // header 8 + 4 + 2 bytes, 2 of padding to 16, where the first double stands
+TEST(CdrTest, AlignsNumbersFromTheStartOfTheBody) {
+    // header 8 + 4 + 2 bytes, padded by 2 to 16, then the first double
     PoseStamped pose;
     pose.header.frame_id = "w";
     pose.pose.position.x = 1;
@@ -80,7 +80,7 @@ TEST(CdrTest, NumbersAreAlignedFromTheStartOfTheBody) {
     EXPECT_EQ(bytesOf(pose).size(), 4u + 16 + 7 * 8);
 }
 
-TEST(CdrTest, AnEmptySequenceOfDoublesIsNotPadded) {
+TEST(CdrTest, DoesNotPadAnEmptySequenceOfDoubles) {
     ProjectedSonarImage image = smallImage();
     image.beam_directions.clear();
     image.ranges.clear();
@@ -97,7 +97,7 @@ TEST(CdrTest, AnEmptySequenceOfDoublesIsNotPadded) {
               "09");
 }
 
-TEST(CdrTest, TheElementsOfASequenceAreAlignedEach) {
+TEST(CdrTest, AlignsEachElementOfASequence) {
     EXPECT_EQ(bodyOf(smallCloud()).substr(2 * 24),
               "02000000"  // two fields
               "02000000"
@@ -135,7 +135,7 @@ void expectRoundTripAndNoTruncation(const T& message) {
     }
 }
 
-TEST(CdrTest, WhatIsEncodedIsDecodedAndCutOffAnywhereIsRefused) {
+TEST(CdrTest, DecodesWhatItEncodesAndRefusesTruncatedMessages) {
     Odometry odometry;
     odometry.header = {{5, 6}, "odom"};
     odometry.child_frame_id = "base_link";
@@ -166,7 +166,7 @@ TEST(CdrTest, WhatIsEncodedIsDecodedAndCutOffAnywhereIsRefused) {
     expectRoundTripAndNoTruncation(ranges);
 }
 
-TEST(CdrTest, ARandomByteNeverHarms) {
+TEST(CdrTest, RandomBytesDoNoHarm) {
     const std::vector<char> bytes = bytesOf(smallImage());
     size_t refused = 0;
     for (size_t at = 0; at < bytes.size(); ++at)
@@ -178,7 +178,7 @@ TEST(CdrTest, ARandomByteNeverHarms) {
     EXPECT_GT(refused, bytes.size() / 4);
 }
 
-TEST(CdrTest, ADiagnosticIsNamedWithItsPlace) {
+TEST(CdrTest, ReportsADiagnosticWithItsPlace) {
     std::vector<char> bytes = bytesOf(Header{{0, 0}, "ab"});
     EXPECT_EQ(diagnosticOf<Header>({0, 0, 0, 0}), "byte 0: encoding 0 is not read, only 1: plain CDR, little endian");
     bytes[12] = 100;
@@ -191,7 +191,7 @@ TEST(CdrTest, ADiagnosticIsNamedWithItsPlace) {
               "byte " + std::to_string(bytes.size() - 1) + ": a truth value is 3, not 0 or 1");
 }
 
-TEST(CdrTest, UpToThreeBytesOfPaddingMayFollow) {
+TEST(CdrTest, AcceptsUpToThreeBytesOfPadding) {
     std::vector<char> bytes = bytesOf(Time{1, 2});
     bytes.resize(bytes.size() + 3);
     EXPECT_EQ(diagnosticOf<Time>(bytes), "");

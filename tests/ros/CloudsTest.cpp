@@ -32,7 +32,7 @@ types::DepthMap smallMap() {
     return map;
 }
 
-TEST(CloudsTest, PointsStandInTheAxesOfTheWorldFrame) {
+TEST(CloudsTest, WritesPointsInTheAxesOfTheWorldFrame) {
     PointCloud2 message;
     convert(twoPoints(), WorldFrame::Enu, message);
     EXPECT_EQ(message.width, 2u);
@@ -43,7 +43,7 @@ TEST(CloudsTest, PointsStandInTheAxesOfTheWorldFrame) {
     EXPECT_THAT(numbersOf(message), testing::ElementsAre(3, -2, 5, 0.25f, -1, -0.5f, 6, 0.125f));
 }
 
-TEST(CloudsTest, PointsComeBackFromEveryFrame) {
+TEST(CloudsTest, RestoresPointsFromEveryFrame) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         PointCloud2 message;
         types::PointCloud back;
@@ -55,7 +55,7 @@ TEST(CloudsTest, PointsComeBackFromEveryFrame) {
     }
 }
 
-TEST(CloudsTest, ACloudOfOthersMayHaveDoublesAndNoIntensity) {
+TEST(CloudsTest, ReadsCloudsWithDoublesAndWithoutIntensity) {
     PointCloud2 message;
     message.fields = {
         {"x", 0, PointField::float64, 1}, {"y", 8, PointField::float64, 1}, {"z", 16, PointField::float64, 1}};
@@ -70,7 +70,7 @@ TEST(CloudsTest, ACloudOfOthersMayHaveDoublesAndNoIntensity) {
     EXPECT_TRUE(cloud.colors.empty());
 }
 
-TEST(CloudsTest, WhatIsNoCloudIsRefusedWithItsReason) {
+TEST(CloudsTest, RefusesInvalidCloudsWithAReason) {
     PointCloud2 message;
     types::PointCloud cloud;
     const auto reason = [&](const auto& spoil) -> std::string {
@@ -92,7 +92,7 @@ TEST(CloudsTest, WhatIsNoCloudIsRefusedWithItsReason) {
     EXPECT_EQ(reason([&] { message.is_bigendian = true; }), "big-endian points are not read");
 }
 
-TEST(CloudsTest, AMapOfDistancesIsAnOrderedCloudOfTheSonarAndComesBack) {
+TEST(CloudsTest, WritesAnOrderedCloudOfADistanceMapAndRestoresIt) {
     PointCloud2 message;
     convert(smallMap(), "sonar", message);
     EXPECT_EQ(message.height, 2u);
@@ -103,7 +103,7 @@ TEST(CloudsTest, AMapOfDistancesIsAnOrderedCloudOfTheSonarAndComesBack) {
     EXPECT_FLOAT_EQ(numbers[0], static_cast<float>(2 * std::cos(up) * std::cos(port)));
     EXPECT_FLOAT_EQ(numbers[1], static_cast<float>(2 * std::cos(up) * std::sin(port)));
     EXPECT_FLOAT_EQ(numbers[2], static_cast<float>(2 * std::sin(up)));
-    EXPECT_TRUE(std::isnan(numbers[7])) << "nothing is heard there";
+    EXPECT_TRUE(std::isnan(numbers[7])) << "there is no echo";
     EXPECT_LT(numbers[14 + 2], 0) << "the lower row";
     types::DepthMap back;
     convert(message, back);
@@ -123,7 +123,7 @@ TEST(CloudsTest, OnlyPolarMapsWithAllTheirAnglesBecomeClouds) {
         EXPECT_THROW(convert(map, "sonar", message), std::invalid_argument);
 }
 
-TEST(CloudsTest, ARangeThatIsNotKnownIsInfiniteInRos) {
+TEST(CloudsTest, AnUnknownRangeIsInfiniteInRos) {
     types::Range range;
     range.range_max = 30;
     Range message;

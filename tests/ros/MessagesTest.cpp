@@ -1,4 +1,4 @@
-// What the messages say of themselves, and their bytes, against the Python package rosbags.
+// Schemas and bytes of the messages, compared with the Python package rosbags.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -37,7 +37,7 @@ private:
     int count_ = 0;
 };
 
-TEST(MessagesTest, ASchemaIsTheMessageAndAllThatIsInIt) {
+TEST(MessagesTest, ASchemaContainsTheMessageAndAllNestedMessages) {
     const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
     EXPECT_EQ(schemaOf<PoseStamped>(), "std_msgs/Header header\ngeometry_msgs/Pose pose" + line +
                                            "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id" + line +

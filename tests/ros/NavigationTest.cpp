@@ -1,4 +1,4 @@
-// What navigation's sensors measure as messages, in the axes of each world.
+// Measurements of navigation sensors as messages, in the axes of each world.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double unknown = types::Pose::unknown;
 
-/** A unit that looks west, 90 degrees to port of north, at rest but for a turn to port. */
+/** A unit that looks west, 90 degrees to port of north, at rest except for a turn to port. */
 types::Imu smallImu() {
     types::Imu imu;
     imu.time = {2'000'001};
@@ -31,19 +31,19 @@ Imu imuOf(const Sample& sample, WorldFrame frame) {
     return message;
 }
 
-/** Turns of a unit by its message: where its x axis points in the message's world. */
+/** Returns the unit's x axis in the message's world. */
 glm::dvec3 ahead(const Imu& message) {
     const Quaternion& q = message.orientation;
     return glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(1, 0, 0);
 }
 
-TEST(NavigationTest, AnImuLooksTheSameWayInEveryWorld) {
+TEST(NavigationTest, AnImuHasTheSameAttitudeInEveryWorld) {
     EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::AsIs)), {0, 1, 0}), 1e-15);
     EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Enu)), {-1, 0, 0}), 1e-15);
     EXPECT_LT(glm::distance(ahead(imuOf(smallImu(), WorldFrame::Ned)), {0, -1, 0}), 1e-15);
 }
 
-TEST(NavigationTest, AnImuFeelsInTheAxesOfItsBody) {
+TEST(NavigationTest, AnImuMeasuresInTheAxesOfItsBody) {
     const Imu enu = imuOf(smallImu(), WorldFrame::Enu), ned = imuOf(smallImu(), WorldFrame::Ned);
     EXPECT_EQ(enu.header.frame_id, "imu");
     EXPECT_EQ(enu.header.stamp, (Time{2, 1000}));
@@ -55,7 +55,7 @@ TEST(NavigationTest, AnImuFeelsInTheAxesOfItsBody) {
     EXPECT_NEAR(enu.orientation_covariance[4], 0.02, 1e-15);
 }
 
-TEST(NavigationTest, AnImuComesBackInEveryWorld) {
+TEST(NavigationTest, RestoresAnImuFromEveryWorld) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const types::Imu imu = smallImu();
         types::Imu again;
@@ -84,7 +84,7 @@ TEST(NavigationTest, RocksSensorsHaveNoAttitude) {
     EXPECT_TRUE(std::isnan(again.gyro.x) && std::isnan(again.mag.x));
 }
 
-/** One with a lost beam, that moves ahead and to port, and rises. */
+/** A DVL with a lost beam that moves ahead and to port, and rises. */
 types::Dvl smallDvl() {
     types::Dvl dvl;
     dvl.velocity = {3, 4, 0.5};
@@ -97,7 +97,7 @@ types::Dvl smallDvl() {
     return dvl;
 }
 
-TEST(NavigationTest, ADvlLooksAlongZOfItsMessage) {
+TEST(NavigationTest, ADvlLooksAlongTheZAxisOfItsMessage) {
     Dvl message;
     convert(smallDvl(), "dvl", message);
     EXPECT_EQ(message.velocity, (Vector3{3, -4, -0.5})) << "x ahead, y to starboard, z down";
@@ -114,7 +114,7 @@ TEST(NavigationTest, ADvlLooksAlongZOfItsMessage) {
     EXPECT_THAT(message.range_covar, testing::Each(-1));
 }
 
-TEST(NavigationTest, ADvlWithoutBottomLockTellsNoVelocity) {
+TEST(NavigationTest, ADvlWithoutBottomLockHasNoVelocity) {
     types::Dvl dvl = smallDvl();
     dvl.velocity = glm::dvec3(unknown);
     dvl.cov_velocity = types::Pose::unknownMatrix();
@@ -129,7 +129,7 @@ TEST(NavigationTest, ADvlWithoutBottomLockTellsNoVelocity) {
     EXPECT_EQ(again.goodBeams(), 3u);
 }
 
-TEST(NavigationTest, ADvlOfMoreOrOtherBeamsIsRefused) {
+TEST(NavigationTest, RefusesADvlWithMoreOrOtherBeams) {
     types::Dvl dvl = smallDvl();
     Dvl message;
     dvl.beam_ranges.push_back(1);

@@ -26,7 +26,7 @@ std::string refusalOf(const types::Image& picture) {
     }
 }
 
-TEST(PicturesTest, ColoursAndGreysBecomeRossEncodingsAndComeBack) {
+TEST(PicturesTest, ConvertsColoursAndGreysToRosEncodingsAndBack) {
     const std::tuple<types::ImageMode, uint32_t, const char*> cases[] = {{types::ImageMode::Grayscale, 1, "mono8"},
                                                                          {types::ImageMode::Grayscale, 2, "mono16"},
                                                                          {types::ImageMode::Rgb, 3, "rgb8"},
@@ -46,7 +46,7 @@ TEST(PicturesTest, ColoursAndGreysBecomeRossEncodingsAndComeBack) {
     }
 }
 
-TEST(PicturesTest, WhatHasNoEncodingIsRefused) {
+TEST(PicturesTest, RefusesModesWithoutAnEncoding) {
     EXPECT_EQ(refusalOf(smallPicture(types::ImageMode{258}, 1)),
               "a picture of mode 258 with 1 bytes a pixel is not known: mono8, mono16, rgb8 and bgr8 are");
     types::Image picture = smallPicture(types::ImageMode::Bgr, 3);

@@ -17,7 +17,7 @@ using testing::FloatEq;
 using testing::FloatNear;
 using testing::IsNan;
 
-/** Options for images of eight bits. */
+/** Returns options for images of eight bits. */
 SonarOptions levels() {
     SonarOptions options;
     options.dtype = ImageType::Uint8;
@@ -56,7 +56,7 @@ std::string complaintOf(const ProjectedSonarImage& message) {
     }
 }
 
-TEST(PingsTest, AnImageTellsTheTimeTheWatersSpeedAndTheWidths) {
+TEST(PingsTest, AnImageHasTimeSoundSpeedAndBeamWidths) {
     SonarOptions options;
     options.frequency_khz = 750;
     const auto image = messageOf<ProjectedSonarImage>(smallPing(), options);
@@ -81,13 +81,13 @@ TEST(PingsTest, EightBitsAreDecibelsBelowTheStrongestEcho) {
                 ElementsAre(128, 55, 168, 0, 213, 255));
 }
 
-TEST(PingsTest, AFixedReferenceClipsWhatIsAboveIt) {
+TEST(PingsTest, AFixedReferenceClipsStrongerEchoes) {
     SonarOptions options = levels();
     options.order = ImageOrder::BeamMajor;
     options.reference_db = 10;
     options.dynamic_range_db = 20;
     EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), options).image.data, ElementsAre(128, 249, 255, 0, 0, 255));
-    options.scale = BinScale::Decibel;  // then the bins themselves are the levels
+    options.scale = BinScale::Decibel;  // the bins are then the levels
     EXPECT_THAT(messageOf<ProjectedSonarImage>(smallPing(), options).image.data,
                 ElementsAre(140, 242, 255, 128, 0, 255));
 }
@@ -136,7 +136,7 @@ TEST(PingsTest, FloatsAreTheBinsUnchangedInBothOrders) {
     EXPECT_EQ(image.beam_count, 2u);
 }
 
-TEST(PingsTest, ARawImageHasTheRateThatGivesTheBinsTheirWidth) {
+TEST(PingsTest, ARawImageHasTheSampleRateOfTheBinWidth) {
     types::Sonar ping = smallPing();
     ping.timestamps = {ping.time, ping.time + types::Time{250}};
     const auto raw = messageOf<RawSonarImage>(ping, levels());
@@ -156,8 +156,8 @@ TEST(PingsTest, RangesAreTheFirstBinsAboveTheThreshold) {
     EXPECT_THAT(ranges.intensities, ElementsAre(1.5f, 0));
 }
 
-TEST(PingsTest, ACloudHoldsEveryBinAboveTheThreshold) {
-    const auto cloud = messageOf<PointCloud2>(smallPing());  // 100 and 1000 are; x ahead, whatever `frame` is
+TEST(PingsTest, ACloudHasEveryBinAboveTheThreshold) {
+    const auto cloud = messageOf<PointCloud2>(smallPing());  // 100 and 1000 are; x ahead for any `frame`
     ASSERT_EQ(cloud.width, 2u);
     EXPECT_EQ(cloud.point_step, 16u);
     EXPECT_EQ(cloud.fields[3], (PointField{"intensity", 12, PointField::float32, 1}));
@@ -167,7 +167,7 @@ TEST(PingsTest, ACloudHoldsEveryBinAboveTheThreshold) {
                             near(1.875 * std::cos(0.25)), near(-1.875 * std::sin(0.25)), 0, 1000));
 }
 
-TEST(PingsTest, AScanHasItsRaysWhereTheBeamsAreFromStarboardToPort) {
+TEST(PingsTest, AScanHasItsRaysAtTheBeamsFromStarboardToPort) {
     SonarOptions options;
     options.threshold_db = -45;  // -15 dB: all but 0.02 and NaN
     const auto scan = messageOf<LaserScan>(smallPing(), options);
@@ -181,7 +181,7 @@ TEST(PingsTest, AScanHasItsRaysWhereTheBeamsAreFromStarboardToPort) {
     EXPECT_THAT(messageOf<LaserScan>(silent, options).ranges, testing::Each(std::numeric_limits<float>::infinity()));
 }
 
-TEST(PingsTest, AScanOfBeamsInAnyOrderHasNanBetweenThemAndGoesOnAcrossTheSeam) {
+TEST(PingsTest, AScanOfUnorderedBeamsHasNanInGapsAndContinuesAcrossTheSeam) {
     types::Sonar ping = test::pingOf(5, 4);
     const double bearings_deg[] = {-170, 155, 175, 160, -175};
     for (uint32_t beam = 0; beam < 5; ++beam) {
@@ -232,7 +232,7 @@ TEST(PingsTest, AScanOfARandomFanHasEachBeamAtItsAngleOrIsRefused) {
     EXPECT_GE(sent, 20u) << "descending, shuffled, across the seam, all around, one";
 }
 
-TEST(PingsTest, WhatCannotBeHeldIsRefused) {
+TEST(PingsTest, RefusesPingsThatAMessageCannotRepresent) {
     types::Sonar ping = smallPing();
     ping.bins.pop_back();
     EXPECT_EQ(complaintOf(ping), "the lists of the ping are not as long as its counts say");
@@ -247,7 +247,7 @@ TEST(PingsTest, WhatCannotBeHeldIsRefused) {
     EXPECT_EQ(complaintOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
 }
 
-TEST(PingsTest, AFloatImageGivesThePingBack) {
+TEST(PingsTest, RestoresAPingFromAFloatImage) {
     for (const ImageOrder order : {ImageOrder::RangeMajor, ImageOrder::BeamMajor})
         for (const SensorFrame frame : {SensorFrame::ZForward, SensorFrame::XForward}) {
             SonarOptions options;
@@ -271,7 +271,7 @@ TEST(PingsTest, AFloatImageGivesThePingBack) {
         }
 }
 
-TEST(PingsTest, AnyBinDurationComesBackToTheMicrosecond) {
+TEST(PingsTest, RestoresAnyBinDurationToTheMicrosecond) {
     SonarOptions options;
     for (int64_t duration = 1; duration < 100'000; duration = duration * 3 + 1)
         for (const uint32_t bins : {1u, 7u, 4000u}) {
@@ -287,7 +287,7 @@ TEST(PingsTest, AnyBinDurationComesBackToTheMicrosecond) {
         }
 }
 
-TEST(PingsTest, WholeNumbersAreSharesOfTheirGreatestValue) {
+TEST(PingsTest, DividesIntegersByTheirMaxValue) {
     ProjectedSonarImage message = smallImage();
     types::Sonar ping;
     convert(message, {}, ping);
@@ -298,7 +298,7 @@ TEST(PingsTest, WholeNumbersAreSharesOfTheirGreatestValue) {
     EXPECT_THAT(ping.bins, testing::Each(1));
 }
 
-TEST(PingsTest, WhatIsNoPingIsRefused) {
+TEST(PingsTest, RefusesInvalidImages) {
     ProjectedSonarImage message = smallImage();
     message.image.data.pop_back();
     EXPECT_EQ(complaintOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
@@ -317,7 +317,7 @@ TEST(PingsTest, WhatIsNoPingIsRefused) {
     EXPECT_EQ(complaintOf(message), "sonar image: a speed of sound of 0.000000 m/s");
 }
 
-TEST(PingsTest, CountsWhoseProductExceedsTheWordAreRefused) {
+TEST(PingsTest, RefusesCountsWhoseProductOverflows) {
     ProjectedSonarImage message = smallImage();
     message.image.beam_count = 0xffffffff;
     EXPECT_EQ(complaintOf(message), "sonar image: 2 directions for 4294967295 beams");

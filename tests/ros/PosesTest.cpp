@@ -21,13 +21,13 @@ void expectNear(const glm::dmat3& a, const glm::dmat3& b) {
     for (int i = 0; i < 3; ++i) expectNear(a[i], b[i]);
 }
 
-/** Where the body's nose points in the message's world. */
+/** Returns the direction of the body's nose in the message's world. */
 glm::dvec3 nose(const Pose& pose) {
     const Quaternion& q = pose.orientation;
     return glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(1, 0, 0);
 }
 
-TEST(PosesTest, AsItIsNothingIsTurned) {
+TEST(PosesTest, AsIsTurnsNothing) {
     const auto message = poseMessage<PoseStamped>(smallPose(), WorldFrame::AsIs);
     EXPECT_EQ(message.header, (Header{{2, 1000}, "world"}));
     EXPECT_EQ(message.pose.position, (Point{3, 2, -5}));
@@ -41,10 +41,10 @@ TEST(PosesTest, ABodyThatLooksWestDoesSoInEveryWorld) {
     const auto ned = poseMessage<PoseStamped>(smallPose(), WorldFrame::Ned).pose;
     EXPECT_EQ(ned.position, (Point{3, -2, 5}));
     expectNear(nose(ned), {0, -1, 0});
-    EXPECT_LT(ned.orientation.z, 0);  // to port is against the right-handed turn about down
+    EXPECT_LT(ned.orientation.z, 0);  // port is against the right-handed turn about down
 }
 
-TEST(PosesTest, ALevelBodyThatLooksNorthIsTheUnitInNedAndAQuarterTurnInEnu) {
+TEST(PosesTest, ALevelBodyThatLooksNorthIsTheIdentityInNedAndAQuarterTurnInEnu) {
     types::Pose pose;
     const auto ned = poseMessage<PoseStamped>(pose, WorldFrame::Ned).pose.orientation;
     EXPECT_DOUBLE_EQ(ned.w, 1);
@@ -53,13 +53,13 @@ TEST(PosesTest, ALevelBodyThatLooksNorthIsTheUnitInNedAndAQuarterTurnInEnu) {
     EXPECT_NEAR(enu.z, std::sqrt(0.5), 1e-15);
 }
 
-TEST(PosesTest, ANoseDownBodyIsSoInNed) {
+TEST(PosesTest, ANoseDownBodyIsNoseDownInNed) {
     types::Pose pose;
     pose.orientation = glm::angleAxis(types::radians(30), glm::dvec3(0, 1, 0));  // looks down in Rock
     expectNear(nose(poseMessage<PoseStamped>(pose, WorldFrame::Ned).pose), {std::cos(types::radians(30)), 0, 0.5});
 }
 
-TEST(PosesTest, ATransformIsThatOfTheOdometry) {
+TEST(PosesTest, ATransformEqualsTheOdometry) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const auto odometry = poseMessage<Odometry>(smallPose(), frame);
         const auto message = poseMessage<TFMessage>(smallPose(), frame);
@@ -87,25 +87,25 @@ TEST(PosesTest, AMountIsATransformToTheAxesOfThePing) {
     const Transform z_ahead = toTransform(mount, WorldFrame::Enu, SensorFrame::ZForward);
     expectNear(turned(z_ahead, {0, 0, 1}), {0, 0, -1});
     expectNear(turned(z_ahead, {0, 1, 0}), {0, -1, 0});  // to starboard
-    expectNear(turned(z_ahead, {1, 0, 0}), {1, 0, 0});   // the sonar's up is ahead
+    expectNear(turned(z_ahead, {1, 0, 0}), {1, 0, 0});   // the sonar's up axis is ahead
     const Transform in_ned = toTransform(mount, WorldFrame::Ned, SensorFrame::XForward);
     EXPECT_EQ(in_ned.translation, (Vector3{0.4, -0.1, 0.2}));
     expectNear(turned(in_ned, {1, 0, 0}), {0, 0, 1});  // down
 }
 
 TEST(PosesTest, OdometryHasTheVelocityInTheBody) {
-    // 0.5 north, 1.5 west, seen from a body that looks west: 1.5 ahead, 0.5 to starboard
+    // 0.5 north, 1.5 west; in a body that looks west: 1.5 ahead, 0.5 to starboard
     const auto enu = poseMessage<Odometry>(smallPose(), WorldFrame::Enu);
     expectNear({enu.twist.twist.linear.x, enu.twist.twist.linear.y, enu.twist.twist.linear.z}, {1.5, -0.5, -0.25});
     const auto ned = poseMessage<Odometry>(smallPose(), WorldFrame::Ned);
     expectNear({ned.twist.twist.linear.x, ned.twist.twist.linear.y, ned.twist.twist.linear.z}, {1.5, 0.5, 0.25});
     EXPECT_EQ(ned.twist.twist.angular, (Vector3{0.1, -0.2, -0.3}));
-    EXPECT_NEAR(enu.pose.covariance[0], 2, 1e-14);  // of east: Rock's y
+    EXPECT_NEAR(enu.pose.covariance[0], 2, 1e-14);  // variance of east: Rock's y
     EXPECT_NEAR(enu.pose.covariance[1], -0.1, 1e-14);
     EXPECT_EQ(enu.child_frame_id, "body");
 }
 
-TEST(PosesTest, OdometryComesBackInEveryWorld) {
+TEST(PosesTest, RestoresOdometryFromEveryWorld) {
     for (const WorldFrame frame : {WorldFrame::AsIs, WorldFrame::Enu, WorldFrame::Ned}) {
         const types::Pose pose = smallPose();
         types::Pose again;
@@ -124,7 +124,7 @@ TEST(PosesTest, OdometryComesBackInEveryWorld) {
     }
 }
 
-TEST(PosesTest, WhatIsUnknownIsSaidAndComesBackAsUnknown) {
+TEST(PosesTest, MarksUnknownValuesAndRestoresThemAsUnknown) {
     types::Pose pose;
     pose.position = {1, 2, 3};
     const auto message = poseMessage<Odometry>(pose, WorldFrame::Enu);
@@ -141,7 +141,7 @@ TEST(PosesTest, WhatIsUnknownIsSaidAndComesBackAsUnknown) {
     EXPECT_TRUE(std::isnan(again.velocity.x));
 }
 
-TEST(PosesTest, TimesAreKeptToTheMicrosecondOnBothSidesOfTheEpoch) {
+TEST(PosesTest, KeepsTimesToTheMicrosecondOnBothSidesOfTheEpoch) {
     for (const int64_t time : {int64_t{0}, int64_t{-1}, int64_t{1}, int64_t{-1'000'000}, int64_t{1'999'999}}) {
         EXPECT_LT(toRos({time}).nanosec, 1'000'000'000u);
         EXPECT_EQ(fromRos(toRos({time})).microseconds, time);

@@ -1,4 +1,5 @@
-// ros2/insonify_msgs against the descriptions of our messages, and against the code that ROS 2's generators make of it.
+// ros2/insonify_msgs compared with the descriptions of the messages, and with the code that ROS 2's generators make
+// from it.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -21,7 +22,7 @@ std::string contentOf(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/** One message of each type, with values that differ. */
+/** Returns one message of each type, with distinct values. */
 std::tuple<SonarTruth, SonarReturns, SonarElements, SonarSettings> samples() {
     std::tuple<SonarTruth, SonarReturns, SonarElements, SonarSettings> made;
     auto& [truth, returns, elements, settings] = made;
@@ -58,13 +59,13 @@ std::string nameOf(const T&) {
     return fs::path(T::type_name).filename();
 }
 
-/** Runs a command of the shell; empty, or what it printed when it failed. */
+/** Runs a shell command; returns its output if it failed, else an empty text. */
 std::string failureOf(const std::string& command, const fs::path& output) {
     const int status = std::system((command + " > " + output.string() + " 2>&1").c_str());
     return status == 0 ? "" : contentOf(output);
 }
 
-/** A workspace of colcon with insonify_msgs and the packages that it needs, as far as Debian lacks these. */
+/** Makes a colcon workspace with insonify_msgs and the packages that it needs and Debian lacks. */
 void makeWorkspace(const fs::path& folder) {
     const fs::path messages = test::sourceFile("ros2/insonify_msgs");
     fs::create_directories(folder / "src");
@@ -89,7 +90,7 @@ void makeWorkspace(const fs::path& folder) {
             std::ofstream(made / file) << text;
         }
     }
-    // What a ROS has in place of these lists the generators that it has; of Debian's those of C++ and its introspection do.
+    // A ROS installation lists its generators here; the stubs list those of Debian for C++ and its introspection.
     for (const char* stub : {"rosidl_default_generators", "rosidl_default_runtime"}) {
         const fs::path config = folder / "stubs/share" / stub / "cmake";
         fs::create_directories(config);
@@ -101,7 +102,7 @@ void makeWorkspace(const fs::path& folder) {
 
 }  // namespace
 
-TEST(RosPackagesTest, TheMessageFilesAreWhatTheDescriptionsGive) {
+TEST(RosPackagesTest, MessageFilesMatchTheDescriptions) {
     const fs::path folder = test::sourceFile("ros2/insonify_msgs/msg");
     const auto files = test::messageFiles("insonify_msgs");
     EXPECT_EQ(files.size(), 4u);
@@ -110,7 +111,7 @@ TEST(RosPackagesTest, TheMessageFilesAreWhatTheDescriptionsGive) {
     for (const auto& entry : fs::directory_iterator(folder)) EXPECT_TRUE(files.contains(entry.path().filename()));
 }
 
-TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesThatTheTopicsHave) {
+TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesOfTheTopics) {
     if (!pythonHas("rosbags"))
         GTEST_SKIP() << "SKIPPED: the Python package rosbags is missing; scripts/setup installs it";
     const Folder folder;
@@ -134,7 +135,7 @@ TEST(RosPackagesTest, RosbagsReadsTheFilesWithTheHashesThatTheTopicsHave) {
         "4 messages as announced\n");
 }
 
-TEST(RosPackagesTest, TheCodeThatDebiansRosidlGeneratesHasTheSameFieldsAndBytes) {
+TEST(RosPackagesTest, CodeGeneratedByDebiansRosidlHasTheSameFieldsAndBytes) {
     for (const char* needed : {"/usr/share/rosidl_cmake", "/usr/share/rosidl_generator_cpp", "/usr/share/ament_cmake",
                                "/usr/share/rosidl_typesupport_introspection_cpp", "/usr/bin/colcon"})
         if (!fs::exists(needed))

@@ -24,7 +24,7 @@ inline types::Sonar smallPing() {
     return ping;
 }
 
-/** At x 3 north, y 2 west, z -5, turned 90 degrees to port (so that it looks west), all known. */
+/** At x 3 north, y 2 west, z -5, turned 90 degrees to port (so that it looks west), all values known. */
 inline types::Pose smallPose() {
     types::Pose pose;
     pose.time = {2'000'001};

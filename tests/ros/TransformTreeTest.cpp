@@ -1,4 +1,4 @@
-// Chains of transforms: what they give, and what breaks them.
+// Chains of transforms: their results, and their failures.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -41,7 +41,7 @@ protected:
     TransformTree tree;
 };
 
-TEST_F(TransformTreeTest, AChainIsMultipliedFromTheWorldDown) {
+TEST_F(TransformTreeTest, MultipliesAChainFromTheWorldDown) {
     moving(place("map", "odom", {10, 0, 0}, left), 100);
     moving(place("odom", "base_link", {2, 0, 0}, left), 100);
     expectAt(100, 100, {10, 2, 0});
@@ -49,7 +49,7 @@ TEST_F(TransformTreeTest, AChainIsMultipliedFromTheWorldDown) {
     EXPECT_LT(glm::distance(turned * glm::dvec3(1, 0, 0), {-1, 0, 0}), 1e-12) << "two quarter turns";
 }
 
-TEST_F(TransformTreeTest, TheNewestTimeIsThatOfTheLinkThatIsFarthestBehindAndOthersAreInterpolated) {
+TEST_F(TransformTreeTest, UsesTheNewestTimeOfTheSlowestLinkAndInterpolatesOthers) {
     moving(place("map", "odom", {0, 0, 0}), 100);
     moving(place("map", "odom", {10, 0, 0}, left), 101);
     moving(place("odom", "base_link", {4, 0, 0}), 100.25);
@@ -59,7 +59,7 @@ TEST_F(TransformTreeTest, TheNewestTimeIsThatOfTheLinkThatIsFarthestBehindAndOth
     expectAt(102, 101, {10, 4 * (1 - 0.75 / 1.75), 0});
 }
 
-TEST_F(TransformTreeTest, StaticAndMovingLinksMix) {
+TEST_F(TransformTreeTest, MixesStaticAndMovingLinks) {
     fixed(place("map", "pool", {100, 0, 0}, left));
     moving(place("pool", "tracked", {5, 0, 0}), 100);
     fixed(place("tracked", "base_link", {0, 0, -1}));
@@ -68,7 +68,7 @@ TEST_F(TransformTreeTest, StaticAndMovingLinksMix) {
     expectAt(100, 100, {100, 5, -2});
 }
 
-TEST_F(TransformTreeTest, AChainThatIsAllStaticHasNoTime) {
+TEST_F(TransformTreeTest, AStaticChainHasNoTime) {
     fixed(place("map", "pier", {1, 0, 0}));
     fixed(place("pier", "base_link", {1, 0, 0}));
     expectAt(100, 0, {2, 0, 0});
@@ -79,16 +79,16 @@ TEST_F(TransformTreeTest, TheWorldNeedNotBeTheRoot) {
     moving(place("earth", "base_link", {1000, 7, 0}), 100);
     expectAt(100, 100, {7, 0, 0});
     tree = {};
-    moving(place("base_link", "map", {3, 0, 0}, left), 100);  // told upside down
+    moving(place("base_link", "map", {3, 0, 0}, left), 100);  // published in the reverse direction
     expectAt(100, 100, {0, 3, 0});
 }
 
-TEST_F(TransformTreeTest, SlashesBeforeNamesAreNone) {
+TEST_F(TransformTreeTest, IgnoresSlashesBeforeNames) {
     moving(place("/map", "/base_link", {1, 2, 3}), 100);
     expectAt(100, 100, {1, 2, 3});
 }
 
-TEST_F(TransformTreeTest, AMissingParentIsToldByWhereTheChainEnds) {
+TEST_F(TransformTreeTest, ReportsWhereAChainWithAMissingParentEnds) {
     EXPECT_EQ(find().diagnostic, "no transforms lead from base_link to map");
     moving(place("odom", "base_link", {1, 0, 0}), 100);
     EXPECT_EQ(find().diagnostic, "no transforms lead from base_link to map, only to odom");
@@ -97,26 +97,26 @@ TEST_F(TransformTreeTest, AMissingParentIsToldByWhereTheChainEnds) {
     expectAt(100, 100, {2, 0, 0});
 }
 
-TEST_F(TransformTreeTest, ACircleIsTold) {
+TEST_F(TransformTreeTest, ReportsACircle) {
     moving(place("a", "base_link", {1, 0, 0}), 100);
     moving(place("b", "a", {1, 0, 0}), 100);
     moving(place("a", "b", {1, 0, 0}), 100);
-    EXPECT_EQ(find().diagnostic, "the parents of base_link go in a circle");
+    EXPECT_EQ(find().diagnostic, "the parents of base_link form a circle");
     EXPECT_THAT(moving(place("a", "a", {1, 0, 0}), 100), HasSubstr("a is its own parent"));
 }
 
-TEST_F(TransformTreeTest, AChainThatIsCutGoesNoFurtherAndSaysWhere) {
+TEST_F(TransformTreeTest, ReportsWhereAChainIsInterrupted) {
     moving(place("map", "odom", {1, 0, 0}), 100);
     moving(place("odom", "base_link", {1, 0, 0}), 100);
     moving(place("odom", "base_link", {2, 0, 0}), 101.5);
     expectAt(101.5, 100, {2, 0, 0});
-    EXPECT_EQ(find(101.5).diagnostic, "odom in map has not come for a second");
+    EXPECT_EQ(find(101.5).diagnostic, "odom in map was not published for a second");
     moving(place("map", "odom", {1, 0, 0}), 101.5);
     expectAt(101.5, 101.5, {3, 0, 0});
     EXPECT_EQ(find(101.5).diagnostic, "");
 }
 
-TEST_F(TransformTreeTest, ThereIsNoPoseOfTimesBeforeALinkBegan) {
+TEST_F(TransformTreeTest, HasNoPoseBeforeALinkBegan) {
     moving(place("map", "odom", {1, 0, 0}), 100);
     moving(place("odom", "base_link", {1, 0, 0}), 100.5);
     EXPECT_FALSE(find().placed);
@@ -125,7 +125,7 @@ TEST_F(TransformTreeTest, ThereIsNoPoseOfTimesBeforeALinkBegan) {
     expectAt(101, 100.5, {2, 0, 0});
 }
 
-TEST_F(TransformTreeTest, NumbersThatAreNotFiniteAndNamesThatAreNoneAreRefused) {
+TEST_F(TransformTreeTest, RefusesNumbersThatAreNotFiniteAndInvalidNames) {
     for (const TransformStamped& bad :
          {place("map", "base_link", {nan, 0, 0}),
           place("map", "base_link", {0, std::numeric_limits<double>::infinity(), 0}),
@@ -133,17 +133,17 @@ TEST_F(TransformTreeTest, NumbersThatAreNotFiniteAndNamesThatAreNoneAreRefused) 
         EXPECT_THAT(moving(bad, 100), HasSubstr("base_link: translation and rotation are not finite"));
     EXPECT_THAT(moving(place("", "base_link", {}), 100), HasSubstr("without the name"));
     EXPECT_THAT(moving(place("map", "/", {}), 100), HasSubstr("without the name"));
-    EXPECT_THAT(moving(place("map", std::string(1000, 'x'), {}), 100), HasSubstr("255 letters"));
+    EXPECT_THAT(moving(place("map", std::string(1000, 'x'), {}), 100), HasSubstr("255 characters"));
     EXPECT_FALSE(find().placed);
 }
 
-TEST_F(TransformTreeTest, RotationsAreMadeOfUnitLength) {
+TEST_F(TransformTreeTest, NormalisesRotations) {
     moving(place("map", "base_link", {}, {0, 0, 5, 5}), 100);
     EXPECT_DOUBLE_EQ(glm::length(find().placed->orientation), 1);
     EXPECT_LT(glm::distance(find().placed->orientation * glm::dvec3(1, 0, 0), {0, 1, 0}), 1e-12);
 }
 
-TEST_F(TransformTreeTest, OfTwoParentsTheFirstCountsUntilItIsSilent) {
+TEST_F(TransformTreeTest, KeepsTheFirstOfTwoParentsUntilItIsSilent) {
     moving(place("map", "base_link", {1, 0, 0}), 100);
     EXPECT_EQ(moving(place("odom", "base_link", {2, 0, 0}), 100.5), "base_link has two parents, map and odom");
     expectAt(100.5, 100, {1, 0, 0});
@@ -153,24 +153,24 @@ TEST_F(TransformTreeTest, OfTwoParentsTheFirstCountsUntilItIsSilent) {
     EXPECT_THAT(find().diagnostic, HasSubstr("only to odom"));
 }
 
-TEST_F(TransformTreeTest, WhatIsStaticIsNotMovedAndTheReverse) {
+TEST_F(TransformTreeTest, RefusesToMoveStaticFramesAndTheReverse) {
     fixed(place("map", "base_link", {1, 0, 0}));
-    EXPECT_EQ(moving(place("map", "base_link", {2, 0, 0}), 200), "base_link comes by /tf and by /tf_static");
+    EXPECT_EQ(moving(place("map", "base_link", {2, 0, 0}), 200), "base_link is published on /tf and on /tf_static");
     moving(place("map", "other", {1, 0, 0}), 100);
-    EXPECT_EQ(fixed(place("map", "other", {2, 0, 0})), "other comes by /tf and by /tf_static");
+    EXPECT_EQ(fixed(place("map", "other", {2, 0, 0})), "other is published on /tf and on /tf_static");
 }
 
-TEST_F(TransformTreeTest, StampsThatGoBackAreRefusedUntilTheirSenderHasBeenSilent) {
+TEST_F(TransformTreeTest, RefusesStampsThatGoBackUntilTheirSenderHasBeenSilent) {
     moving(place("map", "base_link", {1, 0, 0}), 100);
     EXPECT_THAT(tree.add(place("map", "base_link", {9, 0, 0}), false, at(99), at(100.1)),
-                HasSubstr("before the one before"));
-    EXPECT_EQ(tree.add(place("map", "base_link", {9, 0, 0}), false, at(100), at(100.1)), "") << "told twice";
+                HasSubstr("before the previous stamp"));
+    EXPECT_EQ(tree.add(place("map", "base_link", {9, 0, 0}), false, at(100), at(100.1)), "") << "sent twice";
     expectAt(100, 100, {1, 0, 0});
     EXPECT_EQ(tree.add(place("map", "base_link", {2, 0, 0}), false, at(50), at(102)), "") << "a bag that is looped";
     expectAt(102, 50, {2, 0, 0});
 }
 
-TEST_F(TransformTreeTest, AStampFarAheadIsRefusedAndOneThatIsAheadOnPurposeIsNot) {
+TEST_F(TransformTreeTest, RefusesAStampFarAheadButNotALittleAhead) {
     EXPECT_THAT(tree.add(place("map", "odom", {}), false, at(111), at(100)), HasSubstr("ahead of the clock"));
     moving(place("map", "odom", {1, 0, 0}), 100);
     EXPECT_EQ(tree.add(place("map", "odom", {1, 0, 0}), false, at(101), at(100)), "");

@@ -36,7 +36,7 @@ TEST(AcousticsTest, AMirrorIsTrueOrFalse) {
 TEST(AcousticsTest, LambertsLawFollowsTheReportsSeabeds) {
     struct Case {
         Sediment sediment;
-        double strength[5];  ///< By the model of APL-UW TR 9407 at 100 kHz and 1528 m/s, computed apart from here [dB].
+        double strength[5];  ///< By the model of APL-UW TR 9407 at 100 kHz and 1528 m/s, computed independently [dB].
     };
     constexpr double grazing_deg[] = {10, 20, 30, 45, 60};
     for (const Case& c : {Case{Sediment::Rock, {-17.0, -12.0, -9.5, -7.8, -7.2}},
@@ -108,7 +108,7 @@ TEST(AcousticsTest, ReflectionIsThatOfTypicalImpedancesAgainstSeaWater) {
 }
 
 TEST(AcousticsTest, ALambertSphereOfMatterHasTheTargetStrengthOfItsReflection) {
-    // Its echo is the integral of mu cos^2 over the half that is seen, 2 pi a^2 mu / 3; that of a rigid one a^2 / 4.
+    // The echo is the integral of mu cos^2 over the visible half, 2 pi a^2 mu / 3; that of a rigid sphere is a^2 / 4.
     for (const Matter matter : {Matter::Steel, Matter::Concrete, Matter::Air}) {
         const double echo = 2 * M_PI / 3 * std::pow(10, lambertDb(matter) / 10);
         EXPECT_NEAR(echo, std::pow(reflection(matter), 2) / 4, 1e-3 * echo);

@@ -10,7 +10,7 @@ namespace {
 
 class AllocationTest : public SceneFiles {};
 
-TEST_F(AllocationTest, ASceneAllocatesNothingAfterItsFirstPosesEvenWhenThingsBeginToMove) {
+TEST_F(AllocationTest, AllocatesNothingAfterTheFirstPosesEvenWhenObjectsBeginToMove) {
     SceneTask task("scene");
     SceneConfig config;
     config.file = write("boats.gltf", gltf(R"("scenes":[{"nodes":[0,2]}],

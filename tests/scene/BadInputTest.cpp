@@ -1,4 +1,4 @@
-// Files that are wrong: a ConfigError that names the file, or a scene; never a crash.
+// Invalid files: a ConfigError that names the file, or a scene; never a crash.
 #include <random>
 
 #include "tests/scene/SceneFiles.hpp"
@@ -16,7 +16,7 @@ protected:
     void expectGltfDiagnostic(const std::string& rest, const std::string& part) const {
         expectDiagnostic(write("case.gltf", gltf(rest)), part);
     }
-    /** A triangle of which the accessors and bufferViews are given. */
+    /** A triangle with the given accessors and bufferViews. */
     static std::string triangle(const std::string& accessors, const std::string& views) {
         return R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[)" +
                accessors + R"(],"bufferViews":[)" + views + "]," + buffers(bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
@@ -35,7 +35,7 @@ std::string glb(const std::string& json, const std::string& binary) {
     return "glTF" + bytesOf<uint32_t>({2, static_cast<uint32_t>(12 + chunks.size())}) + chunks;
 }
 
-TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
+TEST_F(BadInputTest, ReportsMissingEmptyAndForeignFilesAndFolders) {
     std::filesystem::create_directory(folder_ / "folder.glb");
     expectDiagnostic(folder_ / "missing.glb", "must be a scene, which may be .gltf, .glb, .world, .sdf or .urdf");
     expectDiagnostic(folder_ / "folder.glb", "is not a file");
@@ -44,7 +44,7 @@ TEST_F(BadInputTest, AFileThatIsMissingOrAFolderOrEmptyOrOfAnotherKindIsNamed) {
     expectDiagnostic(write("noise.glb", "this is no model at all"), "cannot be read as glTF 2.0");
 }
 
-TEST_F(BadInputTest, AnImageNameWhoseReadingExhaustsMemoryIsNotRead) {
+TEST_F(BadInputTest, DoesNotReadImagesThatExhaustMemory) {
     expectDiagnostic(write("416.gltf", R"({"images":[{"uri":"%!QAAAQAAA5"}],"asset":{"version":""}})"),
                      "asset.version");
     expectDiagnostic(write("cut.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"%!QAAAQA)"),
@@ -78,7 +78,7 @@ TEST_F(BadInputTest, GigabytesDeclaredInAKilobyteAreRefusedWithoutBeingAllocated
     expectDiagnostic(write("4g.glb", "glTF" + bytesOf<uint32_t>({2, 0xffffffff, 0xfffffff0}) + "JSON{}"), "truncated");
 }
 
-TEST_F(BadInputTest, ManyPrimitivesOfTheSameDataAreCharged) {
+TEST_F(BadInputTest, LimitsPrimitivesThatRepeatTheSameData) {
     std::string primitives;
     for (int i = 0; i < 30; ++i) primitives += R"({"attributes":{"POSITION":0}},)";
     primitives += R"({"attributes":{"POSITION":0}})";

@@ -55,7 +55,7 @@ TEST(ClustersTest, ALargeMeshIsSplitIntoCompactClustersOfTheSameTriangles) {
     for (const types::Cluster& cluster : mesh.clusters) {
         EXPECT_LE(cluster.index_count / 3, cluster_triangles);
         EXPECT_GE(cluster.index_count / 3, cluster_triangles / 2);
-        // a square of so many triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
+        // a square of this number of triangles has a half diagonal of sqrt(n / 4); up to twice that is compact
         EXPECT_LT(glm::length(cluster.half), 2 * std::sqrt(cluster.index_count / 12.0));
     }
 }
@@ -84,7 +84,7 @@ TEST(ClustersTest, VerticesWithoutTrianglesAreGone) {
     EXPECT_EQ(mesh.positions.size(), 121u);
 }
 
-TEST(ClustersTest, TrianglesInOnePlaceAreSplitAllTheSame) {
+TEST(ClustersTest, TrianglesAtOnePlaceAreSplitToo) {
     types::Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     for (size_t i = 0; i < 20'000; ++i) mesh.indices.insert(mesh.indices.end(), {0, 1, 2});

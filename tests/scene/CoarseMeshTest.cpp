@@ -27,7 +27,7 @@ TEST(CoarseMeshTest, ALargeMeshHasFewTrianglesThatShowItsShape) {
     }
 }
 
-TEST(CoarseMeshTest, ASmallMeshHasNone) { EXPECT_TRUE(ball(20).coarse_indices.empty()); }
+TEST(CoarseMeshTest, ASmallMeshHasNoCoarseMesh) { EXPECT_TRUE(ball(20).coarse_indices.empty()); }
 
 TEST(CoarseMeshTest, EveryMaterialKeepsItsPart) {
     types::Mesh mesh = test::sphere(2, 160);

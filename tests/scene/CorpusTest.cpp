@@ -1,4 +1,4 @@
-// Models made by others, good and bad, from the shared folder.
+// Models from other sources, valid and invalid, in the shared folder.
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
@@ -17,7 +17,8 @@ protected:
             GTEST_SKIP() << "NO MODELS AT " << models_ << ": NOTHING WAS TESTED";
     }
     types::GeometryPtr load(const std::string& file) const { return loadScene(models_ / file); }
-    /** Every glTF file below a folder ends in a sound scene or a ConfigError; returns the number of scenes. */
+    /** Checks that every glTF file below a folder ends in a sound scene or a ConfigError; returns the number of
+     *  scenes. */
     size_t loadAll(const std::string& folder, size_t at_least) const {
         size_t files = 0, scenes = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(models_ / folder)) {
@@ -43,7 +44,7 @@ TEST_F(CorpusTest, EveryValidModelIsLoaded) { EXPECT_EQ(loadAll("valid", 11), 11
 
 TEST_F(CorpusTest, EveryConformanceCaseIsLoaded) { EXPECT_EQ(loadAll("asset-generator", 43), 43u); }
 
-TEST_F(CorpusTest, OfTheEncodingsOnlyDracoIsRefused) { EXPECT_EQ(loadAll("ext", 10), 9u); }
+TEST_F(CorpusTest, OnlyDracoIsRefusedAmongTheEncodings) { EXPECT_EQ(loadAll("ext", 10), 9u); }
 
 TEST_F(CorpusTest, EveryValidatorCaseIsASceneOrAnError) { EXPECT_GT(loadAll("validator", 150), 50u); }
 
@@ -84,7 +85,7 @@ TEST_F(CorpusTest, OneCubeInFiveEncodingsHasTheSameSurface) {
 }
 
 TEST_F(CorpusTest, TheArrowsOfTheOrientationTestPointAtTheirTargets) {
-    // An arrow lies on a face of a cube, turned by its node; its target is drawn on the face without any transform.
+    // An arrow is on a face of a cube, turned by its node; its target is modelled on the face without any transform.
     const auto geometry = load("valid/OrientationTest/OrientationTest.glb");
     const auto wayFromAxis = [&](const std::string& name, int axis) {
         const auto object = std::ranges::find(geometry->objects, name, &types::Object::name);

@@ -19,8 +19,8 @@ protected:
     std::string diagnosticOfAcoustics(const std::string& json) const {
         return diagnosticOfGltf(R"("materials":[{},{"extras":{"acoustics":)" + json + "}}]");
     }
-    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`; `info` is inside
-     *  normalTexture, `attributes` beside POSITION and TEXCOORD_0 (accessor 1). */
+    /** A unit square whose uvs are its x and -y (v down), with a normal map from `image`. `info` is inside
+     *  normalTexture, `attributes` are added to POSITION and TEXCOORD_0 (accessor 1). */
     types::GeometryPtr mapped(const std::string& image, const std::string& info = "",
                               const std::string& attributes = "") const {
         return load(
@@ -82,7 +82,7 @@ TEST_F(GltfMaterialsTest, AFillIsOfATableOrOfNumbers) {
     EXPECT_EQ(fillOf(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
 }
 
-TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
+TEST_F(GltfMaterialsTest, ReportsAWrongShellWithItsPlace) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"shell":{"material":"pvc"}})", "acoustics.shell.thickness_mm: is missing"},
         {R"({"shell":{"thickness_mm":0,"material":"pvc"}})",
@@ -97,14 +97,14 @@ TEST_F(GltfMaterialsTest, AWrongShellIsToldWithItsPlace) {
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"wine"}})",
          "shell.fill: is \"wine\"; may be water, air"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill":"air","fill_loss":0.1}})",
-         "shell.fill: is air, which nothing passes into; leave out fill_density"},
+         "shell.fill: is air, which no sound passes into; omit fill_density"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900}})",
          "shell.fill_density: needs a fill of oil, sand or mud, or both"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc","fill_density":900,"fill_sound_speed":100}})",
          "shell.fill_sound_speed: is 100; must be a number from 200 to 6000"},
         {R"({"shell":2})", "acoustics.shell: must be a block such as"},
         {R"({"shell":{"thickness_mm":2,"material":"pvc"},"material":"steel"})",
-         "acoustics.shell: stands beside `sediment`, `material` or `table`; give one of them"},
+         "acoustics.shell: is given with `sediment`, `material` or `table`; give one of them"},
         {R"({"sediment":{"thickness_mm":2}})", "sediment.thickness_mm: is not known"}};
     for (const auto& [json, part] : cases)
         EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
@@ -162,7 +162,7 @@ TEST_F(SurfaceMapsTest, ClassesAreSedimentsMatterOrMaterialsOfTheFile) {
     EXPECT_TRUE(std::ranges::all_of(geometry->materials, &types::Material::has_acoustics));
 }
 
-TEST_F(SurfaceMapsTest, AnImageOfItsOwnLiesBesideTheScene) {
+TEST_F(SurfaceMapsTest, ReadsAnImageFromTheFolderOfTheScene) {
     write("paint.png", std::string("\x89PNG\r\n\x1a\n", 8));
     EXPECT_NE(diagnosticOfGltf(painted(R"({"image":"paint.png","decibels":[-30,0]})"))
                   .find("its image is neither PNG nor JPEG"),
@@ -236,7 +236,7 @@ TEST_F(GltfMaterialsTest, MatterFollowsItsLawUnlessNumbersReplaceIt) {
     EXPECT_EQ(acoustics(R"({"shell":{"thickness_mm":3,"material":"pvc"}})").matter, "");
 }
 
-TEST_F(GltfMaterialsTest, ATableIsReadFromBesideTheFile) {
+TEST_F(GltfMaterialsTest, ReadsATableNextToTheFile) {
     write("floor.csv", "grazing_deg,strength_db\n10,-40\n90,-10\n");
     const types::Material m = acoustics(R"({"table":"floor.csv","reflection":0.5})");
     ASSERT_EQ(m.measured.size(), 2u);
@@ -244,7 +244,7 @@ TEST_F(GltfMaterialsTest, ATableIsReadFromBesideTheFile) {
     EXPECT_FLOAT_EQ(m.reflection, 0.5);
 }
 
-TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
+TEST_F(GltfMaterialsTest, ReportsAWrongTableWithItsPlace) {
     write("floor.csv", "grazing_deg,strength_db\n10,-40\n100,-10\n");
     const auto expect = [this](const char* json, const char* part) {
         EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
@@ -254,7 +254,7 @@ TEST_F(GltfMaterialsTest, AWrongTableIsToldWithItsPlace) {
     expect(R"({"table":"none.csv"})", "none.csv");
     expect(R"({"table":"floor.csv"})", "floor.csv:3:1: ");
     expect(R"({"table":7})", "table: is 7; must be the path of a file");
-    expect(R"({"table":"floor.csv","sediment":"clay"})", "table: stands beside `sediment` or `lambert_db`");
+    expect(R"({"table":"floor.csv","sediment":"clay"})", "table: is given with `sediment` or `lambert_db`");
 }
 
 TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
@@ -294,7 +294,7 @@ TEST_F(GltfMaterialsTest, ANormalMapBringsUvsNormalsAndTangents) {
     }
 }
 
-TEST_F(GltfMaterialsTest, NormalsAndTangentsOfTheFileGoFirst) {
+TEST_F(GltfMaterialsTest, NormalsAndTangentsOfTheFileTakePrecedence) {
     const auto geometry = mapped(png, "", R"(,"NORMAL":2,"TANGENT":3)");
     expectSound(*geometry);
     EXPECT_EQ(geometry->meshes[0].tangents.at(0), glm::vec4(0, 1, 0, -1));
@@ -310,7 +310,7 @@ TEST_F(GltfMaterialsTest, TheTextureTransformScalesThenTurnsThenShifts) {
     }
 }
 
-TEST_F(GltfMaterialsTest, WithoutTheTextureCoordinatesTheMapIsLeftOut) {
+TEST_F(GltfMaterialsTest, OmitsTheMapWithoutTextureCoordinates) {
     const auto geometry = mapped(png, R"(,"texCoord":1)");
     expectSound(*geometry);
     EXPECT_TRUE(hasNotice(*geometry, "want of texture coordinates: 1"));
@@ -318,7 +318,7 @@ TEST_F(GltfMaterialsTest, WithoutTheTextureCoordinatesTheMapIsLeftOut) {
     EXPECT_EQ(geometry->materials.at(static_cast<size_t>(material)).normal_map, -1);
 }
 
-TEST_F(GltfMaterialsTest, AnImageThatIsNotThereOrDamagedIsANotice) {
+TEST_F(GltfMaterialsTest, AMissingOrDamagedImageIsANotice) {
     for (const std::string& image : {std::string("nowhere.png"), std::string("https://example.org/a.png"),
                                      png.substr(0, 90), std::string("data:image/png;base64,AAAA")}) {
         const auto geometry = mapped(image);
@@ -344,7 +344,7 @@ TEST_F(GltfMaterialsTest, IndicesOfTexturesImagesSamplersAndMaterialsAreChecked)
               std::string::npos);
 }
 
-TEST_F(GltfMaterialsTest, FilesBesideTheSceneMayHaveSpacesInTheirNames) {
+TEST_F(GltfMaterialsTest, FileNamesMayHaveSpaces) {
     write("the floor.bin", bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     const auto geometry = load(R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],

@@ -1,4 +1,4 @@
-// Where nodes put meshes, and how objects are called.
+// Places of meshes by their nodes, and names of objects.
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/scene/SceneFiles.hpp"
@@ -107,7 +107,7 @@ TEST_F(GltfNodesTest, CyclesSecondParentsAndWrongIndicesAreRefused) {
     EXPECT_NE(diagnosticOfGltf(R"("scene":3,"scenes":[{"nodes":[]}])").find("scene: is 3"), std::string::npos);
 }
 
-TEST_F(GltfNodesTest, TransformsThatAreNoneAreRefused) {
+TEST_F(GltfNodesTest, InvalidTransformsAreRefused) {
     EXPECT_NE(diagnosticOfNodes(R"([{"mesh":0,"translation":[1,2]}])").find("has 2 numbers; must have 3"),
               std::string::npos);
     EXPECT_NE(diagnosticOfNodes(R"([{"mesh":0,"rotation":[0,0,0,0]}])").find("has no length"), std::string::npos);
@@ -116,7 +116,7 @@ TEST_F(GltfNodesTest, TransformsThatAreNoneAreRefused) {
               std::string::npos);
 }
 
-TEST_F(GltfNodesTest, AnObjectOfScaleZeroIsLeftOutWithANotice) {
+TEST_F(GltfNodesTest, OmitsAnObjectOfScaleZeroWithANotice) {
     const auto geometry = nodes(R"([{"mesh":0,"scale":[1,0,1]}])");
     EXPECT_TRUE(geometry->objects.empty());
     EXPECT_TRUE(hasNotice(*geometry, "scale is zero"));

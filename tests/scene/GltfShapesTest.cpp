@@ -54,7 +54,7 @@ TEST_F(GltfShapesTest, TheLargestIndexRestartsAStripButIsOutOfRangeInAList) {
     EXPECT_THROW(squareOf(4, bytesOf<uint16_t>({0, 1, 0xffff}), 5123, 3), types::ConfigError);
 }
 
-TEST_F(GltfShapesTest, PointsAndLinesAreLeftOutWithANotice) {
+TEST_F(GltfShapesTest, OmitsPointsAndLinesWithANotice) {
     const auto points = squareOf(0, bytesOf<uint16_t>({0, 1, 2}), 5123, 3);
     EXPECT_EQ(points->triangleCount(), 0u);
     EXPECT_TRUE(hasNotice(*points, "points or lines"));
@@ -79,7 +79,7 @@ TEST_F(GltfShapesTest, InterleavedAttributesAreReadWithTheirStride) {
     EXPECT_EQ(boundsOf(*geometry).high, glm::dvec3(2, 0, 3));
 }
 
-TEST_F(GltfShapesTest, SparseValuesReplaceThoseOfTheBaseAndZerosStandForAnAbsentOne) {
+TEST_F(GltfShapesTest, SparseValuesReplaceBaseValuesAndAnAbsentBaseIsZero) {
     const std::string sparse =
         R"("sparse":{"count":2,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}}],
         "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":2},

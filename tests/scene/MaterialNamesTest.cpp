@@ -34,7 +34,7 @@ TEST(MaterialNamesTest, MatterIsFoundInNamesAsModellersWriteThem) {
     for (const auto& [name, matter] : cases) EXPECT_THAT(matterIn(name), ElementsAre(matter)) << name;
 }
 
-TEST(MaterialNamesTest, OtherNamesHaveNone) {
+TEST(MaterialNamesTest, OtherNamesHaveNoMatter) {
     for (const char* name : {"", " ", "...", "default", "material_1", "Material.001", "steelworks", "hot", "Planet",
                              "glassy", "m", "mackenzie", "stee_l", "\xff\xfe", "body"})
         EXPECT_THAT(matterIn(name), IsEmpty()) << name;
@@ -54,7 +54,7 @@ protected:
     }
 };
 
-TEST_F(TakeNamesTest, WhereNoNameIsKnownTheSceneIsTheSame) {
+TEST_F(TakeNamesTest, UnknownNamesLeaveTheSceneUnchanged) {
     const auto geometry = sceneOf({{.name = "hull"}, {.name = "steel", .lambert_db = -20, .has_acoustics = true}});
     EXPECT_EQ(takeNames(geometry), geometry);
 }

@@ -30,14 +30,14 @@ TEST_F(OverridesTest, WithoutAnyTheGeometryIsTheSame) {
     EXPECT_EQ(overrideMaterials(scene, {}, diagnostics_), scene.geometry);
 }
 
-TEST_F(OverridesTest, AMaterialChangesWhereverItIs) {
+TEST_F(OverridesTest, AMaterialChangesInAllMeshes) {
     const auto geometry = overrideMaterials(walls(), {{"stone", lambert(-9)}}, diagnostics_);
     EXPECT_TRUE(diagnostics_.empty());
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 0), -9);
     EXPECT_FLOAT_EQ(lambertOf(*geometry, 1), -9);
 }
 
-TEST_F(OverridesTest, AModelChangesAloneWithAllBelowItAndGoesBeforeItsMaterial) {
+TEST_F(OverridesTest, AModelOverridesItsSubtreeAndPrecedesItsMaterial) {
     const auto geometry = overrideMaterials(walls(), {{"group", lambert(-3)}, {"stone", lambert(-9)}}, diagnostics_);
     EXPECT_TRUE(diagnostics_.empty());
     expectSound(*geometry);

@@ -1,4 +1,4 @@
-// Where a scene lies in the world.
+// The place of a scene in the world.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -35,7 +35,7 @@ protected:
     }
 };
 
-TEST_F(PlacementTest, APointOfTheFileIsWhereThePlacementSays) {
+TEST_F(PlacementTest, PlacesAPointOfTheFile) {
     const Scene file = scene();
     expectNear(corner(file), {1, -3, 3});  // y up: (x, -z, y)
     expectNear(corner(placed(file, {})), {1, -3, 3});
@@ -48,7 +48,7 @@ TEST_F(PlacementTest, APointOfTheFileIsWhereThePlacementSays) {
     expectNear(corner(placed(file, {.frame = WorldFrame::Ned, .up = UpAxis::Z})), {1, -3, -3});
 }
 
-/** A pose in the frame of the scene meets the same point of the file, whatever the frame. */
+/** A pose in the frame of the scene gives the same point of the file in any frame. */
 TEST_F(PlacementTest, APoseOfRosMeetsTheSamePointOfASceneInTheFrameOfRos) {
     const Scene file = scene();
     std::mt19937 random(3);
@@ -100,7 +100,7 @@ TEST_F(PlacementTest, ANodeThatPosesMoveIsAffectedByUpAlone) {
     expectNear(glm::dvec3(tip), {0, 1, 0});
 }
 
-TEST_F(PlacementTest, OneLineSaysHowASceneLies) {
+TEST_F(PlacementTest, DescribesTheOrientationInOneLine) {
     const Scene file = scene();
     EXPECT_EQ(layOf(file, {}, WorldFrame::AsIs), "the file's x is north, its -z west, its y up");
     EXPECT_EQ(layOf(file, {}, WorldFrame::Enu),
@@ -110,7 +110,7 @@ TEST_F(PlacementTest, OneLineSaysHowASceneLies) {
     EXPECT_THAT(layOf(file, {.yaw_deg = 45}, WorldFrame::AsIs), testing::HasSubstr("the file's (0.707, 0, 0.707) is"));
 }
 
-TEST_F(PlacementTest, TheTaskPlacesItsSceneAndSaysSo) {
+TEST_F(PlacementTest, TheTaskPlacesItsSceneAndReportsIt) {
     SceneTask task("scene");
     SceneConfig config;
     scene();
@@ -125,8 +125,8 @@ TEST_F(PlacementTest, TheTaskPlacesItsSceneAndSaysSo) {
     EXPECT_THAT(task.notices(), testing::Contains(testing::HasSubstr("the file's z is north, its x west")));
 }
 
-/** Random turns of the file, of nodes and of scales, also of a node within another. */
-TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
+/** Random rotations of the file, of nodes and of scales, also of a node within another. */
+TEST_F(PlacementTest, AScaledNodeScalesItsSubtreeAboutItsOrigin) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(-3, 3);
     for (int round = 0; round < 50; ++round) {
@@ -151,7 +151,7 @@ TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
         expectNear(corner(scaled(file, {{"mast", 0.5}, {"boat", 2.5}}, none)), moved_mast + 1.25 * (before - mast));
         const Scene same = scaled(file, {{"boat", 1}}, none);
         expectNear(corner(same), before);
-        // A pose of the body leaves the scale.
+        // A pose of the body does not change the scale.
         const Scene large = scaled(file, {{"mast", 3}}, none);
         const Part was = partsOf(file, 1).front(), is = partsOf(large, 1).front();
         for (int column = 0; column < 3; ++column)
@@ -160,7 +160,7 @@ TEST_F(PlacementTest, AScaledNodeGrowsAboutItsOriginWithWhatIsBelowIt) {
     }
 }
 
-TEST_F(PlacementTest, ANodeThatIsNotThereIsNotScaled) {
+TEST_F(PlacementTest, ReportsAnUnknownNodeToScale) {
     types::Diagnostics found;
     const Scene file = scene(), result = scaled(file, {{"bot", 2}}, found);
     ASSERT_EQ(found.size(), 1u);

@@ -1,4 +1,4 @@
-// Stale and missing poses: RunTimeError until poses are back, never a snapshot of an old place.
+// Stale and missing poses: RunTimeError until poses return, never a snapshot of an old place.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -30,7 +30,7 @@ protected:
         ASSERT_TRUE(task_.configure()) << task_.lastError();
         ASSERT_TRUE(task_.start());
     }
-    /** A cycle at this time [s], with a pose of that stamp where one is given; whether there was a snapshot. */
+    /** Runs a cycle at this time [s], with a pose of that stamp if given; returns whether there was a snapshot. */
     bool cycle(double now, std::optional<double> stamp = {}) {
         now_ = types::Time::fromSeconds(now);
         types::Pose pose;
@@ -48,21 +48,21 @@ protected:
     test::Reader<types::SnapshotPtr> out_;
 };
 
-TEST_F(PoseTimeoutTest, PosesThatStayAwayAreAnErrorUntilTheyAreBack) {
+TEST_F(PoseTimeoutTest, MissingPosesAreAnErrorUntilTheyReturn) {
     start(0.5);
     EXPECT_TRUE(cycle(10.1, 10.1));
     EXPECT_FALSE(cycle(10.5));
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_FALSE(cycle(10.7));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
-    EXPECT_THAT(task_.lastError(), HasSubstr("no pose of the last 0.5 s"));
+    EXPECT_THAT(task_.lastError(), HasSubstr("no pose in the last 0.5 s"));
     EXPECT_FALSE(cycle(20));
     EXPECT_TRUE(cycle(20.1, 20.1));
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_EQ(task_.timing().errors, 1u);
 }
 
-TEST_F(PoseTimeoutTest, TheFirstPoseIsWaitedForWithoutAnErrorAndThatIsToldOnce) {
+TEST_F(PoseTimeoutTest, WaitingForTheFirstPoseIsReportedOnceAndIsNoError) {
     std::vector<std::string> told;
     task_.environment().warn = [&](const std::string& text) { told.push_back(text); };
     start(0.5);
@@ -77,7 +77,7 @@ TEST_F(PoseTimeoutTest, TheFirstPoseIsWaitedForWithoutAnErrorAndThatIsToldOnce) 
     EXPECT_TRUE(cycle(1000.1, 1000.1));
 }
 
-TEST_F(PoseTimeoutTest, OnlyPosesThatHaveEndedAreWaitedForNotThoseThatAreWrong) {
+TEST_F(PoseTimeoutTest, WaitsForMissingPosesButNotForInvalidPoses) {
     start(0.5);
     EXPECT_TRUE(cycle(10.1, 10.1));
     EXPECT_FALSE(task_.waits());
@@ -92,7 +92,7 @@ TEST_F(PoseTimeoutTest, OnlyPosesThatHaveEndedAreWaitedForNotThoseThatAreWrong) 
     EXPECT_FALSE(task_.waits());
 }
 
-TEST_F(PoseTimeoutTest, APoseThatIsOldWhenItComesGivesNoSnapshot) {
+TEST_F(PoseTimeoutTest, AnOldPoseGivesNoSnapshot) {
     start(0.5);
     EXPECT_FALSE(cycle(11, 10.4));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
@@ -129,7 +129,7 @@ TEST_F(PoseTimeoutTest, StampsOfAnotherClockAreReportedWithTheRemedy) {
     EXPECT_THAT(task_.lastError(), Not(HasSubstr("stamp:")));
 }
 
-TEST_F(PoseTimeoutTest, WithoutATimeoutThereIsNoneOutsideOfRealtime) {
+TEST_F(PoseTimeoutTest, HasNoDefaultTimeoutOutsideOfRealtime) {
     start({});
     EXPECT_TRUE(cycle(10, 10));
     EXPECT_FALSE(cycle(1000));
@@ -138,7 +138,7 @@ TEST_F(PoseTimeoutTest, WithoutATimeoutThereIsNoneOutsideOfRealtime) {
     EXPECT_EQ(task_.wakeAfter(), 0);
 }
 
-TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndMayBeCarriedOnWhereAsked) {
+TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndIsExtrapolatedOnRequest) {
     types::Pose pose;
     pose.time = types::Time::fromSeconds(10);
     pose.velocity = {2, 0, 0};
@@ -163,7 +163,7 @@ TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndMayBeCarriedOnWhereAsked) {
     EXPECT_NEAR(glm::distance(moving.sonar.angular_velocity, glm::dvec3(-0.5, 0, 0)), 0, 1e-12);
 }
 
-TEST(CarriedOnTest, APoseGoesOnByItsVelocitiesAsFarAsItMay) {
+TEST(CarriedOnTest, ExtrapolatesAPoseByItsVelocitiesUpToTheLimit) {
     types::Pose pose;
     pose.time = types::Time::fromSeconds(10);
     pose.velocity = {2, 0, 0};
@@ -190,7 +190,7 @@ TEST_F(PoseTimeoutTest, AStampFarAheadIsStaleAsWell) {
 }
 
 /** A node that another vehicle's pose moves. */
-TEST_F(PoseTimeoutTest, ANodeWhosePosesStayAwayIsAnErrorToo) {
+TEST_F(PoseTimeoutTest, MissingPosesOfANodeAreAnError) {
     config_.file =
         write("buoy.gltf", gltf(R"("scenes":[{"nodes":[0]}],"nodes":[{"name":"buoy"}],)" + buffers("    "))).string();
     task_.config.set(config_);
@@ -205,7 +205,7 @@ TEST_F(PoseTimeoutTest, ANodeWhosePosesStayAwayIsAnErrorToo) {
     EXPECT_TRUE(cycle(10.4, 10.4));
     EXPECT_FALSE(cycle(10.6, 10.6));
     EXPECT_EQ(task_.state(), TaskState::RunTimeError);
-    EXPECT_THAT(task_.lastError(), HasSubstr("scene.buoy.pose: no pose of the last 0.5 s"));
+    EXPECT_THAT(task_.lastError(), HasSubstr("scene.buoy.pose: no pose in the last 0.5 s"));
     still.time = types::Time::fromSeconds(10.7);
     other.port.write(still);
     EXPECT_TRUE(cycle(10.7, 10.7));

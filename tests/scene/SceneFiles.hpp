@@ -1,5 +1,5 @@
 #pragma once
-// Small glTF files made inside a test, and what must hold for every scene that was loaded.
+// Small glTF files made inside a test, and checks that apply to every loaded scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0
            buffers(corners);
 }
 
-/** A folder of its own for each test. */
+/** Has a separate folder for each test. */
 class SceneFiles : public ::testing::Test {
 protected:
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
@@ -60,7 +60,7 @@ protected:
     /** Loads `{"asset":{"version":"2.0"},` + rest + `}`. */
     types::GeometryPtr load(const std::string& rest) const { return loadScene(write("case.gltf", gltf(rest))); }
     static std::string gltf(const std::string& rest) { return R"({"asset":{"version":"2.0"},)" + rest + "}"; }
-    /** What is wrong with it; empty when nothing is. */
+    /** Returns the diagnostic of a file; empty if there is none. */
     std::string diagnosticOf(const std::filesystem::path& file) const {
         try {
             loadScene(file);
@@ -92,7 +92,7 @@ inline std::vector<glm::dvec3> worldCorners(const types::Geometry& geometry) {
 struct Bounds {
     glm::dvec3 low{1e300}, high{-1e300};
 };
-/** Of the whole geometry, or of one object given after it. */
+/** Bounds of the whole geometry, or of one object given after it. */
 template <class... Object>
 Bounds boundsOf(const types::Geometry& geometry, const Object&... object) {
     Bounds bounds;
@@ -129,7 +129,7 @@ inline void expectSoundMesh(const types::Mesh& mesh, size_t material_count) {
     EXPECT_EQ(next, mesh.indices.size());
 }
 
-/** What types::Geometry promises its users. */
+/** Expects the guarantees of types::Geometry. */
 inline void expectSound(const types::Geometry& geometry) {
     std::vector<std::string> names;
     for (const types::Object& object : geometry.objects) {

@@ -65,7 +65,7 @@ TEST_F(SceneTaskTest, EachPoseGivesASnapshotOfItsTimeAndTheSharedGeometry) {
     EXPECT_TRUE(first->moved.empty());
 }
 
-TEST_F(SceneTaskTest, TheSonarIsWhereTheMountHasIt) {
+TEST_F(SceneTaskTest, TheMountPlacesTheSonar) {
     config_.mount = {.position = {1, 0, -0.5}, .roll_deg = 0, .pitch_deg = 90, .yaw_deg = 0};
     start();
     const auto snapshot = ping(at(1, {10, 20, 30}, turn(90, {0, 0, 1})));
@@ -88,7 +88,7 @@ TEST_F(SceneTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     expectAt(ping(at(1, {0, 0, 0}, {1.001, 0, 0, 0}))->sonar.position, {100, 0, 0});
 }
 
-TEST_F(SceneTaskTest, ANodeFollowsItsPortAndKeepsItsScaleAndWhatIsBelowIt) {
+TEST_F(SceneTaskTest, ANodeFollowsItsPortWithItsScaleAndSubtree) {
     task_.config.set(config_);
     auto* port = task_.makeInput("boat.pose", boat_.port);
     ASSERT_NE(port, nullptr);
@@ -170,7 +170,7 @@ TEST_F(SceneTaskTest, AnUnusedSnapshotIsUsedAgain) {
     EXPECT_EQ(ping(at(3, {0, 0, 0})).get(), address);
 }
 
-TEST_F(SceneTaskTest, ATableOfAMaterialIsToldWhereItIsWrong) {
+TEST_F(SceneTaskTest, ReportsAWrongTableOfAMaterial) {
     config_.materials["wood"].table = "none.csv";
     task_.config.set(config_);
     types::Diagnostics diagnostics;
@@ -183,13 +183,13 @@ TEST_F(SceneTaskTest, ATableOfAMaterialIsToldWhereItIsWrong) {
     EXPECT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).measured.size(), 2u);
 }
 
-TEST_F(SceneTaskTest, MaterialsOfThePropertiesGoBeforeThoseOfTheFile) {
+TEST_F(SceneTaskTest, MaterialsOfThePropertiesOverrideThoseOfTheFile) {
     config_.materials["wood"].lambert_db = -5;
     start();
     EXPECT_FLOAT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).lambert_db, -5);
 }
 
-TEST_F(SceneTaskTest, AMaterialWithoutAcousticsIsOfTheMatterOfItsNameUnlessThatIsOff) {
+TEST_F(SceneTaskTest, AMaterialWithoutAcousticsTakesTheMatterOfItsNameUnlessDisabled) {
     start();
     EXPECT_EQ(ping(at(1, {0, 0, 0}))->geometry->materials.at(0).matter, "wood");
     ASSERT_EQ(task_.notices().size(), 1u);
@@ -208,7 +208,7 @@ TEST_F(SceneTaskTest, AMaterialWithoutAcousticsIsOfTheMatterOfItsNameUnlessThatI
     EXPECT_EQ(ping(at(3, {0, 0, 0}))->geometry->materials.at(0).matter, "") << "it has acoustic values";
 }
 
-TEST_F(SceneTaskTest, AFileThatIsMissingIsSeenWithoutConfiguring) {
+TEST_F(SceneTaskTest, ReportsAMissingFileWithoutConfiguring) {
     config_.file = (folder_ / "nowhere.glb").string();
     config_.materials["wood"];
     task_.config.set(config_);
@@ -222,7 +222,7 @@ TEST_F(SceneTaskTest, AFileThatIsMissingIsSeenWithoutConfiguring) {
     EXPECT_NE(task_.makeInput("boat.pose", boat_.port), nullptr);  // the file is what is wrong, not the port
 }
 
-TEST_F(SceneTaskTest, AnUnknownMaterialIsSeenWithoutConfiguring) {
+TEST_F(SceneTaskTest, ReportsAnUnknownMaterialWithoutConfiguring) {
     config_.materials["woood"];
     task_.config.set(config_);
     types::Diagnostics diagnostics;
@@ -232,7 +232,7 @@ TEST_F(SceneTaskTest, AnUnknownMaterialIsSeenWithoutConfiguring) {
     EXPECT_FALSE(task_.configure());
 }
 
-TEST_F(SceneTaskTest, NodesAreScaledByNameAndAnUnknownOneIsSeenWithoutConfiguring) {
+TEST_F(SceneTaskTest, ScalesNodesByNameAndReportsUnknownNames) {
     start();
     const auto plain = ping(at(1, {0, 0, 0}));
     task_.stop();

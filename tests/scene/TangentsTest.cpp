@@ -21,7 +21,7 @@ Surface mappedSquare(bool mirrored) {
     return surface;
 }
 
-TEST(TangentsTest, TheyPointAlongUAndTheirHandednessAgainstV) {
+TEST(TangentsTest, PointAlongUWithHandednessAgainstV) {
     Surface surface = mappedSquare(false);
     makeTangents(surface);
     ASSERT_EQ(surface.tangents.size(), 6u);
@@ -32,7 +32,7 @@ TEST(TangentsTest, TheyPointAlongUAndTheirHandednessAgainstV) {
     }
 }
 
-TEST(TangentsTest, AVertexOnTheEdgeOfAMirroredMapIsDoubled) {
+TEST(TangentsTest, DuplicatesVerticesOnTheEdgeOfAMirroredMap) {
     Surface surface = mappedSquare(true);
     makeTangents(surface);
     ASSERT_EQ(surface.positions.size(), 8u);
@@ -53,7 +53,7 @@ TEST(TangentsTest, WithoutAreaInUvAnyDirectionInThePlaneServes) {
     }
 }
 
-TEST(TangentsTest, FlatNormalsStandOnTheirTriangles) {
+TEST(TangentsTest, FlatNormalsArePerpendicularToTheirTriangles) {
     Surface surface = mappedSquare(false);
     surface.normals.clear();
     surface.positions[5].z = 1;

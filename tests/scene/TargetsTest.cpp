@@ -1,4 +1,4 @@
-// Point targets of a scene: where they are, with what they move, and what is wrong with them.
+// Point targets of a scene: their places, the nodes they move with, and errors.
 #include <gmock/gmock.h>
 
 #include "components/scene/SceneTask.hpp"
@@ -61,14 +61,16 @@ protected:
     test::Reader<types::SnapshotPtr> out_;
 };
 
-void expectClose(glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z; }
+void expectClose(glm::dvec3 a, glm::dvec3 b) {
+    EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z;
+}
 
-TEST_F(TargetsTest, WithoutAnyASnapshotHasNone) {
+TEST_F(TargetsTest, ASnapshotHasNoTargetsByDefault) {
     start();
     EXPECT_TRUE(ping(1)->targets.empty());
 }
 
-TEST_F(TargetsTest, OneStandsInTheWorldAndOneOnANodeWithAnOffsetInItsAxes) {
+TEST_F(TargetsTest, ATargetIsInTheWorldOrOnANodeWithAnOffset) {
     config_.targets = {{"buoy", glm::dvec3(4, 5, -6), "", -20},    {"keel", {}, "boat", -10},
                        {"bow", glm::dvec3(3, 0, 1), "boat", -30},  {"top", glm::dvec3(1, 0, 0), "mast", -40},
                        {"fender", glm::dvec3(0, 1, 0), "quay", 0}, {"dot", {}, "dot", 0}};
@@ -92,7 +94,7 @@ TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
                        {"top", glm::dvec3(1, 0, 0), "mast", 0},
                        {"buoy", glm::dvec3(4, 5, -6), "", 0}};
     start();
-    expectClose(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is where the file has it
+    expectClose(ping(1)->targets[0].position, {1, 0, 3});  // before its first pose it is at its place in the file
     boat_.port.write(at(2, {100, 0, 0}, 180));
     const auto moved = ping(2);
     expectClose(moved->targets[0].position, {97, 0, 1});
@@ -104,7 +106,7 @@ TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
     expectClose(apart->targets[1].position, {1, 0, 50});
 }
 
-TEST_F(TargetsTest, WhatIsWrongIsToldWithItsPlace) {
+TEST_F(TargetsTest, ReportsErrorsWithTheirPlace) {
     config_.targets = {{"buoy", glm::dvec3(0), "", 0}, {"bow", {}, "baot", 0}};
     EXPECT_THAT(diagnostic(), AllOf(HasSubstr("scene.targets[1].attached_to: is baot, which is no node of the scene"),
                                     HasSubstr("boat")));

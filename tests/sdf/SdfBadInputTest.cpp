@@ -1,4 +1,4 @@
-// SDF that is wrong: a ConfigError that says where, or a scene with notices; never a crash.
+// Invalid SDF: a ConfigError with the place, or a scene with notices; never a crash.
 #include <random>
 
 #include "tests/sdf/SdfFiles.hpp"
@@ -17,7 +17,7 @@ protected:
     }
 };
 
-TEST_F(SdfBadInputTest, WhatIsNoSdfIsNamed) {
+TEST_F(SdfBadInputTest, ReportsFilesThatAreNotSdf) {
     std::filesystem::create_directory(folder_ / "folder.world");
     expectDiagnostic(diagnosticOf(folder_ / "missing.world"), "does not exist; looked for at ");
     expectDiagnostic(diagnosticOf(folder_ / "folder.world"), "is not a file");
@@ -30,7 +30,7 @@ TEST_F(SdfBadInputTest, WhatIsNoSdfIsNamed) {
     expectDiagnostic(diagnosticOf(write("noise.world", bytesOf<uint64_t>({~0ull, 0x1234567890abcdef}))), "is no XML: ");
 }
 
-TEST_F(SdfBadInputTest, AValueThatCannotBeReadIsToldWithItsLineAndReason) {
+TEST_F(SdfBadInputTest, ReportsAnUnreadableValueWithItsLineAndReason) {
     expectDiagnostic(
         diagnosticOfWorld("<model name='m'>\n" + pose("1 2 x 0 0 0") + "<link name='l'/></model>"),
         "case.world:3: /sdf/world[@name=\"w\"]/model[@name=\"m\"]/pose: Error reading element <pose>: Invalid");
@@ -41,7 +41,7 @@ TEST_F(SdfBadInputTest, AValueThatCannotBeReadIsToldWithItsLineAndReason) {
                      "case.world:3: m::hull::skin.radius: is -3; must not be negative");
 }
 
-TEST_F(SdfBadInputTest, EveryPoseThatCannotBeResolvedIsTold) {
+TEST_F(SdfBadInputTest, ReportsEveryUnresolvedPose) {
     const std::string diagnostic = diagnosticOfWorld(
         "<model name='a'><pose relative_to='b'>1 0 0 0 0 0</pose><link name='l'/></model>"
         "<model name='b'><pose relative_to='a'>1 0 0 0 0 0</pose><link name='l'/></model>");
@@ -50,7 +50,7 @@ TEST_F(SdfBadInputTest, EveryPoseThatCannotBeResolvedIsTold) {
     EXPECT_NE(diagnostic.find("b.pose: relative to \"a\" cannot be resolved"), std::string::npos) << diagnostic;
 }
 
-TEST_F(SdfBadInputTest, ABadJointCostsNoMoreThanTheJoint) {
+TEST_F(SdfBadInputTest, ABadJointOmitsOnlyTheJoint) {
     const Scene scene = world("<model name='m'><link name='l'>" + visual("v", box_) +
                               "</link><joint name='j' type='revolute'><parent>nowhere</parent><child>l</child><axis>"
                               "<xyz>0 0 0</xyz></axis></joint></model>");
@@ -58,7 +58,7 @@ TEST_F(SdfBadInputTest, ABadJointCostsNoMoreThanTheJoint) {
     EXPECT_TRUE(hasNotice(*scene.geometry, "parent frame with name[nowhere]"));
 }
 
-TEST_F(SdfBadInputTest, ADamagedMeshCostsNoMoreThanItsVisual) {
+TEST_F(SdfBadInputTest, ADamagedMeshOmitsOnlyItsVisual) {
     write("noise.stl", "solid of nothing");
     const Scene scene = world(model("m", "<mesh><uri>noise.stl</uri></mesh>") + model("n", box_));
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
@@ -80,7 +80,7 @@ TEST_F(SdfBadInputTest, CommentsCostNextToNothing) {
     EXPECT_EQ(diagnosticOfWorld(comments + model("m", box_)), "");
 }
 
-TEST_F(SdfBadInputTest, WhatAFileMayCostInTimeIsBounded) {
+TEST_F(SdfBadInputTest, BoundsTheTimeToReadAFile) {
     std::string models, links, attributes;
     for (int i = 0; i < 15'000; ++i) {
         const std::string number = std::to_string(i);

@@ -1,4 +1,4 @@
-// Worlds, models and a sea floor made by others, from the shared folder.
+// Worlds, models and a sea floor from other sources, in the shared folder.
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Paths.hpp"
 
@@ -33,7 +33,7 @@ TEST_F(SdfCorpusTest, EveryWorldLoads) {
     EXPECT_GE(worlds, 7u);
 }
 
-TEST_F(SdfCorpusTest, EveryModelLoadsOrSaysWhyInOneLine) {
+TEST_F(SdfCorpusTest, EveryModelLoadsOrReportsWhyInOneLine) {
     size_t loaded = 0, refused = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(sdf_data)) {
         if (entry.path().extension() != ".sdf") continue;

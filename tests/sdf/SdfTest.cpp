@@ -1,4 +1,4 @@
-// Models, links, frames and joints of SDF worlds; where things stand is known in closed form.
+// Models, links, frames and joints of SDF worlds; their places are known in closed form.
 #include "components/sdf/Sdf.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 
@@ -30,7 +30,7 @@ protected:
 
 using Names = std::vector<std::string>;
 
-TEST_F(SdfTest, ABoxStandsWhereModelLinkAndVisualPutIt) {
+TEST_F(SdfTest, ABoxIsPlacedByModelLinkAndVisual) {
     const Scene scene =
         world("<model name='m'>" + pose("10 0 0 0 0 1.5707963267948966") + "<link name='l'>" + pose("3 0 0 0 0 0") +
               visual("v", box_, pose("0 0 5 1.5707963267948966 0 0")) + "</link></model>");
@@ -50,7 +50,7 @@ TEST_F(SdfTest, PosesAreRelativeToTheFrameThatTheyName) {
     expectBounds(boundsOf(*scene.geometry), {8, 2, 4}, {12, 4, 10});
 }
 
-TEST_F(SdfTest, IncludedAndNestedModelsStandInTheirScopes) {
+TEST_F(SdfTest, IncludedAndNestedModelsHaveTheirScopes) {
     writeModel("inner", model("inner", box_));
     writeModel("outer",
                "<model name='outer'>" + link("base") +
@@ -64,7 +64,7 @@ TEST_F(SdfTest, IncludedAndNestedModelsStandInTheirScopes) {
     EXPECT_EQ(scene.geometry->objects.at(0).name, "rov::arm::hull::skin");
 }
 
-TEST_F(SdfTest, AnIncludeStandsByItsPlacementFrame) {
+TEST_F(SdfTest, AnIncludeIsPlacedByItsPlacementFrame) {
     writeModel("post", "<model name='post'><frame name='foot'>" + pose("0 0 -3 0 0 0") + "</frame><link name='l'>" +
                            visual("v", box_) + "</link></model>");
     const Scene scene = world("<include><uri>model://post</uri><placement_frame>foot</placement_frame>" +
@@ -83,7 +83,7 @@ TEST_F(SdfTest, AModelsPoseMovesAllThatIsInIt) {
         EXPECT_LT(glm::distance(parts[0].body_from_object[column], scaled[column]), 1e-12);
 }
 
-TEST_F(SdfTest, ALinkHangsOnTheLinkThatAJointNames) {
+TEST_F(SdfTest, AJointAttachesALinkToItsParent) {
     const Scene scene =
         world("<model name='arm'>" + ("<link name='hand'>" + pose("4 0 0 0 0 0") + visual("v", box_) + "</link>") +
               link("elbow") + link("base") + joint("elbow", "hand") + joint("base", "elbow") + "</model>");
@@ -94,7 +94,7 @@ TEST_F(SdfTest, ALinkHangsOnTheLinkThatAJointNames) {
     expectBounds(boundsOf(*scene.geometry), {3, -2, -3}, {5, 2, 3});
 }
 
-TEST_F(SdfTest, ANestedModelHangsOnTheLinkThatAJointNames) {
+TEST_F(SdfTest, AJointAttachesANestedModelToItsParent) {
     writeModel("gripper", model("gripper", box_));
     const Scene scene = world("<model name='rov'>" + link("wrist") + "<include><uri>model://gripper</uri>" +
                               pose("1 0 0 0 0 0") + "</include>" + joint("wrist", "gripper::hull") + "</model>");
@@ -110,7 +110,7 @@ TEST_F(SdfTest, JointsInACircleEndAtTheModel) {
 }
 
 TEST_F(SdfTest, NamesOfOldWorldsMayHoldColons) {
-    // libsdformat takes the links of a scope for those of a nested model, which old worlds did not have
+    // libsdformat takes the links of a scope for links of a nested model, which old worlds did not have
     const Scene scene = world("<model name='a::b'><link name='x::l'>" + pose("1 0 0 0 0 0") + visual("v::v", box_) +
                                   "</link>" + link("tip") + joint("x::l", "tip") + "</model>",
                               "1.6");
@@ -127,7 +127,7 @@ TEST_F(SdfTest, NamesWithColonsThatLibsdformatRefusesAreReadWithUnderscores) {
     expectBounds(boundsOf(*scene.geometry), {0, 0, 0}, {1, 1, 0});
     EXPECT_GE(findNode(scene, "a__b"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "names are read with \"__\" for \"::\""));
-    // here it throws, and no std::exception
+    // in this case it throws an object that is no std::exception
     const Scene old = world("<model name='m'>" + link("x::l") + link("x::k") +
                                 "<joint name='x::j' type='revolute'><parent>x::l</parent><child>x::k</child><axis>"
                                 "<xyz>0 0 1</xyz></axis></joint></model>",
@@ -146,21 +146,21 @@ TEST_F(SdfTest, AModelAloneIsASceneAndFindsItsOwnFiles) {
     EXPECT_GE(findNode(scene, "anchor"), 0);
 }
 
-TEST_F(SdfTest, OfSeveralWorldsTheFirstIsRead) {
+TEST_F(SdfTest, ReadsTheFirstOfSeveralWorlds) {
     const Scene scene =
         readScene(write("two.sdf", "<sdf version='1.9'><world name='a'>" + model("m", box_) +
                                        "</world><world name='b'>" + model("n", box_) + "</world></sdf>"));
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "worlds left out, the first of the file is read: 1"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "worlds omitted, the first of the file is read: 1"));
 }
 
-TEST_F(SdfTest, WhatIsNotTakenFromAWorldIsANotice) {
+TEST_F(SdfTest, UnsupportedPartsOfAWorldAreNotices) {
     const Scene scene =
         world(model("m", box_) + "<state world_name='w'><model name='m'>" + pose("9 0 0 0 0 0") +
               "</model></state><actor name='diver'><skin><filename>diver.dae</filename></skin></actor>");
     expectBounds(boundsOf(*scene.geometry), {-1, -2, -3}, {1, 2, 3});
-    EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not taken"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "actors left out: 1"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "the poses of <state> are not used"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "actors omitted: 1"));
 }
 
 TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
@@ -168,7 +168,7 @@ TEST_F(SdfTest, AnIncludeThatIsNotFoundIsANoticeWithItsLine) {
                               "\n<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>\n");
     EXPECT_EQ(scene.geometry->objects.size(), 1u);
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:2: ")) << scene.geometry->notices.at(0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://crate]; omitted"));
     EXPECT_TRUE(hasNotice(*scene.geometry, "case.world:4: "));
     EXPECT_TRUE(hasNotice(*scene.geometry, "in the folders of INSONIFY_MODEL_PATH"));
 }
@@ -183,20 +183,20 @@ TEST_F(SdfTest, AnIncludeInAnIncludeThatIsNotFoundIsANoticeToo) {
     writeModel("outer", "<model name='outer'>" + link("l") + "<include><uri>model://nowhere</uri></include></model>");
     const Scene scene = world("<include><uri>model://outer</uri></include>");
     EXPECT_TRUE(hasNotice(*scene.geometry, "outer/model.sdf:1: ")) << scene.geometry->notices.at(0);
-    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "Unable to find uri[model://nowhere]; omitted"));
 }
 
-TEST_F(SdfTest, AnIncludeThatCannotBeReadIsLeftOutWithTheReason) {
+TEST_F(SdfTest, OmitsAnUnreadableIncludeWithTheReason) {
     writeModel("bad", "<model name='bad'>" + pose("1 2 3") + link("l") + "</model>");
     writeModel("good", model("good", box_));
     const Scene scene = world("<include><uri>model://bad</uri></include><include><uri>model://good</uri></include>");
     EXPECT_GE(findNode(scene, "good"), 0);
     EXPECT_LT(findNode(scene, "bad"), 0);
     EXPECT_TRUE(hasNotice(*scene.geometry, "must have 6 values, but 3 were found"));
-    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; left out"));
+    EXPECT_TRUE(hasNotice(*scene.geometry, "bad/model.sdf]; omitted"));
 }
 
-TEST_F(SdfTest, LibsdformatKeepsQuiet) {
+TEST_F(SdfTest, LibsdformatPrintsNothing) {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     world("<include><uri>model://sun</uri></include>");

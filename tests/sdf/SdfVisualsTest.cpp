@@ -23,7 +23,7 @@ protected:
     }
 };
 
-/** Volume of a body of revolution with 64 facets over that of the round one. */
+/** Volume of a body of revolution with 64 facets relative to the round body. */
 const double faceted = std::sin(2 * std::numbers::pi / 64) * 64 / (2 * std::numbers::pi);
 
 TEST_F(SdfVisualsTest, ABoxHasItsSize) {
@@ -33,7 +33,7 @@ TEST_F(SdfVisualsTest, ABoxHasItsSize) {
     EXPECT_EQ(geometry->triangleCount(), 12u);
 }
 
-TEST_F(SdfVisualsTest, TheCornersOfASphereLieOnIt) {
+TEST_F(SdfVisualsTest, TheCornersOfASphereAreOnIt) {
     const auto geometry = shape("<sphere><radius>3</radius></sphere>");
     expectSound(*geometry);
     for (const glm::dvec3 corner : worldCorners(*geometry)) EXPECT_NEAR(glm::length(corner), 3, 1e-6);
@@ -48,7 +48,7 @@ TEST_F(SdfVisualsTest, AnEllipsoidIsASphereOfThreeRadii) {
         EXPECT_NEAR(glm::length(corner / glm::dvec3(1, 2, 3)), 1, 1e-6);
 }
 
-TEST_F(SdfVisualsTest, ACylinderStandsAlongZ) {
+TEST_F(SdfVisualsTest, ACylinderIsAlongZ) {
     const auto geometry = shape("<cylinder><radius>0.5</radius><length>4</length></cylinder>");
     expectBounds(boundsOf(*geometry), {-0.5, -0.5, -2}, {0.5, 0.5, 2});
     EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted, 1e-5);
@@ -66,7 +66,7 @@ TEST_F(SdfVisualsTest, ACapsuleIsACylinderBetweenHalfSpheres) {
     EXPECT_NEAR(volumeOf(*geometry), std::numbers::pi * 0.25 * 4 * faceted + half_spheres, 1e-5);
 }
 
-TEST_F(SdfVisualsTest, APlaneLiesSquareToItsNormal) {
+TEST_F(SdfVisualsTest, APlaneIsPerpendicularToItsNormal) {
     expectBounds(boundsOf(*shape("<plane><normal>0 0 1</normal><size>20 10</size></plane>")), {-10, -5, 0}, {10, 5, 0});
     const auto wall = shape("<plane><normal>1 0 0</normal><size>20 10</size></plane>");
     expectBounds(boundsOf(*wall), {0, -5, -10}, {0, 5, 10});
@@ -108,7 +108,7 @@ TEST_F(SdfVisualsTest, AShellIsABlockOfElements) {
               std::string::npos);
 }
 
-TEST_F(SdfVisualsTest, AWrongAcousticTagIsToldWithItsLine) {
+TEST_F(SdfVisualsTest, ReportsAWrongAcousticTagWithItsLine) {
     const std::string diagnostic = diagnosticOfWorld(
         "<model name='a'>\n<link name='l'>\n" +
         visual("v", box_, "\n" + acoustics("<sediment>sandd</sediment><lamber_db>1</lamber_db>")) + "</link></model>");
@@ -135,7 +135,7 @@ TEST_F(SdfVisualsTest, MaterialsAreOverriddenByScriptNameAndByModel) {
     EXPECT_FALSE(materialOf(*geometry, 2).has_acoustics);
 }
 
-TEST_F(SdfVisualsTest, AScriptNameStandsForItsMatter) {
+TEST_F(SdfVisualsTest, AScriptNameSelectsItsMatter) {
     const std::string script = "<material><script><name>Gazebo/Wood</name></script></material>";
     const Scene scene = world("<model name='pier'><link name='l'>" + visual("v", box_, script) + "</link></model>" +
                               model("rov", box_));
@@ -167,7 +167,7 @@ TEST_F(SdfVisualsTest, AHeightmapOfManyPixelsIsReadInSteps) {
     expectBounds(boundsOf(*geometry), {-10, -5, 5}, {10, 5, 5});
 }
 
-TEST_F(SdfVisualsTest, AVisualThatCannotBeDrawnIsANotice) {
+TEST_F(SdfVisualsTest, AnUnsupportedVisualIsANotice) {
     write("words.png", "no picture");
     write("animation.png",
           std::string("GIF89a\2\0\2\0\0\0\0,\0\0\0\0\2\0\2\0\0\2\2\x84Q\0;", 27));  // stb_image would read it

@@ -1,4 +1,4 @@
-// Two vehicles in one world, each with its own SceneTask: each sees the other where the other's poses have it.
+// Two vehicles in one world, each with its own SceneTask: each sees the other at the other's pose.
 #include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/sdf/SdfFiles.hpp"
@@ -56,7 +56,7 @@ protected:
     };
 };
 
-TEST_F(TwoVehiclesTest, EachSeesTheOtherWhereItsPoseHasIt) {
+TEST_F(TwoVehiclesTest, EachSeesTheOtherAtItsPose) {
     const auto file = writeWorld(model("red", box_) + model("blue", box_, pose("50 0 0 0 0 0")));
     Eye of_red("red_scene", file), of_blue("blue_scene", file);
     // hulls are 2 x 4 x 6; blue is 20 m north of red and looks back at it

@@ -1,4 +1,4 @@
-// Robots in URDF: links at their places whatever they lack, meshes, names, and what is no robot.
+// Robots in URDF: links at their places even without inertia, meshes, names, and other XML.
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
@@ -37,7 +37,7 @@ protected:
     const std::string small_ = "<box size='0.2 0.4 0.6'/>";
 };
 
-TEST_F(UrdfTest, LinksWithoutInertiaAreThereWithTheirNamesAtTheirPlaces) {
+TEST_F(UrdfTest, KeepsLinksWithoutInertiaAtTheirPlaces) {
     const Scene scene =
         readScene(robot(link("base", small_) + link("upper", "<cylinder radius='0.1' length='1'/>", "xyz='0 0 0.5'") +
                         link("camera", "<sphere radius='0.05'/>") +
@@ -47,7 +47,7 @@ TEST_F(UrdfTest, LinksWithoutInertiaAreThereWithTheirNamesAtTheirPlaces) {
     for (const char* const name : {"rov", "rov::base", "rov::upper", "rov::camera"})
         EXPECT_GE(findNode(scene, name), 0) << name;
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::base")), {-0.1, -0.2, -0.3}, {0.1, 0.2, 0.3});
-    // Turned by 90 degrees about y, its length along x; at its end, which is fixed, the camera.
+    // Turned by 90 degrees about y, its length along x; the fixed camera is at its end.
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::upper")), {1, -0.1, -0.1}, {2, 0.1, 0.1}, 2e-3);
     expectBounds(boundsOf(*scene.geometry, objectOf(scene, "rov::camera")), {1.95, -0.05, -0.05}, {2.05, 0.05, 0.05},
                  2e-3);
@@ -89,7 +89,7 @@ TEST_F(UrdfTest, MeshesAreFoundByPackageAndByPath) {
     EXPECT_THAT(testing::PrintToString(without.geometry->notices), HasSubstr("absent/fin.stl"));
 }
 
-TEST_F(UrdfTest, WhatIsNoRobotIsRefusedAtItsLine) {
+TEST_F(UrdfTest, RefusesOtherXmlAtItsLine) {
     EXPECT_THAT(diagnosticOf(write("cut.urdf", "<robot name='r'>\n<link name='a'>\n</robot>")),
                 testing::AllOf(HasSubstr("cut.urdf:2"), HasSubstr("is no XML (XML_ERROR_MISMATCHED_ELEMENT)")));
     EXPECT_THAT(diagnosticOf(write("empty.urdf", "")), HasSubstr("is no XML (XML_ERROR_EMPTY_DOCUMENT)"));

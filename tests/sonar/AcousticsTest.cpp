@@ -31,7 +31,7 @@ TEST(AcousticsTest, ConfiguredAbsorptionIsANumberOrALaw) {
     EXPECT_EQ(makeAbsorption(config).db_per_m, acoustics::thorp(750));
 }
 
-TEST(AcousticsTest, AbsorptionTakesTheSonarsFrequencyWhereItNamesNone) {
+TEST(AcousticsTest, AbsorptionUsesTheSonarsFrequencyByDefault) {
     SonarConfig config;
     config.water = water(12, 35, 8, 8.1);
     config.frequency_khz = 400;
@@ -43,7 +43,7 @@ TEST(AcousticsTest, AbsorptionTakesTheSonarsFrequencyWhereItNamesNone) {
     EXPECT_EQ(makeAbsorption(config).db_per_m, 0);
 }
 
-TEST(AcousticsTest, SpeedIsConfiguredOrOfTheWaterOrTheDefault) {
+TEST(AcousticsTest, SpeedIsConfiguredOrThatOfTheWaterOrTheDefault) {
     SonarConfig config;
     EXPECT_EQ(config.speedOfSound(), 1500);
     config.water = water(12, 35, 8);

@@ -1,4 +1,4 @@
-// No operator new on the sonars' threads after the first pings, even when later ones see more.
+// No operator new on the sonars' threads after the first pings, even when more is in view later.
 #include <gmock/gmock.h>
 
 #include "components/sonar/AltimeterTask.hpp"
@@ -27,7 +27,7 @@ types::GeometryPtr balls() {
     return test::sceneOf(std::move(meshes), -10, positions);
 }
 
-/** Snapshots of a sonar that looks to starboard first, and then turns to port, where things are. */
+/** Returns snapshots of a sonar that looks to starboard first, and then turns to port, where the objects are. */
 std::vector<types::SnapshotPtr> turning() {
     const types::GeometryPtr geometry = balls();
     std::vector<types::SnapshotPtr> snapshots;
@@ -43,7 +43,8 @@ std::vector<types::SnapshotPtr> turning() {
     return snapshots;
 }
 
-/** Pings of `count` equal snapshots, after as many for the quality to settle, during which the task allocates. */
+/** Returns the number of pings that allocate among `count` pings of equal snapshots. The same number of pings before
+ *  lets the quality settle. */
 int pingsThatAllocate(const SonarConfig& config, int count) {
     SonarTask task("sonar");
     test::Writer<types::SnapshotPtr> in;
@@ -66,7 +67,7 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
 
 enum class Truth { Unheard, Heard };
 
-/** A reader of what a task tells beside its pings. */
+/** A reader of a task's other outputs. */
 template <class Task>
 struct Beside {
     explicit Beside(Task&) {}
@@ -121,14 +122,14 @@ SonarConfig fan() {
 
 TEST(AllocationTest, AForwardLookingSonarAllocatesNothingAfterItsFirstPings) { expectNoAllocation<SonarTask>(fan()); }
 
-TEST(AllocationTest, NorByRays) {
+TEST(AllocationTest, ARayTracedSonarAllocatesNothingAfterItsFirstPings) {
     SonarConfig config = fan();
     config.device.clear();
     config.visibility = Visibility::Cpu;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorWithPatternsAndAPulse) {
+TEST(AllocationTest, PatternsAndAPulseAllocateNothing) {
     SonarConfig config = fan();
     acoustics::BeamLaw law;
     law.width_deg = 3;
@@ -143,7 +144,7 @@ TEST(AllocationTest, NorWithPatternsAndAPulse) {
     }
 }
 
-TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
+TEST(AllocationTest, TruthAllocatesNothing) {
     SonarConfig config = fan();
     expectNoAllocation<SonarTask>(config, Truth::Heard);
     config.deposit = Deposit::Gpu;
@@ -157,13 +158,13 @@ TEST(AllocationTest, NorWhereItTellsWhatItsPingsShow) {
     expectNoAllocation<SonarTask>(config, Truth::Heard);
 }
 
-TEST(AllocationTest, NorDoesItWithTheDepositOnTheGraphicsDevice) {
+TEST(AllocationTest, TheDepositOnTheDeviceAllocatesNothing) {
     SonarConfig config = fan();
     config.deposit = Deposit::Gpu;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorWithEveryEffectThereIs) {
+TEST(AllocationTest, AllEffectsTogetherAllocateNothing) {
     SonarConfig config = fan();
     config.water.emplace();
     config.absorption.emplace().frequency_khz = 700;
@@ -171,7 +172,7 @@ TEST(AllocationTest, NorWithEveryEffectThereIs) {
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, AQualityThatIsLookedAfterAllocatesOnlyInThePingsThatAreWatched) {
+TEST(AllocationTest, AQualityControllerAllocatesOnlyInMeasuredPings) {
     SonarConfig config = fan();
     config.quality = {};
     const int allocating = pingsThatAllocate(config, 40);
@@ -179,13 +180,13 @@ TEST(AllocationTest, AQualityThatIsLookedAfterAllocatesOnlyInThePingsThatAreWatc
     EXPECT_LE(allocating, 12);
 }
 
-TEST(AllocationTest, NorInThePublishedModel) {
+TEST(AllocationTest, ThePublishedModelAllocatesNothing) {
     SonarConfig config = fan();
     config.model = Model::Cerqueira2017;
     expectNoAllocation<SonarTask>(config);
 }
 
-TEST(AllocationTest, NorDoTheOtherKindsOfSonarThatTellMore) {
+TEST(AllocationTest, OtherKindsOfSonarAllocateNothing) {
     ProfilerConfig profiler;
     profiler.sonar = fan();
     expectNoAllocation<ProfilerTask>(profiler);

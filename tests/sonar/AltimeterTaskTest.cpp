@@ -1,4 +1,4 @@
-// First returns against closed forms.
+// First returns, compared with closed forms.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ protected:
         task_.cleanup();
         startWith(config);
     }
-    /** What is told at a height above a bottom; the vehicle pitched and rolled [deg]. */
+    /** Returns the range at a height above a bottom, with the vehicle pitched and rolled [deg]. */
     types::Range rangeAt(double height, double pitch = 0, double roll = 0) {
         types::Snapshot snapshot =
             test::snapshotOf(sceneOf({ground(0)}), {0, 0, height}, 0, types::radians(pitch), types::radians(roll));
@@ -37,7 +37,7 @@ protected:
     }
 };
 
-TEST_F(AltimeterTaskTest, OverAFlatBottomItTellsTheHeight) {
+TEST_F(AltimeterTaskTest, MeasuresTheHeightOverAFlatBottom) {
     for (const double opening : {2.0, 25.0, 120.0}) {
         startWide(opening);
         for (const double height : {1.0, 7.777, 12.34, 28.0})
@@ -45,7 +45,7 @@ TEST_F(AltimeterTaskTest, OverAFlatBottomItTellsTheHeight) {
     }
 }
 
-TEST_F(AltimeterTaskTest, OnATiltedVehicleItTellsTheNearestPointThatTheBeamSees) {
+TEST_F(AltimeterTaskTest, MeasuresTheNearestPointInTheBeamOnATiltedVehicle) {
     const auto nearest = [](double height, double tilt, double half) {
         return tilt <= half ? height : height / std::cos(types::radians(tilt - half));
     };
@@ -57,12 +57,12 @@ TEST_F(AltimeterTaskTest, OnATiltedVehicleItTellsTheNearestPointThatTheBeamSees)
             EXPECT_NEAR(rangeAt(10, 0, tilt).range, expected, bin) << opening << " deg, rolled by " << tilt;
         }
     }
-    // A slant of D / cos(t) would be that of the axis: wrong as soon as the beam is wider than the tilt.
+    // D / cos(t) would be the slant range on the axis: wrong if the beam is wider than the tilt.
     EXPECT_GT(10 / std::cos(types::radians(40)), nearest(10, 40, 60) + 10 * bin);
 }
 
-/** Of a plane through the foot of the axis, tilted by t: D cos(t), as far as the beam sees that point. */
-TEST_F(AltimeterTaskTest, OverASlopeItTellsTheFootOfThePerpendicular) {
+/** The range of a plane through the foot of the axis, tilted by t, is D cos(t) if that point is in the beam. */
+TEST_F(AltimeterTaskTest, MeasuresTheFootOfThePerpendicularOverASlope) {
     constexpr double height = 10;
     startWide(60);
     for (const double tilt : {5.0, 15.0, 25.0}) {
@@ -76,7 +76,7 @@ TEST_F(AltimeterTaskTest, OverASlopeItTellsTheFootOfThePerpendicular) {
     }
 }
 
-TEST_F(AltimeterTaskTest, ItTellsWhatItCouldHaveHeardAndWhen) {
+TEST_F(AltimeterTaskTest, ReportsItsMinAndMaxRangeAndTime) {
     startWide(25);
     const types::Range told = rangeAt(10);
     EXPECT_EQ(told.time, types::Time{1'000'000});
@@ -85,7 +85,7 @@ TEST_F(AltimeterTaskTest, ItTellsWhatItCouldHaveHeardAndWhen) {
     EXPECT_NEAR(told.field_of_view.deg(), 25, 1e-6);
 }
 
-TEST_F(AltimeterTaskTest, WithoutAReturnTheRangeIsNotKnown) {
+TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {
     startWide(25);
     EXPECT_FALSE(rangeAt(40).isKnown());
     EXPECT_TRUE(rangeAt(20).isKnown());

@@ -1,5 +1,5 @@
-// Pings of materials that follow a table or have a lobe, against closed forms and target strengths (ACOUSTICS.md 3.5 to
-// 3.8). Every form stands beside a deliberately wrong one, which must fail by the same measure.
+// Pings of materials that follow a table or have a lobe, compared with closed forms and target strengths
+// (ACOUSTICS.md 3.5 to 3.8). Each form has a deliberately wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -55,19 +55,19 @@ test::Form bottomOf(double height, double elevation, double delta, const std::fu
     };
 }
 
-/** 10 log10 of what a target at `range` gives back [dB]. */
+/** Returns 10 log10 of the echo of a target at `range` [dB]. */
 double targetStrength(const types::Sonar& ping, double range) {
     return 10 * std::log10(std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0) * std::pow(range, 4));
 }
 
-/** A smooth or rough mirror and nothing else. */
+/** Makes a smooth or rough mirror without diffuse scattering. */
 void makeShiny(types::Material& material, float reflection, float slope) {
     material.lambert_db = -200;
     material.reflection = reflection;
     material.roughness_slope = slope;
 }
 
-TEST(BackscatterPingTest, ASeabedIsHeardByTheLawOfItsReportAtTheSonarsFrequency) {
+TEST(BackscatterPingTest, ASeabedEchoesByTheLawOfItsReportAtTheSonarsFrequency) {
     SonarConfig config = floorSonar(1, 40, 0.15, 200);
     config.frequency_khz = 100;
     const auto snapshot =
@@ -91,7 +91,7 @@ TEST(BackscatterPingTest, ASeabedOfASonarWithoutAFrequencyFollowsLambert) {
                     &types::Omission::reason, "no frequency_khz; sediments follow Lambert's law by their lambert_db")));
 }
 
-TEST(BackscatterPingTest, AMeasuredTableIsHeardAsItWasMeasured) {
+TEST(BackscatterPingTest, AMeasuredTableEchoesAsMeasured) {
     const auto snapshot = changed(test::sceneOf({test::ground(-5)}), [](types::Material& m) {
         m.measured = {{0, -40}, {10, -30}, {30, -22}, {90, -5}};
     });
@@ -102,10 +102,11 @@ TEST(BackscatterPingTest, AMeasuredTableIsHeardAsItWasMeasured) {
                                 [&](double angle) { return std::pow(10, levelAt(angle * 180 / pi) / 10); });
     const auto half =
         bottomOf(5, radians(20), radians(1), [&](double angle) { return std::pow(10, levelAt(angle * 90 / pi) / 10); });
-    for (const SonarConfig& way : everyWay(floorSonar(1, 40, 0.15, 200))) expectForm(pingOf(way, snapshot), right, half);
+    for (const SonarConfig& way : everyWay(floorSonar(1, 40, 0.15, 200)))
+        expectForm(pingOf(way, snapshot), right, half);
 }
 
-TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWhateverTheRows) {
+TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWithAnyNumberOfRows) {
     const float reflection = 0.9f;
     const auto snapshot = changed(test::sceneOf({test::sphere(0.5, 128)}, 0, {{50.5, 0, 0}}),
                                   [&](types::Material& m) { makeShiny(m, reflection, 0.1f); });
@@ -114,7 +115,8 @@ TEST(BackscatterPingTest, ASphereHasItsTargetStrengthWhateverTheRows) {
         for (const SonarConfig& way : everyWay(floorSonar(2, 2, 1, 60, rows)))
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
     const auto lambert = changed(snapshot.geometry, [](types::Material& m) { m.lambert_db = 0, m.reflection = 0; });
-    EXPECT_GT(std::abs(targetStrength(pingOf(floorSonar(2, 2, 1, 60), lambert), 50) - right), 3) << "the form sees a law";
+    EXPECT_GT(std::abs(targetStrength(pingOf(floorSonar(2, 2, 1, 60), lambert), 50) - right), 3)
+        << "the form sees a law";
 }
 
 TEST(BackscatterPingTest, ASphereOfSmoothMatterHasTheTargetStrengthOfItsReflection) {
@@ -161,7 +163,7 @@ TEST(BackscatterPingTest, APlateAtNormalIncidenceHasItsTargetStrength) {
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
     }
     config.frequency_khz = 60;
-    EXPECT_NEAR(targetStrength(pingOf(config, snapshot), 50), right + 6.02, 0.5) << "it goes with the frequency";
+    EXPECT_NEAR(targetStrength(pingOf(config, snapshot), 50), right + 6.02, 0.5) << "it depends on the frequency";
 }
 
 TEST(BackscatterPingTest, ARoughCylinderBroadsideHasItsTargetStrength) {
@@ -184,8 +186,8 @@ TEST(BackscatterPingTest, ARoughCylinderBroadsideHasItsTargetStrength) {
             EXPECT_NEAR(targetStrength(pingOf(way, snapshot), 50), right, 0.5) << rows;
 }
 
-TEST(BackscatterPingTest, AMirrorIsTheSonarsImageWhateverTheSamples) {
-    // All of a plane mirror's echo is what comes from the mirrored sonar, at twice the distance: R^2 / (2 D)^2.
+TEST(BackscatterPingTest, AMirrorShowsTheSonarsImageWithAnyNumberOfSamples) {
+    // The echo of a plane mirror is the sound of the mirrored sonar at twice the distance: R^2 / (2 D)^2.
     const auto snapshot = changed(test::sceneOf({test::wall(10)}), [](types::Material& m) { makeShiny(m, 0.5f, 0); });
     const double right = 10 * std::log10(0.25 / 400);
     for (int rows : {16, 64, 512, 2048})
@@ -201,7 +203,7 @@ TEST(BackscatterPingTest, AMirrorIsTheSonarsImageWhateverTheSamples) {
         }
 }
 
-TEST(BackscatterPingTest, ALobeIsHeardWithoutAnyLambertianPart) {
+TEST(BackscatterPingTest, ALobeEchoesWithoutALambertianPart) {
     const auto snapshot = changed(test::sceneOf({test::wall(10)}), [](types::Material& m) {
         makeShiny(m, 0.5f, 0.1f);
         m.lambert_db = -1000;  // 0 as a float

@@ -1,5 +1,5 @@
 #pragma once
-// A cut through a beam that is 3 deg wide, and what textbooks say of it.
+// A cut through a beam that is 3 deg wide, and its textbook values.
 #include <gtest/gtest.h>
 
 #include <algorithm>

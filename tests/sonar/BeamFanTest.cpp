@@ -54,7 +54,7 @@ void expectTiled(const std::vector<Part>& parts, const ViewFrustum& frustum, con
     for (size_t i = 1; i < parts.size(); ++i) EXPECT_NEAR(parts[i].from, parts[i - 1].to, 1e-9);
 }
 
-/** One of 40 m range in bins of 0.1 m. */
+/** A sonar of 40 m range in bins of 0.1 m. */
 types::Sonar plainPing(SonarConfig config, const types::Snapshot& snapshot) {
     config.speed_of_sound = 1000;
     config.range = 40;
@@ -88,7 +88,7 @@ types::Snapshot room(double yaw = 0) {
 
 }  // namespace
 
-TEST(BeamFanTest, SlabsOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
+TEST(BeamFanTest, FrustaOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
     for (double degrees = 1; degrees <= 360; degrees += 0.5) {
         const SonarConfig config = plainFan(degrees, 64);
         const auto frusta = makeFrusta(config, makeBeams(config));
@@ -105,7 +105,7 @@ TEST(BeamFanTest, SlabsOfAtMostSixtyDegreesCoverTheFanWithoutGapOrOverlap) {
     }
 }
 
-TEST(BeamFanTest, TheImageReachesTheApertureInItsCorners) {
+TEST(BeamFanTest, TheImageIncludesTheApertureInItsCorners) {
     const SonarConfig config = plainFan(100, 10);
     for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config)))
         EXPECT_NEAR(std::atan(frustum.extent_v * std::cos(frustum.half_width)), radians(config.beam_height_deg / 2),
@@ -180,7 +180,7 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
             const auto parts = partsOfBeams(shares, frustum, beams.size(), row);
             for (size_t k = 0; k < beams.size(); ++k) {
                 if (parts[k].empty() || parts[k].back().to > frustum.extent_u * (1 - 1e-9))
-                    continue;  // goes on next door
+                    continue;  // continues in the next frustum
                 const double in_slab = std::atan(parts[k].back().to);
                 const double elevation = std::atan(frustum.v(row + 0.5) * std::cos(in_slab));
                 EXPECT_NEAR(std::sin(frustum.azimuth + in_slab) * std::cos(elevation), std::sin(beams[k].high), 1e-6);
@@ -191,7 +191,7 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
     EXPECT_GT(checked, 800);
 }
 
-TEST(BeamFanTest, NoBeamIsEmptyWhereBeamsAreNarrowerThanColumns) {
+TEST(BeamFanTest, NoBeamIsEmptyIfBeamsAreNarrowerThanColumns) {
     const SonarConfig config = plainFan(360, 4096, 1);  // in the middle of a frustum columns are 1.1 beams wide
     const auto beams = makeBeams(config);
     std::vector<int> shares_of(beams.size());
@@ -213,21 +213,23 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
     for (int first : {0, 55, 117, 175, 236, 350}) {
         const auto few = plainPing(narrow, room(radians(first + 5 - 180)));
         for (uint32_t k = 0; k < 10; ++k)
-            EXPECT_LT(largestDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3) << first + k;
+            EXPECT_LT(largestDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3)
+                << first + k;
     }
 }
 
-TEST(BeamFanTest, AWallThroughThreeSlabsHasNoSeam) {
-    // Turned by ten beams, the same bearings of the world lie elsewhere in the frusta.
+TEST(BeamFanTest, AWallThroughThreeFrustaHasNoSeam) {
+    // Rotated by ten beams, the same bearings of the world are at other places in the frusta.
     const auto wall = test::sceneOf({test::quad({10, -300, -50}, {0, 600, 0}, {0, 0, 100})});
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
     const auto straight = plainPing(config, test::snapshotOf(wall));
     const auto turned = plainPing(config, test::snapshotOf(wall, {}, radians(10)));
-    for (uint32_t k = 10; k < 140; ++k) EXPECT_LT(largestDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
+    for (uint32_t k = 10; k < 140; ++k)
+        EXPECT_LT(largestDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
 }
 
-TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeSlabs) {
+TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeFrusta) {
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
     const auto ping = plainPing(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));

@@ -27,7 +27,7 @@ double lobe(double azimuth, double bearing) {
     return std::exp(-off * off) + 1e-3 * (1 + std::cos(azimuth));
 }
 
-/** Bins of one beam of cells of which each has its number in each bin. */
+/** Returns the bins of one beam, with cells whose bins all contain the number of the cell. */
 std::vector<float> formed(Beamformer& beamformer, size_t beam, const std::vector<float>& echoes) {
     for (size_t group = 0; group < beamformer.groupCount(); ++group) beamformer.sumGroup(group, echoes);
     std::vector<float> bins(bin_count);
@@ -42,7 +42,7 @@ protected:
     Beamformer beamformer_{beams_, cells_, bin_count, {lobe, radians(8), 1e-6}};
 };
 
-TEST_F(BeamformerTest, ACellIsHeardInEachBeamByItsWeightThere) {
+TEST_F(BeamformerTest, ACellEchoesInEachBeamByItsWeightInTheBeam) {
     for (const size_t cell : {size_t{0}, size_t{100}, size_t{118}, size_t{236}}) {
         std::vector<float> echoes(cells_.size() * bin_count);
         echoes[cell * bin_count + 3] = 2;
@@ -55,7 +55,7 @@ TEST_F(BeamformerTest, ACellIsHeardInEachBeamByItsWeightThere) {
     }
 }
 
-TEST_F(BeamformerTest, NearItsBearingABeamWeighsEachCellByTheMeanOfItsPatternAndFarOffGroupsOfThem) {
+TEST_F(BeamformerTest, WeighsNearCellsByTheMeanOfThePatternAndFarCellsInGroups) {
     const Beam& beam = beams_[10];
     const std::vector<double> weights = beamformer_.weights(10);
     size_t single = 0;
@@ -85,7 +85,7 @@ TEST_F(BeamformerTest, EnergyFromAllAroundIsThePatternsIntegral) {
     }
 }
 
-TEST_F(BeamformerTest, WhatIsBelowTheFloorIsNotHeard) {
+TEST_F(BeamformerTest, WeightsBelowTheFloorAreOmitted) {
     const Beamformer deaf{beams_, cells_, bin_count, {lobe, radians(8), 0.01}};
     const std::vector<double> weights = deaf.weights(0);
     EXPECT_EQ(weights.back(), 0);
@@ -118,7 +118,7 @@ TEST(DirectivityTest, AStraightArraysBeamsWidenAsTheyAreSteeredAndACurvedOnesDoN
     EXPECT_GT(straight.azimuth(steered + radians(1), steered), 0.8);
 }
 
-TEST(DirectivityTest, CellsGoAsFarAsTheFloorSaysAndAreFinerThanBeams) {
+TEST(DirectivityTest, CellsReachToTheFloorAndAreFinerThanBeams) {
     SonarConfig config = sonarWith(widthOf(2));
     config.field_of_view_deg = 60;
     config.beam_count = 60;
@@ -132,7 +132,7 @@ TEST(DirectivityTest, CellsGoAsFarAsTheFloorSaysAndAreFinerThanBeams) {
     EXPECT_EQ(sampled.beam_height_deg, config.beam_height_deg) << "without a law in elevation, as given";
 }
 
-TEST(DirectivityTest, SidelobesInElevationReachBeyondTheApertureThatIsGiven) {
+TEST(DirectivityTest, SidelobesInElevationReachBeyondTheGivenAperture) {
     SonarConfig config;
     config.beam_pattern.emplace().receive.elevation = widthOf(20, acoustics::Weighting::Uniform);
     const SonarConfig sampled = sampledConfig(config, Directivity(config), true);

@@ -15,7 +15,7 @@ SonarConfig gridOf(double range, int bins, double speed = 1500) {
     return config;
 }
 
-TEST(BinGridTest, BinsLastWholeMicrosecondsRoundedUp) {
+TEST(BinGridTest, BinDurationsAreWholeMicrosecondsRoundedUp) {
     struct Case {
         double range;
         int bins;
@@ -46,7 +46,7 @@ TEST(BinGridTest, ABinLastsAtLeastOneMicrosecond) {
     EXPECT_EQ(makeBinGrid(exact).bin_duration_us, 1);
 }
 
-TEST(BinGridTest, ExactRoundingKeepsTheAskedEdges) {
+TEST(BinGridTest, ExactRoundingKeepsTheRequestedEdges) {
     SonarConfig config = gridOf(5, 1000);
     config.range_rounding = RangeRounding::Exact;
     const BinGrid grid = makeBinGrid(config);
@@ -55,7 +55,7 @@ TEST(BinGridTest, ExactRoundingKeepsTheAskedEdges) {
     EXPECT_EQ(grid.bin_duration_us, 3);
 }
 
-TEST(BinGridTest, TheEdgesAreThoseThatAReaderOfTheSampleComputes) {
+TEST(BinGridTest, TheEdgesMatchThoseComputedFromTheSample) {
     const BinGrid grid = makeBinGrid(gridOf(50, 500, 1487.123456789));
     const auto c = static_cast<double>(static_cast<float>(1487.123456789));
     EXPECT_EQ(grid.speed_of_sound, c);
@@ -63,7 +63,7 @@ TEST(BinGridTest, TheEdgesAreThoseThatAReaderOfTheSampleComputes) {
         EXPECT_NEAR(grid.edge(k), k * static_cast<double>(grid.bin_duration_us) * 1e-6 * c, 1e-12);
 }
 
-TEST(BinGridTest, PublishedBinsAreOneFewer) {
+TEST(BinGridTest, ThePublishedModelHasOneBinLess) {
     SonarConfig config = gridOf(75, 501);
     config.model = Model::Cerqueira2017;
     config.published = true;

@@ -32,7 +32,7 @@ TEST(BinLevelsTest, IntensityFallsWithSpreadingAndAbsorption) {
     EXPECT_NEAR(bins[1], 0.2 / 9 * std::pow(10, -0.3), 1e-8);
 }
 
-TEST(BinLevelsTest, TwoMegahertzAtFourHundredMetresIsNoEchoForNoFloatHoldsIt) {
+TEST(BinLevelsTest, AnEchoBelowTheRangeOfFloatsIsZero) {
     SonarConfig config = rangedSonar(400, 800);
     config.water = acoustics::Water{10, 35, 10, 8.1};
     config.absorption = AbsorptionConfig{{}, acoustics::AbsorptionLaw::FrancoisGarrison, 2000};
@@ -42,7 +42,7 @@ TEST(BinLevelsTest, TwoMegahertzAtFourHundredMetresIsNoEchoForNoFloatHoldsIt) {
     EXPECT_EQ(levels(config, std::vector<double>(800, 0.01)).back(), 0);
 }
 
-TEST(BinLevelsTest, AnIntensityIsAtMostTheLargestFloat) {
+TEST(BinLevelsTest, AnIntensityIsAtMostTheMaxFloat) {
     EXPECT_EQ(levels(rangedSonar(0.2, 2), {1e60, 1}).front(), std::numeric_limits<float>::max());
 }
 

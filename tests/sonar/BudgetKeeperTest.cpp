@@ -12,8 +12,7 @@ namespace {
 
 constexpr double least = 32768, most = 4e6;
 
-/** A machine on which pings take a while whatever their samples, and a while for each; and a ladder that is climbed by
- *  rungs of 9 %. */
+/** A machine on which a ping takes a constant time plus a time per sample, and a ladder with rungs of 9 %. */
 struct Machine {
     double fixed_ms = 1, ms_per_sample = 4e-5, jitter = 0;
     std::minstd_rand random{7};
@@ -26,7 +25,7 @@ struct Machine {
         const double noise = 2 * static_cast<double>(random()) / std::minstd_rand::max() - 1;
         return (fixed_ms + samples * ms_per_sample) * (1 + jitter * noise);
     }
-    /** Times of so many pings. */
+    /** Returns the times of a number of pings. */
     std::vector<double> run(BudgetKeeper& keeper, int pings) {
         std::vector<double> times;
         for (int i = 0; i < pings; ++i) {
@@ -43,7 +42,7 @@ double median(std::vector<double> times) {
     return times[times.size() / 2];
 }
 
-TEST(BudgetKeeperTest, ItUsesAtLeastFourFifthsOfWhatItIsGivenAndKeepsToIt) {
+TEST(BudgetKeeperTest, UsesAtLeastFourFifthsOfTheBudgetAndDoesNotExceedIt) {
     for (const double fixed_ms : {0.1, 1.0, 5.0})
         for (const double budget : {10.0, 33.0, 80.0}) {
             Machine machine{fixed_ms, 4e-5, 0.03};
@@ -55,7 +54,7 @@ TEST(BudgetKeeperTest, ItUsesAtLeastFourFifthsOfWhatItIsGivenAndKeepsToIt) {
         }
 }
 
-TEST(BudgetKeeperTest, TwoOfTwentyLatePingsLowerItOneDoesNot) {
+TEST(BudgetKeeperTest, TwoLatePingsInTwentyLowerTheQualityAndOneDoesNot) {
     BudgetKeeper keeper(10, 1e5);
     EXPECT_FALSE(keeper.note(11, 1e5));
     for (int i = 0; i < 25; ++i) EXPECT_FALSE(keeper.note(9.5, 1e5)) << "one late ping is forgotten";
@@ -64,7 +63,7 @@ TEST(BudgetKeeperTest, TwoOfTwentyLatePingsLowerItOneDoesNot) {
     EXPECT_NEAR(keeper.limit(), 0.9 * 10 / 12 * 1e5, 1);
 }
 
-TEST(BudgetKeeperTest, ItFallsWhenTheMachineIsBusyAndClimbsBackInSomeTensOfPings) {
+TEST(BudgetKeeperTest, TheQualityFallsOnABusyMachineAndRecoversInSomeTensOfPings) {
     Machine machine;
     BudgetKeeper keeper(33, least);
     machine.run(keeper, 100);
@@ -78,7 +77,7 @@ TEST(BudgetKeeperTest, ItFallsWhenTheMachineIsBusyAndClimbsBackInSomeTensOfPings
     EXPECT_GE(median(machine.run(keeper, 20)), 0.8 * 33);
 }
 
-TEST(BudgetKeeperTest, ItDoesNotSwingBetweenTwoQualities) {
+TEST(BudgetKeeperTest, DoesNotOscillateBetweenTwoQualities) {
     Machine machine;
     machine.jitter = 0.12;
     BudgetKeeper keeper(33, least);
@@ -90,14 +89,14 @@ TEST(BudgetKeeperTest, ItDoesNotSwingBetweenTwoQualities) {
     EXPECT_LE(moves, 40);
 }
 
-TEST(BudgetKeeperTest, WhatAPingDoesNotNeedIsNotRaised) {
+TEST(BudgetKeeperTest, DoesNotExceedTheQualityThatAPingNeeds) {
     BudgetKeeper keeper(33);
     for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, least));
     BudgetKeeper limited(33, 1e6);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "there is room already";
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "the budget is not used up";
 }
 
-TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
+TEST(BudgetKeeperTest, AChangedBudgetAppliesAtOnce) {
     Machine machine;
     BudgetKeeper keeper(33, least);
     machine.run(keeper, 100);
@@ -106,7 +105,7 @@ TEST(BudgetKeeperTest, AnotherBudgetHoldsAtOnce) {
     EXPECT_LE(median(machine.run(keeper, 20)), 10);
 }
 
-TEST(PeriodMeterTest, NeitherAPingThatWasLeftOutNorTwoAtOnceChangeIt) {
+TEST(PeriodMeterTest, IgnoresAMissingPingAndTwoAtOnce) {
     PeriodMeter meter;
     EXPECT_EQ(meter.period(), 0);
     for (int i = 0; i < 40; ++i) meter.note(i % 4 == 0 ? 0.2 : i % 16 == 1 ? 0.001 : 0.1);

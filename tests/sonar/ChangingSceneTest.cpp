@@ -1,4 +1,5 @@
-// Scenes that change from ping to ping: what a renderer keeps, and that its pings are those of a renderer made anew.
+// Scenes that change from ping to ping: the data that a renderer keeps, and pings compared with those of a new
+// renderer.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -83,7 +84,7 @@ size_t threads() {
     return static_cast<size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
-/** Sonars with one effect each that meets the scene in a way of its own. */
+/** Sonars with one effect each that uses the scene in its own way. */
 std::vector<std::pair<std::string, SonarConfig>> sonars() {
     SonarConfig plain = wideFan(), coherent = wideFan(), mirrors = wideFan(), pattern = wideFan(), means = wideFan();
     coherent.speckle.emplace().coherent = true;
@@ -94,7 +95,7 @@ std::vector<std::pair<std::string, SonarConfig>> sonars() {
     return {{"plain", plain}, {"coherent", coherent}, {"mirrors", mirrors}, {"pattern", pattern}, {"means", means}};
 }
 
-TEST(ChangingSceneTest, AMissionOverTilesPingsAsRenderersMadeAnewForEachTile) {
+TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
     const Folder folder;
     const std::string file = survey(folder, 120, 700);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
@@ -126,7 +127,7 @@ TEST(ChangingSceneTest, AMissionOverTilesPingsAsRenderersMadeAnewForEachTile) {
     }
 }
 
-TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) {
+TEST(ChangingSceneTest, ObjectsThatAppearDisappearAndMoveMatchNewRenderers) {
     Random random(8);
     for (const auto& [name, config] : sonars())
         for (int trial = 0; trial < 4; ++trial) {
@@ -150,7 +151,7 @@ TEST(ChangingSceneTest, ObjectsThatComeGoAndMoveArePingedAsByRenderersMadeAnew) 
         }
 }
 
-TEST(ChangingSceneTest, AMaterialThatComesWithAnObjectChangesThePlanAndThePings) {
+TEST(ChangingSceneTest, AMaterialOfANewObjectChangesThePlanAndThePings) {
     const auto bare = std::make_shared<types::Geometry>(*test::sceneOf({test::ground(-4), test::sphere(1, 30)}, -20));
     bare->objects[1].world_from_object = glm::translate(glm::dmat4(1), {8, 0, -1});
     auto shiny = std::make_shared<types::Geometry>(*bare);
@@ -175,7 +176,7 @@ TEST(ChangingSceneTest, AMaterialThatComesWithAnObjectChangesThePlanAndThePings)
     EXPECT_NE(binsWith(of_bare, test::snapshotOf(bare)), binsWith(of_shiny, test::snapshotOf(shiny)));
 }
 
-TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
+TEST(ChangingSceneTest, KeepsMeshesTreesAndThreads) {
     const Folder folder;
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));
@@ -201,9 +202,9 @@ TEST(ChangingSceneTest, MeshesTreesAndThreadsAreKept) {
                     ++same;
                     EXPECT_FALSE(kept[k].expired()) << "the renderer has what was made of the mesh";
                     EXPECT_EQ(MeshFacts::of(snapshot.geometry->meshes.shared(i)), kept[k].lock());
-                    EXPECT_EQ(trees[k].expired(), k == 0) << "the block is in the tree of what stands still";
+                    EXPECT_EQ(trees[k].expired(), k == 0) << "the block is in the tree of objects at rest";
                 }
-        EXPECT_GE(same, before->meshes.size() * 2 / 3) << "but for the tiles that are left behind";
+        EXPECT_GE(same, before->meshes.size() * 2 / 3) << "except the tiles that are left behind";
         if (way > 70 && running == 0) running = threads();
         if (running > 0) {
             EXPECT_EQ(threads(), running);
@@ -218,7 +219,7 @@ protected:
     ChosenQualityTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
 };
 
-TEST_F(ChosenQualityTest, IsKeptAndIsNotChosenAgainForTheNextTile) {
+TEST_F(ChosenQualityTest, IsKeptForTheNextTile) {
     const Folder folder;
     const auto floor = floorOf(survey(folder, 120, 300), 30, 8);
     const types::GeometryPtr rest = withFloor(test::sceneOf({test::block()}, -10, {{30, -60, -9}}));

@@ -1,5 +1,5 @@
-// Pings of scenes whose echo is known in closed form (ACOUSTICS.md 9), drawn through OpenGL. Every form stands beside
-// a deliberately wrong one, which must fail by the same measure.
+// Pings of scenes whose echo is known in closed form (ACOUSTICS.md 9), rasterised by OpenGL. Each form has a
+// deliberately wrong variant, which must fail by the same measure.
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
@@ -57,7 +57,7 @@ TEST(ClosedFormTest, AnyPlaneFacingDiscShowsOmegaOverRToTheFifth) {
 }
 
 TEST(ClosedFormTest, RolledPlaneHasTheSameEnergyPerRangeAsALevelOneInAConeOfAllBearings) {
-    // A plane ahead, turned about the line of sight, is the facing disc again: nothing may depend on roll.
+    // A plane ahead, rotated about the line of sight, is the facing disc again: no bin may depend on roll.
     const double distance = 10, edge = 10.4, radius = std::sqrt(edge * edge - distance * distance);
     const auto geometry = test::sceneOf({test::disc(distance, radius)});
     const auto config = sonarOf(40, 40, 1, 0.1, 120);
@@ -79,9 +79,9 @@ TEST(ClosedFormTest, SphereFollowsItsRangeDensity) {
                test::times(1.03, test::sphereEcho(1, 10)));
 }
 
-TEST(ClosedFormTest, AtTheLimbOfASphereBinsAreRightToTheirPixels) {
+TEST(ClosedFormTest, BinsAtTheLimbOfASphereAreRightToTheirPixels) {
     // The last pixel before the limb is 4 mm wide and spans sqrt(2 * 1 m * 4 mm), 0.09 m of range, on a sphere of 1 m:
-    // there a bin of 0.025 m is a matter of single pixels, each drawn as the plane of its triangle.
+    // there a bin of 0.025 m depends on single pixels, each rasterised as the plane of its triangle.
     const double limb = std::sqrt(99.0), pixel = 0.09;
     const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 512)}, 0, {{10, 0, 0}}));
     const types::Sonar ping = pingOf(sonarOf(12, 12, 1, 0.025, 480), snapshot);
@@ -156,7 +156,7 @@ struct RandomSphere {
     SonarConfig config;
 };
 
-TEST(ClosedFormTest, NothingIsBeforeASphereOrBehindItsLimb) {
+TEST(ClosedFormTest, NoEchoIsBeforeASphereOrBehindItsLimb) {
     std::mt19937 random(11);
     double behind_planes = 0;
     for (const int rings : {64, 256, 512})
@@ -237,7 +237,7 @@ TEST(ClosedFormTest, TwoObjectsAtOneRangeDoubleTheEnergyButNotThePublishedMean) 
 }
 
 TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
-    // A screen of height h stands on the bottom at horizontal distance R; the sonar is at height H.
+    // A screen of height h is on the bottom at horizontal distance R; the sonar is at height H.
     const double height = 5, screen = 2, ground_range = 15;
     const auto geometry = test::sceneOf({test::ground(-5), test::quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
     const auto ping = pingOf(sonarOf(1, 60, 1, 0.1, 400), test::snapshotOf(geometry));
@@ -248,7 +248,7 @@ TEST(ClosedFormTest, ShadowBehindAScreenEndsWhereTheTopRayMeetsTheBottom) {
     EXPECT_GT(std::abs(end * 0.1 - ground_range * height / (height - screen)), 0.1) << "ground range is wrong";
 }
 
-TEST(ClosedFormTest, AMeshSoundsAsItsTilesDo) {
+TEST(ClosedFormTest, AMeshEchoesAsItsTilesDo) {
     study::StudyScene scene = study::roughFloor();
     scene.config.visibility = Visibility::Cpu;
     std::vector<types::Mesh> tiles = study::tilesOf(study::FractalFloor{}, 8);  // of 64 x 64 squares
@@ -296,8 +296,8 @@ TEST(CerqueiraLimitTest, ThePlanesLimitDoesNotDependOnPitch) {
 }
 
 TEST(CerqueiraLimitTest, SphereIsTheSigmoidOfItsIncidence) {
-    // Its first and last range lie inside a bin: a mean has no weight, so that a bin which only a rounding touches
-    // shows it in full.
+    // The first and last range of the sphere are inside bins. A mean has no weight, so a bin that only a rounding
+    // touches shows the sphere in full.
     const auto snapshot = test::snapshotOf(test::sceneOf({test::sphere(1, 256)}, 0, {{10.03, 0, 0}}));
     expectForm(pingOf(published(sonarOf(14, 14, 1, 0.1, 120)), snapshot), test::publishedSphere(1, 10.03),
                test::publishedSphere(1.02, 10.05));

@@ -1,5 +1,5 @@
 #pragma once
-// A scene of large meshes, and a sonar that goes through it.
+// A scene of large meshes, and a sonar that moves through it.
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <random>

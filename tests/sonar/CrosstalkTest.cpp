@@ -1,5 +1,5 @@
-// The pulses of other sonars against the one-way sonar equation, and their echoes against an integral over the sea
-// floor, both worked out here (ACOUSTICS.md 5.29).
+// The pulses of other sonars compared with the one-way sonar equation, and their echoes compared with an integral over
+// the sea floor, both computed independently here (ACOUSTICS.md 5.29).
 #include <gmock/gmock.h>
 
 #include <complex>
@@ -86,9 +86,9 @@ SonarConfig randomFan(std::mt19937& random) {
     return config;
 }
 
-/** Random fans, places, delays, levels, absorption and patterns: every heard beam has its pulse in the right bin, at
- * the level of the one-way sonar equation. */
-TEST(CrosstalkTest, APulseThatComesStraightFollowsTheOneWaySonarEquation) {
+/** Random fans, places, delays, levels, absorption and patterns: every beam that receives a pulse has it in the right
+ *  bin, at the level of the one-way sonar equation. */
+TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     int heard = 0;
@@ -138,7 +138,7 @@ TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
     }
 }
 
-TEST(CrosstalkTest, APulseIsNotHeardBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
+TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
     const SonarConfig config = hearing(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
     const auto heardFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
         types::Snapshot snapshot = test::snapshotOf(scene);
@@ -158,12 +158,12 @@ TEST(CrosstalkTest, APulseIsNotHeardBehindAWallTooEarlyTooLateOrOutsideOfFanAndA
 }
 
 /** The surface's image of the sender, 6 m above it. */
-TEST(CrosstalkTest, ThePulseComesByWayOfTheSurfaceAsWell) {
+TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
     SonarConfig config = test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
     config = hearing(config);
     config.multipath.emplace().surface.emplace();
     types::Snapshot snapshot = openWaterWith(sentFrom({16, 0, 0}, 0.01, [](const glm::dvec3& to) {
-        return to.z > 0.1 ? 0.5 : 1.0;  // towards the surface it is weaker
+        return to.z > 0.1 ? 0.5 : 1.0;  // weaker towards the surface
     }));
     snapshot.water_surface = 6;
     const auto ping = pingOf(config, snapshot);
@@ -172,7 +172,7 @@ TEST(CrosstalkTest, ThePulseComesByWayOfTheSurfaceAsWell) {
     EXPECT_NEAR(double{ping.bins[static_cast<size_t>((5 + reflected / 2) / 0.1)]} * reflected * reflected, 0.5, 1e-5);
 }
 
-/** A matched filter on sampled chirps: the energy that it passes, relative to its own pulse of the same level. */
+/** A matched filter on sampled chirps: the energy that passes, relative to the filter's own pulse of the same level. */
 double filteredEnergy(const Waveform& own, const Waveform& sent) {
     constexpr double rate = 2e6;
     const auto chirp = [&](const Waveform& form) {
@@ -197,7 +197,7 @@ double filteredEnergy(const Waveform& own, const Waveform& sent) {
     return energy / rate;  // [s], of a peak of 1
 }
 
-TEST(CrosstalkTest, AMatchedFilterPassesAsMuchOfAnotherChirpAsMismatchOfSays) {
+TEST(CrosstalkTest, AMatchedFilterPassesTheShareOfAnotherChirpByMismatchOf) {
     const Waveform own{700, 40, 1.5e-3};
     for (const Waveform& sent : {Waveform{700, 40, 2.5e-3}, Waveform{720, 40, 1.5e-3}, Waveform{715, 60, 1e-3},
                                  Waveform{700, 30, 3e-3}, Waveform{690, 25, 2e-3}}) {
@@ -212,7 +212,7 @@ TEST(CrosstalkTest, AMatchedFilterPassesAsMuchOfAnotherChirpAsMismatchOfSays) {
     EXPECT_NEAR(decibelsOf(far.intensity), -40 + decibelsOf(0.02 / far.length), 1e-9);
 }
 
-TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsThatItLasts) {
+TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
     SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 50;  // without chirp_us it lasts 1 ms
@@ -224,13 +224,13 @@ TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsThatItLasts) {
         if (ping.bins[k] > 0) heard.push_back(k);
     ASSERT_EQ(heard.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
     EXPECT_EQ(heard.front(), 92u);
-    // Half of its band is heard, of twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
+    // Half of the pulse's band passes, with twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
     EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1,
                 1e-4);
 }
 
-/** What a sonar hears of its own pulse, once more from a twin at its place. Fields of coherent speckle add with a phase
- *  of their own, so there the sum over the ping doubles. */
+/** A twin at the place of a sonar doubles the echoes of the sonar's own pulse. Fields of coherent speckle add with
+ *  independent phases, so with coherent speckle the sum over the ping doubles. */
 TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
     for (const bool patterned : {false, true}) {
         SonarConfig config =
@@ -305,7 +305,7 @@ TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGroun
     }
 }
 
-TEST(CrosstalkTest, ASenderBehindASurfaceOrOnItsFarSideLightsNothing) {
+TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
     const SonarConfig config =
         hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
@@ -318,7 +318,7 @@ TEST(CrosstalkTest, ASenderBehindASurfaceOrOnItsFarSideLightsNothing) {
     EXPECT_EQ(pingOf(config, snapshot).bins, roofed.bins);
 }
 
-/** Senders at extreme places and times: what is heard is finite. */
+/** Senders at extreme places and times give finite echoes. */
 TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
     const SonarConfig config =
         hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);

@@ -8,7 +8,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** Turned, placed within `reach` [m], and half of the time stretched unevenly, mirrored and sheared. */
+/** Returns a random rotation and place within `reach` [m]; half of them are stretched unevenly, mirrored and
+ *  sheared. */
 glm::dmat4 randomPlace(Random& random, double reach) {
     glm::dmat4 place = glm::rotate(glm::dmat4(1), uniform(random, 0, 6), uniformVector(random, 1) + 1e-3);
     if (uniform(random, 0, 1) < 0.5) {
@@ -19,7 +20,7 @@ glm::dmat4 randomPlace(Random& random, double reach) {
     return place;
 }
 
-/** Every triangle a cluster in a box about the middle of its first edge. */
+/** Makes every triangle a cluster in a box about the middle of its first edge. */
 types::Mesh triangleSoup(Random& random, int triangles) {
     types::Mesh mesh;
     for (int i = 0; i < triangles; ++i) {
@@ -39,7 +40,7 @@ bool inView(const ViewFrustum& frustum, glm::dvec3 p, double range_max) {
            glm::length(p) <= range_max;
 }
 
-/** Whether any of some points of the triangle is in view. */
+/** Returns whether any of some points of the triangle is in view. */
 bool triangleSeen(const ViewFrustum& frustum, const glm::dvec3 (&corner)[3], double range_max) {
     for (double a = 0; a <= 1; a += 0.25)
         for (double b = 0; a + b <= 1; b += 0.25)
@@ -47,14 +48,14 @@ bool triangleSeen(const ViewFrustum& frustum, const glm::dvec3 (&corner)[3], dou
     return false;
 }
 
-/** For each object, whether each of its triangles is in a run. */
+/** Returns for each triangle of each object whether it is in a run. */
 std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std::vector<Culler::DrawRange>& runs) {
     std::vector<std::vector<bool>> marks;
     for (const types::Object& object : geometry.objects)
         marks.emplace_back(geometry.meshes[static_cast<size_t>(object.mesh)].indices.size() / 3);
     for (const Culler::DrawRange& run : runs)
         for (uint32_t i = run.first_index / 3; i < (run.first_index + run.index_count) / 3; ++i) {
-            EXPECT_FALSE(marks[run.object].at(i)) << "drawn twice";
+            EXPECT_FALSE(marks[run.object].at(i)) << "rasterised twice";
             marks[run.object].at(i) = true;
         }
     return marks;
@@ -101,7 +102,7 @@ types::Snapshot randomSnapshot(Random& random, types::GeometryPtr geometry) {
                             uniform(random, -1, 1), uniform(random, -3, 3));
 }
 
-/** Of 1 m, known by its own sphere. */
+/** A sphere of 1 m, with itself as bounding sphere. */
 types::Mesh ball() { return test::sphere(1, 8); }
 
 /** Runs over all frusta for one sphere of 1 m about `position`, the sonar at the origin. */
@@ -131,7 +132,7 @@ types::GeometryPtr withoutCulling(const types::Geometry& geometry) {
 
 }  // namespace
 
-TEST(CullerTest, NothingThatASlabSeesIsCulled) {
+TEST(CullerTest, CullsNothingInViewOfAFrustum) {
     Random random(1);
     Count total;
     for (int round = 0; round < 200; ++round) {
@@ -155,10 +156,10 @@ TEST(CullerTest, NothingThatASlabSeesIsCulled) {
     EXPECT_LT(total.drawn, total.all / 2) << "most of the scene is out of view";
 }
 
-TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
+TEST(CullerTest, CullsNoTriangleOfAClusterInView) {
     Random random(2);
     const auto geometry = clusteredHarbour();
-    geometry->materials[0].double_sided = true;  // backs are another test's
+    geometry->materials[0].double_sided = true;  // another test culls backs
     ASSERT_GT(geometry->meshes[0].clusters.size(), 100u);
     for (int round = 0; round < 4; ++round) {
         auto turned = std::make_shared<types::Geometry>(*geometry);
@@ -172,7 +173,7 @@ TEST(CullerTest, NoTriangleOfAClusterInViewIsCulled) {
     }
 }
 
-TEST(CullerTest, ObjectsBehindAsideAboveOrBeyondTheRangeAreNotDrawn) {
+TEST(CullerTest, CullsObjectsBehindAsideAboveOrBeyondTheRange) {
     EXPECT_EQ(runsOfBall({10, 0, 0}), 1u);
     EXPECT_EQ(runsOfBall({-10, 0, 0}), 0u) << "behind";
     EXPECT_EQ(runsOfBall({10, 9, 0}), 0u) << "to port";
@@ -183,12 +184,12 @@ TEST(CullerTest, ObjectsBehindAsideAboveOrBeyondTheRangeAreNotDrawn) {
     EXPECT_EQ(runsOfBall({30.5, 0, 0}), 1u) << "its near side is in range";
 }
 
-TEST(CullerTest, AnObjectAboutTheSonarIsDrawnInEverySlab) {
+TEST(CullerTest, AnObjectAroundTheSonarIsInEveryFrustum) {
     EXPECT_EQ(runsOfBall({0, 0, 0}, 360), 6u);
-    EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the slabs of a full turn meet ahead";
+    EXPECT_EQ(runsOfBall({10, 0, 0}, 360), 2u) << "the frusta of a full turn meet ahead";
 }
 
-TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
+TEST(CullerTest, AMovedObjectIsCulledByItsNewPlace) {
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({ball()}, 0, {{-10, 0, 0}}));
     Culler culler(*snapshot.geometry, {0, {30}});
     std::vector<Culler::DrawRange> runs;
@@ -206,18 +207,18 @@ TEST(CullerTest, AMovedObjectIsDrawnWhereItIs) {
     EXPECT_TRUE(runs.empty()) << "back at its place";
 }
 
-TEST(CullerTest, ThePingOfClustersCulledByViewIsThatOfTheWholeScene) {
+TEST(CullerTest, ThePingOfClustersCulledByViewMatchesTheWholeScene) {
     const auto clustered = clusteredHarbour();
     for (double degrees : {50.0, 100.0, 360.0}) {
         SonarConfig config = fan(degrees);
-        config.range = 120;  // holds all of the scene
+        config.range = 120;  // contains the whole scene
         const auto culled = pings(config, clustered);
         EXPECT_EQ(culled, pings(config, withoutCulling(*clustered))) << degrees << " deg";
         EXPECT_GT(std::count_if(culled.begin(), culled.end(), [](float x) { return x > 0; }), 3000);
     }
 }
 
-TEST(CullerTest, CullingByRangeTakesOnlyEchoesThatAPixelBeyondItWouldSmearBack) {
+TEST(CullerTest, CullingByRangeRemovesOnlyEchoesThatPixelsBeyondItSmearBack) {
     const auto clustered = clusteredHarbour();
     const auto culled = pings(fan(100), clustered), all = pings(fan(100), withoutCulling(*clustered));
     const float most = *std::ranges::max_element(all);

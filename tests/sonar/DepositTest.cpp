@@ -69,7 +69,7 @@ types::Sonar difference(types::Sonar a, const types::Sonar& b) {
     return a;
 }
 
-/** The same with the places of its objects, and of the sonar, as large as in UTM coordinates. */
+/** Returns the snapshot with objects and sonar moved to the magnitude of UTM coordinates. */
 types::Snapshot asInUtm(types::Snapshot snapshot) {
     const glm::dvec3 offset(500'000, 4'500'000, -100);
     auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
@@ -87,7 +87,7 @@ double manyOverOne(SonarConfig config, const types::Snapshot& snapshot) {
     return many / sum(pingOf(config, snapshot));
 }
 
-/** Sums that no compute shader makes. */
+/** Sums that the compute shader does not support. */
 class OwnSums final : public PingEffect {
     bool hasSums() const override { return true; }
 };
@@ -108,7 +108,7 @@ TEST_P(DepositTest, TheProcessorAndTheComputeShaderAgree) {
     expectAgreement(pingOf(with(Deposit::Cpu), hardScene()), pingOf(with(Deposit::Gpu), hardScene()));
 }
 
-TEST_P(DepositTest, TheyAgreeFarFromTheOriginOfTheWorld) {
+TEST_P(DepositTest, BothAgreeFarFromTheOriginOfTheWorld) {
     const types::Snapshot far = asInUtm(hardScene());
     const auto gpu = pingOf(with(Deposit::Gpu), far);
     expectAgreement(pingOf(with(Deposit::Cpu), far), gpu);
@@ -117,7 +117,7 @@ TEST_P(DepositTest, TheyAgreeFarFromTheOriginOfTheWorld) {
     EXPECT_GT(sum(difference(gpu, pingOf(with(Deposit::Cpu), aside))), 1e-3 * sum(gpu)) << "a centimetre is seen";
 }
 
-TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
+TEST_P(DepositTest, EachIsRepeatableBitForBitInANewRenderer) {
     for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
         const types::Snapshot snapshot = hardScene();
         SonarRenderer renderer(with(where), snapshot.geometry);
@@ -133,7 +133,7 @@ TEST_P(DepositTest, EachIsBitForBitItselfAgainAndInANewRenderer) {
     }
 }
 
-TEST_P(DepositTest, TheyAgreeInFewBinsAndInMoreThanAWorkGroupHolds) {
+TEST_P(DepositTest, BothAgreeInFewBinsAndInMoreThanAWorkGroupHas) {
     for (const int bins : {30, 6000}) {
         SonarConfig cpu = with(Deposit::Cpu), gpu = with(Deposit::Gpu);
         cpu.bin_count = gpu.bin_count = bins;
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, DepositTest,
                                     std::to_string(static_cast<int>(kind.param.field_of_view_deg));
                          });
 
-TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
+TEST(DepositPublishedTest, BothAgreeInThePublishedModelWhereMissesCount) {
     SonarConfig cpu = depositFan(Model::Cerqueira2017, BeamGeometry::Planar, Deposit::Cpu, 60);
     cpu.published = true;
     SonarConfig gpu = cpu;
@@ -162,11 +162,11 @@ TEST(DepositPublishedTest, TheyAgreeInThePublishedModelWhereMissesCount) {
     EXPECT_LT(relativeL2(pingOf(gpu, hardScene()), pingOf(cpu, hardScene())), 1e-5);
 }
 
-TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFromSumming) {
+TEST(DepositEffectTest, ReportsAnEffectThatKeepsTheDeviceFromSumming) {
     addEffect(std::make_unique<OwnSumsEffect>());
     const types::Snapshot snapshot = hardScene();
     const std::string notice =
-        "pictures are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
+        "images are summed on the processor: the compute shader does not sum what the effect 'own_sums' sums";
     for (const bool with_effect : {false, true})
         for (Deposit where : {Deposit::Cpu, Deposit::Gpu}) {
             SonarConfig config = depositFan(Model::Physical, BeamGeometry::Planar, where);
@@ -181,7 +181,7 @@ TEST(DepositEffectTest, ANoticeSaysThatAnEffectWithSumsOfItsOwnKeepsTheDeviceFro
     EXPECT_EQ(pingOf(gpu, snapshot).bins, pingOf(cpu, snapshot).bins);
 }
 
-TEST(DepositEnergyTest, OneBinHoldsTheEnergyOfTheManyThatItCovers) {
+TEST(DepositEnergyTest, OneBinHasTheEnergyOfTheBinsThatItCovers) {
     // A pixel's energy is that of the middle of its part of each bin: exact to second order in the pixel's depth, so
     // that it depends on the bins only where a pixel is deep.
     const auto wall = test::snapshotOf(test::sceneOf({test::quad({10, -100, -100}, {0, 200, 0}, {0, 0, 200})}));

@@ -1,4 +1,4 @@
-// What of large meshes is not drawn though it is in view: backs; and that all other detail is.
+// Backs of large meshes are culled although they are in view; all other detail is rasterised.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Triangles drawn over all frusta of `config`. */
+/** Returns the number of rasterised triangles over all frusta of `config`. */
 size_t drawnBy(const SonarConfig& config, const types::Snapshot& snapshot) {
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
@@ -38,7 +38,7 @@ double relativeError(const types::Sonar& got, const types::Sonar& reference) {
     return std::sqrt(error / norm);
 }
 
-/** The same floor of 522,242 triangles as one large mesh, as 64 that are not split, and as its outline. */
+/** The same floor of 522,242 triangles as one large mesh, as 64 meshes that are not split, and as its outline. */
 struct Floors {
     types::GeometryPtr one, tiles, outline;
 
@@ -57,7 +57,7 @@ struct Floors {
     }
 };
 
-/** Where a sonar is over the floor, and how far it hears. */
+/** A place of a sonar over the floor, and its range. */
 struct Look {
     glm::dvec3 position;
     double yaw, pitch_deg, range;
@@ -81,7 +81,7 @@ types::Sonar heardOf(const types::GeometryPtr& geometry, const Look& look) {
 
 }  // namespace
 
-TEST(DetailCullTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
+TEST(DetailCullTest, TheBacksOfAClosedMeshAreCulledWithoutChangingABin) {
     const auto geometry = clusteredHarbour();
     types::Mesh& ball = geometry->meshes[1];
     const SonarConfig config = fan(360);
@@ -97,7 +97,7 @@ TEST(DetailCullTest, TheBacksOfAClosedMeshAreNotDrawnAndNoBinMissesThem) {
     EXPECT_GT(std::ranges::count_if(without_backs, [](float bin) { return bin > 0; }), 1000);
 }
 
-TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
+TEST(DetailCullTest, TheBackOfAClosedMeshEchoesFromWithin) {
     const auto geometry = test::sceneOf({test::sphere(5, 80)});
     const auto clustered = std::make_shared<types::Geometry>(*geometry);
     scene::buildClusters(clustered->meshes[0]);
@@ -107,7 +107,7 @@ TEST(DetailCullTest, FromWithinAClosedMeshItsBackIsHeard) {
     EXPECT_GT(*std::ranges::max_element(ping.bins), 0);
 }
 
-TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
+TEST(DetailCullTest, ARoughFloorEchoesTheSameInOneMeshAndInManySmallMeshes) {
     const Floors floors;
     ASSERT_FALSE(floors.one->meshes[0].cluster_nodes.empty());
     ASSERT_TRUE(floors.tiles->meshes[0].cluster_nodes.empty());
@@ -122,10 +122,10 @@ TEST(DetailCullTest, ARoughFloorIsHeardTheSameInOneMeshAsInManySmallOnes) {
     }
 }
 
-TEST(DetailCullTest, WithDrawAllTheWholeSceneIsDrawnAndHeardTheSame) {
+TEST(DetailCullTest, DrawAllRasterisesTheWholeSceneWithTheSameEchoes) {
     const auto geometry = clusteredHarbour();
     SonarConfig config = fan(100);
-    config.range = 120;  // holds all of the scene
+    config.range = 120;  // contains the whole scene
     const auto culled = pings(config, geometry);
     config.draw_all = true;
     EXPECT_EQ(culled, pings(config, geometry));

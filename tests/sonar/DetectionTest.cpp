@@ -14,7 +14,7 @@ using test::withEcho;
 
 constexpr double ping_bin = 0.1;  // of its pings [m]
 
-TEST(DetectionTest, TheStrongestReturnLiesAtTheCentreOfMassOfItsBins) {
+TEST(DetectionTest, TheStrongestReturnIsAtTheCentreOfMassOfItsBins) {
     types::Sonar ping = pingOf(1, 20, 0);
     ping = withEcho(withEcho(withEcho(ping, 0, 9, 1), 0, 10, 2), 0, 11, 1);
     ping = withEcho(ping, 0, 3, 1.9f);  // another surface, weaker
@@ -25,7 +25,7 @@ TEST(DetectionTest, TheStrongestReturnLiesAtTheCentreOfMassOfItsBins) {
     EXPECT_EQ(found->intensity, 2);
 }
 
-TEST(DetectionTest, WhatLiesBelowTheGateDoesNotPullAtTheReturn) {
+TEST(DetectionTest, BinsBelowTheGateDoNotShiftTheReturn) {
     types::Sonar ping = withEcho(withEcho(pingOf(1, 20, 0), 0, 10, 1), 0, 11, 0.09f);
     EXPECT_NEAR(Detector({}, ping, ping_bin).strongest(0)->range, 1.05, 1e-9);
     DetectionConfig wide;
@@ -42,7 +42,7 @@ TEST(DetectionTest, TheFirstReturnIsTheFirstBinThatReachesTheThreshold) {
     EXPECT_NEAR(Detector(config, ping, ping_bin).first(0)->range, 0.45, 1e-9);
 }
 
-TEST(DetectionTest, ABeamThatIsWeakBesideThePingOrBelowTheFloorHasNoReturn) {
+TEST(DetectionTest, AWeakBeamInThePingOrBelowTheFloorHasNoReturn) {
     const types::Sonar ping = withEcho(withEcho(pingOf(2, 20, 0), 0, 4, 1), 1, 4, 1e-4f);
     DetectionConfig config;
     config.threshold_db = -50;

@@ -1,4 +1,4 @@
-// With `deposit: gpu` a compute shader culls clusters: it draws exactly what the processor draws.
+// With `deposit: gpu` a compute shader culls clusters: the same clusters as the processor.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ SonarConfig fanWith(Deposit deposit, double field_of_view_deg) {
     return config;
 }
 
-/** Bins of a ping, and the objects, triangles and frusta that were not drawn, out of how many. */
+/** Bins of a ping, and the numbers of culled and of all objects, triangles and frusta. */
 struct Result {
     std::vector<float> bins;
     std::vector<std::tuple<std::string_view, double, double>> culled;
@@ -48,7 +48,7 @@ std::vector<Result> rendered(const SonarConfig& config, const std::vector<types:
     return results;
 }
 
-/** Whether processor and device leave the same out of each ping; `config.deposit` is ignored. */
+/** Expects processor and device to cull the same in each ping; `config.deposit` is ignored. */
 void expectSameCulling(SonarConfig config, const std::vector<types::Snapshot>& snapshots) {
     config.deposit = Deposit::Cpu;
     const std::vector<Result> processor = rendered(config, snapshots);
@@ -59,7 +59,7 @@ void expectSameCulling(SonarConfig config, const std::vector<types::Snapshot>& s
     EXPECT_FALSE(config.fieldOfViewDeg() < 100 && std::ranges::all_of(device, nothing));
 }
 
-TEST(DeviceCullTest, TheDeviceCullsWhatTheProcessorCulls) {
+TEST(DeviceCullTest, TheDeviceCullsTheSameAsTheProcessor) {
     const auto open = clusteredHarbour(), both_sides = clusteredHarbour();
     both_sides->materials[0].double_sided = true;
     for (const types::GeometryPtr& scene : {types::GeometryPtr(open), types::GeometryPtr(both_sides)})
@@ -67,14 +67,14 @@ TEST(DeviceCullTest, TheDeviceCullsWhatTheProcessorCulls) {
             expectSameCulling(fanWith(Deposit::Auto, degrees), passage(scene, 5));
 }
 
-TEST(DeviceCullTest, ItDoesSoWithNormalMapsAndSeveralMaterials) {
+TEST(DeviceCullTest, TheDeviceCullsTheSameWithNormalMapsAndSeveralMaterials) {
     for (const double degrees : {10.0, 60.0, 360.0})
         expectSameCulling(fanWith(Deposit::Auto, degrees), passage(test::surfaces(), 4));
 }
 
-TEST(DeviceCullTest, NoBinChangesWhereNothingIsCulled) {
+TEST(DeviceCullTest, NoBinChangesWithoutCulling) {
     SonarConfig config = fanWith(Deposit::Gpu, 100);
-    config.range = 120;  // holds all of the scene
+    config.range = 120;  // contains the whole scene
     const std::vector<types::Snapshot> snapshots = passage(clusteredHarbour(), 5);
     const std::vector<Result> culled = rendered(config, snapshots);
     config.draw_all = true;
@@ -95,7 +95,7 @@ TEST(DeviceCullTest, ClustersOfAnObjectInViewAreCulled) {
     EXPECT_GT(std::get<1>(*triangles), 0.5 * std::get<2>(*triangles)) << "most of the floor is not ahead";
 }
 
-TEST(DeviceCullTest, WhereNothingIsInViewThereIsNoEcho) {
+TEST(DeviceCullTest, NoEchoIsReceivedWithNothingInView) {
     const auto ball = test::sceneOf({test::sphere(1, 8)}, 0, {{10, 0, 0}});
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         const auto results = rendered(fanWith(deposit, 60), {test::snapshotOf(ball), test::snapshotOf(ball, {}, 2)});

@@ -1,4 +1,4 @@
-// What drawing needs of OpenGL's limits, held against drivers that do not exist.
+// The limits of OpenGL that rasterising needs, compared with drivers that do not exist.
 #include <gmock/gmock.h>
 
 #include "components/sonar/effects/Effects.hpp"
@@ -37,7 +37,7 @@ std::string drawingError(const gpu::Limits& limits, const gpu::Limits& needs) {
     return gpu::errorOf([&] { requireDrawing(limits, needs, renderer); });
 }
 
-TEST(DeviceNeedsTest, ADriverThatKeepsToOpenGl45DrawsAndSums) {
+TEST(DeviceNeedsTest, ADriverOfOpenGl45RasterisesAndSums) {
     const auto geometry = test::surfaces();
     const RenderPlan plan = planOf(*geometry);
     EXPECT_NO_THROW(requireDrawing(test::promisedLimits(), drawingNeeds(plan, *geometry), renderer));
@@ -46,7 +46,7 @@ TEST(DeviceNeedsTest, ADriverThatKeepsToOpenGl45DrawsAndSums) {
                   "");
 }
 
-TEST(DeviceNeedsTest, ALimitThatIsTooLowToDrawIsNamed) {
+TEST(DeviceNeedsTest, NamesALimitThatIsTooLowToRasterise) {
     const auto geometry = test::surfaces();
     const RenderPlan plan = planOf(*geometry);
     gpu::Limits limits = test::promisedLimits();
@@ -68,7 +68,7 @@ TEST(DeviceNeedsTest, SeveralSamplesAPixelNeedMultisampledIntegers) {
     EXPECT_THAT(drawingError(test::promisedLimits(), needs), HasSubstr("GL_MAX_INTEGER_SAMPLES is 1, and 4 is needed"));
 }
 
-TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAskedFor) {
+TEST(DeviceNeedsTest, TheProcessorSumsIfTheDeviceCannotUnlessTheDeviceIsRequired) {
     const auto geometry = test::surfaces();
     const gpu::Limits needs = depositNeeds(setupOf(planOf(*geometry)), *geometry);
     const std::pair<int64_t gpu::Limits::*, std::string> limits[] = {
@@ -87,7 +87,7 @@ TEST(DeviceNeedsTest, WhereTheDeviceCannotSumTheProcessorDoesUnlessTheDeviceIsAs
     }
 }
 
-TEST(DeviceNeedsTest, TheLargestBufferIsOfTrianglesOrOfBins) {
+TEST(DeviceNeedsTest, TheLargestBufferContainsTrianglesOrBins) {
     const auto geometry = test::surfaces();
     DepositSetup setup = setupOf(planOf(*geometry));
     const auto bytes = [&] { return static_cast<size_t>(depositNeeds(setup, *geometry).storage_bytes); };
@@ -97,7 +97,7 @@ TEST(DeviceNeedsTest, TheLargestBufferIsOfTrianglesOrOfBins) {
     EXPECT_GE(bytes(), 50'000'000 * sizeof(PlaneRecord));
 }
 
-TEST(DeviceNeedsTest, FacetsLieBehindThePlanesWhereAMaterialHasALobe) {
+TEST(DeviceNeedsTest, FacetsFollowThePlanesIfAMaterialHasALobe) {
     for (const bool lobed : {false, true}) {
         const auto geometry = test::surfaces();
         if (lobed) geometry->materials.back().reflection = 0.9f, geometry->materials.back().roughness_slope = 0.1f;

@@ -51,7 +51,7 @@ SonarConfig without(SonarConfig config) {
     return config;
 }
 
-/** Placed meshes of a smooth material that scatters nothing else. */
+/** Placed meshes of a smooth material without diffuse scattering. */
 types::GeometryPtr smooth(std::vector<types::Mesh> meshes, std::vector<glm::dmat4> places, float reflection = 1,
                           float slope = 0) {
     auto geometry = std::make_shared<types::Geometry>();
@@ -72,8 +72,7 @@ glm::dmat4 placed(const glm::dvec3& at, double pitch = 0, double yaw = 0) {
 /** A sheet across x and y about the origin. */
 types::Mesh sheet(float x, float y) { return test::quad({-x / 2, -y / 2, 0}, {x, 0, 0}, {0, y, 0}); }
 
-/** A box about the origin, each face of count x count quads, or of another number per face, with vertices of its own.
- */
+/** A box about the origin. Each face has its own vertices and count x count quads, or another number per face. */
 types::Mesh box(glm::vec3 size, std::array<int, 6> counts) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -141,7 +140,7 @@ std::optional<LeftOut> omitted(const SonarRenderer& renderer) {
     return {};
 }
 
-TEST(StraightEdgesTest, ABoxHasTwelveWhateverItsTriangles) {
+TEST(StraightEdgesTest, ABoxHasTwelveEdgesWithAnyTriangles) {
     const types::Mesh plain = box({1, 2, 3});
     const StraightEdges twelve = straightEdges(plain, glm::dmat3(1), sharp);
     ASSERT_EQ(twelve.edges.size(), 12u);
@@ -165,7 +164,7 @@ TEST(StraightEdgesTest, ABoxHasTwelveWhateverItsTriangles) {
     }
 }
 
-TEST(StraightEdgesTest, CurvesAndSmoothBodiesHaveNone) {
+TEST(StraightEdgesTest, CurvesAndSmoothBodiesHaveNoEdges) {
     EXPECT_TRUE(straightEdges(test::sphere(1, 16), glm::dmat3(1), sharp).edges.empty());
     EXPECT_TRUE(straightEdges(prism(32, 0.3f, 1), glm::dmat3(1), sharp).edges.empty()) << "rims";
     EXPECT_TRUE(straightEdges(test::disc(5, 1, 64), glm::dmat3(1), sharp).edges.empty());
@@ -195,7 +194,7 @@ TEST(EdgeDiffractionTest, ASoftSheetEdgeOnIsItsNearEdge) {
     EXPECT_EQ(sumOf(test::pingOf(without(edgeSonar()), test::snapshotOf(scene))), 0);
     const auto rigid = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, 1);
     EXPECT_LT(sumOf(test::pingOf(edgeSonar(), test::snapshotOf(rigid))), 1e-3 * expected)
-        << "sound passes a thin rigid sheet along its face as if it was not there";
+        << "a thin rigid sheet does not affect sound along its face";
 }
 
 TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) {
@@ -227,7 +226,7 @@ TEST(EdgeDiffractionTest, ATiltedStripEchoesFromBothEdgesByKellersCoefficients) 
             }
 }
 
-TEST(EdgeDiffractionTest, ItIsHeardAsAPointTargetOfItsStrength) {
+TEST(EdgeDiffractionTest, AnEdgeEchoesAsAPointTargetOfItsStrength) {
     const double length = 0.1, range = 6.013;
     const auto scene = smooth({sheet(1, static_cast<float>(length))}, {placed({range + 0.5, 0, 0})}, -1);
     types::Snapshot target = test::snapshotOf(test::openWater(), {0, 0, 0}, 0.07, 0.05);
@@ -258,7 +257,7 @@ TEST(EdgeDiffractionTest, AFaceAlongItsNormalKeepsItsTargetStrength) {
     EXPECT_NEAR(decibels(with / plain), 0, 0.2);
 }
 
-TEST(EdgeDiffractionTest, TrianglesMakeNoDifference) {
+TEST(EdgeDiffractionTest, DoesNotDependOnTheTriangles) {
     std::mt19937 random(3);
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -278,7 +277,7 @@ TEST(EdgeDiffractionTest, TrianglesMakeNoDifference) {
     }
 }
 
-TEST(EdgeDiffractionTest, WhatIsHiddenIsSilent) {
+TEST(EdgeDiffractionTest, HiddenEdgesAreSilent) {
     const types::Mesh wall = test::quad({0, -2, -2}, {0, 4, 0}, {0, 0, 4}), block = box({0.5f, 0.5f, 0.5f});
     const glm::dmat4 far = placed({8, 0, 0}, 0.3, 0.4), before = placed({5, 0, 0});
     const types::Sonar alone = test::pingOf(edgeSonar(), test::snapshotOf(smooth({wall}, {before})));
@@ -306,7 +305,7 @@ TEST(EdgeDiffractionTest, AnObjectThatMovesTakesItsEdgesAlong) {
     for (size_t i = 0; i < still.bins.size(); ++i) ASSERT_NEAR(ping.bins[i], still.bins[i], 1e-4 * loudest) << i;
 }
 
-TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndSaysWhy) {
+TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
     const auto expectOmitted = [](const types::GeometryPtr& scene, const char* words) {
         SonarRenderer renderer(edgeSonar(), scene);
         types::Sonar ping;
@@ -324,7 +323,7 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndSaysWhy) {
     expectOmitted(smooth({test::sphere(0.5, 24)}, {placed({6, 0, 0})}), "no straight edge");
 }
 
-TEST(EdgeDiffractionTest, WhatIsWrongIsRefused) {
+TEST(EdgeDiffractionTest, RejectsInvalidConfigurations) {
     const auto diagnosticOf = [](const char* yaml) {
         framework::ConfigReader reader("sonar.yml");
         SonarConfig config;
@@ -395,7 +394,7 @@ double sectionOf(const PlacedEdge& edge, const glm::dvec3& sonar) {
     return sum;
 }
 
-TEST(EdgeEchoesTest, ALongEdgeEchoesAsItsFresnelZoneWhateverItsRelief) {
+TEST(EdgeEchoesTest, ALongEdgeEchoesAsItsFresnelZoneWithAnyRelief) {
     const glm::dvec3 sonar{6, 0, 8};
     const double expected = wavelength * 10 / 2 * std::pow(edgeOf(1, 0).coefficient(sonar) / (2 * pi), 2);
     for (const double slope : {0.0, 0.003, 0.03, 0.2})

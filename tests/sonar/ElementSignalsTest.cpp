@@ -1,4 +1,4 @@
-// Signals of a straight array's elements: beams that are formed of them hold what the sonar's own bins do.
+// Signals of a straight array's elements: beams formed from them match the sonar's own bins.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -61,7 +61,8 @@ Heard heard(const SonarConfig& config) {
     return result;
 }
 
-/** Bins of beams that look where those of the ping do. @param turn -1: as if port were starboard */
+/** Returns the bins of beams at the bearings of the ping.
+ *  @param turn -1: with port and starboard exchanged */
 std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper, double turn = 1) {
     const types::SonarElements& signals = heard.signals;
     const size_t count = signals.positions.size();
@@ -78,8 +79,8 @@ std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper
     return bins;
 }
 
-/** Of the bins that hold at least a share of the mean at their range: how many are off by more than 0.5 dB, and what
- *  the energy of all is off by [dB]. */
+/** The errors of the bins with at least a share of the mean at their range: the share of bins with an error above 0.5
+ *  dB, and the error of the total energy [dB]. */
 struct Off {
     double share = 0, energy_db = 0;
 };
@@ -101,12 +102,12 @@ Off off(const types::Sonar& ping, const std::vector<double>& bins, double least 
     return {wrong / count, 10 * std::log10(sum / own_sum)};
 }
 
-TEST(ElementSignalsTest, BeamsFormedOfThemAreThePingsBins) {
+TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
     struct Bound {
         Weighting weighting;
-        double above_mean, all;  ///< Of the bins above the mean at their range, and of those to 20 dB below it.
+        double above_mean, all;  ///< For the bins above the mean at their range, and for bins to 20 dB below it.
     };
-    // The far sidelobes of elements are not quite those of an even line: without weights they are heard.
+    // The far sidelobes of elements differ from those of a continuous line, which matters without weights.
     for (const auto& [weighting, above_mean, all] :
          {Bound{Weighting::Uniform, 0.03, 0.15}, Bound{Weighting::Hann, 0.002, 0.01},
           Bound{Weighting::Taylor, 0.002, 0.03}}) {
@@ -121,7 +122,7 @@ TEST(ElementSignalsTest, BeamsFormedOfThemAreThePingsBins) {
     }
 }
 
-TEST(ElementSignalsTest, TheyTellWhereElementsAndSamplesAre) {
+TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
     const Heard both = heard(arrayOf(Weighting::Uniform));
     const types::SonarElements& signals = both.signals;
     EXPECT_EQ(signals.diagnostic(), nullptr);
@@ -136,7 +137,7 @@ TEST(ElementSignalsTest, TheyTellWhereElementsAndSamplesAre) {
     EXPECT_NEAR(signals.range(0), 0.5 * signals.sample_spacing, 1e-12);
 }
 
-TEST(ElementSignalsTest, FewerElementsAreFartherApartAndHearTheSamePlaces) {
+TEST(ElementSignalsTest, FewerElementsAreFartherApartAndReceiveTheSamePlaces) {
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     const types::SonarElements sparse = heard(config).signals, dense = heard(arrayOf(Weighting::Uniform)).signals;
@@ -153,7 +154,7 @@ std::vector<std::string> refusalsOf(const SonarConfig& config) {
     return texts;
 }
 
-TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
+TEST(ElementSignalsTest, RejectsInvalidArraysWithTheReason) {
     EXPECT_THAT(refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.speckle.reset();
@@ -163,13 +164,12 @@ TEST(ElementSignalsTest, WhatMakesNoArrayIsRefusedWithTheReason) {
     config = arrayOf(Weighting::Uniform);
     config.beam_geometry = BeamGeometry::Planar;
     EXPECT_THAT(refusalsOf(config),
-                ElementsAre("elements need beam_geometry: conical, for a straight array hears cones"));
+                ElementsAre("elements need beam_geometry: conical, because a straight array receives cones"));
     config = arrayOf(Weighting::Uniform);
     config.beam_pattern.reset();
     EXPECT_THAT(refusalsOf(config),
                 ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
-    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Gaussian)),
-                ElementsAre(HasSubstr("they make no measured table, gaussian")));
+    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Gaussian)), ElementsAre(HasSubstr("a measured table, gaussian")));
     config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     config.elements->spacing_m = 0.01;
@@ -184,19 +184,19 @@ protected:
     test::Reader<types::SonarElementsPtr> signals_;
 };
 
-TEST_F(ElementPortTest, ThePortTellsThemOfEachPing) {
+TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     startWith(arrayOf(Weighting::Uniform));
     const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(twoTargets()));
     types::SonarElementsPtr signals;
     ASSERT_TRUE(ping && signals_.port.readNew(signals));
     const Heard expected = heard(arrayOf(Weighting::Uniform));
-    EXPECT_EQ(ping->bins, expected.ping.bins) << "told or not";
+    EXPECT_EQ(ping->bins, expected.ping.bins) << "with or without the port";
     EXPECT_EQ(signals->in_phase, expected.signals.in_phase);
     EXPECT_EQ(signals->time, ping->time);
 }
 
-TEST_F(ElementPortTest, AConnectedPortOfASonarWithoutElementsIsRefused) {
+TEST_F(ElementPortTest, RejectsAConnectedPortOfASonarWithoutElements) {
     task_.elements.connectTo(signals_.port, framework::ConnPolicy::buffer(4));
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.elements.reset();

@@ -80,7 +80,7 @@ protected:
         renderer.render(test::snapshotOf(geometry, {0, 0, -1}, 0.1), ping);
         return ping.bins;
     }
-    /** A .gltf with the bytes in a data URI, shared corners of floats and 16-bit indices. */
+    /** Writes a .gltf with the bytes in a data URI, shared corners of floats and 16-bit indices. */
     std::vector<float> plain() const {
         const auto bins =
             pingOf(indexed(12, 5126, 5123, 2) + scene::buffers(positions<float>(each) + indices<uint16_t>(triangles)));

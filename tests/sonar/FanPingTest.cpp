@@ -1,5 +1,5 @@
-// Pings, truth and returns of tables of bearings at random, with every effect: in any order the same rows, the same
-// wherever the fan lies about the seam, and each beam what it is alone.
+// Pings, truth and returns of random tables of bearings, with every effect. Rows do not depend on the order of the
+// table, on the place of the fan about the seam, or on the other beams.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -15,22 +15,22 @@ namespace {
 
 using types::radians;
 
-/** One effect, how it is asked for, and what it needs. */
+/** One effect, its configuration, and its needs. */
 struct FanEffect {
     const char* name;
     std::function<void(SonarConfig&)> ask;
-    bool drawn = true;         ///< Pictures show it as well.
+    bool drawn = true;         ///< The rasterised path supports it.
     bool stands_alone = true;  ///< A beam's echoes do not depend on the other beams of the fan.
-    double alone = 0.03;       ///< How far they may be off, in relative L2 [1].
-    bool turns = true;         ///< Samples lie alike about beams wherever these look.
-    double agree = 0.05;       ///< How far rays and pictures may be apart, in relative L2 [1].
+    double alone = 0.03;       ///< Max error of a beam alone, in relative L2 [1].
+    bool turns = true;         ///< Samples are at the same places in beams of any bearing.
+    double agree = 0.05;       ///< Max difference of rays and pictures, in relative L2 [1].
 };
 
 BeamPatternConfig pattern() {
     BeamPatternConfig pattern;
     pattern.receive.azimuth.emplace().width_deg = 4;
     pattern.transmit.elevation.emplace().width_deg = 30;
-    pattern.transmit.elevation->weighting = acoustics::Weighting::Gaussian;  // no sidelobes beyond what pictures show
+    pattern.transmit.elevation->weighting = acoustics::Weighting::Gaussian;  // no sidelobes outside of the pictures
     return pattern;
 }
 
@@ -94,7 +94,7 @@ SonarConfig sonar(const test::Table& table, const FanEffect& effect, Visibility 
     return config;
 }
 
-/** Seabed, balls, wall and three point targets, 3 m below the surface. Nothing is thinner than a sample. */
+/** Seabed, balls, wall and three point targets, 3 m below the surface. No object is thinner than a sample. */
 types::GeometryPtr resolved() {
     auto geometry = test::surfaces();
     std::erase_if(geometry->objects,
@@ -102,7 +102,7 @@ types::GeometryPtr resolved() {
     return geometry;
 }
 
-/** The scene of a sonar that is turned by `yaw` [rad]. */
+/** Returns the scene of a sonar that is rotated by `yaw` [rad]. */
 types::Snapshot scene(double yaw = 0) {
     static const types::GeometryPtr geometry = resolved();
     types::Snapshot snapshot = test::snapshotOf(geometry, {}, yaw);
@@ -135,13 +135,13 @@ std::span<const T> rowOf(const std::vector<T>& values, size_t row, size_t rows) 
     return std::span(values).subspan(row * (values.size() / rows), values.size() / rows);
 }
 
-/** Whether two rows are the same bit for bit; NaN is NaN. */
+/** Returns whether two rows are the same bit for bit; NaN equals NaN. */
 template <class T>
 bool same(std::span<const T> a, std::span<const T> b) {
     return std::ranges::equal(a, b, [](T x, T y) { return x == y || (x != x && y != y); });
 }
 
-/** Row `row` of one is row `other_row` of the other, in all that is reported of a beam. */
+/** Expects row `row` of one to equal row `other_row` of the other, in all outputs of a beam. */
 void expectSameRow(const Shown& shown, size_t row, const Shown& other, size_t other_row) {
     const size_t beams = shown.ping.beam_count;
     EXPECT_EQ(shown.ping.bearings[row].rad, other.ping.bearings[other_row].rad);
@@ -173,7 +173,7 @@ bool isAhead(const test::Table& table) {
     return std::ranges::all_of(table.bearings_deg, [&](double b) { return std::abs(b) + table.width_deg / 2 < 90; });
 }
 
-/** Whether a straight array, which sees what is ahead, can have the fan. */
+/** Returns whether a straight array, which covers only bearings ahead, can have the fan. */
 bool canHave(const test::Table& table, const SonarConfig& config) {
     return config.beam_geometry == BeamGeometry::Planar || isAhead(table);
 }
@@ -209,9 +209,9 @@ TEST_P(FanPingTest, AnyOrderOfTheTableGivesTheSameRows) {
     });
 }
 
-TEST_P(FanPingTest, AFanIsTheSameWhereverItLiesAboutTheSeam) {
+TEST_P(FanPingTest, AFanIsTheSameAnywhereAboutTheSeam) {
     if (!GetParam().turns) return;
-    if (sonar({"", {0}, 1}, GetParam()).beam_geometry == BeamGeometry::Conical) return;  // sees what is ahead alone
+    if (sonar({"", {0}, 1}, GetParam()).beam_geometry == BeamGeometry::Conical) return;  // covers only bearings ahead
     forTables(1, [&](const test::Table& table, std::mt19937& random) {
         const Shown here = shownOf(sonar(table, GetParam()), scene());
         const double turn = std::uniform_real_distribution<double>(120, 240)(random);
@@ -226,7 +226,7 @@ TEST_P(FanPingTest, AFanIsTheSameWhereverItLiesAboutTheSeam) {
     });
 }
 
-TEST_P(FanPingTest, EachBeamIsWhatItIsAlone) {
+TEST_P(FanPingTest, EachBeamIsTheSameAlone) {
     if (!GetParam().stands_alone) return;
     forTables(1, [&](const test::Table& table, std::mt19937&) {
         const auto fine = [&](SonarConfig config) {
@@ -245,7 +245,8 @@ TEST_P(FanPingTest, EachBeamIsWhatItIsAlone) {
     });
 }
 
-/** The same with a facet less on each ball, which is then of planes for rays too: pictures know no limb. */
+/** Returns the scene without one facet of each ball, whose facets are then planes for rays too: pictures have no
+ *  limb. */
 types::Snapshot withoutLimbs(types::Snapshot snapshot) {
     const auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
     for (const types::Object& object : geometry->objects) {

@@ -51,7 +51,7 @@ TEST(FanTest, AnAscendingTableIsTheFan) {
     EXPECT_EQ(fan.seam(), std::numbers::pi);
 }
 
-TEST(FanTest, AnyOrderIsSortedAndFindsItsRowAgain) {
+TEST(FanTest, SortsAnyOrderAndFindsEachRowAgain) {
     const Fan fan = fanOf({10, -30, 25, -10, 0});
     EXPECT_THAT(centresOf(fan), ElementsAre(-30, -10, 0, 10, 25));
     EXPECT_THAT(rowsOf(fan), ElementsAre(1, 3, 4, 0, 2));
@@ -60,7 +60,7 @@ TEST(FanTest, AnyOrderIsSortedAndFindsItsRowAgain) {
     EXPECT_THAT(rows, ElementsAre(3, 0, 4, 1, 2));
 }
 
-TEST(FanTest, AcrossTheSeamBearingsGoOnAscending) {
+TEST(FanTest, BearingsAscendAcrossTheSeam) {
     const Fan fan = fanOf({155, 165, 175, -175, -165, -155}, 10);
     EXPECT_THAT(centresOf(fan), ElementsAre(155, 165, 175, 185, 195, 205));
     EXPECT_TRUE(fan.isTableOrder());
@@ -94,7 +94,7 @@ TEST(FanTest, GapsAndOverlapsDoNotJoin) {
     EXPECT_NEAR(degrees(fanOf({-170, 175}, 1).smallestSpacing()), 15, 1e-9);
 }
 
-TEST(FanTest, HalfwaysLieBetweenNeighboursAndAsFarBeyondTheEnds) {
+TEST(FanTest, HalfwaysAreBetweenNeighboursAndTheSameDistanceBeyondTheEnds) {
     std::vector<double> halfways;
     for (const double edge : fanOf({-10, 0, 20}).halfways()) halfways.push_back(std::round(degrees(edge)));
     EXPECT_THAT(halfways, ElementsAre(-15, -5, 10, 30));
@@ -102,14 +102,14 @@ TEST(FanTest, HalfwaysLieBetweenNeighboursAndAsFarBeyondTheEnds) {
     EXPECT_NEAR(degrees(round.back() - round.front()), 360, 1e-9);
 }
 
-TEST(FanTest, BeamsWithoutExtentAreRefused) {
+TEST(FanTest, RejectsBeamsWithoutExtent) {
     EXPECT_THROW(Fan({{0, 0, 0}}), std::invalid_argument);
     EXPECT_THROW(Fan({{std::nan(""), -1, 1}}), std::invalid_argument);
     EXPECT_TRUE(Fan().empty());
 }
 
-/** Holds what every fan promises, for random tables in random order. */
-TEST(FanTest, EveryTableKeepsItsPromises) {
+/** Checks the guarantees of every fan for random tables in random order. */
+TEST(FanTest, EveryTableMeetsItsGuarantees) {
     std::mt19937 random(11);
     for (int round = 0; round < 50; ++round)
         for (const test::Table& table : test::tablesOf(random)) {
@@ -131,7 +131,7 @@ TEST(FanTest, EveryTableKeepsItsPromises) {
             fan.toTableOrder(std::span(rows), 1);
             for (size_t row = 0; row < rows.size(); ++row)
                 EXPECT_NEAR(std::remainder(rows[row] - shuffled[row], 360), 0, 1e-9);
-            // What holds an azimuth is what a search through all beams finds.
+            // The beam at an azimuth is the one that a search through all beams finds.
             for (int i = 0; i < 20; ++i) {
                 const double azimuth = std::uniform_real_distribution<double>(-7, 7)(random);
                 std::vector<size_t> searched;

@@ -1,4 +1,4 @@
-// Bodies with a fluid behind their wall: times, refraction, spreading and loss, against the geometry of rays
+// Bodies with a fluid behind their wall: times, refraction, spreading and loss, compared with the geometry of rays
 // (ACOUSTICS.md 5.26).
 #include <gmock/gmock.h>
 
@@ -23,7 +23,7 @@ using std::numbers::pi;
 using test::pingOf;
 using test::snapshotOf;
 
-/** A film that is hardly there, with a fluid behind it. */
+/** A very thin film with a fluid behind it. */
 types::Shell filled(double density, double speed, double loss = 0) {
     return {.thickness = 1e-5,
             .density = 1000,
@@ -40,7 +40,7 @@ acoustics::PlateResponse filmResponse(const types::Shell& shell, double cosine) 
                                     {1025, water_speed}, {shell.fill_density, shell.fill_speed}, 1000 * shell_khz,
                                     cosine);
 }
-/** Share of the energy that goes into a fluid and back out at a cosine in the water. */
+/** Returns the share of the energy that passes into a fluid and back out at a cosine in the water. */
 double sharePassed(const types::Shell& shell, double cosine) {
     const double sine = std::sqrt(1 - cosine * cosine) * shell.fill_speed / water_speed;
     if (sine >= 1) return 0;
@@ -75,8 +75,8 @@ Met rayThrough(const Shape& near, const Shape& far, const glm::dvec3& look, doub
     met.cosine = std::abs(glm::dot(far.outward(met.at), met.way));
     return met;
 }
-/** Energy of a steradian from the far surface, over that of a plane of unit strength a metre away: by the spreading of
- *  a bundle of rays out, and of the one that comes back. */
+/** Returns the energy per steradian from the far surface, relative to a plane of unit strength a metre away: by the
+ *  spreading of a bundle of rays on the way out and on the way back. */
 double levelOf(const Shape& near, const Shape& far, const glm::dvec3& look, double speed) {
     const Met met = rayThrough(near, far, look, speed);
     const glm::dvec3 up = glm::normalize(glm::cross(look, glm::dvec3(0, 1, 0.1))), beside = glm::cross(look, up);
@@ -90,7 +90,7 @@ double levelOf(const Shape& near, const Shape& far, const glm::dvec3& look, doub
     return met.cosine * speed * speed / area;  // Lambert's law over the cosine, and the n^2 law of radiance
 }
 
-/** An interface and a plate behind it, in the angles that pass. */
+/** An interface and a plate behind it, at the angles of transmission. */
 TEST(FilledBodyTest, APlateBehindAnInterfaceIsAtItsTimeAndLevelOverAngles) {
     double worst_range = 0, worst_level = 0;
     for (const auto& [density, speed] : {std::pair(825., 800.), {1900., 1300.}, {1025., 1000.}}) {
@@ -127,7 +127,7 @@ TEST(FilledBodyTest, APlateBehindAnInterfaceIsAtItsTimeAndLevelOverAngles) {
     EXPECT_LT(worst_level, 0.1);
 }
 
-/** At normal incidence the way back spreads by the reciprocal geometry: s^2 / (h_1 + s h_2)^2. */
+/** At normal incidence the return path spreads by the reciprocal geometry: s^2 / (h_1 + s h_2)^2. */
 TEST(FilledBodyTest, SpreadingAtTheNormalIsThatOfTextbooks) {
     const double speed = 1.4;
     const types::Shell shell = filled(1200, speed * water_speed);
@@ -138,7 +138,7 @@ TEST(FilledBodyTest, SpreadingAtTheNormalIsThatOfTextbooks) {
     EXPECT_NEAR(energyOf(both, 0, 7, 8) / energyOfAll(alone) / expected, 1, 0.01);
 }
 
-/** A body's far side from within, bin by bin, integrated over the directions of its outline. */
+/** The far side of a body from within, bin by bin, integrated over the directions of its outline. */
 std::vector<double> farSideBins(const Shape& near, const Shape& far, const types::Shell& shell,
                                 const types::Sonar& ping, double azimuth, double elevation, int steps) {
     std::vector<double> bins(ping.bin_count, 0);
@@ -221,13 +221,13 @@ void expectFarSide(const types::Mesh& mesh, bool is_cylinder, double distance, d
     }
 }
 
-TEST(FilledBodyTest, AFilledSphereShowsItsFarSideAsRaysDo) { expectFarSide(test::sphere(3, 256), false, 20, 3); }
+TEST(FilledBodyTest, TheFarSideOfAFilledSphereMatchesRays) { expectFarSide(test::sphere(3, 256), false, 20, 3); }
 
-TEST(FilledBodyTest, AFilledCylinderShowsItsFarSideAsRaysDo) { expectFarSide(closedCylinder(2, 1440, 3), true, 20, 2); }
+TEST(FilledBodyTest, TheFarSideOfAFilledCylinderMatchesRays) { expectFarSide(closedCylinder(2, 1440, 3), true, 20, 2); }
 
-/** A sphere of another fluid is a thick lens for what is behind it, and sound goes in and out through its wall twice:
+/** A sphere of another fluid is a thick lens for objects behind it, and sound passes in and out through its wall twice:
  *  paraxial optics, Born and Wolf 1999, 4.4. */
-TEST(FilledBodyTest, AFilledSphereIsALensForWhatIsBehindIt) {
+TEST(FilledBodyTest, AFilledSphereIsALensForObjectsBehindIt) {
     constexpr double radius = 3, centre = 20, wall = 30;
     const SonarConfig config = wallSonar(0.2, 0.2, 1, 600);
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(wall)}, 0)));
@@ -251,7 +251,7 @@ TEST(FilledBodyTest, AFilledSphereIsALensForWhatIsBehindIt) {
     }
 }
 
-TEST(FilledBodyTest, LossIsThatOfTheWayInTheFill) {
+TEST(FilledBodyTest, LossIsThatOfThePathInTheFill) {
     const SonarConfig config = wallSonar(0.5, 0.5, 1);
     const types::Shell clear = filled(1200, 1250), lossy = filled(1200, 1250, 1e-4);
     const auto scene = [](const types::Shell& shell) { return shellsOf({test::wall(4), test::wall(9)}, 1, shell); };
@@ -260,7 +260,7 @@ TEST(FilledBodyTest, LossIsThatOfTheWayInTheFill) {
     EXPECT_NEAR(std::log(ratio), -4 * 5 * 2 * pi * 1000 * shell_khz / 1250 * 1e-4, 0.01);
 }
 
-/** The water's absorption is that of the way in the water. */
+/** The water's absorption is that of the path in the water. */
 TEST(FilledBodyTest, TheFillDoesNotAbsorbAsWaterDoes) {
     SonarConfig config = wallSonar(0.5, 0.5, 1);
     const types::Shell shell = filled(1200, 1250);
@@ -291,7 +291,7 @@ TEST(FilledBodyTest, NothingPassesIntoAirNorBeyondTheCriticalAngle) {
     }
 }
 
-/** A fill of water itself, by numbers, is no fill but for rounding. */
+/** A fill with the numbers of water is no fill except for rounding. */
 TEST(FilledBodyTest, AFillOfWaterIsWater) {
     const SonarConfig config = wallSonar(8, 8, 4);
     types::Shell by_numbers = acrylic;

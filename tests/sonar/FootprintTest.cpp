@@ -1,4 +1,5 @@
-// A cell's echo in its bins against the same cell cut into many points, each of which counts once: ACOUSTICS.md 4.
+// A cell's echo in its bins, compared with the same cell cut into many points, each of which counts once:
+// ACOUSTICS.md 4.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/** 600 bins of 0.1 m, which take what the deposit's shared code gives them. */
+/** 600 bins of 0.1 m, filled by the deposit's shared code. */
 struct PointBins {
     static constexpr uint bin_count = 600;
     static constexpr double bin_width = 0.1;
@@ -66,7 +67,7 @@ struct Plane {
     double inverseRange(double x, double y, double z) const {
         return (n[0] * x + n[1] * y + n[2] * z) / (distance * sqrt(x * x + y * y + z * z));
     }
-    /** What a cell of an extent [rad] and a solid angle [1] covers about an azimuth and an elevation. */
+    /** Returns the footprint of a cell of an extent [rad] and a solid angle [1] about an azimuth and an elevation. */
     PlaneFootprint seen(double azimuth, double elevation, double width, double height, double size,
                         double far_edge = 0) const {
         return planeFootprint(n[0], n[1], n[2], distance, std::cos(azimuth), std::sin(azimuth), std::cos(elevation),
@@ -76,7 +77,7 @@ struct Plane {
 
 const Plane bottom(0, -std::numbers::pi / 2, 3), slope(0.4, -1.2, 3), wall(0.3, 0.2, 10);
 
-constexpr int parts = 1000;  ///< Of a cell, each way.
+constexpr int parts = 1000;  ///< Points of a cell along each axis.
 
 /** Middles of `parts` equal parts of [from, to]. */
 double part(double from, double to, int i) { return from + (to - from) * (i + 0.5) / parts; }
@@ -84,7 +85,7 @@ double part(double from, double to, int i) { return from + (to - from) * (i + 0.
 /** A cell of the picture: the middle of its pixel, of which it is the columns [from, to], and the aperture's edge. */
 struct ShareOfPixel {
     double u, v, from, to, size, limit = infinity;
-    bool upright = false;  ///< Not sheared: wrong.
+    bool upright = false;  ///< Not sheared, the wrong variant.
 
     void deposit(const Plane& plane, PointBins& bins) const {
         const double middle = (from + to) / 2, shear = upright ? 0 : u / (1 + u * u);
@@ -94,7 +95,7 @@ struct ShareOfPixel {
                                                cell.width, cell.height, cell.size, bins.binEdge(PointBins::bin_count));
         bins.depositCell(seen.footprint, 0, seen.perpendicular);
     }
-    /** Point by point between curves of constant elevation. */
+    /** Adds the points between curves of constant elevation. */
     void cut(const Plane& plane, PointBins& bins) const {
         for (int i = 0; i < parts; ++i)
             for (int j = 0; j < parts; ++j) {
@@ -107,7 +108,7 @@ struct ShareOfPixel {
     }
 };
 
-/** A cell da x de about (a, e), its solid angle relative to one at elevation 0. */
+/** A cell da x de about (a, e), its solid angle relative to a cell at elevation 0. */
 struct AngularCell {
     double a, e, da, de;
 
@@ -203,7 +204,7 @@ TEST(FootprintTest, ACellOfAzimuthAndElevationCoversTheBinsThatItsPointsDo) {
 struct CellOfSphere {
     double radius, distance, a, e, da, de;
 
-    /** Range of the sphere in a direction, and cosine of incidence there. */
+    /** Returns the range of the sphere in a direction, and the cosine of incidence. */
     std::pair<double, double> at(double azimuth, double elevation) const {
         const double ahead = distance * std::cos(elevation) * std::cos(azimuth);
         const double limb_square = distance * distance - radius * radius;

@@ -1,4 +1,4 @@
-// The demo's harbour as its deployment shows it: same scene, trajectory, mount and sonar.
+// The harbour of the demo with the scene, trajectory, mount and sonar of its deployment.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Config propertiesOf(const std::string& task) {
     return config;
 }
 
-/** A pose that has one of an object's vertices in view: how far, and at which bearing [m, rad]. */
+/** A pose with one of an object's vertices in view, and the range and bearing of this vertex [m, rad]. */
 struct View {
     double range, bearing;
     size_t pose;
@@ -89,7 +89,7 @@ protected:
         views.resize(std::min<size_t>(views.size(), 60));
         return views;
     }
-    /** Whether the ping is clearly another one without the object: some bin by more than half. */
+    /** Returns whether the object changes some bin of the ping by more than half. */
     static bool differs(SonarRenderer& renderer, uint32_t object, const View& view) {
         types::Snapshot snapshot = snapshotAt(view.pose);
         snapshot.sonar.orientation *= glm::angleAxis(view.bearing, glm::dvec3(0, 0, 1));
@@ -106,7 +106,7 @@ protected:
     }
 
     static inline types::GeometryPtr geometry;
-    static inline std::vector<types::Pose> poses;  ///< Of the sonar, four a second.
+    static inline std::vector<types::Pose> poses;  ///< Poses of the sonar, four per second.
     static inline SonarConfig sonar;
 };
 
@@ -131,12 +131,12 @@ TEST_F(HarbourTest, MoreThanAHundredThousandTrianglesAreInViewOverThePass) {
 }
 
 TEST_F(HarbourTest, EveryNamedObjectAppearsInSomePing) {
-    // Sixteen beams of the fan about the object: the sonar is turned to them, which changes nothing (BeamFanTest.cpp).
+    // Sixteen beams of the fan about the object. The sonar is rotated to them, which changes no bin (BeamFanTest.cpp).
     SonarConfig beams = sonar;
     beams.beam_count = 16;
     beams.field_of_view_deg = 16 * sonar.beamWidthDeg();
     SonarRenderer renderer(beams, geometry);
-    std::map<std::string, std::vector<std::string>> shown, hidden;  // numbered ones together
+    std::map<std::string, std::vector<std::string>> shown, hidden;  // numbered objects together
     for (uint32_t i = 0; i < geometry->objects.size(); ++i) {
         const std::string& name = geometry->objects[i].name;
         if (name == "sea_floor") continue;

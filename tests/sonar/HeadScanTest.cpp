@@ -25,31 +25,31 @@ TEST(HeadScanTest, ASectorStartsAtItsLeftLimitAndTurnsBackWithoutADoubledPing) {
         ElementsAre(20, 0, -20, 0, 20, 0, -20, 0, 20));
 }
 
-TEST(HeadScanTest, ASectorThatTheStepDoesNotDivideIsNeverLeft) {
+TEST(HeadScanTest, StaysInASectorThatTheStepDoesNotDivide) {
     EXPECT_THAT(
         bearings({.left_deg = 10, .right_deg = -15, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}}, 6),
         ElementsAre(10, 0, -10, 0, 10, 0));
 }
 
-TEST(HeadScanTest, NoBearingOfASectorIsHeardTwiceInARow) {
+TEST(HeadScanTest, NoBearingOfASectorIsPingedTwiceInARow) {
     const std::vector<double> all =
         bearings({.left_deg = 45, .right_deg = -45, .step_deg = 0.9, .continuous = {}, .speed_deg_per_s = {}}, 1000);
     EXPECT_THAT(all, testing::Each(testing::AllOf(testing::Le(45), testing::Ge(-45))));
     EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
-TEST(HeadScanTest, AStepAsWideAsTheSectorGoesBetweenItsLimits) {
+TEST(HeadScanTest, AStepOfTheWidthOfTheSectorAlternatesBetweenItsLimits) {
     EXPECT_THAT(bearings({.left_deg = 5, .right_deg = -5, .step_deg = 10, .continuous = {}, .speed_deg_per_s = {}}, 4),
                 ElementsAre(5, -5, 5, -5));
 }
 
-TEST(HeadScanTest, AFullTurnGoesOnToStarboard) {
+TEST(HeadScanTest, AFullTurnContinuesToStarboard) {
     EXPECT_THAT(
         bearings({.left_deg = 180, .right_deg = -180, .step_deg = 90, .continuous = {}, .speed_deg_per_s = {}}, 6),
         ElementsAre(180, 90, 0, -90, 180, 90));
 }
 
-TEST(HeadScanTest, AHeadThatTurnsOnDoesNotLookAtItsRightLimit) {
+TEST(HeadScanTest, AContinuousHeadDoesNotLookAtItsRightLimit) {
     const HeadConfig published{
         .left_deg = -180, .right_deg = 179.9, .step_deg = 90, .continuous = true, .speed_deg_per_s = {}};
     types::Diagnostics diagnostics;

@@ -1,4 +1,4 @@
-// Errors of a device's elements, beams, focus and clock against closed forms (ACOUSTICS.md 5.27).
+// Errors of a device's elements, beams, focus and clock, compared with closed forms (ACOUSTICS.md 5.27).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -104,7 +104,7 @@ TEST(ImperfectionsTest, ADeadElementInTheMiddleTakesItsShareOffTheFieldEverywher
     EXPECT_NEAR(straight.azimuth(0.5, 0.3), std::pow(std::sin(pi * u) / (pi * u) - 1.0 / 25, 2), 1e-5);
 }
 
-TEST(ImperfectionsTest, NoErrorsAreTheSameBits) {
+TEST(ImperfectionsTest, WithoutErrorsBitsAreTheSame) {
     SonarConfig plain = imperfectFan(), coherent = imperfectFan(Weighting::Taylor), boxes = imperfectFan();
     coherent.speckle.emplace().coherent = true;
     boxes.beam_pattern.reset();
@@ -132,7 +132,7 @@ TEST(ImperfectionsTest, APointTargetShowsThePatternOfThisDeviceWithAndWithoutCoh
     }
 }
 
-TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
+TEST(ImperfectionsTest, CoherentSurfacesHaveTheSidelobesOfEnergies) {
     const ImperfectionsConfig errors{.gain_error_db = 3, .phase_error_deg = 40, .dead_element_share = 0.1};
     const types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::sphere(0.3, 32)}, 0, {{7, 0.6, 0}}));
     const auto sidelobes = [&](bool is_coherent, const std::optional<ImperfectionsConfig>& own) {
@@ -156,7 +156,8 @@ TEST(ImperfectionsTest, CoherentSurfacesHearTheSidelobesThatEnergiesHear) {
     EXPECT_GT(fields, sidelobes(true, {}) + 6) << "an ideal device has lower sidelobes";
 }
 
-/** What an array hears of a point at a range and angle, by the exact ways to its elements, focused at another range. */
+/** Returns the response of an array to a point at a range and angle, by the exact paths to its elements, focused at
+ *  another range. */
 double exactPower(double length, size_t count, double range, double angle, double focus) {
     Phasor sum;
     const double k = 2 * pi / array_wavelength;
@@ -169,7 +170,7 @@ double exactPower(double length, size_t count, double range, double angle, doubl
     return std::norm(sum);
 }
 
-/** Width between the half-power points of a pattern, the outermost ones, relative to its maximum [rad]. */
+/** Returns the width between the outermost half-power points of a pattern, relative to its maximum [rad]. */
 double mainLobeWidth(const std::function<double(double)>& power) {
     double top = 0, low = 0, high = 0;
     for (double a = -0.3; a <= 0.3; a += 2e-4) top = std::max(top, power(a));
@@ -181,7 +182,7 @@ double mainLobeWidth(const std::function<double(double)>& power) {
     return high - low;
 }
 
-TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
+TEST(ImperfectionsTest, ABeamOutOfFocusMatchesTheExactSumOverTheArray) {
     constexpr double length = 0.2;  // far field beyond 20 m
     for (const double focus : {1.5, 4.0, 1e5}) {
         SonarConfig config = imperfectFan();
@@ -207,7 +208,7 @@ TEST(ImperfectionsTest, OutOfFocusABeamIsWhatTheExactSumOverTheArrayMakesOfIt) {
     }
 }
 
-TEST(ImperfectionsTest, InFocusAndInTheFarFieldABeamIsThatOfTheLaw) {
+TEST(ImperfectionsTest, ABeamInFocusOrInTheFarFieldMatchesTheLaw) {
     SonarConfig config = imperfectFan(Weighting::Hann);
     config.range = 200;
     const Directivity ideal(config);
@@ -293,7 +294,7 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
     EXPECT_EQ(one.bins, again.bins);
     EXPECT_NE(one.bins, next.bins);
     EXPECT_NE(one.bins, clean.bins);
-    // The shift of each bin, from the slope there, is the same for all beams and has the deviation that is asked for.
+    // The shift of each bin, by the slope of the level, is the same for all beams and has the configured deviation.
     double square = 0, count = 0;
     for (size_t k = 200; k + 2 < clean.bin_count; ++k) {
         double top = 0, bottom_sum = 0;
@@ -320,7 +321,7 @@ std::vector<std::string> complaintsOf(const SonarConfig& config) {
     return texts;
 }
 
-TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
+TEST(ImperfectionsTest, RejectsImpossibleConfigurationsWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
     EXPECT_THAT(complaintsOf(withErrors(imperfectFan(), gains)), IsEmpty());
     SonarConfig boxes = withErrors(imperfectFan(), gains);
@@ -361,7 +362,7 @@ TEST(ImperfectionsTest, WhatCannotBeIsRefusedWithTheReason) {
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
     EXPECT_THAT(complaintsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
-                                                     HasSubstr("their number is that of `elements`")));
+                                                    HasSubstr("their number is that of `elements`")));
 }
 
 }  // namespace

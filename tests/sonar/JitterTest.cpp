@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint rows = 256, columns = 512;
 
-/** Mean of the products of `which` of each pixel with `other` of the pixel some rows and columns on. */
+/** Returns the mean of the products of `which` of each pixel and `other` of a pixel some rows and columns further. */
 double product(uint which, uint other, uint row_step, uint column_step) {
     double sum = 0;
     for (uint row = 0; row < rows; ++row)
@@ -42,7 +42,7 @@ TEST(JitterTest, PointsAreUniformInTheirPixelsAndDoNotFollowOneAnother) {
     EXPECT_LT(std::abs(product(0, 1, 0, 0)), 4 * variance / std::sqrt(count)) << "column and row of one pixel";
 }
 
-TEST(JitterTest, TheHashIsThatOfItsAuthors) {
+TEST(JitterTest, TheHashMatchesItsPublication) {
     EXPECT_DOUBLE_EQ(jitter(0, 0, 0), 129708002 / 4294967296.0 - 0.5);
     EXPECT_DOUBLE_EQ(jitter(0, 0, 1), 2831084092 / 4294967296.0 - 0.5);
 }

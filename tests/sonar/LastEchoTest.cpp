@@ -1,4 +1,4 @@
-// In realtime a ping comes no earlier than its last echo could.
+// In realtime a ping is written no earlier than its last echo could arrive.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -25,20 +25,20 @@ protected:
         ASSERT_TRUE(task_.start()) << task_.lastError();
         task_.activity().release();
     }
-    /** From now on the task's clock stands wherever the test sets it. */
+    /** Replaces the task's clock by a clock that the test sets. */
     void setClock(types::Time time) {
         clock_ = time.microseconds;
         task_.environment().now = [this] { return types::Time{clock_.load()}; };
         task_.environment().wall_clock = false;
     }
-    /** A snapshot of the moment, moved by so many seconds; its stamp. */
+    /** Writes a snapshot of the current time plus a number of seconds; returns its stamp. */
     types::Time send(double ahead = 0) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.time = task_.environment().now() + types::Time::fromSeconds(ahead);
         in_.port.write(std::make_shared<types::Snapshot>(snapshot));
         return snapshot.time;
     }
-    /** The next ping, waited for. */
+    /** Waits for the next ping. */
     types::SonarPtr receive() {
         types::SonarPtr ping;
         test::comesTrue([&] { return out_.port.readNew(ping); });
@@ -51,7 +51,7 @@ protected:
     std::atomic<int64_t> clock_{0};
 };
 
-TEST_F(LastEchoTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
+TEST_F(LastEchoTest, APingIsWrittenAfterTheTwoWayTravelTimeToTheRange) {
     start(150);  // 0.2 s, longer than this picture takes
     for (int i = 0; i < 3; ++i) {
         const types::Time sent = send();
@@ -66,7 +66,7 @@ TEST_F(LastEchoTest, APingIsWrittenAfterSoundsWayToTheRangeAndBack) {
     EXPECT_GE(task_.timing().latency.quantile(0), 0.198);  // within 1 %
 }
 
-TEST_F(LastEchoTest, APoseThatIsOldShortensNoListening) {
+TEST_F(LastEchoTest, AnOldPoseDoesNotShortenTheListening) {
     start(150);
     const types::Time taken = framework::wallClock(), sent = send(-0.5);
     const types::SonarPtr ping = receive();
@@ -96,7 +96,7 @@ TEST_F(LastEchoTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
     }
 }
 
-TEST_F(LastEchoTest, ASonarIsCarriedOnToTheTimeOfItsPingWhereItMayBe) {
+TEST_F(LastEchoTest, ASonarIsExtrapolatedToTheTimeOfItsPingIfAllowed) {
     start(15);
     types::Snapshot snapshot = facingWall(5);
     snapshot.time = snapshot.sonar.time = framework::wallClock() + types::Time::fromSeconds(-0.4);
@@ -125,7 +125,7 @@ TEST_F(LastEchoTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
     EXPECT_EQ(task_.ping.written(), 0u);
 }
 
-TEST_F(LastEchoTest, ASnapshotFromTheFutureIsRefused) {
+TEST_F(LastEchoTest, RejectsASnapshotFromTheFuture) {
     start(15);
     send(3600);
     EXPECT_TRUE(test::comesTrue([&] { return task_.state() == framework::TaskState::RunTimeError; }));

@@ -1,4 +1,4 @@
-// Elements of a straight array, and the beams that are formed of them, against sums and closed forms.
+// Elements of a straight array, and beams formed from them, compared with sums and closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Cells speckled(size_t cells, size_t samples) {
     return made;
 }
 
-/** Power that a beam hears of one echo of unit amplitude. */
+/** Returns the power of one echo of unit amplitude in a beam. */
 double heardPower(const LineArray& array, double from, double looking) {
     ComplexRows echo(1, 1);
     echo.values[0] = 1;
@@ -49,7 +49,7 @@ double heardPower(const LineArray& array, double from, double looking) {
         Complex(array.form(array.hear(echo, std::vector{Cone{from, from}}), std::vector{looking}).values[0]));
 }
 
-TEST(LineArrayTest, ElementsHearTheSumOfTheEchoesEachTurnedByItsWay) {
+TEST(LineArrayTest, ElementsReceiveTheSumOfEchoesWithThePhasesOfTheirPaths) {
     const LineArray array = halfWave(16);
     const Cells cells = speckled(50, 7);
     const ComplexRows heard = array.hear(cells.field, cells.cones);
@@ -65,7 +65,7 @@ TEST(LineArrayTest, ElementsHearTheSumOfTheEchoesEachTurnedByItsWay) {
         }
 }
 
-TEST(LineArrayTest, AWideCellIsHeardAsManyNarrowOnes) {
+TEST(LineArrayTest, AWideCellEchoesAsManyNarrowCells) {
     const LineArray array = halfWave(32);
     ComplexRows one(1, 1), many(1000, 1);
     one.values[0] = 1;
@@ -76,7 +76,7 @@ TEST(LineArrayTest, AWideCellIsHeardAsManyNarrowOnes) {
     for (size_t m = 0; m < 32; ++m) EXPECT_NEAR(std::abs(wide.row(m)[0] - fine.row(m)[0]), 0, 1e-4) << m;
 }
 
-TEST(LineArrayTest, BeamsByTheTransformAreTheSumsOverTheElements) {
+TEST(LineArrayTest, BeamsByTheTransformMatchTheSumsOverTheElements) {
     for (const size_t count : {17u, 64u}) {
         const LineArray array = halfWave(count, Taper(Weighting::Taylor));
         const Cells cells = speckled(80, 5);
@@ -98,7 +98,7 @@ TEST(LineArrayTest, BeamsByTheTransformAreTheSumsOverTheElements) {
     }
 }
 
-TEST(LineArrayTest, AUniformArrayHearsByItsClosedForm) {
+TEST(LineArrayTest, AUniformArrayHasThePatternOfItsClosedForm) {
     constexpr int count = 24;
     const LineArray array = halfWave(count);
     for (const double looking : {0.0, 0.3, -0.6})
@@ -132,21 +132,21 @@ TEST(LineArrayTest, HannsWeightsAreARaisedCosine) {
         EXPECT_NEAR(array.weights()[m], (1 + std::cos(2 * pi * array.position(m) / (32 * wavelength))) / 64, 1e-8);
 }
 
-TEST(LineArrayTest, AGaussianIsNotOfAnyApertureAndIsNotMade) {
+TEST(LineArrayTest, AnArrayCannotMakeAGaussian) {
     const Taper gaussian(Weighting::Gaussian);
     const LineArray array = halfWave(96, gaussian);
     EXPECT_GT(std::abs(std::sqrt(heardPower(array, 0.6 / 48, 0)) - gaussian.amplitude(0.6)), 0.03);
 }
 
-TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHearGratingLobes) {
+TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHaveGratingLobes) {
     const LineArray sparse(32, 1.25 * wavelength, wavelength, uniform), dense(80, wavelength / 2, wavelength, uniform);
-    const double grating = 0.1 + 1 / 1.25;  // one wavelength of way between neighbours
+    const double grating = 0.1 + 1 / 1.25;  // path difference of one wavelength between neighbours
     EXPECT_NEAR(heardPower(sparse, grating, 0.1), 1, 0.01) << "as loud as the axis";
     EXPECT_NEAR(heardPower(sparse, 0.1, 0.1), 1, 0.01);
     EXPECT_LT(heardPower(dense, grating, 0.1), 1e-3) << "the same aperture, filled";
 }
 
-TEST(LineArrayTest, OtherNumbersOfRowsAreRefused) {
+TEST(LineArrayTest, RejectsWrongNumbersOfRows) {
     const LineArray array = halfWave(4);
     EXPECT_THROW(array.hear(ComplexRows(3, 2), std::vector<Cone>(2)), std::invalid_argument);
     EXPECT_THROW(array.form(ComplexRows(3, 2), std::vector{0.0}), std::invalid_argument);

@@ -1,4 +1,4 @@
-// What materials give back between the entries of their tables, and when a material follows Lambert's law.
+// Backscatter of materials between the entries of their tables, and materials that follow Lambert's law.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ MaterialLaws lawsOf(types::Material material, std::optional<double> frequency_kh
     return makeMaterialLaws(config, geometry);
 }
 
-TEST(MaterialLawsTest, ATableIsItsLawBetweenItsEntriesToo) {
+TEST(MaterialLawsTest, ATableMatchesItsLawBetweenItsEntriesToo) {
     const MaterialLaws laws = lawsOf({.name = "floor", .seabed = "medium_sand"});
     const acoustics::SeabedBackscatter sand(acoustics::seabedNamed("medium_sand").value(), 100, 1500);
     for (double grazing_deg = 3; grazing_deg <= 90; grazing_deg += 0.37) {
@@ -32,7 +32,7 @@ TEST(MaterialLawsTest, ATableIsItsLawBetweenItsEntriesToo) {
     EXPECT_EQ(laws.overCosine(0, 2), laws.overCosine(0, 1)) << "no cosine is above 1";
 }
 
-TEST(MaterialLawsTest, LambertsLawIsThatOfNeitherTableNorLobe) {
+TEST(MaterialLawsTest, LambertsLawAppliesWithoutTableAndLobe) {
     const MaterialLaws lambert = lawsOf({.name = "mud", .lambert_db = -16.7f});
     EXPECT_TRUE(lambert.followsLambert(0));
     for (const double cosine : {0.001, 0.2, 0.7071, 1.0})
@@ -63,7 +63,7 @@ TEST(MaterialLawsTest, MatterIsARoughSolidAtTheSonarsFrequency) {
         }
 }
 
-TEST(MaterialLawsTest, MatterWithoutALobeIsATableAlone) {
+TEST(MaterialLawsTest, MatterWithoutALobeIsOnlyATable) {
     const MaterialLaws rock = lawsOf({.name = "m", .matter = "rock"}, 900);
     EXPECT_FALSE(rock.hasLobes());
     EXPECT_FALSE(rock.followsLambert(0));

@@ -9,7 +9,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Two beams of ten bins: something at bins 2 to 5 and again at 9. */
+/** Two beams of ten bins with echoes at bins 2 to 5 and at 9. */
 const std::vector<double> reference = {0, 0, 8, 4, 2, 1, 0, 0, 0, 1, 0, 0, 8, 4, 2, 1, 0, 0, 0, 1};
 const Layout layout{2, 10, 0.5, 0};
 
@@ -39,7 +39,7 @@ TEST(MetricsTest, TenPercentMoreIsTenPercentInEveryMeasure) {
     EXPECT_NEAR(m.ripple, 0.1, 1e-6);
 }
 
-TEST(MetricsTest, CorrelationDoesNotKnowGainButKnowsPlace) {
+TEST(MetricsTest, CorrelationIgnoresGainAndDetectsShifts) {
     std::vector<float> louder = like(reference), flat(reference.size(), 3), swapped = like(reference);
     for (float& e : louder) e *= 2;
     std::swap(swapped[2], swapped[6]);
@@ -49,7 +49,7 @@ TEST(MetricsTest, CorrelationDoesNotKnowGainButKnowsPlace) {
     EXPECT_LT(compare(swapped, reference, layout).correlation, 0.7);
 }
 
-TEST(MetricsTest, DistanceOfLevelsKnowsGainButNotPlace) {
+TEST(MetricsTest, DistanceOfLevelsDetectsGainAndIgnoresShifts) {
     std::vector<float> louder = like(reference), swapped = like(reference);
     for (float& e : louder) e *= 2;
     std::swap(swapped[2], swapped[6]);
@@ -58,7 +58,7 @@ TEST(MetricsTest, DistanceOfLevelsKnowsGainButNotPlace) {
         << "half of the bins are silent in both";
 }
 
-TEST(MetricsTest, SilenceIsComparedAsWell) {
+TEST(MetricsTest, ComparesSilenceToo) {
     const std::vector<double> silence(reference.size(), 0);
     const Metrics same = compare(like(silence), silence, layout), other = compare(like(reference), silence, layout);
     EXPECT_EQ(same.rel_l2, 0);
@@ -98,7 +98,7 @@ TEST(MetricsTest, AFilledShadowIsCountedPerBeam) {
     EXPECT_EQ(compare(got, reference, layout).shadow_bins, 1.5);
 }
 
-TEST(MetricsTest, BinsNearerThanTheRangeAreNotCompared) {
+TEST(MetricsTest, IgnoresBinsNearerThanTheRange) {
     std::vector<float> got = like(reference);
     got[2] = 100;
     Layout from = layout;

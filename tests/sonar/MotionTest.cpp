@@ -1,4 +1,4 @@
-// What moves and turns while sound is under way, against exact solutions of its way there and back (ACOUSTICS.md 5.20).
+// Motion during the travel of sound, compared with exact solutions of the two-way path (ACOUSTICS.md 5.20).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ types::Snapshot movingSonar(const types::GeometryPtr& geometry, glm::dvec3 veloc
     return snapshot;
 }
 
-/** The second ping of an object that has moved for 0.5 s, by its velocity, to where it is. */
+/** Returns the second ping of an object that has moved for 0.5 s, by its velocity, to its place. */
 types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& geometry, glm::dvec3 place,
                           glm::dvec3 velocity, glm::dvec3 sonar_velocity = {}) {
     SonarRenderer renderer(config, geometry);
@@ -79,8 +79,8 @@ types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& g
     return ping;
 }
 
-/** The slant range and the direction at which a point is heard: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
- *  solved by halving. */
+/** Returns the slant range and the direction of a point's echo: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
+ *  solved by bisection. */
 struct HeardAt {
     double range;
     glm::dvec3 direction;
@@ -102,7 +102,7 @@ HeardAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_ve
     return {c * back / 2, glm::normalize(met - sonar_velocity * back)};
 }
 
-TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
+TEST(MotionTest, APointEchoesAtTheRangeOfTheExactTwoWayPath) {
     struct Case {
         glm::dvec3 place, velocity, sonar;
     };
@@ -119,7 +119,7 @@ TEST(MotionTest, APointIsHeardAtTheRangeOfSoundsExactWayToItAndBack) {
     }
 }
 
-TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
+TEST(MotionTest, AWallAheadOfAMovingSonarEchoesNearerInEachBeam) {
     const auto geometry = test::sceneOf({test::wall(200)});
     const glm::dvec3 velocity{25, 8, 0};
     SonarRenderer renderer(movingFan(), geometry);
@@ -128,8 +128,8 @@ TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
     renderer.setTruth(ping, &truth);
     renderer.render(movingSonar(geometry, velocity), ping);
     for (size_t beam = 0; beam < 40; beam += 3) {
-        // The beam hears, at the edge that is nearer to the wall's foot, the range at which the arriving ray has met
-        // it.
+        // The first echo of the beam is at its edge nearer to the wall's foot, at the range where the arriving ray has
+        // met the wall.
         const double edge = std::abs(ping.bearings[beam].rad) - radians(0.5);
         const double bearing = std::copysign(edge, ping.bearings[beam].rad);
         const glm::dvec3 ray(std::cos(bearing), std::sin(bearing), 0);
@@ -143,11 +143,11 @@ TEST(MotionTest, AWallAheadOfAMovingSonarIsHeardNearerInEachBeam) {
         const float* bins = &ping.bins[beam * ping.bin_count];
         const auto first = std::find_if(bins, bins + ping.bin_count, [](float x) { return x > 0; }) - bins;
         EXPECT_NEAR(0.1 * static_cast<double>(first), range, 0.2) << beam;
-        EXPECT_GT(std::abs(range - 200 / ray.x), 2) << "a wall that is heard where it stands does not pass";
+        EXPECT_GT(std::abs(range - 200 / ray.x), 2) << "ranges without motion do not pass";
     }
 }
 
-TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
+TEST(MotionTest, AFloorHasTheSameEnergyUnderAMovingSonarAndAtRest) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     SonarConfig config = movingFan();
     config.beam_height_deg = 40;
@@ -162,7 +162,7 @@ TEST(MotionTest, AFloorUnderAMovingSonarHasTheEnergyOfOneUnderASonarAtRest) {
     EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
 }
 
-TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
+TEST(MotionTest, APointTargetEchoesAtTheRangeOfTheExactPath) {
     const auto nothing = test::openWater();
     SonarRenderer renderer(movingFan(), nothing);
     types::Sonar ping;
@@ -179,7 +179,7 @@ TEST(MotionTest, APointTargetIsHeardAtTheRangeOfSoundsExactWay) {
     EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
 }
 
-TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
+TEST(MotionTest, ARotatingReceiverGetsAnEchoAtItsBearingOnArrival) {
     const double turn = radians(30), flight = 2 * 200 / c, bearing = radians(5);
     const auto geometry = test::sceneOf({facingPlate()}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
     const Loudest loudest = loudestOf(pingOf(movingFan(), movingSonar(geometry, {}, {0, 0, turn})));
@@ -188,13 +188,14 @@ TEST(MotionTest, AReceiverThatTurnsHearsAnEchoFromWhereItLooksByThen) {
     EXPECT_GT(turn * flight, radians(7)) << "where it was is seven beams off";
 }
 
-TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
+TEST(MotionTest, ASonarOfOneBeamShiftsByHalfBecauseItAlsoTransmitsWithTheBeam) {
     const double turn = radians(45), flight = 2 * 200 / c;
     SonarConfig one = movingFan();
     one.beam_count = 1;
     one.field_of_view_deg = 2;
     const auto heardAt = [&](double bearing) {
-        const auto geometry = test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
+        const auto geometry =
+            test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
     EXPECT_GT(heardAt(turn * flight / 2), 0);
@@ -202,7 +203,7 @@ TEST(MotionTest, ASonarOfOneBeamLooksHalfAsFarRoundForItSentWithItToo) {
     EXPECT_EQ(heardAt(turn * flight), 0);
 }
 
-TEST(MotionTest, AChirpShiftsWhatMovesByItsRangeDopplerCoupling) {
+TEST(MotionTest, AChirpShiftsMovingTargetsByRangeDopplerCoupling) {
     SonarConfig config = movingFan();
     config.frequency_khz = 300;
     config.pulse.emplace().bandwidth_khz = 5;
@@ -233,19 +234,19 @@ TEST(MotionTest, ASonarAtRestAndOneThatIsSlowChangeNoBit) {
     EXPECT_NE(pingOf(movingFan(), movingSonar(geometry, {slow / 0.9, 0, 0})).bins, absent.bins);
 }
 
-TEST(MotionTest, ThePlanTellsFromWhichSpeedOnMotionIsFollowed) {
+TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
     EXPECT_FALSE(plan.leftOut("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
-                testing::Contains(HasSubstr("motion within a ping is followed from 0.12 m/s or 1.2 deg/s on")));
+                testing::Contains(HasSubstr("motion within a ping is simulated from 0.12 m/s or 1.2 deg/s")));
     SonarConfig without = movingFan();
     without.motion_in_ping = false;
     EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));
 }
 
-/** What is wrong with a configuration, joined. */
+/** Returns the errors of a configuration, joined. */
 std::string complaintOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
@@ -254,11 +255,11 @@ std::string complaintOf(const SonarConfig& config) {
     return all;
 }
 
-TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
+TEST(MotionTest, ReportsMissingRequirements) {
     EXPECT_EQ(complaintOf(movingFan()), "");
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
-    EXPECT_TRUE(config.castsRays()) << "whatever device there is";
+    EXPECT_TRUE(config.castsRays()) << "on any device";
     config.visibility = Visibility::Gl;
     config.device = "software";
     EXPECT_THAT(complaintOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
@@ -281,7 +282,7 @@ TEST(MotionTest, WhatItNeedsIsToldWhereItIsMissing) {
     EXPECT_EQ(diagnostics[0].path, "head.sweeps");
 }
 
-TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
+TEST(MotionTest, AJumpIsAPlacementAndNotAMotion) {
     const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
@@ -303,7 +304,7 @@ TEST(MotionTest, WhatJumpsHasBeenPutElsewhereAndDoesNotMove) {
     EXPECT_EQ(motion.targetVelocity(0), glm::dvec3(0));
 }
 
-TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
+TEST(MotionTest, AJumpingSonarHasOnlyTheVelocityOfItsPose) {
     const auto geometry = test::sceneOf({facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry);
@@ -332,7 +333,7 @@ TEST(MotionTest, ASonarThatJumpsHasNoVelocityButThatOfItsPose) {
     EXPECT_NEAR(motion.velocity().x, 10, 1e-6) << "no vehicle is so fast: that of the two places";
 }
 
-TEST(MotionTest, VelocitiesAreThoseOfThePoseElseOfTwoSnapshots) {
+TEST(MotionTest, VelocitiesAreFromThePoseOrElseFromTwoSnapshots) {
     const auto geometry = test::sceneOf({facingPlate(), facingPlate()});
     Motion motion(*geometry, 150);
     types::Snapshot snapshot = test::snapshotOf(geometry, {1e6, 2, 3}, 0.2);
@@ -382,7 +383,7 @@ protected:
         config.head.sweeps = sweeps;
         startWith(config);
     }
-    /** The loudest of the ping at a time, of a plate at 200 m and a bearing in the body. */
+    /** Returns the max of the ping at a time, for a plate at 200 m and a bearing in the body. */
     Loudest heardAt(double seconds, double bearing_deg) {
         types::Snapshot snapshot = test::snapshotOf(nullptr);
         const double bearing = radians(bearing_deg);
@@ -395,7 +396,7 @@ protected:
     }
 };
 
-TEST_F(SweepTest, AHeadThatSweepsHearsFromHalfWayToWhereItLooksByThen) {
+TEST_F(SweepTest, ASweepingHeadReceivesHalfWayToItsBearingOnArrival) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;  // of steps of 10 deg in 0.5 s
     EXPECT_GT(behind, 2.5) << "more than the beam of 2 deg";
     start(true);
@@ -407,7 +408,7 @@ TEST_F(SweepTest, AHeadThatSweepsHearsFromHalfWayToWhereItLooksByThen) {
     EXPECT_NEAR(last.range, 198.5, 0.5);
 }
 
-TEST_F(SweepTest, AHeadThatStandsAtEachStepHearsFromWhereItStands) {
+TEST_F(SweepTest, ASteppingHeadReceivesAtItsBearing) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;
     start(false);
     heardAt(1, 180);

@@ -1,5 +1,4 @@
-// Echoes by way of mirrors against the image method, worked out here from the sonar equation itself
-// (ACOUSTICS.md 5.23).
+// Echoes by mirrors compared with the image method, computed here from the sonar equation itself (ACOUSTICS.md 5.23).
 #include <gmock/gmock.h>
 
 #include <array>
@@ -49,14 +48,14 @@ types::Snapshot withTarget(double surface, glm::dvec3 position, types::GeometryP
 
 double decibels(double ratio) { return 10 * std::log10(ratio); }
 
-/** What two pings differ by, bin by bin. */
+/** Returns the difference of two pings, bin by bin. */
 std::vector<double> difference(const types::Sonar& with, const types::Sonar& without) {
     std::vector<double> all;
     for (size_t i = 0; i < with.bins.size(); ++i) all.push_back(double{with.bins[i]} - double{without.bins[i]});
     return all;
 }
 
-/** The bins of a beam that hold anything. */
+/** Returns the bins of a beam that are not 0. */
 std::vector<size_t> heardBins(const types::Sonar& ping, uint32_t beam = 0) {
     std::vector<size_t> bins;
     for (size_t k = 0; k < ping.bin_count; ++k)
@@ -76,11 +75,11 @@ TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
         EXPECT_NEAR((static_cast<double>(heard[i]) + 0.5) * 0.1, ranges[i], 0.05 + 1e-9);
         EXPECT_NEAR(decibels(ping.bins[heard[i]] / expected[i]), 0, 0.01) << i;
     }
-    // Once for both directions of the mixed way would be 3 dB less.
+    // Counting the mixed path once for both directions would give 3 dB less.
     EXPECT_GT(decibels(ping.bins[heard[1]] / (expected[1] / 2)), 2.9);
 }
 
-TEST(MultipathTest, TheFirstEchoOfATargetIsTheSameBitForBit) {
+TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(40, 4);
     const auto with = pingOf(mirrored(config), withTarget(3, {12, 2, -1}));
     const auto without = pingOf(config, withTarget(3, {12, 2, -1}));
@@ -92,40 +91,40 @@ TEST(MultipathTest, TheFirstEchoOfATargetIsTheSameBitForBit) {
     EXPECT_EQ(heardBins(with, 2).size(), 3u);
 }
 
-/** How many returns of a target there are with a plate somewhere. */
+/** Returns the number of returns of a target with a plate at a place. */
 size_t returnsWith(types::Mesh plate) {
     auto config = mirrored(surfaceSonar(20, 1));
     auto scene = test::sceneOf({std::move(plate)}, -200);
     return heardBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
 }
 
-TEST(MultipathTest, EachLegOfATargetsWaysIsHiddenByItself) {
+TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
     const auto plateAt = [](glm::dvec3 at) {
         return test::quad(glm::vec3(at) - glm::vec3(0, 0.2f, 0.2f), {0, 0.4f, 0}, {0, 0, 0.4f});
     };
     EXPECT_EQ(returnsWith(plateAt({-50, 0, 0})), 3u);
-    EXPECT_EQ(returnsWith(plateAt({6, 0, -0.5})), 1u) << "the straight way: by the mirror there and back is left";
-    const double bounce = 12.0 * 3 / 7;  // where the surface is met
-    EXPECT_EQ(returnsWith(plateAt({bounce / 2, 0, 1.5})), 1u) << "up to the surface: the straight one is left";
+    EXPECT_EQ(returnsWith(plateAt({6, 0, -0.5})), 1u) << "on the direct path: the path by the mirror both ways remains";
+    const double bounce = 12.0 * 3 / 7;  // where the path meets the surface
+    EXPECT_EQ(returnsWith(plateAt({bounce / 2, 0, 1.5})), 1u) << "up to the surface: the direct path remains";
     EXPECT_EQ(returnsWith(plateAt({(bounce + 12) / 2, 0, 1})), 1u) << "down from the surface";
     EXPECT_EQ(returnsWith(plateAt({bounce, 0, 5})), 3u) << "above the surface nothing hides anything";
 }
 
-TEST(MultipathTest, WhatIsOutsideOfTheApertureIsNeitherSentNorHeard) {
+TEST(MultipathTest, DirectionsOutsideOfTheApertureAreNeitherSentNorReceived) {
     auto config = mirrored(surfaceSonar(40, 1));
-    config.beam_height_deg = 50;  // the way by the surface goes up by 30.3 deg
+    config.beam_height_deg = 50;  // the path by the surface rises by 30.3 deg
     EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
     config.beam_height_deg = 62;
     EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 3u);
 }
 
-TEST(MultipathTest, ATargetAboveTheSurfaceIsNotHeard) {
+TEST(MultipathTest, ATargetAboveTheSurfaceHasNoEcho) {
     const auto snapshot = withTarget(3, {12, 0, 4});
     EXPECT_EQ(heardBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
     EXPECT_EQ(heardBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
 }
 
-TEST(MultipathTest, PatternsOfTheWayOutAndTheWayBackAreEachTheirOwn) {
+TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
     auto config = mirrored(surfaceSonar(40, 1));
     acoustics::BeamLaw narrow, wide;
     narrow.weighting = wide.weighting = acoustics::Weighting::Gaussian;
@@ -148,7 +147,7 @@ TEST(MultipathTest, PatternsOfTheWayOutAndTheWayBackAreEachTheirOwn) {
                            (r1 * r1 * r2 * r2);
     const double heard = ping.bins[static_cast<size_t>((r1 + r2) / 2 / 0.1)];
     EXPECT_NEAR(decibels(heard / expected), 0, 0.01);
-    EXPECT_GT(std::abs(decibels(heard / product)), 1) << "the root of both two-way patterns is another number";
+    EXPECT_GT(std::abs(decibels(heard / product)), 1) << "the root of both two-way patterns differs";
 }
 
 /** Energies of a flat bottom 4 m below by a surface 2 m above, in coarse bins of 2 m, by a sum over the bottom. */
@@ -183,7 +182,7 @@ TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
     }
 }
 
-TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
+TEST(MultipathTest, DirectEchoesOfASceneAreTheSameBitForBit) {
     const SonarConfig config = surfaceSonar(90, 16);
     const auto scene = test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}});
     const auto with = pingOf(mirrored(config), under(2, scene)), without = pingOf(config, under(2, scene));
@@ -199,10 +198,10 @@ TEST(MultipathTest, FirstEchoesOfASceneAreTheSameBitForBit) {
     EXPECT_GT(same, 500u);
 }
 
-TEST(MultipathTest, NothingAboveTheSurfaceIsHeard) {
+TEST(MultipathTest, ObjectsAboveTheSurfaceHaveNoEcho) {
     const auto wall = test::sceneOf({test::wall(10)});
     const auto ping = pingOf(mirrored(surfaceSonar(8, 1)), under(2, wall));
-    // Straight at most to where the wall meets the surface; farther away there are ghosts of what is below it.
+    // Direct echoes end where the wall meets the surface; farther away there are ghosts of the part below the surface.
     double dry = 0, all = 0;
     const auto open = pingOf(surfaceSonar(8, 1), under(2, wall));
     for (size_t k = 0; k < 300; ++k) all += open.bins[k];
@@ -213,7 +212,7 @@ TEST(MultipathTest, NothingAboveTheSurfaceIsHeard) {
     EXPECT_FALSE(heardBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
 }
 
-TEST(MultipathTest, WithoutBouncesOrAnythingToReflectEveryBinIsAsItWas) {
+TEST(MultipathTest, NoBinChangesWithoutBouncesOrReflectors) {
     auto config = surfaceSonar(40, 8);
     const auto snapshot = under(2, test::sceneOf({test::ground(-4)}));
     const auto without = pingOf(config, snapshot).bins;
@@ -229,7 +228,7 @@ TEST(MultipathTest, WithoutBouncesOrAnythingToReflectEveryBinIsAsItWas) {
     EXPECT_EQ(pingOf(mirrored(config), dry).bins, without);
 }
 
-/** A mirror, or with a lobe, that scatters nothing else. */
+/** A material that is a mirror, or has a lobe, without diffuse scattering. */
 types::Material mirrorOf(float reflection) {
     types::Material material;
     material.lambert_db = -200;
@@ -257,7 +256,7 @@ struct Thing {
     types::Material material;
 };
 
-/** One object of its own material for each. */
+/** Makes one object with its own material for each mesh. */
 types::GeometryPtr sceneWith(std::vector<Thing> things) {
     auto geometry = std::make_shared<types::Geometry>();
     for (Thing& thing : things) {
@@ -316,8 +315,8 @@ SonarConfig lowFan(int beams) {
     return config;
 }
 
-/** A plate of Lambert's law that faces the sonar and a mirror beside it, in beams to both. */
-TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
+/** A plate of Lambert's law that faces the sonar, and a mirror next to it, in beams to both. */
+TEST(MultipathTest, APlateByAMirrorEchoesAtEachBearingOfArrival) {
     const SonarConfig config = lowFan(14);
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
@@ -347,9 +346,9 @@ TEST(MultipathTest, APlateByAMirrorIsHeardAtEachBearingThatItArrivesFrom) {
     EXPECT_GT(std::abs(decibels(third / (twice * std::pow(r2 / 12, 4)))), 1) << "not as if it were no farther away";
 }
 
-TEST(MultipathTest, ASurfaceIsHeardByAMirrorOnItsOwnSideAlone) {
+TEST(MultipathTest, ASurfaceEchoesByAMirrorOnlyOnItsOwnSide) {
     const SonarConfig config = lowFan(1);
-    // Edge-on to neither: the sonar sees one side of it, the mirror the other.
+    // Edge-on to neither: one side of the surface faces the sonar, the other the mirror.
     const auto plate = test::quad({9.4f, 1.64f, -0.3f}, {0.2f, 0.02f, 0}, {0, 0, 0.6f});
     const auto snapshot = test::snapshotOf(sceneWith({{wallToPort(), mirrorOf(1)}, {plate, lambertian()}}));
     const auto ghosts = pingOf(bouncing(config), snapshot), plain = pingOf(config, snapshot);
@@ -361,7 +360,7 @@ TEST(MultipathTest, ASurfaceIsHeardByAMirrorOnItsOwnSideAlone) {
     EXPECT_GT(more(r2), 0);
 }
 
-/** A corner of plates far away, whose lobes alone are heard; wavelength 3 mm. */
+/** A corner of plates far away, which echo only by their lobes; wavelength 3 mm. */
 SonarConfig cornerSonar() {
     SonarConfig config;
     config.speed_of_sound = 1500;
@@ -407,7 +406,7 @@ TEST(MultipathTest, ADihedralHasItsTargetStrengthOverFortyDegrees) {
     }
     EXPECT_NEAR(20 * std::log10(2 * a * b * std::sin(radians(45)) / corner_wavelength),
                 20 * std::log10(std::numbers::sqrt2 * a * b / corner_wavelength), 1e-9);
-    // Without a mirror there is no second bounce: what is left are the sidelobes of both plates (ACOUSTICS.md 3.6).
+    // Without a mirror there is no second bounce; only the sidelobes of both plates remain (ACOUSTICS.md 3.6).
     const double beta = 2 * pi / corner_wavelength * a * std::sin(radians(45)),
                  plate = a * b / corner_wavelength * std::cos(radians(45));
     EXPECT_NEAR(strengthOf(bouncing(cornerSonar(), 1), dihedral(a, b, 0)),
@@ -415,7 +414,7 @@ TEST(MultipathTest, ADihedralHasItsTargetStrengthOverFortyDegrees) {
 }
 
 types::GeometryPtr trihedral(double side, bool square, double yaw_deg, double pitch_deg) {
-    // Three axes at right angles that all lean back at the sonar alike.
+    // Three perpendicular axes at equal angles to the sonar.
     const double x = std::sqrt(1.0 / 3), r = std::sqrt(2.0 / 3);
     glm::dmat3 facing;
     for (int k = 0; k < 3; ++k) {
@@ -464,7 +463,7 @@ TEST(MultipathTest, ATrihedralHasItsTargetStrengthOverFortyDegrees) {
 }
 
 TEST(MultipathTest, AConcaveCornerShowsItsSecondAndThirdReturn) {
-    // A smooth wall and a small plate of Lambert's law that is seen directly, and by the wall.
+    // A smooth wall and a small plate of Lambert's law that is visible directly and by the wall.
     const auto plate = test::quad({12, -0.3f, -0.3f}, {0, 0.6f, 0}, {0, 0, 0.6f});
     const auto snapshot =
         test::snapshotOf(sceneWith({{wallToPort(), smoothPlate(0.9f, 0.05f)}, {plate, lambertian()}}));
@@ -513,7 +512,7 @@ TEST(MultipathTest, WindTiltsTheSurfaceByItsSlopeAndKeepsTheEnergy) {
     EXPECT_NEAR(decibels(rough_sum / flat_sum), 0, 1.5);
 }
 
-TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
+TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
     const SonarConfig config = surfaceSonar(8, 4);
     const auto snapshot = under(2, test::sceneOf({test::quad({10, -2, -3}, {0, 4, 0}, {0, 0, 2})}));
     SonarRenderer renderer(mirrored(config), snapshot.geometry);
@@ -530,7 +529,7 @@ TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
     EXPECT_EQ(path(r2), 2);
     for (const auto& [range, heard_from] : {std::pair((r1 + r2) / 2, 0.0), {r2, std::asin(6 / r2)}}) {
         const size_t at = 300 + static_cast<size_t>(range / 0.1);
-        EXPECT_EQ(truth.object[at], 0) << "a ghost is of what is seen in it";
+        EXPECT_EQ(truth.object[at], 0) << "a ghost is of the object seen in the mirror";
         EXPECT_FLOAT_EQ(truth.share[at], 1);
         EXPECT_NEAR(truth.elevation[at], heard_from > 0 ? heard_from : truth.elevation[at], 0.1);
     }
@@ -551,7 +550,7 @@ TEST(MultipathTest, TheTruthTellsByWhichWayMostOfABinCame) {
     EXPECT_EQ(truth.object[static_cast<size_t>(std::hypot(12, 8) / 0.1)], 1) << "the plate, not the wall";
 }
 
-TEST(MultipathTest, ThreadsMakeNoDifference) {
+TEST(MultipathTest, DoesNotDependOnTheNumberOfThreads) {
     const auto snapshot = under(2, test::sceneOf({test::ground(-4), test::sphere(1, 24)}, 0, {{}, {9, 1, -1}}));
     const auto bins = [&](int threads) {
         RenderOptions options;
@@ -565,7 +564,7 @@ TEST(MultipathTest, ThreadsMakeNoDifference) {
     EXPECT_EQ(bins(1), bins(5));
 }
 
-TEST(MultipathTest, WithAPatternAndConesAndAMovingObjectGhostsAreWhereTheyAre) {
+TEST(MultipathTest, GhostsAreAtTheirPlacesWithAPatternConesAndAMovingObject) {
     for (const BeamGeometry geometry : {BeamGeometry::Planar, BeamGeometry::Conical}) {
         SonarConfig config = mirrored(surfaceSonar(60, 30));
         config.beam_geometry = geometry;

@@ -1,4 +1,4 @@
-// Nothing of an object is nearer than its nearest point, and no echo of it is.
+// No point of an object, and no echo of it, is nearer than its nearest point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** The least distance to many points of the triangles, in double. */
+/** Returns the min distance to many points of the triangles, in double. */
 double sampledDistance(const types::Mesh& mesh, const glm::dmat4& place) {
     constexpr int steps = 40;
     double nearest = 1e9;
@@ -56,7 +56,7 @@ types::Snapshot ballAcrossItsBox() {
     return test::snapshotOf(scene, {}, std::atan2(1.0, 1.0), -std::asin(1 / std::sqrt(3.0)));
 }
 
-/** Range at which the first bin with any echo ends [m]. */
+/** Returns the range at which the first bin with an echo ends [m]. */
 double firstEcho(Visibility visibility) {
     SonarConfig config = test::sonarOf(
         {.beams = 32, .width_deg = 60, .height_deg = 60, .bins = 500, .bin = 0.02, .rows = 32, .columns = 1});
@@ -71,7 +71,7 @@ double firstEcho(Visibility visibility) {
 
 }  // namespace
 
-TEST(NearestPointTest, IsThatOfManyPointsOfTheTriangles) {
+TEST(NearestPointTest, MatchesManyPointsOfTheTriangles) {
     Random random(3);
     for (int i = 0; i < 40; ++i) {
         const types::Mesh mesh = randomMesh(random, 60);
@@ -83,7 +83,7 @@ TEST(NearestPointTest, IsThatOfManyPointsOfTheTriangles) {
     }
 }
 
-TEST(NearestPointTest, OfAMeshOfManyClustersIsThatOfAll) {
+TEST(NearestPointTest, IsTheSameForAMeshOfManyClusters) {
     types::Mesh ball = test::sphere(1.5f, 200);
     const types::Mesh whole = test::sphere(1.5f, 40);
     scene::buildClusters(ball);
@@ -96,7 +96,7 @@ TEST(NearestPointTest, OfAMeshOfManyClustersIsThatOfAll) {
     }
 }
 
-TEST(NearestPointTest, OfVeryManyTrianglesAboutAsNearItIsALowerBound) {
+TEST(NearestPointTest, IsALowerBoundForVeryManyTrianglesAtSimilarDistances) {
     types::Mesh ball = test::sphere(1.5f, 200);
     scene::buildClusters(ball);
     const double got = distance(ball, glm::translate(glm::dmat4(1), {0.01, 0, 0}));
@@ -104,7 +104,7 @@ TEST(NearestPointTest, OfVeryManyTrianglesAboutAsNearItIsALowerBound) {
     EXPECT_GT(got, 1.2);
 }
 
-TEST(NearestPointTest, ALargeFloorIsNeverTakenToBeFartherThanItIs) {
+TEST(NearestPointTest, DoesNotOverestimateTheDistanceOfALargeFloor) {
     const auto scene = test::sceneOf({test::ground(-1, 20'000)});
     ObjectPlaces places(*scene, {}, true);
     for (int i = 0; i < 300; ++i) {
@@ -115,7 +115,7 @@ TEST(NearestPointTest, ALargeFloorIsNeverTakenToBeFartherThanItIs) {
     }
 }
 
-TEST(NearestPointTest, NoEchoComesFromBeforeAnObject) {
+TEST(NearestPointTest, NoEchoIsBeforeAnObject) {
     const double nearest = 3.5, bin = 0.02;
     for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
         EXPECT_GE(firstEcho(visibility), nearest - bin);

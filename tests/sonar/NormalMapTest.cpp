@@ -1,5 +1,5 @@
-// Maps whose normals all lean by one angle, on a wall that is looked at squarely: its echo goes with the cosine, its
-// range stays (ACOUSTICS.md 3.4).
+// Maps whose normals all lean by one angle, on a wall at normal incidence: its echo is proportional to the cosine, its
+// range does not change (ACOUSTICS.md 3.4).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ types::GeometryPtr bumpyWall(const glm::dvec3& size, bool by_object) {
 
 }  // namespace
 
-TEST(NormalMapTest, RaysAverageAsMuchOfAMapWhicheverWayTheWallIsStretched) {
+TEST(NormalMapTest, RaysAverageTheSameAreaOfAMapOnAStretchedWall) {
     SonarConfig config = test::sonarOf({.beams = 24, .width_deg = 24, .bins = 300, .rows = 64, .columns = 2});
     config.visibility = Visibility::Cpu;
     const auto echo = [&](const glm::dvec3& size, bool by_object) {
@@ -61,7 +61,7 @@ TEST(NormalMapTest, RaysAverageAsMuchOfAMapWhicheverWayTheWallIsStretched) {
     EXPECT_NE(fine, coarse) << "another part of the map, which must show";
 }
 
-TEST(NormalMapTest, AnEchoGoesWithTheCosineOfTheBentNormal) {
+TEST(NormalMapTest, AnEchoIsProportionalToTheCosineOfTheMappedNormal) {
     const std::vector<float> plain = echoOf(wallWithNormalsAt(0));
     ASSERT_GT(plain[200], 0);
     for (const double degrees : {20.0, 45.0, 70.0, -45.0}) {

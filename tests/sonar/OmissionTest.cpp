@@ -1,5 +1,5 @@
-// What the plan leaves out: each effect equals the same effect with neutral values, bit for bit or within the bound
-// that its reason states.
+// Effects that the plan omits equal the same effects with neutral values, bit for bit or within the bound that the
+// reason states.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test
     return ping.bins;
 }
 
-/** The scene after `change`. */
+/** Returns the scene after `change`. */
 template <class Change>
 types::GeometryPtr changed(Change change) {
     auto geometry = test::surfaces();
@@ -47,24 +47,24 @@ types::GeometryPtr changed(Change change) {
     return geometry;
 }
 
-/** Without normal maps. */
+/** Returns the scene without normal maps. */
 types::GeometryPtr unmapped() {
     return changed([](types::Geometry& g) { g.materials[1].normal_map = -1; });
 }
 
-/** With a material that follows a table. */
+/** Returns the scene with a material that follows a table. */
 types::GeometryPtr measured() {
     return changed([](types::Geometry& g) { g.materials[0].measured = {{0, -40}, {90, -10}}; });
 }
 
-/** The numbers with which an effect is left out; none when it is not. */
+/** Returns the numbers in the reason for omitting an effect; none when it is not omitted. */
 std::optional<LeftOut> leftOut(const SonarConfig& config, std::string_view effect) {
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
     const LeftOut* found = plan.leftOut(effect);
     return found ? std::optional(*found) : std::nullopt;
 }
 
-/** Relative L2 of their difference. */
+/** Returns the relative L2 of the difference. */
 double difference(const Bins& a, const Bins& b) {
     double error = 0, norm = 0;
     for (size_t i = 0; i < a.size(); ++i) {
@@ -81,7 +81,7 @@ Bins times(Bins bins, float factor) {
 
 }  // namespace
 
-TEST(OmissionTest, NoEffectIsLeftOutThatIsNotTestedHere) {
+TEST(OmissionTest, EveryOmittedEffectIsTestedHere) {
     const std::set<std::string_view> tested = {"absorption", "absorption inside a bin", "specular lobe", "spreading",
                                                "backscatter by material", "further slabs", "refraction",
                                                "motion within a ping", "normal maps",
@@ -145,14 +145,14 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     }
 }
 
-TEST(OmissionTest, ASmoothMaterialHasNoLobeWhateverItReflects) {
+TEST(OmissionTest, ASmoothMaterialHasNoLobeWithAnyReflection) {
     const auto shiny = changed([](types::Geometry& g) { g.materials[0].reflection = 0.9f; });
     EXPECT_EQ(binsOf(plainSonar(), shiny), binsOf(plainSonar()));
     const auto rough = changed([](types::Geometry& g) { g.materials[0].roughness_slope = 0.1f; });
     EXPECT_EQ(binsOf(plainSonar(), rough), binsOf(plainSonar())) << "of reflection 0";
 }
 
-TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
+TEST(OmissionTest, TheModelOfCerqueiraHasNoSpreading) {
     for (Model model : {Model::Cerqueira2017, Model::Physical}) {
         SonarConfig twice = plainSonar(model);
         twice.range *= 2;
@@ -168,14 +168,14 @@ TEST(OmissionTest, TheModelOfCerqueiraKnowsNoSpreading) {
     }
 }
 
-TEST(OmissionTest, TheModelOfCerqueiraKnowsNoBackscatter) {
+TEST(OmissionTest, TheModelOfCerqueiraHasNoBackscatter) {
     const Bins bins = binsOf(plainSonar(Model::Cerqueira2017));
     const auto hard = changed([](types::Geometry& g) { g.materials[0].lambert_db = -3; });
     EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), hard), bins);
     EXPECT_NE(binsOf(plainSonar(), hard), binsOf(plainSonar())) << "physical does";
 }
 
-TEST(OmissionTest, ReflectivityOfOneIsNone) {
+TEST(OmissionTest, ReflectivityOfOneHasNoEffect) {
     const auto plain = changed([](types::Geometry& g) { g.materials[1] = {}; });
     const auto one = changed([](types::Geometry& g) { g.materials[1] = {}, g.materials[1].reflectivity = 1; });
     EXPECT_EQ(binsOf(plainSonar(Model::Cerqueira2017), one), binsOf(plainSonar(Model::Cerqueira2017), plain));
@@ -183,7 +183,7 @@ TEST(OmissionTest, ReflectivityOfOneIsNone) {
         << "0.8, mapped";
 }
 
-TEST(OmissionTest, NoNormalMapIsAMapThatBendsNothing) {
+TEST(OmissionTest, NoNormalMapMatchesANeutralMap) {
     for (Model model : {Model::Physical, Model::Cerqueira2017}) {
         const Bins bins = binsOf(plainSonar(model), unmapped());
         const auto unused = changed([](types::Geometry& g) {
@@ -199,7 +199,7 @@ TEST(OmissionTest, NoNormalMapIsAMapThatBendsNothing) {
     }
 }
 
-TEST(OmissionTest, OneSlabShowsWhatSeveralDo) {
+TEST(OmissionTest, OneFrustumMatchesSeveral) {
     SonarConfig one = plainSonar(), two = plainSonar();
     one.quality.rows = two.quality.rows = 512;
     one.field_of_view_deg = one.beam_count = 60;
@@ -223,7 +223,7 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
     EXPECT_NE(cone, flat);
 }
 
-TEST(OmissionTest, RefractionIsLeftOutByItsNumbers) {
+TEST(OmissionTest, RefractionIsOmittedByItsBound) {
     const auto refraction = leftOut(plainSonar(), "refraction");
     ASSERT_TRUE(refraction);
     EXPECT_DOUBLE_EQ(refraction->value, 0.1 * 40 * 40 / (2 * 1000)) << "a gradient of 0.1 1/s";
@@ -236,7 +236,7 @@ TEST(OmissionTest, RefractionIsLeftOutByItsNumbers) {
     EXPECT_THAT(configNotices(far), testing::Contains(HasSubstr("rays are straight")));
 }
 
-TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
+TEST(OmissionTest, MotionWithinAPingIsOmittedBelowASpeed) {
     const auto motion = leftOut(plainSonar(), "motion within a ping");
     ASSERT_TRUE(motion);
     const double travel_time = 2 * 40 / 1000.0;  // [s]
@@ -249,7 +249,7 @@ TEST(OmissionTest, MotionWithinAPingIsLeftOutBelowASpeed) {
     EXPECT_EQ(binsOf(at_rest), without);
 }
 
-/** Sonars that want each feature there is, by each way to render. */
+/** Sonars that need each feature, ray-traced and rasterised. */
 std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     std::vector<std::pair<SonarConfig, RenderOptions>> all;
     for (Model model : {Model::Physical, Model::Cerqueira2017})
@@ -295,7 +295,7 @@ std::vector<std::pair<SonarConfig, RenderOptions>> sonarsOfAllFeatures() {
     return all;
 }
 
-TEST(OmissionTest, EachFeatureRendersByTheWayOfItsPlan) {
+TEST(OmissionTest, EachFeatureRendersByItsPlan) {
     std::set<std::string> seen, all;
     for (std::string_view name : types::EnumNames<Feature>::names) all.emplace(name);
     for (const Effect* effect : effects())
@@ -313,7 +313,7 @@ TEST(OmissionTest, EachFeatureRendersByTheWayOfItsPlan) {
             for (StageOf stage : {CullStage, DrawStage, DepositStage, BeamStage})
                 EXPECT_GT(renderer.stages()[stage].seconds, 0) << stage;
         }
-    EXPECT_EQ(seen, all) << "each feature has been asked for";
+    EXPECT_EQ(seen, all) << "each feature has been used";
 }
 
 }  // namespace insonify::sonar

@@ -1,5 +1,5 @@
-// Numbers as pairs of floats, and shares of a cell as sums of positive terms, by which the compute shader does without
-// doubles.
+// Numbers as pairs of floats, and shares of a cell as sums of positive terms, which replace doubles in the compute
+// shader.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,7 +19,7 @@ float uintBitsToFloat(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 double valueOf(Pair pair) { return static_cast<double>(pair.high) + static_cast<double>(pair.low); }
 
-/** Numbers of any sign between 1e-6 and 1e6, as pairs and as what these hold. */
+/** Numbers of any sign between 1e-6 and 1e6, as pairs and as doubles. */
 struct RandomPairs {
     std::mt19937 random{7};
     double number() {
@@ -57,7 +57,7 @@ TEST(PairTest, ArithmeticHas44Bits) {
     }
 }
 
-TEST(PairTest, WhatIsBeyondACloseOriginHasAllBitsOfAFloat) {
+TEST(PairTest, TheDifferenceToACloseOriginHasAllBitsOfAFloat) {
     RandomPairs pairs;
     for (int i = 0; i < 10000; ++i) {
         const double number = pairs.number();

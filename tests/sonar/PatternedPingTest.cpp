@@ -1,5 +1,5 @@
-// Pings of sonars with beam patterns and pulses, against closed forms and the properties of apertures (ACOUSTICS.md 5.8
-// to 5.13).
+// Pings of sonars with beam patterns and pulses, compared with closed forms and the properties of apertures
+// (ACOUSTICS.md 5.8 to 5.13).
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -28,7 +28,7 @@ SonarConfig patternedSonar(double fov_deg, int beams, double bin, int bins) {
     return test::sonarOf({.beams = beams, .width_deg = fov_deg, .bins = bins, .bin = bin, .rows = 512, .columns = 2});
 }
 
-/** A flat bottom under a level fan: of what comes from an elevation, a share. */
+/** A flat bottom under a level fan, weighted by a share for each elevation. */
 test::Form weightedBottom(double height, double delta, const std::function<double(double)>& share) {
     return [=](double r1, double r2) {
         const auto density = [=](double r) {
@@ -38,7 +38,7 @@ test::Form weightedBottom(double height, double delta, const std::function<doubl
     };
 }
 
-TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
+TEST(PatternedPingTest, ABottomEchoesByThePatternInElevation) {
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 16);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 20);
@@ -58,7 +58,7 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternInElevation) {
     }
 }
 
-/** Form 3 with a share of what comes from an elevation: a flat bottom under a thin beam that looks down by `pitch`. */
+/** Form 3 weighted by a share for each elevation: a flat bottom under a thin beam that looks down by `pitch`. */
 test::Form weightedPitchedBottom(double height, double pitch, double delta,
                                  const std::function<double(double)>& share) {
     return [=](double r1, double r2) {
@@ -72,7 +72,7 @@ test::Form weightedPitchedBottom(double height, double pitch, double delta,
     };
 }
 
-TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
+TEST(PatternedPingTest, APitchedBottomEchoesByThePatternInElevation) {
     SonarConfig config = patternedSonar(1, 1, 0.1, 300);
     config.beam_pattern.emplace().transmit.elevation = lawOf(Weighting::Gaussian, 12);
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 16);
@@ -97,7 +97,7 @@ TEST(PatternedPingTest, APitchedBottomIsHeardByThePatternInElevation) {
     }
 }
 
-TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
+TEST(PatternedPingTest, ABottomEchoesByThePatternsWholeWidthInAzimuth) {
     SonarConfig config = patternedSonar(60, 30, 0.1, 200);
     config.beam_height_deg = 40;
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
@@ -112,7 +112,7 @@ TEST(PatternedPingTest, ABottomIsHeardByThePatternsWholeWidthInAzimuth) {
                    test::flatBottom(5, radians(20), radians(2)));
 }
 
-TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
+TEST(PatternedPingTest, APulseOfOneBinChangesNoBit) {
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5), test::wall(20)}), {}, 0.1, 0.2);
     const types::Sonar plain = pingOf(config, snapshot);
@@ -124,7 +124,7 @@ TEST(PatternedPingTest, APulseAsLongAsABinChangesNoBit) {
     EXPECT_NE(pingOf(config, snapshot).bins, plain.bins);
 }
 
-TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
+TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
     const auto geometry = test::sceneOf({test::ground(-5)});
     SonarConfig config = patternedSonar(60, 16, 0.1, 300);
     const RenderPlan plain = makeRenderPlan(config, *geometry);
@@ -149,7 +149,7 @@ TEST(PatternedPingTest, ThePlanTellsWhatIsFormedAndSpreadAndWhatIsNot) {
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::Pulse));
 }
 
-/** What a fan of close beams hears of a small disc straight ahead. */
+/** Returns the echo of a small disc straight ahead in a fan of close beams. */
 BeamCut cutOf(const acoustics::BeamLaw& law) {
     SonarConfig config = patternedSonar(24, 601, 0.5, 24);
     config.beam_height_deg = 2;
@@ -173,7 +173,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossABeamShowsTheTableOfWeightings) {
     }
 }
 
-/** A beam as somebody measured it: not the same on both sides, with a shoulder. */
+/** A measured beam: asymmetric, with a shoulder. */
 struct MeasuredBeam {
     Folder folder;
     std::vector<double> angle{-12, -8, -6, -5, -4, -3, -2, -1, 0, 1, 2, 2.5, 3, 4, 6, 8, 12};
@@ -217,7 +217,7 @@ TEST(PatternedPingTest, ATargetSweptAcrossAMeasuredBeamShowsItsTable) {
     }
 }
 
-TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
+TEST(PatternedPingTest, AStrongTargetsSidelobesAreAnArcAcrossTheFan) {
     SonarConfig config = patternedSonar(90, 90, 0.2, 100);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 1);
     const types::Sonar ping = pingOf(config, test::snapshotOf(test::sceneOf({test::disc(10.1f, 0.1f)})));
@@ -229,7 +229,7 @@ TEST(PatternedPingTest, AStrongTargetsSidelobesStandAsAnArcAcrossTheFan) {
     }
 }
 
-TEST(PatternedPingTest, AChirpShowsAnEchoAsWideAsItsBandwidthSaysAndWhereItIs) {
+TEST(PatternedPingTest, AChirpsEchoHasTheWidthOfItsBandwidthAndTheRightRange) {
     SonarConfig config = patternedSonar(2, 1, 0.01, 1200);
     config.beam_height_deg = 2;
     config.quality.columns_per_beam = 64;

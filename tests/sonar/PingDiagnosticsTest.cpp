@@ -1,4 +1,4 @@
-// What a sonar's task says of pings in which there is nothing, and how often.
+// Warnings of a sonar's task about empty pings, and their frequency.
 #include <gmock/gmock.h>
 
 #include "components/sonar/PingDiagnostics.hpp"
@@ -27,7 +27,7 @@ protected:
         task_.config.set(config);
         EXPECT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
-    /** So many pings of a scene, the sonar turned by `yaw_deg`. */
+    /** Renders a number of pings of a scene, with the sonar rotated by `yaw_deg`. */
     void ping(const types::GeometryPtr& geometry, double yaw_deg, int count,
               const std::vector<types::PointTarget>& targets = {}) {
         for (int i = 0; i < count; ++i) {
@@ -45,28 +45,28 @@ protected:
     int pings_ = 0;
 };
 
-TEST_F(PingDiagnosticsTest, SilenceIsToldOfOnceAndAgainOnceEnoughHasBeenHeard) {
+TEST_F(PingDiagnosticsTest, WarnsOnceAboutSilenceAndAgainAfterEnoughEchoes) {
     const auto wall = wallAt(5);
     ping(wall, 0, 2);
     EXPECT_THAT(told_, IsEmpty());
     ping(wall, 180, 5);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: hears nothing")));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: receives no echo")));
     ping(wall, 0, 3);
     ping(wall, 180, 5);
-    EXPECT_EQ(told_.size(), 1u) << "heard for three pings only";
+    EXPECT_EQ(told_.size(), 1u) << "only three pings with echoes";
     ping(wall, 0, types::RecurringDiagnostic::well_after);
     ping(wall, 180, 5);
     EXPECT_EQ(told_.size(), 2u);
 }
 
-TEST_F(PingDiagnosticsTest, ATargetAloneIsSomethingToHear) {
+TEST_F(PingDiagnosticsTest, ATargetAloneIsAnEcho) {
     ping(wallAt(-50), 0, 3, {{{5, 0, 0}, 0}});
     EXPECT_THAT(told_, IsEmpty());
     ping(wallAt(-50), 0, 1, {{{-5, 0, 0}, 0}});
     EXPECT_THAT(told_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
 }
 
-TEST_F(PingDiagnosticsTest, ASonarInsideOfAMeshIsToldOfInPlaceOfSilence) {
+TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
     const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
     ping(hull, 0, 40);
     EXPECT_THAT(told_,

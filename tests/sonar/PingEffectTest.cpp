@@ -1,4 +1,5 @@
-// An effect that follows the rays of pings: it gets every ray once and every cell once, whatever the parts and threads.
+// An effect that follows the rays of pings gets every ray once and every cell once, for any number of parts and
+// threads.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -68,7 +69,7 @@ public:
     }
 };
 
-TEST(PingEffectTest, RaysAndCellsComeOnceInEveryPing) {
+TEST(PingEffectTest, RaysAndCellsAreVisitedOnceInEveryPing) {
     addEffect(std::make_unique<FollowerEffect>());
     const types::Snapshot snapshot =
         test::snapshotOf(test::sceneOf({test::ground(-3), test::sphere(1, 24)}, 0, {{}, {8, 0, -1}}));

@@ -30,7 +30,7 @@ types::Plan makePlan(const SonarConfig& config, const types::Geometry& geometry)
     return report(makeRenderPlan(config, geometry), geometry);
 }
 
-/** The reason for which the plan leaves `name` out; empty when it does not. */
+/** Returns the reason for which the plan omits `name`; empty when it does not. */
 std::string reason(const types::Plan& plan, const std::string& name) {
     const auto found = std::ranges::find(plan.omitted, name, &types::Omission::name);
     return found == plan.omitted.end() ? "" : found->reason;
@@ -44,7 +44,7 @@ SonarConfig quietSonar() {
     return config;
 }
 
-TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndTellsWhy) {
+TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndStatesWhy) {
     const types::Plan plan = makePlan(quietSonar(), sceneOf({sand()}));
     EXPECT_THAT(plan.features, ElementsAre("physical"));
     EXPECT_THAT(plan.passes, ElementsAre("cull", "surface", "deposit", "beams"));
@@ -60,7 +60,7 @@ TEST(PlanTest, ThePlainPhysicalSonarCompilesNothingElseAndTellsWhy) {
     EXPECT_THAT(reason(plan, "refraction"), HasSubstr("< 2.6 m"));
 }
 
-TEST(PlanTest, WhatASceneOrConfigurationHasIsNotLeftOut) {
+TEST(PlanTest, FeaturesOfTheSceneOrConfigurationAreNotOmitted) {
     struct Case {
         const char* effect;
         const char* feature;
@@ -84,7 +84,7 @@ TEST(PlanTest, WhatASceneOrConfigurationHasIsNotLeftOut) {
     }
 }
 
-TEST(PlanTest, MultipathIsAPassWhereAnythingReflects) {
+TEST(PlanTest, MultipathIsAPassIfAnythingReflects) {
     SonarConfig config = quietSonar();
     config.visibility = Visibility::Auto;
     types::Material steel = sand();
@@ -107,7 +107,7 @@ TEST(PlanTest, MultipathIsAPassWhereAnythingReflects) {
     EXPECT_EQ(reason(makePlan(config, sceneOf({sand()})), "multipath"), "");
 }
 
-TEST(PlanTest, ThePublishedModelLeavesThePhysicsOut) {
+TEST(PlanTest, ThePublishedModelOmitsThePhysics) {
     SonarConfig config = quietSonar();
     config.model = Model::Cerqueira2017;
     config.absorption.emplace().db_per_m = 0.2;
@@ -119,7 +119,7 @@ TEST(PlanTest, ThePublishedModelLeavesThePhysicsOut) {
     EXPECT_THAT(makePlan(config, sceneOf({sand()})).features, ElementsAre("cerqueira2017"));
 }
 
-TEST(PlanTest, SlabsAreAsFewAsCoverTheFan) {
+TEST(PlanTest, UsesTheMinNumberOfFrustaThatCoverTheFan) {
     struct Case {
         double fov;
         int frusta;
@@ -147,7 +147,7 @@ TEST(PlanTest, AbsorptionWithinABinIsBounded) {
     EXPECT_THAT(plan.notices, ElementsAre(HasSubstr("changes within a bin by 0.3 dB")));
 }
 
-TEST(PlanTest, MaterialsWithoutValuesAreReportedOnceAndTooLoudOnesToo) {
+TEST(PlanTest, ReportsMaterialsWithoutValuesAndTooLoudMaterialsOnce) {
     types::Material concrete, rope, mirror = sand();
     concrete.name = "Concrete";
     rope.name = "Rope";
@@ -160,7 +160,7 @@ TEST(PlanTest, MaterialsWithoutValuesAreReportedOnceAndTooLoudOnesToo) {
                             HasSubstr("'Mirror'")));
 }
 
-TEST(PlanTest, NoticesOfTheConfiguration) {
+TEST(PlanTest, HasNoticesOfTheConfiguration) {
     struct Case {
         const char* words;
         void (*change)(SonarConfig&);

@@ -1,4 +1,4 @@
-// Point targets against the active sonar equation, worked out here from the laws themselves (ACOUSTICS.md 5.14).
+// Point targets compared with the active sonar equation, computed here from the laws themselves (ACOUSTICS.md 5.14).
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -50,7 +50,7 @@ glm::dvec3 towards(double azimuth_deg, double elevation_deg, double range) {
 
 double sumOf(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
-/** The pattern of one beam at a direction, by the laws of a configuration alone. */
+/** Returns the pattern of one beam in a direction, only by the laws of a configuration. */
 double patternOf(const SonarConfig& config, double bearing, double azimuth, double elevation) {
     const auto power = [](const std::optional<acoustics::BeamLaw>& law, double angle, double axis) {
         return law ? acoustics::BeamPattern(*law).power(angle, axis) : 1.0;
@@ -64,7 +64,7 @@ double patternOf(const SonarConfig& config, double bearing, double azimuth, doub
                     : power(pattern.receive.azimuth, across - bearing, 0));
 }
 
-/** Mean of the pulse over a bin, by 2000 points of it. */
+/** Returns the mean of the pulse over a bin, by 2000 points. */
 double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double range) {
     if (!config.pulse) return range >= grid.edge(bin) && range < grid.edge(bin + 1);
     const acoustics::Pulse pulse(*config.pulse, grid.speed_of_sound);
@@ -73,7 +73,7 @@ double shareOf(const SonarConfig& config, const BinGrid& grid, int bin, double r
     return sum / 2000;
 }
 
-/** What a target leaves in a ping by the sonar equation, but for spreading and its strength. */
+/** The echo of a target in a ping by the sonar equation, without spreading and its strength. */
 std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping, const glm::dvec3& at) {
     const BinGrid grid = makeBinGrid(config);
     const double r = glm::length(at), alpha = config.absorption->db_per_m.value();
@@ -89,7 +89,7 @@ std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping,
     return shape;
 }
 
-/** How far the worst bin is from a shape at a level, of those within 45 dB of the loudest [dB]. */
+/** Returns the max deviation of a bin from a shape at a level, for bins within 45 dB of the loudest bin [dB]. */
 double worstOf(const types::Sonar& ping, const std::vector<double>& shape, double level_db) {
     const double quietest = *std::ranges::max_element(shape) * std::pow(10, -4.5);
     double worst = 0;
@@ -141,7 +141,7 @@ std::vector<glm::dvec3> places() {
     return all;
 }
 
-TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
+TEST(PointTargetTest, HasTheLevelOfTheSonarEquationAtAnyPlaceInTheBeam) {
     double most = 0;
     for (const Law& pattern : patterns)
         for (const Law& pulse : pulses)
@@ -169,7 +169,7 @@ TEST(PointTargetTest, ItsLevelIsThatOfTheSonarEquationAtAnyPlaceInTheBeam) {
     RecordProperty("largest difference", std::to_string(most) + " dB");
 }
 
-TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
+TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
     const auto geometry = openWater();
     for (const BeamGeometry fan : {BeamGeometry::Planar, BeamGeometry::Conical}) {
         SonarConfig config = targetSonar(60, 6);
@@ -198,7 +198,7 @@ TEST(PointTargetTest, WithoutAPatternABeamHearsItInItsBoxAndTheAperture) {
     }
 }
 
-/** Energies in both ways of seeing, and fields. */
+/** Energies, ray-traced and rasterised, and fields. */
 std::vector<SonarConfig> energiesAndFields(SonarConfig config) {
     std::vector<SonarConfig> all(3, config);
     all[1].visibility = Visibility::Gl;
@@ -208,7 +208,7 @@ std::vector<SonarConfig> energiesAndFields(SonarConfig config) {
     return all;
 }
 
-TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
+TEST(PointTargetTest, IsInTheBinOfBinAtOnTheEdgeOfABin) {
     std::mt19937 random(71);
     const auto uniform = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -250,7 +250,7 @@ TEST(PointTargetTest, OnTheEdgeOfABinItIsInTheBinThatBinAtPromises) {
     EXPECT_GT(tried, 800);
 }
 
-TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
+TEST(PointTargetTest, IsInOneBeamOnlyAtAnyBearing) {
     SonarConfig config = targetSonar(360, 12);
     const auto geometry = openWater();
     for (double azimuth = -180; azimuth < 180; azimuth += 7.3) {
@@ -259,7 +259,7 @@ TEST(PointTargetTest, AllRoundItIsInOneBeamAlone) {
     }
 }
 
-/** What one beam hears of a target that is swept about it. */
+/** Returns the echo of a target that is swept about one beam. */
 BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     const auto geometry = openWater();
     SonarRenderer renderer(config, geometry);
@@ -274,7 +274,7 @@ BeamCut sweep(const SonarConfig& config, bool in_azimuth) {
     return BeamCut(level, 0, step);
 }
 
-TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
+TEST(PointTargetTest, ShowsTheTableOfWeightingsWhenSweptAcrossABeam) {
     for (const test::WeightingRow& row : test::weightings)
         for (const bool in_azimuth : {true, false}) {
             acoustics::BeamLaw law = row.law();
@@ -286,7 +286,7 @@ TEST(PointTargetTest, SweptAcrossOneBeamItShowsTheTableOfWeightings) {
         }
 }
 
-TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) {
+TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureToTheFloor) {
     SonarConfig config = targetSonar(20, 10);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     const auto geometry = openWater();
@@ -299,7 +299,7 @@ TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureAsFarAsTheFloorSays) 
     EXPECT_EQ(sumOf(pingOf(config, outside)), 0);
 }
 
-TEST(PointTargetTest, NearerThanRangeMinItIsSilentAndBeyondTheRangeOnlyItsPulseIsHeard) {
+TEST(PointTargetTest, IsSilentBelowRangeMinAndOnlyItsPulseReachesIntoTheRange) {
     SonarConfig config = targetSonar(20, 1);
     config.range_min = 2;
     const auto geometry = openWater();
@@ -317,7 +317,7 @@ types::GeometryPtr plate(double x, double y = 0) {
     return test::sceneOf({test::quad({0, -0.5f, -0.5f}, {0, 1, 0}, {0, 0, 1})}, 0, {{x, y, 0}});
 }
 
-TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
+TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
     SonarConfig config = targetSonar(40, 20);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     for (const SonarConfig& way : everyWay(config)) {
@@ -331,13 +331,13 @@ TEST(PointTargetTest, WhatStandsBeforeItHidesItInsideTheFanAndOutside) {
         EXPECT_EQ(heardOf(plate(5), {10, 0, 0}), 0) << "before it";
         EXPECT_NEAR(heardOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
         EXPECT_NEAR(heardOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
-        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "beside it";
+        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
         EXPECT_GT(heardOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
         EXPECT_EQ(heardOf(plate(5, 5), {10, 10, 0}), 0);
     }
 }
 
-TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
+TEST(PointTargetTest, IsUncoveredByAnObjectThatMovesAside) {
     const auto geometry = plate(5);
     SonarRenderer renderer(targetSonar(40, 20), geometry);
     types::Sonar ping;
@@ -363,7 +363,7 @@ TEST(PointTargetTest, WhatMovesAsideUncoversIt) {
     EXPECT_EQ(leftOut(), Reason::NoneInScene);
 }
 
-TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
+TEST(PointTargetTest, IsTheSameFarFromTheOriginAndRotated) {
     SonarConfig config = targetSonar(40, 20);
     const auto near = openWater();
     types::Snapshot snapshot = test::snapshotOf(near, {4e6, -3e6, -200}, 1.1, 0.3, 0.2);
@@ -373,7 +373,7 @@ TEST(PointTargetTest, FarFromTheOriginAndTurnedItIsTheSame) {
     for (size_t i = 0; i < far.bins.size(); ++i) EXPECT_NEAR(far.bins[i], here.bins[i], 1e-6 * here.bins[i]) << i;
 }
 
-TEST(PointTargetTest, NothingOfItChangesNoBit) {
+TEST(PointTargetTest, AnEmptyListChangesNoBit) {
     SonarConfig config = targetSonar(40, 20);
     config.pulse.emplace().bandwidth_khz = 4;
     const auto geometry = test::sceneOf({test::ground(-2), test::sphere(1, 20)}, 0, {{0, 0, 0}, {8, 0, 0}});

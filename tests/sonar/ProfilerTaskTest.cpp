@@ -1,4 +1,4 @@
-// Soundings against closed forms: they lie on the plane that is there, where the bearings of the beams meet it.
+// Soundings compared with closed forms: they are on the plane, where the bearings of the beams meet it.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ protected:
     types::PointCloudPtr soundingsOf(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
-    /** From a vehicle with these angles [deg], whose profiler looks down. */
+    /** Returns the soundings of a vehicle with these angles [deg], whose profiler looks down. */
     static types::Snapshot above(types::GeometryPtr floor, glm::dvec3 position, double yaw = 0, double roll = 0) {
         types::Snapshot snapshot =
             test::snapshotOf(std::move(floor), position, types::radians(yaw), 0, types::radians(roll));
@@ -43,7 +43,7 @@ protected:
     }
 };
 
-/** z = -D, y = D tan(a), to starboard with the sign turned: wrong. */
+/** z = -D, y = D tan(a); with the wrong sign of y it is to starboard. */
 TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
     constexpr double height = 10;
     startWith(profiler());
@@ -65,8 +65,8 @@ TEST_F(ProfilerTaskTest, AFlatBottomIsSoundedWhereTheBearingsMeetIt) {
     EXPECT_GT(worst_mirrored, 30);
 }
 
-/** n . p = 0 for each sounding, the sonar turned and rolled as well. */
-TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehicleLies) {
+/** n . p = 0 for each sounding, also with a rotated and rolled sonar. */
+TEST_F(ProfilerTaskTest, SoundingsAreOnATiltedPlaneInTheWorldInAnyAttitude) {
     const double across = types::radians(15), along = types::radians(10);
     const glm::vec3 u(std::cos(along), 0, std::sin(along)), v(0, std::cos(across), std::sin(across));
     const auto plane = sceneOf({quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)});
@@ -85,8 +85,8 @@ TEST_F(ProfilerTaskTest, SoundingsOfATiltedPlaneLieOnItInTheWorldHoweverTheVehic
     }
 }
 
-/** A box on the bottom is the strongest where it is seen, and what is farther than the range is not sounded. */
-TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone) {
+/** A box on the bottom is the strongest return where it is visible, and the bottom beyond the range is not sounded. */
+TEST_F(ProfilerTaskTest, ABeamGivesItsStrongestReturnAndASilentBeamNone) {
     ProfilerConfig config = profiler();
     config.sonar.range = 12;
     config.sonar.bin_count = 400;
@@ -102,7 +102,7 @@ TEST_F(ProfilerTaskTest, ABeamTellsItsStrongestReturnAndOneThatHearsNothingNone)
     }
 }
 
-TEST_F(ProfilerTaskTest, NothingInRangeIsACloudWithoutPoints) {
+TEST_F(ProfilerTaskTest, GivesACloudWithoutPointsForNothingInRange) {
     startWith(profiler());
     const auto cloud = soundingsOf(above(sceneOf({ground(-100)}), {0, 0, 0}));
     ASSERT_TRUE(cloud) << task_.lastError();

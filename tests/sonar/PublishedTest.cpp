@@ -1,5 +1,5 @@
-// `cerqueira2017` with `published: true` against a count of pixels written down from the description of the published
-// simulator (ACOUSTICS.md 8.2).
+// `cerqueira2017` with `published: true`, compared with a count of pixels by the description of the published simulator
+// (ACOUSTICS.md 8.2).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -95,7 +95,7 @@ TEST(PublishedTest, AnEmptySeaIsTheSigmoidOfZeroInBinZero) {
     for (size_t i = 0; i < bins.size(); ++i) EXPECT_NEAR(bins[i], i % 500 ? 0 : 6.1e-6, 1e-7) << i;
 }
 
-TEST(PublishedTest, FootprintsFillTheBinsThatItLeavesEmpty) {
+TEST(PublishedTest, FootprintsFillTheBinsThatThePublishedModelLeavesEmpty) {
     SonarConfig config = publishedSonar();
     const auto geometry = test::sceneOf({test::ground(-5)});
     const auto empty = [](const std::vector<float>& bins) {

@@ -35,11 +35,11 @@ types::GeometryPtr floorAndWall() {
     return test::sceneOf({study::meshOf(floor), test::wall(-4)}, -10);
 }
 
-/** Towards the open floor, or the wall behind. */
+/** Looks at the open floor, or at the wall behind. */
 types::Snapshot outwards(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 0, 0.14); }
 types::Snapshot toTheWall(const types::GeometryPtr& scene) { return test::snapshotOf(scene, {}, 3.14159, 0.14); }
 
-TEST(QualityLadderTest, TheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
+TEST(QualityLadderTest, ChoosesTheCheapestThatReachesTheTargetElseTheFinestWithinTheCap) {
     const QualityLadder ladder(small());
     const ErrorModel model{{64, 2}, 0.3, 0.1};
     const Quality enough = ladder.choose(model, 0.1, forever);
@@ -50,17 +50,17 @@ TEST(QualityLadderTest, TheCheapestThatReachesTheTargetElseTheFinestWithinTheCap
     EXPECT_GT(ladder.choose(model, 0.1, 0.9 * enough.samples()).error, 0.1);
     EXPECT_EQ(ladder.choose(model, 1, forever), Quality()) << "64 x 2 will do";
     EXPECT_EQ(ladder.choose(model, 0, 1), Quality()) << "never less than 64 x 2";
-    EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never less than the least";
+    EXPECT_EQ(ladder.choose(model, 0, 10 * 128 * 3, {64, 20}).columns_per_beam, 24) << "never below the minimum";
 }
 
-TEST(QualityLadderTest, ABudgetFindsRungsThatAreNoFurtherApartThanATenth) {
+TEST(QualityLadderTest, RungsForABudgetAreAtMostATenthApart) {
     const QualityLadder ladder(small());
     const ErrorModel model{{64, 2}, 0.3, 0.1};
     for (double samples = 128; samples < 3e4; samples *= 1.05)
         EXPECT_GE(ladder.choose(model, 0, samples).samples(), samples / 1.12) << samples;
 }
 
-TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
+TEST(ClimbTest, TakesLessThanTenPingsAndRendersThePingAtItsQuality) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.03;
@@ -73,13 +73,13 @@ TEST(ClimbTest, ItTakesLessThanTenPingsTimeAndLeavesThePingAtItsQuality) {
         climb(estimator, QualityLadder(config), renderer, outwards(scene), Quality(), {0.03}, ping);
     EXPECT_LE(model.error(), 0.03);
     EXPECT_GT(model.at.samples(), 8 * Quality().samples());
-    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they judge";
+    EXPECT_LT(2 * estimator.rendered(), 10 * model.at.samples()) << "trials cost more than the pings they evaluate";
     types::Sonar same;
     renderer.render(outwards(scene), same);
     EXPECT_EQ(ping.bins, same.bins);
 }
 
-TEST(ClimbTest, AnEmptySeaIsWithoutErrorAtOnce) {
+TEST(ClimbTest, AnEmptySeaHasNoErrorAtOnce) {
     const auto scene = test::sceneOf({test::ground(500)});
     SonarConfig config = small();
     EXPECT_EQ(chooseQuality(config, test::snapshotOf(scene)), Quality());
@@ -106,7 +106,7 @@ public:
         return ping;
     }
     Quality quality() const { return {task.plan()->rows, task.plan()->columns_per_beam, task.plan()->predicted_error}; }
-    /** Those that tell of a quality. */
+    /** Returns the messages about a quality. */
     std::vector<std::string> notices() const {
         std::vector<std::string> all = task.notices();
         std::erase_if(all, [](const std::string& notice) { return notice.find("quality") == std::string::npos; });
@@ -121,7 +121,7 @@ private:
     int count_ = 0;
 };
 
-TEST(QualityTaskTest, TheChoiceItsErrorAndItsCostAreToldOnceSomethingIsHeard) {
+TEST(QualityTaskTest, ReportsTheChoiceItsErrorAndCostAfterTheFirstEcho) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());
     sonar.ping(test::snapshotOf(scene, {}, 0, -1.2));
@@ -129,14 +129,15 @@ TEST(QualityTaskTest, TheChoiceItsErrorAndItsCostAreToldOnceSomethingIsHeard) {
     EXPECT_EQ(sonar.quality(), Quality());
     EXPECT_THAT(sonar.notices(), testing::IsEmpty());
     sonar.ping(outwards(scene));
-    EXPECT_LE(sonar.quality().error, 0.05) << "the target where nothing is said";
+    EXPECT_LE(sonar.quality().error, 0.05) << "the default target";
     EXPECT_GT(sonar.quality().samples(), Quality().samples());
     const std::string samples = std::to_string(static_cast<int>(16 * sonar.quality().samples()));
-    EXPECT_THAT(sonar.notices(), testing::ElementsAre(AllOf(HasSubstr(samples + " samples a ping, predicted error 0.0"),
-                                                            HasSubstr("target 0.05"))));
+    EXPECT_THAT(sonar.notices(),
+                testing::ElementsAre(
+                    AllOf(HasSubstr(samples + " samples per ping, predicted error 0.0"), HasSubstr("target 0.05"))));
 }
 
-TEST(QualityTaskTest, TheMostSamplesAreKeptAndAMissedTargetIsToldOnceWithItsNumber) {
+TEST(QualityTaskTest, RespectsTheMaxSamplesAndReportsAMissedTargetOnce) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.max_samples = 16 * 64 * 4;
@@ -148,7 +149,7 @@ TEST(QualityTaskTest, TheMostSamplesAreKeptAndAMissedTargetIsToldOnceWithItsNumb
                                                             HasSubstr("misses the target of 0.05: max_samples 4096"))));
 }
 
-TEST(QualityTaskTest, ATargetAloneTakesAsManySamplesAsItNeeds) {
+TEST(QualityTaskTest, ATargetAloneTakesTheSamplesThatItNeeds) {
     const auto scene = floorAndWall();
     SonarConfig config = small();
     config.quality.target_error = 0.01;
@@ -159,7 +160,7 @@ TEST(QualityTaskTest, ATargetAloneTakesAsManySamplesAsItNeeds) {
     EXPECT_EQ(small().mostSamples(), 400'000);
 }
 
-TEST(QualityTaskTest, ItIsChosenAgainWhenTheSceneThatIsHeardHasChangedAndLoweredLater) {
+TEST(QualityTaskTest, IsChosenAgainWhenTheEchoesHaveChangedAndLoweredLater) {
     const auto scene = floorAndWall();
     Fed<SonarTask> sonar(small());
     sonar.ping(toTheWall(scene));
@@ -175,7 +176,7 @@ TEST(QualityTaskTest, ItIsChosenAgainWhenTheSceneThatIsHeardHasChangedAndLowered
     EXPECT_EQ(sonar.quality(), Quality());
 }
 
-TEST(QualityTaskTest, ARunThatIsRepeatedHasTheSamePingsBitForBit) {
+TEST(QualityTaskTest, ARepeatedRunHasTheSamePingsBitForBit) {
     const auto scene = floorAndWall();
     const auto run = [&] {
         Fed<SonarTask> sonar(small());
@@ -187,7 +188,7 @@ TEST(QualityTaskTest, ARunThatIsRepeatedHasTheSamePingsBitForBit) {
     EXPECT_EQ(run(), run());
 }
 
-TEST(QualityTaskTest, AHeadLowersItOnlyAfterAWholeTurn) {
+TEST(QualityTaskTest, AHeadLowersTheQualityOnlyAfterAWholeTurn) {
     const auto scene = floorAndWall();
     ScanningSonarConfig config;
     config.sonar = small();
@@ -200,13 +201,12 @@ TEST(QualityTaskTest, AHeadLowersItOnlyAfterAWholeTurn) {
         sonar.ping(test::snapshotOf(scene, {}, 0, 0.14));
         qualities.push_back(sonar.quality());
     }
-    EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor was heard";
+    EXPECT_GT(qualities[119].samples(), Quality().samples()) << "the floor echoed";
     for (size_t i = 1; i < qualities.size(); ++i)
-        EXPECT_GE(qualities[i].samples(), qualities[i - 1].samples())
-            << "at every turn it hears the floor again: " << i;
+        EXPECT_GE(qualities[i].samples(), qualities[i - 1].samples()) << "the floor echoes again at every turn: " << i;
 }
 
-TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestThatIsChosenAndIsTold) {
+TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestQualityAndANotice) {
     const auto scene = test::sceneOf({test::ground(-3)}, -10);
     SonarConfig config = small();
     config.quality.budget_ms = 0.1;  // less than the first context switch
@@ -214,10 +214,10 @@ TEST(QualityTaskTest, ASlowMachineLeadsToTheCoarsestThatIsChosenAndIsTold) {
     Fed<SonarTask> sonar(config);
     for (int i = 0; i < 4; ++i) sonar.ping(test::snapshotOf(scene));
     EXPECT_EQ(sonar.quality(), Quality());
-    EXPECT_THAT(sonar.notices(), Contains(HasSubstr("Warning: the coarsest quality that is chosen takes")));
+    EXPECT_THAT(sonar.notices(), Contains(HasSubstr("Warning: the coarsest quality takes")));
 }
 
-/** A keeper that is told the times of a machine on which a sample takes so long [ms]. */
+/** A keeper with the times of a machine with a given time per sample [ms]. */
 struct Kept {
     explicit Kept(const SonarConfig& with) : config(with), renderer(config, scene), keeper(config, 1) {
         renderer.setQuality(64, 2);
@@ -235,10 +235,10 @@ struct Kept {
     SonarRenderer renderer;
     QualityKeeper keeper;
     types::Sonar ping;
-    double ms = 0;  ///< Of the last ping.
+    double ms = 0;  ///< Time of the last ping.
 };
 
-TEST(QualityKeeperTest, ABudgetIsUsedAndKept) {
+TEST(QualityKeeperTest, UsesABudgetAndDoesNotExceedIt) {
     SonarConfig config = small();
     config.quality.budget_ms = 20;
     Kept kept(config);
@@ -249,10 +249,10 @@ TEST(QualityKeeperTest, ABudgetIsUsedAndKept) {
     EXPECT_LE(kept.ms, 20);
     kept.pings(60, 4e-4);
     EXPECT_GE(kept.ms, 16);
-    EXPECT_THAT(kept.keeper.takeNotices(), Contains(HasSubstr("20 ms are used and kept")));
+    EXPECT_THAT(kept.keeper.takeNotices(), Contains(HasSubstr("budget 20 ms")));
 }
 
-TEST(QualityKeeperTest, ThePeriodIsTheBudgetWhereNothingIsSaid) {
+TEST(QualityKeeperTest, ThePeriodIsTheBudgetByDefault) {
     Kept kept(small());
     kept.pings(10, 1e-4, 1000);
     const double enough = kept.keeper.quality().samples();
@@ -260,12 +260,12 @@ TEST(QualityKeeperTest, ThePeriodIsTheBudgetWhereNothingIsSaid) {
     kept.pings(60, 1e-4, 0.6 * kept.ms);
     EXPECT_LT(kept.keeper.quality().samples(), 0.6 * enough);
     EXPECT_GT(kept.keeper.quality().error, 0.05);
-    EXPECT_THAT(kept.keeper.takeNotices(), Contains(AllOf(HasSubstr("Warning"), HasSubstr("ms allow no more"))));
+    EXPECT_THAT(kept.keeper.takeNotices(), Contains(AllOf(HasSubstr("Warning"), HasSubstr("ms allows no more"))));
     kept.pings(60, 1e-4, 1000);
     EXPECT_GE(kept.keeper.quality().samples(), 0.9 * enough);
 }
 
-TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
+TEST(QualityKeeperTest, ThePeriodIsNoBudgetIfATargetIsGiven) {
     SonarConfig config = small();
     config.quality.target_error = 0.05;
     Kept kept(config);
@@ -273,7 +273,7 @@ TEST(QualityKeeperTest, NorIsItABudgetWhereATargetIsSaid) {
     EXPECT_LE(kept.keeper.quality().error, 0.05);
 }
 
-TEST(CulledTest, ThePlanSaysWhatOfTheSceneIsNotDrawn) {
+TEST(CulledTest, ThePlanStatesTheCulledPartOfTheScene) {
     SonarConfig config = small();
     config.field_of_view_deg = 180;  // three frusta
     Fed<SonarTask> sonar(config);

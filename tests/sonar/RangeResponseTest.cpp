@@ -31,20 +31,20 @@ std::vector<float> spread(const RangeResponse& response, const std::vector<float
     return bins;
 }
 
-TEST(RangeResponseTest, AToneAsLongAsABinChangesNoBit) {
+TEST(RangeResponseTest, AToneOfOneBinChangesNoBit) {
     const RangeResponse response(tone(100), binsOf(0.075));  // 0.15 m there and back
     EXPECT_THAT(response.taps(), testing::ElementsAre(1.0f));
     const std::vector<float> echoes{0, 1e-9f, 3.3f, 0.1f, 7e-20f};
     EXPECT_EQ(spread(response, echoes), echoes);
 }
 
-TEST(RangeResponseTest, AToneOfThreeBinsIsHeardInThree) {
+TEST(RangeResponseTest, AToneOfThreeBinsFillsThreeBins) {
     const RangeResponse response(tone(300), binsOf(0.075));
     EXPECT_THAT(response.taps(), testing::ElementsAre(1.0f, 1.0f, 1.0f));
     EXPECT_THAT(spread(response, {0, 0, 5, 0, 0, 0}), testing::ElementsAre(0, 5, 5, 5, 0, 0));
 }
 
-TEST(RangeResponseTest, EvenReverberationIsHeardByTheLengthOfACell) {
+TEST(RangeResponseTest, UniformReverberationScalesWithTheLengthOfACell) {
     const acoustics::Pulse pulse = chirp(20);
     const RangeResponse response(pulse, binsOf(0.01, 500));
     const double sum = std::accumulate(response.taps().begin(), response.taps().end(), 0.0);
@@ -53,7 +53,7 @@ TEST(RangeResponseTest, EvenReverberationIsHeardByTheLengthOfACell) {
     EXPECT_EQ(response.taps().front(), response.taps().back()) << "centred";
 }
 
-TEST(RangeResponseTest, NothingIsHeardBeforeTheFirstBinOrAfterTheLast) {
+TEST(RangeResponseTest, NoEchoIsBeforeTheFirstBinOrAfterTheLast) {
     const RangeResponse response(chirp(20), binsOf(0.01, 8));
     std::vector<float> echoes(8);
     echoes[0] = 1;

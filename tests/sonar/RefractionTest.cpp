@@ -1,4 +1,4 @@
-// Rays that a profile of the speed of sound bends, against exact arcs (ACOUSTICS.md 5.19).
+// Rays bent by a profile of the speed of sound, compared with exact arcs (ACOUSTICS.md 5.19).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 using ::testing::HasSubstr;
 using types::radians;
 
-/** A file of this process's own. */
+/** A file that is private to this process. */
 std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
     static const Folder folder;
     static int count = 0;
@@ -36,10 +36,10 @@ std::string profileOf(const std::vector<std::pair<double, double>>& speeds) {
     return file;
 }
 
-/** 1500 m/s at the surface, a strong thermocline without end. */
+/** 1500 m/s at the surface, with a strong thermocline to any depth. */
 std::string thermocline(double gradient = 0.1) { return profileOf({{0, 1500}, {1000, 1500 + 1000 * gradient}}); }
 
-/** To 2 km by bins of 2 m; the sonar's own speed is 1500 m/s. */
+/** A sonar to 2 km in bins of 2 m; its speed of sound is 1500 m/s. */
 SonarConfig longRange(const std::string& profile, double height_deg = 30) {
     SonarConfig config;
     config.range_rounding = RangeRounding::Exact;
@@ -75,14 +75,14 @@ size_t loudestBin(const types::Sonar& ping) {
     return static_cast<size_t>(std::ranges::max_element(ping.bins) - ping.bins.begin()) % ping.bin_count;
 }
 
-/** When a ray that leaves 1500 m/s at an elevation below the horizon [rad] has gone down so far in a gradient: by its
- *  own circle [s]. */
+/** Returns the time in which a ray that starts at 1500 m/s, at an elevation below the horizon [rad], reaches a depth in
+ *  a gradient, by its circle [s]. */
 double timeDown(double elevation, double drop, double gradient) {
     const double at_bottom = -std::acos(std::cos(elevation) * (1500 + gradient * drop) / 1500);
     return (std::asinh(std::tan(at_bottom)) - std::asinh(std::tan(elevation))) / gradient;
 }
 
-/** The elevation at which the bottom is heard at a slant range, by halving. */
+/** Returns the elevation of the bottom's echo at a slant range, by bisection. */
 double elevationAt(double range, double drop, double gradient) {
     double low = -1.5, high = -std::acos(1500 / (1500 + gradient * drop)) - 1e-12;
     for (int i = 0; i < 200; ++i) {
@@ -92,7 +92,7 @@ double elevationAt(double range, double drop, double gradient) {
     return low;
 }
 
-TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom) {
+TEST(RefractionTest, AFlatBottomInAGradientEchoesFromTheDirectionsOfTheExactArcs) {
     constexpr double drop = 200, gradient = 0.1;
     const auto geometry = test::sceneOf({test::ground(-drop, 20000)});
     const Told told = toldOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
@@ -114,7 +114,7 @@ TEST(RefractionTest, AFlatBottomInAGradientIsHeardFromWhereTheExactArcsComeFrom)
 /** A plate of 40 x 8 m square to the x axis, its middle at a place. */
 types::Mesh uprightPlate(glm::vec3 middle) { return test::quad(middle - glm::vec3(0, 20, 4), {0, 40, 0}, {0, 0, 8}); }
 
-TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
+TEST(RefractionTest, ALevelRayMeetsAPointHundredMetresAboveAtTwoKilometres) {
     const auto exact = [](double seconds) {
         std::vector<acoustics::RayPoint> at(1);
         acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{seconds}, at);
@@ -140,7 +140,7 @@ TEST(RefractionTest, ALevelRayMeetsAtTwoKilometresWhatIsHundredMetresAbove) {
     EXPECT_GT(loudest(heard(0, longRange("", 0.4))), 0) << "by straight rays";
 }
 
-TEST(RefractionTest, WaterOfAnotherSpeedThanTheSonarsStretchesRangesAndSpreadsAsItIs) {
+TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
     const double ratio = 1500.0 / 1470;
     SonarConfig config = longRange(profileOf({{0, 1470}, {100, 1470}}));
     config.range = 200;
@@ -171,7 +171,7 @@ TEST(RefractionTest, WaterOfTheSonarsOwnSpeedChangesNoBit) {
     EXPECT_GT(loudest(same), 0);
 }
 
-/** Speed grows down to 50 m, and falls below: rays of the duct stay in it, the others go down steeply. */
+/** Speed grows down to 50 m, and falls below: rays of the duct stay in it, other rays descend steeply. */
 TEST(RefractionTest, BelowADuctThereIsAShadow) {
     const std::string duct = profileOf({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
     const auto heardAt = [&](double depth, const std::string& profile) {
@@ -186,16 +186,17 @@ TEST(RefractionTest, BelowADuctThereIsAShadow) {
         return loudest(ping);
     };
     EXPECT_EQ(heardAt(56, duct), 0) << "in the shadow";
-    EXPECT_GT(heardAt(56, ""), 0) << "straight rays know none";
+    EXPECT_GT(heardAt(56, ""), 0) << "straight rays have no shadow";
     EXPECT_GT(heardAt(25, duct), 0) << "in the duct";
     EXPECT_GT(heardAt(95, duct), 0) << "below the shadow";
 }
 
-TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
+TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
     std::vector<acoustics::RayPoint> at(2);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{0.7, 1.3}, at);
     const auto place = [&](size_t i) { return glm::vec3(at[i].across, 0, -at[i].depth); };
-    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}), far = test::sceneOf({uprightPlate(place(1))});
+    const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}),
+               far = test::sceneOf({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
     const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
     const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
@@ -205,7 +206,7 @@ TEST(RefractionTest, WhatStandsInTheWayOfABentRayHidesWhatIsBehind) {
     EXPECT_EQ(hidden.bins[1000 + far_bin], 0);
 }
 
-TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
+TEST(RefractionTest, BentRaysMeetAMovingObjectAtItsPlace) {
     const auto geometry = test::sceneOf({uprightPlate({0, 0, 0})}, 0, {{0, 0, 5000}});
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, 0, std::vector{1.0}, at);
@@ -218,7 +219,7 @@ TEST(RefractionTest, AMovingObjectIsMetWhereItIsByBentRaysToo) {
     EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
 }
 
-TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
+TEST(RefractionTest, APointTargetEchoesFromItsArcAndNotInAShadow) {
     const double elevation = -0.05, time = 1801 / 1500.0;
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
@@ -239,7 +240,7 @@ TEST(RefractionTest, APointTargetIsHeardWhereItsArcComesFromAndNotInAShadow) {
     EXPECT_EQ(loudest(heard(linear, -elevation, place + glm::dvec3(0, 0, 20))), 0) << "out of the thin beam";
 }
 
-TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
+TEST(RefractionTest, ThePlanStatesWhetherRaysAreBentAndTheBound) {
     const auto geometry = test::sceneOf({test::ground(-20)});
     const auto planOf = [&](double range, const std::string& profile) {
         SonarConfig config = longRange(profile);
@@ -260,16 +261,16 @@ TEST(RefractionTest, ThePlanTellsWhetherRaysAreBentAndByWhichBound) {
     EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
 }
 
-TEST(RefractionTest, WhatIsDrawnRefusesAProfileThatMatters) {
+TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     SonarConfig config = longRange(thermocline());
     config.visibility = Visibility::Gl;
     config.device = "software";
     const auto geometry = test::sceneOf({test::ground(-20)});
-    EXPECT_THAT(whyStraight(config), HasSubstr("rays alone"));
+    EXPECT_THAT(whyStraight(config), HasSubstr("only ray tracing"));
     EXPECT_THROW(makeRenderPlan(config, *geometry), types::ConfigError);
     config.range = 20;
     config.water->profile = profileOf({{0, 1500}, {20, 1500.2}});
-    EXPECT_EQ(whyStraight(config), "") << "what does not matter is left out";
+    EXPECT_EQ(whyStraight(config), "") << "negligible refraction is omitted";
     config.visibility = Visibility::Auto;
     config.device = "";
     EXPECT_TRUE(config.castsRays());

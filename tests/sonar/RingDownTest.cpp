@@ -21,7 +21,7 @@ types::Sonar ringingPing(const SonarConfig& config, const types::GeometryPtr& ge
     return test::pingOf(config, test::snapshotOf(geometry));
 }
 
-TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
+TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
     SonarConfig config = ringingSonar();
     config.pulse->ring_down = acoustics::RingDownConfig{-30, 12};
     const types::Sonar ping = ringingPing(config, test::openWater());
@@ -32,11 +32,11 @@ TEST(RingDownTest, EveryBeamHearsTheMeanOfItsFallOverEachBin) {
             const double right = (at(r) - at(r + 0.1)) / rate / 0.1, middle = at(r + 0.05);
             const float heard = ping.bins[beam * ping.bin_count + k];
             EXPECT_NEAR(heard, right, 1e-6 * right) << k;
-            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle is another";
+            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle differs";
         }
 }
 
-TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
+TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
     const auto geometry = test::sceneOf({test::wall(10)});
     const types::Sonar plain = ringingPing(ringingSonar(), geometry);
     SonarConfig config = ringingSonar();
@@ -53,7 +53,7 @@ TEST(RingDownTest, ItIsHeardBesideTheEchoesAndIsNone) {
     EXPECT_FALSE(deaf.hasEchoes());
 }
 
-TEST(RingDownTest, ThePlanSaysWhetherItIsAdded) {
+TEST(RingDownTest, ThePlanStatesWhetherItIsAdded) {
     const auto geometry = test::sceneOf({test::wall(10)});
     SonarConfig config = ringingSonar();
     EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut("transmit ring-down")->reason, Reason::NotConfigured);

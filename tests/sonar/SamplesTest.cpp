@@ -1,4 +1,4 @@
-// Four samples a pixel: the cells of twice the rows and columns, seen at places that no row or column shares.
+// Four samples per pixel: the cells of twice the rows and columns, sampled at places that no row or column shares.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A sonar and its samples a pixel. */
+/** A sonar and its samples per pixel. */
 struct Sampled {
     SonarConfig config;
     RenderOptions options = {};
@@ -38,7 +38,7 @@ types::GeometryPtr screen(float top) {
     return test::sceneOf({test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 50 + top})});
 }
 
-TEST(SamplesTest, OnAPlaneTheyAreThePixelsOfTwiceTheRowsAndColumns) {
+TEST(SamplesTest, SamplesOnAPlaneMatchPixelsOfTwiceTheRowsAndColumns) {
     const auto bottom = test::sceneOf({test::ground(-5)});
     const auto four = sampledBins(sampledSonar(64, 4, 4), bottom), finer = sampledBins(sampledSonar(128, 8, 1), bottom);
     ASSERT_EQ(four.size(), finer.size());
@@ -51,7 +51,7 @@ TEST(SamplesTest, OnAPlaneTheyAreThePixelsOfTwiceTheRowsAndColumns) {
     EXPECT_LT(difference, 1e-5 * sum);
 }
 
-TEST(SamplesTest, AnEdgeAlongTheRowsIsFoundTwiceAsWell) {
+TEST(SamplesTest, FourSamplesHalveTheErrorAtAnEdgeAlongTheRows) {
     double four = 0, finer = 0;
     for (float top = 0.5f; top < 2.5f; top += 0.13f) {
         const double truth = energyOf(sampledSonar(2048, 4, 1), screen(top));

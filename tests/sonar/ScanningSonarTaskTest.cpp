@@ -23,7 +23,7 @@ protected:
         config.head = head;
         startWith(config);
     }
-    /** The ping for the wall 5 m north, from a vehicle with this heading; null when there was none. */
+    /** Returns the ping of the wall 5 m north, from a vehicle with this heading; null without a ping. */
     types::SonarPtr pingAt(double seconds, double yaw_deg = 0) {
         types::Snapshot snapshot = facingWall(5);
         snapshot.geometry = wall_;
@@ -37,7 +37,7 @@ protected:
 
 constexpr HeadConfig sector{.left_deg = 40, .right_deg = -40, .step_deg = 40, .continuous = {}, .speed_deg_per_s = {}};
 
-TEST_F(ScanningSonarTaskTest, EachPingLooksWhereItsBearingSays) {
+TEST_F(ScanningSonarTaskTest, EachPingLooksAtItsBearing) {
     start(sector);
     for (double bearing : {40.0, 0.0, -40.0, 0.0, 40.0}) {
         const auto ping = pingAt(1);
@@ -46,20 +46,20 @@ TEST_F(ScanningSonarTaskTest, EachPingLooksWhereItsBearingSays) {
         EXPECT_NEAR(ping->bearings[0].deg(), bearing, 1e-9);
         EXPECT_NEAR(ping->beam_width.deg(), 3, 1e-9);
         EXPECT_NEAR(ping->beam_height.deg(), 35, 1e-9);
-        // The nearest of the wall lies at the beam's edge towards the north.
+        // The nearest point of the wall is at the beam's northern edge.
         EXPECT_NEAR(firstEcho(*ping, 0), 5 / std::cos(types::radians(std::max(std::abs(bearing) - 1.5, 0.0))), 0.16);
     }
 }
 
 TEST_F(ScanningSonarTaskTest, EveryPingHasItsOwnPose) {
     start(sector);
-    // The vehicle turns to starboard as far as the head looks to port: the wall stays straight ahead of the beam.
+    // The vehicle turns to starboard by the angle by which the head looks to port: the beam stays on the wall.
     EXPECT_NEAR(firstEcho(*pingAt(1, -40), 0), 5, 0.16);
     EXPECT_NEAR(firstEcho(*pingAt(2, 0), 0), 5, 0.16);
     EXPECT_NEAR(firstEcho(*pingAt(3, 40), 0), 5, 0.16);
 }
 
-TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn) {
+TEST_F(ScanningSonarTaskTest, DecreasingTimeIsARunTimeErrorUntilItIncreases) {
     start(sector);
     ASSERT_TRUE(pingAt(2));
     EXPECT_FALSE(pingAt(1));
@@ -73,9 +73,9 @@ TEST_F(ScanningSonarTaskTest, TimeThatGoesBackwardsIsARunTimeErrorUntilItGoesOn)
     EXPECT_TRUE(pingAt(2 + 5 * 86400.0)) << "a leap of five days";
 }
 
-TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused) {
+TEST_F(ScanningSonarTaskTest, RejectsAStepThatTheHeadCannotMakeInThePingPeriod) {
     HeadConfig slow = sector;
-    slow.speed_deg_per_s = 100;  // 0.4 s a step
+    slow.speed_deg_per_s = 100;  // 0.4 s per step
     start(slow);
     ASSERT_TRUE(pingAt(1.0));
     EXPECT_FALSE(pingAt(1.1));
@@ -85,7 +85,7 @@ TEST_F(ScanningSonarTaskTest, AStepThatTheHeadCannotMakeInThePingPeriodIsRefused
                                      "the ping period is 0.1 s"));
 }
 
-TEST_F(ScanningSonarTaskTest, AStepThatTheHeadJustMakesIsTaken) {
+TEST_F(ScanningSonarTaskTest, AcceptsAStepThatTheHeadJustMakes) {
     HeadConfig just = sector;
     just.speed_deg_per_s = 100;
     start(just);

@@ -1,4 +1,4 @@
-// Pings that a driver asks for: `settings` of the sonar tasks.
+// Pings that a driver requests: `settings` of the sonar tasks.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A sonar task whose pings are asked for, in front of a wall. */
+/** A sonar task in front of a wall, whose pings are requested. */
 template <class Task>
 class Asked {
 public:
@@ -30,7 +30,7 @@ public:
         scenes_.port.write(std::make_shared<types::Snapshot>(scene));
         task.update();
     }
-    /** The ping that follows; null: there is none. */
+    /** Returns the ping that follows; null when there is none. */
     types::SonarPtr ask(const types::SonarSettings& settings) {
         asked_.port.write(settings);
         task.update();
@@ -49,11 +49,11 @@ private:
     test::Reader<types::SonarPtr> heard_{"heard"};
 };
 
-TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
+TEST(SettingsTest, EachSettingsSampleGivesAPingAndASnapshotDoesNot) {
     Asked<SonarTask> sonar(smallSonar());
     EXPECT_FALSE(sonar.ask({})) << "there is no scene yet";
     sonar.show(facingWall(5));
-    EXPECT_TRUE(sonar.next()) << "what was asked for has waited";
+    EXPECT_TRUE(sonar.next()) << "the request has waited";
     sonar.show(facingWall(5));
     EXPECT_FALSE(sonar.next());
     types::SonarSettings later;
@@ -62,10 +62,10 @@ TEST(SettingsTest, ThereIsAPingForEachAndNoneForASnapshot) {
     ASSERT_TRUE(first && second) << sonar.task.lastError();
     EXPECT_EQ(first->bins, second->bins);
     EXPECT_EQ(first->time, types::Time{7'000'000});
-    EXPECT_EQ(second->time, types::Time{8'000'000}) << "when it was asked for";
+    EXPECT_EQ(second->time, types::Time{8'000'000}) << "the time of the request";
 }
 
-TEST(SettingsTest, WhatTheyNameHoldsFromThatPingOnAndTheRestStays) {
+TEST(SettingsTest, GivenSettingsApplyFromThePingAndOthersStay) {
     Asked<SonarTask> sonar(smallSonar());
     sonar.show(facingWall(5));
     types::SonarSettings asked;
@@ -88,7 +88,7 @@ TEST(SettingsTest, WhatTheyNameHoldsFromThatPingOnAndTheRestStays) {
     EXPECT_EQ(same->bins, ping->bins);
 }
 
-TEST(SettingsTest, WhatASonarCannotHaveIsRefusedWholeAndTheNextGoodOneRecovers) {
+TEST(SettingsTest, RejectsInvalidSettingsCompletelyAndRecoversWithTheNextValid) {
     Asked<SonarTask> sonar(smallSonar());
     sonar.show(facingWall(5));
     types::SonarSettings asked;
@@ -97,12 +97,12 @@ TEST(SettingsTest, WhatASonarCannotHaveIsRefusedWholeAndTheNextGoodOneRecovers) 
     EXPECT_FALSE(sonar.ask(asked));
     EXPECT_THAT(sonar.task.lastError(), ::testing::HasSubstr("bin_count"));
     EXPECT_EQ(sonar.task.state(), framework::TaskState::RunTimeError);
-    EXPECT_EQ(sonar.task.config->range, smallSonar().range) << "nothing of it holds";
+    EXPECT_EQ(sonar.task.config->range, smallSonar().range) << "no setting applies";
     EXPECT_TRUE(sonar.ask({}));
     EXPECT_EQ(sonar.task.state(), framework::TaskState::Running);
 }
 
-TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
+TEST(SettingsTest, AHeadLooksAtTheRequestedBearing) {
     ScanningSonarConfig config;
     config.sonar = smallSonar();
     config.sonar.beam_width_deg = 3;
@@ -123,7 +123,7 @@ TEST(SettingsTest, AHeadLooksWhereItIsToldTo) {
     EXPECT_NEAR(again->bearings[0].deg(), 30, 1e-9) << "it stays there";
 }
 
-TEST(SettingsTest, AGridTakesTheViewOfItsBeamsSideBySide) {
+TEST(SettingsTest, AGridHasTheFieldOfViewOfItsBeams) {
     Sonar3dConfig config;
     config.sonar.range = 10;
     config.sonar.bin_count = 100;

@@ -1,5 +1,5 @@
-// Each shader, in each set of features that a drawn sonar can ask for, is valid OpenGL 4.5. glslangValidator checks the
-// texts as a context compiles them; it shares no code with the driver that draws in the other tests.
+// Each shader, in each set of features that a rasterising sonar can request, is valid OpenGL 4.5. glslangValidator
+// checks the texts that a context compiles; it shares no code with the driver of the other tests.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 
-/** Sonars that can be drawn, with each choice that is a feature. */
+/** Sonars that can be rasterised, with each choice that is a feature. */
 std::vector<SonarConfig> drawnSonars() {
     std::vector<SonarConfig> all;
     for (int choices = 0; choices < 32; ++choices)
@@ -44,7 +44,7 @@ std::vector<SonarConfig> drawnSonars() {
     return all;
 }
 
-/** With and without a normal map, with and without a material that follows a law of its own. */
+/** Scenes with and without a normal map, with and without a material that follows its own law. */
 std::vector<types::GeometryPtr> scenes() {
     std::vector<types::GeometryPtr> all;
     for (bool has_map : {false, true})
@@ -61,7 +61,7 @@ std::vector<types::GeometryPtr> scenes() {
     return all;
 }
 
-/** Calls use(plan, geometry) for each set of features of a drawn sonar. */
+/** Calls use(plan, geometry) for each set of features of a rasterising sonar. */
 template <class Use>
 void forEachFeatureSet(const Use& use) {
     std::set<std::vector<std::string>> seen;
@@ -76,7 +76,7 @@ void forEachFeatureSet(const Use& use) {
             }
 }
 
-/** Shaders of all programs that draw, cull and sum for any set of features. */
+/** Returns the shaders of all programs that rasterise, cull and sum for any set of features. */
 std::vector<gpu::Shader> allShaders() {
     gpu::EglContext context("software");
     ThreadPool threads(1);
@@ -101,7 +101,7 @@ std::vector<gpu::Shader> allShaders() {
     return context.programs().shaders();
 }
 
-/** Words HAVE_... in a text that match `pattern`. */
+/** Returns the words HAVE_... in a text that match `pattern`. */
 std::set<std::string> featuresIn(std::string_view text, const std::string& pattern) {
     std::set<std::string> all;
     const std::regex words(pattern);
@@ -115,7 +115,7 @@ protected:
         if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
             GTEST_SKIP() << "SKIPPED: no glslangValidator (Debian: glslang-tools; scripts/setup installs it)";
     }
-    /** What glslangValidator says of some of the folder's files; empty when it accepts all. */
+    /** Returns the errors of glslangValidator for files of the folder; empty when it accepts all. */
     std::string complaints(const std::string& arguments) const {
         const std::string call =
             "cd " + folder_.path().string() + " && glslangValidator " + arguments + " > answer.txt 2>&1";
@@ -154,7 +154,7 @@ TEST_F(ShaderTest, EachSetOfFeaturesIsValidGlsl) {
     size_t feature_sets = 0;
     forEachFeatureSet([&](const RenderPlan&, const types::Geometry&) { ++feature_sets; });
     EXPECT_EQ(deposits, feature_sets) << "a program for each";
-    EXPECT_THAT(compiled, IsSupersetOf(known)) << "each feature of a shader has been asked for";
+    EXPECT_THAT(compiled, IsSupersetOf(known)) << "each feature of a shader has been used";
 }
 
 TEST_F(ShaderTest, StagesFitTogether) {
@@ -171,7 +171,7 @@ TEST_F(ShaderTest, StagesFitTogether) {
     EXPECT_EQ(complaints(program("resolve", {})), "");
 }
 
-TEST_F(ShaderTest, AMistakeIsReportedWithItsFileAndPlace) {
+TEST_F(ShaderTest, ReportsAnErrorWithItsFileAndPlace) {
     const std::string right = gpu::shaderSource("deposit.comp.glsl", {"HAVE_PHYSICAL"});
     const std::string wrong = right + "float wrong() { return no_such_thing; }\n";
     EXPECT_THAT(complaints(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),

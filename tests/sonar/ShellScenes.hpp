@@ -1,5 +1,5 @@
 #pragma once
-// Walls that sound goes through, and small sonars before them, for the tests of shells.
+// Walls that transmit sound, and small sonars before them, for the tests of shells.
 #include <memory>
 #include <vector>
 
@@ -27,7 +27,7 @@ inline SonarConfig wallSonar(double width_deg, double height_deg, int beams, int
     return config;
 }
 
-/** Objects of which the first ones are shells, all else has a Lambert parameter of 0 dB. */
+/** Makes objects of which the first are shells; the others have a Lambert parameter of 0 dB. */
 inline types::GeometryPtr shellsOf(std::vector<types::Mesh> meshes, size_t shells, const types::Shell& shell = acrylic,
                                    std::vector<glm::dvec3> positions = {}) {
     for (size_t i = 0; i < shells; ++i)
@@ -39,7 +39,7 @@ inline types::GeometryPtr shellsOf(std::vector<types::Mesh> meshes, size_t shell
     return scene;
 }
 
-/** Energy of a beam between two ranges [m]. */
+/** Returns the energy of a beam between two ranges [m]. */
 inline double energyOf(const types::Sonar& ping, uint32_t beam, double from, double to) {
     double sum = 0;
     for (uint32_t k = 0; k < ping.bin_count; ++k)

@@ -1,4 +1,4 @@
-// Lines of a side-scan against closed forms (ACOUSTICS.md 9.11).
+// Lines of a side-scan, compared with closed forms (ACOUSTICS.md 9.11).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST_F(SideScanTaskTest, TheFirstReturnIsAtTheHeightAndTheLastWhereTheUpperEdgeM
     EXPECT_NEAR(one.binStart(last), height / std::sin(types::radians(25)), bin);
 }
 
-TEST_F(SideScanTaskTest, PortAndStarboardAreWhereTheyAreAndTheLineIsAsThinAsTheBeam) {
+TEST_F(SideScanTaskTest, PortAndStarboardAreCorrectAndTheLineHasTheWidthOfTheBeam) {
     startWith(sideScan());
     const auto echoesOf = [&](glm::dvec3 target, double yaw) {
         const auto line =
@@ -111,7 +111,7 @@ TEST_F(SideScanTaskTest, PortAndStarboardAreWhereTheyAreAndTheLineIsAsThinAsTheB
     EXPECT_EQ(echoesOf({2, 12, 1}, 0), std::pair(false, false)) << "ahead of the line";
 }
 
-/** The weight of a beam's law, two-way, in the bins of one side: at the ranges where the bottom lies at an angle. */
+/** The two-way weight of a beam's law in the bins of one side, at the ranges where the bottom is at an angle. */
 TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
     SideScanConfig config = sideScan();
     config.sonar.beam_height_deg = 40;
@@ -133,8 +133,8 @@ TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
     }
 }
 
-/** In the truth elevations are those above the vehicle's x-y plane, as with other sonars: of a flat bottom at slant
- *  range r the sine is -D / r, and a vehicle that rolls to starboard has them changed by its roll. */
+/** Elevations in the truth are above the vehicle's x-y plane, as with other sonars. For a flat bottom at slant range r
+ *  the sine is -D / r; a vehicle that rolls to starboard changes the elevations by its roll. */
 TEST_F(SideScanTaskTest, TheTruthsElevationsAreAboveTheVehiclesPlane) {
     test::Reader<types::SonarTruthPtr> told{"told"};
     task_.truth.connectTo(told.port, framework::ConnPolicy::data());

@@ -1,4 +1,4 @@
-// Lines from the sonar against every triangle of a scene, and sonars inside of things.
+// Lines from the sonar compared with every triangle of a scene, and sonars inside of meshes.
 #include <gmock/gmock.h>
 
 #include "components/sonar/places/Sightlines.hpp"
@@ -8,8 +8,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** Whether the line between two points passes through any triangle, each looked at: both ends on different sides of its
- *  plane, the line on the same side of its three edges. */
+/** Returns whether the line between two points passes through any triangle, by testing each: both ends are on different
+ *  sides of its plane, and the line is on the same side of its three edges. */
 bool isCrossed(const types::Geometry& geometry, const std::vector<glm::dmat4>& places, const glm::dvec3& from,
                const glm::dvec3& to) {
     const auto volume = [](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) { return glm::dot(glm::cross(a, b), c); };
@@ -37,7 +37,7 @@ std::vector<glm::dmat4> placesOf(const types::Snapshot& snapshot) {
     return places;
 }
 
-TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
+TEST(SightlinesTest, APointIsVisibleIfNoTriangleIsBeforeIt) {
     Random random(7);
     for (const types::GeometryPtr& geometry :
          {types::GeometryPtr(clusteredHarbour()), types::GeometryPtr(test::surfaces())}) {
@@ -66,7 +66,7 @@ TEST(SightlinesTest, APointIsSeenWhereNoTriangleIsBeforeIt) {
     }
 }
 
-TEST(SightlinesTest, AnObjectThatAScaleHasMadeFlatHidesByTreesToo) {
+TEST(SightlinesTest, AnObjectFlattenedByItsScaleHidesByTreesToo) {
     auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({test::sphere(1, 20)}));
     geometry->objects[0].world_from_object = glm::scale(glm::dmat4(1), {0.0, 1.0, 1.0});
     Sightlines lines(*geometry, Sightlines::Lines::Many);
@@ -75,7 +75,7 @@ TEST(SightlinesTest, AnObjectThatAScaleHasMadeFlatHidesByTreesToo) {
     EXPECT_TRUE(lines.isOpen({5, 2.5, 0.2}));
 }
 
-TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
+TEST(SightlinesTest, TrianglesWithinAMillimetreOfEitherEndHideNothing) {
     const auto geometry = test::sceneOf({test::wall(5)});
     Sightlines lines(*geometry);
     lines.place(test::snapshotOf(geometry, {4.9995, 0, 0}));
@@ -86,13 +86,13 @@ TEST(SightlinesTest, WhatIsWithinAMillimetreOfEitherEndHidesNothing) {
     EXPECT_FALSE(lines.isOpen({5.002, 0, 0}));
 }
 
-TEST(SightlinesTest, ASonarIsInsideOfWhatTurnsItsBackToItAllRound) {
+TEST(SightlinesTest, ASonarIsInsideAMeshThatShowsOnlyBacks) {
     const auto insideOf = [](const types::GeometryPtr& geometry, const glm::dvec3& place) {
         Sightlines lines(*geometry);
         lines.place(test::snapshotOf(geometry, place));
         return lines.enclosing();
     };
-    types::Mesh pool = test::sphere(2, 20);  // its faces inward, as a tank's
+    types::Mesh pool = test::sphere(2, 20);  // with inward faces, as in a tank
     for (size_t i = 0; i < pool.indices.size(); i += 3) std::swap(pool.indices[i], pool.indices[i + 1]);
     const auto scene =
         test::sceneOf({test::ground(-4, 200), test::sphere(2, 20), pool}, 0, {{0, 0, 0}, {10, 0, 0}, {-10, 0, 0}});

@@ -1,4 +1,5 @@
-// The compute shader, which has no doubles, beside the processor's deposit of the same pictures, for random sonars.
+// The compute shader, which has no doubles, compared with the processor's deposit of the same pictures, for random
+// sonars.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -105,7 +106,7 @@ private:
     double range = 0;
 };
 
-TEST(SinglePrecisionDepositTest, BinsAreThoseOfTheProcessor) {
+TEST(SinglePrecisionDepositTest, BinsMatchTheProcessor) {
     double most_bins = 0;
     int with_echoes = 0;
     for (uint32_t seed = 1; seed <= 24; ++seed) {

@@ -1,4 +1,4 @@
-// Range images against closed forms: a wall and a sphere, beam by beam.
+// Range images compared with closed forms: a wall and a sphere, beam by beam.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -33,8 +33,8 @@ protected:
     }
 };
 
-/** D / (cos e cos a); with azimuth and elevation exchanged it is the same, so the wall is turned as well. */
-TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
+/** D / (cos e cos a). This is symmetric in azimuth and elevation, so the wall is also rotated. */
+TEST_F(Sonar3dTaskTest, AWallIsAtTheRangeOfEachDirection) {
     constexpr double distance = 6;
     startWith(grid());
     for (const double yaw : {0.0, 20.0}) {
@@ -55,8 +55,8 @@ TEST_F(Sonar3dTaskTest, AWallIsSeenAtTheRangeOfEachDirection) {
     }
 }
 
-/** 1 cm is 6.67 us one way, which a ping tells as 7. */
-TEST_F(Sonar3dTaskTest, RangesAreThoseOfBinsThatLastNoWholeMicroseconds) {
+/** 1 cm is 6.67 us one way, which a ping states as 7. */
+TEST_F(Sonar3dTaskTest, RangesAreExactForBinsOfFractionalMicroseconds) {
     Sonar3dConfig config = grid();
     config.sonar.range = 8;
     config.sonar.bin_count = 800;
@@ -71,8 +71,8 @@ TEST_F(Sonar3dTaskTest, RangesAreThoseOfBinsThatLastNoWholeMicroseconds) {
     EXPECT_LT(worst, 0.006);
 }
 
-/** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; nothing beside it. */
-TEST_F(Sonar3dTaskTest, ASphereIsSeenAtTheRangeOfEachDirectionAndNothingBesideIt) {
+/** L . d - sqrt((L . d)^2 - L^2 + b^2) in the directions d that meet the sphere; no range next to it. */
+TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     constexpr double radius = 2;
     const glm::dvec3 centre(7, 1, 0.5);
     Sonar3dConfig config = grid();
@@ -136,7 +136,7 @@ TEST_F(Sonar3dTaskTest, SoundingsAreTheSameInTheWorld) {
     }
 }
 
-/** The energy that a fan of the whole height hears in each azimuth. */
+/** The energy of a fan of the whole height in each azimuth. */
 TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
     test::Reader<types::SonarPtr> pings;
     task_.ping.connectTo(pings.port, framework::ConnPolicy::buffer(2));
@@ -161,12 +161,12 @@ TEST_F(Sonar3dTaskTest, ThePingIsTheSumOverAllElevations) {
         const auto energy = [&](const types::Sonar& of) {
             return std::accumulate(of.bins.begin() + beam * 500, of.bins.begin() + (beam + 1) * 500, 0.0);
         };
-        // Its beams are bands about a vertical plane, wider in azimuth by 1 / cos(elevation) than those of a fan.
+        // Beams are bands about a vertical plane, wider in azimuth by 1 / cos(elevation) than those of a fan.
         EXPECT_NEAR(energy(*ping) / energy(fan), 1, 0.03) << beam;
     }
 }
 
-TEST_F(Sonar3dTaskTest, WhatIsWeakBesideThePingIsNoReturn) {
+TEST_F(Sonar3dTaskTest, AWeakEchoInThePingIsNoReturn) {
     Sonar3dConfig config = grid();
     config.detection.threshold_db = -5;
     startWith(config);
@@ -189,7 +189,7 @@ types::Snapshot ballBeforeWall() {
     return test::snapshotOf(sceneOf({test::sphere(1.5f), test::wall(12)}, 0, {{6, 1, 0.5}, {}}));
 }
 
-TEST_F(Sonar3dTaskTest, EachCellOfTheMapTellsWhichObjectItShows) {
+TEST_F(Sonar3dTaskTest, EachCellOfTheMapNamesItsObject) {
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     startWith(grid());
@@ -257,7 +257,7 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
         ++heard;
         if (truth->object[at] != expected.object[at]) continue;
         ++same;
-        // The nearest bins of wall and ball are met above and below the axis: a mean of two directions.
+        // The nearest bins of wall and ball contain directions above and below the axis, and their mean.
         near += std::abs(truth->elevation[at] - expected.elevation[at]) < types::radians(2.1);
         EXPECT_NEAR(truth->share[at], expected.share[at], 0.2) << at;
     }
@@ -270,7 +270,7 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
     EXPECT_GT(static_cast<double>(same_shadows), 0.97 * static_cast<double>(shadows));
 }
 
-TEST_F(Sonar3dTaskTest, WhoTakesTheTruthChangesNoBin) {
+TEST_F(Sonar3dTaskTest, ReadingTheTruthChangesNoBin) {
     startWith(grid());
     const auto before = mapOf(ballBeforeWall());
     ASSERT_TRUE(before) << task_.lastError();
@@ -284,7 +284,7 @@ TEST_F(Sonar3dTaskTest, WhoTakesTheTruthChangesNoBin) {
     EXPECT_EQ(before->remissions, after->remissions);
 }
 
-TEST_F(Sonar3dTaskTest, WhatIsTooWeakForAReturnShowsNoObject) {
+TEST_F(Sonar3dTaskTest, AnEchoTooWeakForAReturnHasNoObject) {
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     task_.range_truth.connectTo(truths.port, framework::ConnPolicy::buffer(2));
     Sonar3dConfig config = grid();
@@ -303,7 +303,7 @@ TEST_F(Sonar3dTaskTest, WhatIsTooWeakForAReturnShowsNoObject) {
     EXPECT_LT(none, 1200u);
 }
 
-TEST_F(Sonar3dTaskTest, OneThatHearsNothingTellsWhereItLooks) {
+TEST_F(Sonar3dTaskTest, ASilentSonarReportsItsDirections) {
     std::string told;
     auto environment = std::make_shared<framework::Environment>(task_.environment());
     environment->warn = [&](const std::string& text) { told += text; };

@@ -54,7 +54,7 @@ TEST(SonarConfigTest, EveryKeyOfTheContractIsAccepted) {
     EXPECT_THAT(diagnosticsOf<ScanningSonarConfig>("{}"), IsEmpty());
 }
 
-TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
+TEST(SonarConfigTest, AProfilerAndAnAltimeterRejectInvalidThresholdsAndBeams) {
     EXPECT_THAT(
         diagnosticsOf<ProfilerConfig>("{beam_count: 64, detection: {threshold_db: -40, gate_db: 6, floor_db: -140}}"),
         IsEmpty());
@@ -70,7 +70,7 @@ TEST(SonarConfigTest, AProfilerAndAnAltimeterRefuseWhatIsNoThresholdOrNoBeam) {
     EXPECT_THAT(diagnosticsOf<AltimeterConfig>("detection: {gate_db: 3}"), ElementsAre(HasSubstr("detection")));
 }
 
-TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
+TEST(SonarConfigTest, ASideScanRejectsInvalidBeamsByItsOwnNames) {
     EXPECT_THAT(diagnosticsOf<SideScanConfig>("{beam_width_deg: 1, beam_height_deg: 60, depression_deg: 20, "
                                               "quality: {rows: 4, columns_per_beam: 1024}}"),
                 IsEmpty());
@@ -87,7 +87,7 @@ TEST(SonarConfigTest, ASideScanRefusesBeamsThatItCannotHaveByItsOwnNames) {
     EXPECT_THAT(diagnosticsOf<SideScanConfig>("beam_count: 3"), ElementsAre(HasSubstr("beam_count")));
 }
 
-TEST(SonarConfigTest, A3dSonarRefusesGridsThatItCannotHaveByItsOwnNames) {
+TEST(SonarConfigTest, A3dSonarRejectsInvalidGridsByItsOwnNames) {
     EXPECT_THAT(diagnosticsOf<Sonar3dConfig>(
                     "{horizontal: {beam_count: 128, field_of_view_deg: 60}, vertical: {beam_count: 32, "
                     "field_of_view_deg: 20}, beam_height_deg: 0.6, quality: {rows: 2}}"),
@@ -110,7 +110,7 @@ TEST(SonarConfigTest, A3dSonarRefusesGridsThatItCannotHaveByItsOwnNames) {
                 ElementsAre(HasSubstr("detection.threshold_db")));
 }
 
-TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
+TEST(SonarConfigTest, RejectsValuesOutOfBounds) {
     for (const char* yaml : {"range: 0",
                              "range: -5",
                              "range: .nan",
@@ -153,7 +153,7 @@ TEST(SonarConfigTest, ValuesOutOfBoundsAreRefused) {
         EXPECT_EQ(diagnosticsOf<SonarConfig>(yaml).size(), 1u) << yaml;
 }
 
-TEST(SonarConfigTest, MultipathTakesRaysAndHasItsBounds) {
+TEST(SonarConfigTest, MultipathNeedsRaysAndHasBounds) {
     const auto fault = [](const char* yaml, const char* text) {
         EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
@@ -189,7 +189,7 @@ TEST(SonarConfigTest, WaterScattersByOneStrengthOrByLayers) {
     diagnostic((many + "]").c_str(), "volume: has 17 layers; may have 16");
 }
 
-TEST(SonarConfigTest, BeamsAndPulsesNeedWhatTheyAreMadeOf) {
+TEST(SonarConfigTest, BeamsAndPulsesNeedTheirParameters) {
     const auto diagnostic = [](const char* yaml, const char* text) {
         EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml), ElementsAre(HasSubstr(text))) << yaml;
     };
@@ -206,7 +206,7 @@ TEST(SonarConfigTest, BeamsAndPulsesNeedWhatTheyAreMadeOf) {
         testing::IsEmpty());
 }
 
-TEST(SonarConfigTest, WhatAReceiverDoesIsToldToBeThere) {
+TEST(SonarConfigTest, KeysOfTheReceiverAreErrorsThatNameTheirPlace) {
     for (const char* yaml :
          {"tvg: {log_coefficient: 40}", "gain: 0.5", "output: level_db", "output: intensity", "source_level_db: 210"}) {
         const std::string key = std::string(yaml).substr(0, std::string(yaml).find(':'));
@@ -217,7 +217,7 @@ TEST(SonarConfigTest, WhatAReceiverDoesIsToldToBeThere) {
     }
 }
 
-TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
+TEST(SonarConfigTest, ReportsContradictoryValues) {
     struct Case {
         const char* yaml;
         const char* path;
@@ -228,7 +228,7 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
           Case{"bearings_deg: [0, 1]", "beam_width_deg: ", "bearings_deg needs the width"},
           Case{"beam_width_deg: 3", "beam_width_deg: ", "256 beams of it cover 768 deg, may be 360"},
           Case{"{beam_width_deg: 90, beam_width_convention: total_fov, field_of_view_deg: 90}",
-               "field_of_view_deg: ", "one of the two tells the fan"},
+               "field_of_view_deg: ", "give one of the two"},
           Case{"{beam_width_deg: 1, field_of_view_deg: 90, model: cerqueira2017, published: true}",
                "beam_width_deg: ", "as wide as their spacing"},
           Case{"{bearings_deg: [0], beam_width_deg: 130}", "beam_width_deg: ", "one beam may have 120"},
@@ -252,7 +252,7 @@ TEST(SonarConfigTest, ValuesThatDoNotGoTogetherAreNamed) {
             << c.yaml;
 }
 
-TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfSamples) {
+TEST(SonarConfigTest, TheDefaultQualityIsAnErrorOfFivePerCentWithACapOfSamples) {
     SonarConfig config;
     EXPECT_EQ(config.targetError(), 0.05);
     EXPECT_EQ(config.mostSamples(), 400'000);
@@ -265,7 +265,7 @@ TEST(SonarConfigTest, WhatIsNotSaidOfTheQualityIsAnErrorOfFivePerCentWithACapOfS
     config.quality = {};
     config.quality.rows = 8;
     EXPECT_FALSE(config.choosesQuality() || config.mostSamples());
-    EXPECT_EQ(config.rows(), 8) << "a user may say less than what is chosen";
+    EXPECT_EQ(config.rows(), 8) << "a user may give less than the chosen quality";
 }
 
 TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
@@ -273,7 +273,7 @@ TEST(SonarConfigTest, OneWideBeamMayHaveThousandsOfColumns) {
                 IsEmpty());
 }
 
-TEST(SonarConfigTest, ARangeThatBinsDoNotReachIsRefusedWithTheNextRangesThatFit) {
+TEST(SonarConfigTest, RejectsARangeThatBinsDoNotReachWithTheNextRangesThatFit) {
     const auto refused = diagnosticsOf<SonarConfig>("{range: 2.97, bin_count: 675, speed_of_sound: 1466}");
     EXPECT_THAT(refused, ElementsAre(HasSubstr("range: is 2.97 m; 675 bins of whole microseconds reach 3.9582 m, which "
                                                "may be at most 25 % more: give 2.968 m or 3.958 m, lower bin_count")));
@@ -286,7 +286,7 @@ TEST(SonarConfigTest, ExactRangesNeedNoWholeMicroseconds) {
     EXPECT_THAT(diagnosticsOf<SonarConfig>("{range: 1, bin_count: 1000, range_rounding: exact}"), IsEmpty());
 }
 
-TEST(SonarConfigTest, HeadsThatCannotTurnSoAreRefused) {
+TEST(SonarConfigTest, RejectsImpossibleHeads) {
     struct Case {
         const char* yaml;
         const char* words;
@@ -318,7 +318,7 @@ TEST(SonarConfigTest, TheWidthOfABeamIsOneBeamsOrByConventionTheWholeFans) {
 }
 
 TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
-    for (const char* fov : {"130", "120"}) {  // the default as well, where it is written
+    for (const char* fov : {"130", "120"}) {  // also the default, if it is given
         const std::string yaml = "{beam_count: 512, field_of_view_deg: " + std::string(fov) + ", beam_width_deg: 1}";
         EXPECT_THAT(diagnosticsOf<SonarConfig>(yaml.c_str()), IsEmpty()) << yaml;
     }
@@ -334,7 +334,7 @@ TEST(SonarConfigTest, BeamsOfAFanMayBeWiderThanTheirSpacing) {
     EXPECT_NEAR(fan.coverageDeg(), 130 - 130.0 / 512 + 1, 1e-9);
 }
 
-TEST(SonarConfigTest, BeamsOfAFanAreEvenAndCentredAndThoseOfATableAreAsGiven) {
+TEST(SonarConfigTest, BeamsOfAFanAreEvenAndCentredAndBeamsOfATableAreAsGiven) {
     SonarConfig config;
     config.beam_count = 4;
     config.field_of_view_deg = 120;

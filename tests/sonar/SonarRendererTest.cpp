@@ -27,7 +27,7 @@ std::vector<float> binsSeen(const types::Snapshot& snapshot) { return test::ping
 
 double energy(const std::vector<float>& bins) { return std::accumulate(bins.begin(), bins.end(), 0.0); }
 
-/** Relative L2 of their difference. */
+/** Returns the relative L2 of the difference. */
 double differenceOf(const std::vector<float>& a, const std::vector<float>& b) {
     double error = 0;
     for (size_t i = 0; i < a.size(); ++i) error += std::pow(double{a[i]} - b[i], 2);
@@ -38,7 +38,7 @@ types::Mesh farWall() { return test::quad({10, -50, -50}, {0, 100, 0}, {0, 0, 10
 
 }  // namespace
 
-TEST(SonarRendererTest, SonarsSideBySideHearWhatEachHearsAlone) {
+TEST(SonarRendererTest, SonarsSideBySideRenderTheSameAsAlone) {
     const auto snapshot = test::snapshotOf(test::surfaces());
     const std::vector<float> alone = binsSeen(snapshot);
     ASSERT_GT(energy(alone), 0);
@@ -59,7 +59,7 @@ TEST(SonarRendererTest, SonarsSideBySideHearWhatEachHearsAlone) {
     EXPECT_EQ(differing, 0);
 }
 
-TEST(SonarRendererTest, AnotherThreadIsRefused) {
+TEST(SonarRendererTest, RejectsAnotherThread) {
     const auto snapshot = test::snapshotOf(test::surfaces());
     SonarRenderer renderer(oneFan(), snapshot.geometry);
     std::string error;
@@ -84,7 +84,7 @@ TEST(SonarRendererTest, NothingInViewIsSilence) {
         << "nearer than range_min";
 }
 
-TEST(SonarRendererTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
+TEST(SonarRendererTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     const types::Mesh plate = test::quad({0.5, -1, -1}, {0, 2, 0}, {0, 0, 2});
     const types::Mesh target = test::quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
     const auto heard = [](const types::GeometryPtr& geometry, double range_min) {
@@ -107,7 +107,7 @@ TEST(SonarRendererTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
     EXPECT_GT(heard(both, 0.45).first, heard(both, 0.55).first);
 }
 
-TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHearsFiniteEchoes) {
+TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHasFiniteEchoes) {
     const auto ball = test::sceneOf({test::sphere(5, 32)});
     for (double x : {0.0, 4.0, 4.99, 5.0, 5.01})
         EXPECT_THAT(binsSeen(test::snapshotOf(ball, {x, 0, 0}, 0.3)),
@@ -119,7 +119,8 @@ TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHearsFiniteEchoes) {
 TEST(SonarRendererTest, FacesTurnedAwayReflectTheSame) {
     types::Mesh turned = farWall();
     std::ranges::reverse(turned.indices);
-    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({turned}))), binsSeen(test::snapshotOf(test::sceneOf({farWall()}))));
+    EXPECT_EQ(binsSeen(test::snapshotOf(test::sceneOf({turned}))),
+              binsSeen(test::snapshotOf(test::sceneOf({farWall()}))));
 }
 
 TEST(SonarRendererTest, DoubledFacesAndTrianglesWithoutAreaAddNothing) {

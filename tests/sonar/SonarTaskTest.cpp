@@ -18,7 +18,7 @@ class SonarTaskTest : public test::TaskBench<SonarTask, types::SnapshotPtr, type
 protected:
     SonarTaskTest() : TaskBench(&SonarTask::snapshot, &SonarTask::ping) {}
     void start(const SonarConfig& config = smallSonar()) { startWith(config); }
-    /** The ping for one snapshot; null when there was none. */
+    /** Returns the ping of one snapshot; null without a ping. */
     types::SonarPtr pingOf(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
@@ -41,9 +41,9 @@ TEST_F(SonarTaskTest, APingCarriesTheTimeOfItsSnapshotAndTheGridOfItsBins) {
     EXPECT_EQ(task_.stages().count("draw"), 1u);
 }
 
-/** Beams of 10 deg that are as wide as their spacing, and the same bearings with beams of 20 deg: each hears what it
- *  heard and half of both neighbours. */
-TEST_F(SonarTaskTest, ABeamThatIsWiderThanItsSpacingHearsWhatItsNeighboursHear) {
+/** Beams of 10 deg with the same spacing, and the same bearings with beams of 20 deg. Each wide beam receives the
+ *  echoes of the narrow beam and half of both neighbours. */
+TEST_F(SonarTaskTest, ABeamWiderThanItsSpacingReceivesItsNeighboursEchoes) {
     const auto energies = [&](std::optional<double> width) {
         SonarConfig config = smallSonar();
         config.beam_width_deg = width;
@@ -66,7 +66,7 @@ TEST_F(SonarTaskTest, ABeamThatIsWiderThanItsSpacingHearsWhatItsNeighboursHear) 
         EXPECT_NEAR(wide[k] / (narrow[k] + narrow[k - 1] / 2 + narrow[k + 1] / 2), 1, 0.05) << k;
 }
 
-TEST_F(SonarTaskTest, APoseThatCannotBeUsedIsARunTimeErrorUntilTheNextGoodOne) {
+TEST_F(SonarTaskTest, AnInvalidPoseIsARunTimeErrorUntilTheNextValidPose) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     start();
     types::Snapshot lost = facingWall(5), unturned = facingWall(5), spun = facingWall(5), empty = facingWall(5),
@@ -95,7 +95,7 @@ TEST_F(SonarTaskTest, AQuaternionThatIsNotOfUnitLengthIsNormalised) {
     EXPECT_EQ(ping->bins, same->bins);
 }
 
-TEST_F(SonarTaskTest, PingsCloserThanSoundsWayThereAndBackAreToldToBeAmbiguous) {
+TEST_F(SonarTaskTest, ReportsAmbiguousPingsCloserThanTheTwoWayTravelTime) {
     const auto warning = ::testing::Contains(::testing::HasSubstr("ambiguous in range"));
     const auto pingAt = [&](double seconds) {
         types::Snapshot snapshot = facingWall(5);
@@ -105,11 +105,11 @@ TEST_F(SonarTaskTest, PingsCloserThanSoundsWayThereAndBackAreToldToBeAmbiguous) 
     start();  // 15 m there and back at 1500 m/s: 20 ms
     ASSERT_TRUE(pingAt(1) && pingAt(1.1));
     EXPECT_THAT(task_.notices(), ::testing::Not(warning));
-    ASSERT_TRUE(pingAt(1.101)) << "heard all the same";
+    ASSERT_TRUE(pingAt(1.101)) << "received nevertheless";
     EXPECT_THAT(task_.notices(), warning);
 }
 
-TEST_F(SonarTaskTest, ASonarThatJumpsPingsFromWhereItIsPutAndIsWarnedOfOnce) {
+TEST_F(SonarTaskTest, AJumpingSonarPingsFromItsNewPlaceAndWarnsOnce) {
     std::vector<std::string> jumps;
     task_.environment().warn = [&](const std::string& text) {
         if (text.find("the sonar has moved") != std::string::npos) jumps.push_back(text);
@@ -133,20 +133,20 @@ TEST_F(SonarTaskTest, ASonarThatJumpsPingsFromWhereItIsPutAndIsWarnedOfOnce) {
     }
     EXPECT_THAT(jumps,
                 ::testing::ElementsAre("task: the sonar has moved 160 m in 1 s, faster than a tenth of the speed "
-                                       "of sound, 150 m/s: it is taken as put there, at rest unless its pose "
+                                       "of sound, 150 m/s: it counts as repositioned, at rest unless its pose "
                                        "has a velocity"));
     for (int i = 0; i < 10; ++i) pingAt(0);
     pingAt(200);
     EXPECT_EQ(jumps.size(), 2u);
 }
 
-TEST_F(SonarTaskTest, ANewSceneIsRenderedFromThenOn) {
+TEST_F(SonarTaskTest, ANewSceneIsRenderedFromTheNextPing) {
     start();
     EXPECT_NEAR(firstEcho(*pingOf(facingWall(5)), 4), 5, 0.16);
     EXPECT_NEAR(firstEcho(*pingOf(facingWall(9)), 4), 9, 0.16);
 }
 
-TEST_F(SonarTaskTest, ItCanBeCleanedUpAndConfiguredAnew) {
+TEST_F(SonarTaskTest, CanBeCleanedUpAndConfiguredAgain) {
     start();
     ASSERT_TRUE(pingOf(facingWall(5)));
     ASSERT_TRUE(task_.stop());
@@ -166,7 +166,7 @@ TEST_F(SonarTaskTest, NoticesAreThoseOfTheConfigurationUntilTheSceneIsKnown) {
     EXPECT_THAT(task_.notices(), ::testing::Contains(::testing::HasSubstr("medium sand")));
 }
 
-TEST_F(SonarTaskTest, APropertyThatIsSetHoldsFromTheNextPingOn) {
+TEST_F(SonarTaskTest, AChangedPropertyAppliesFromTheNextPing) {
     const auto set = [&](const char* setter, const char* value) { task_.operation(setter)->callText({value}); };
     start();
     ASSERT_TRUE(pingOf(facingWall(5)));

@@ -1,4 +1,4 @@
-// What the truth of a ping tells, against closed forms, and that it changes no bin.
+// The truth of a ping, compared with closed forms. It changes no bin.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -14,7 +14,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A ping and what its bins show. */
+/** A ping and its truth. */
 struct Truths {
     types::Sonar ping;
     types::SonarTruth truth;
@@ -55,7 +55,7 @@ constexpr Way ways[] = {{"Rays", Visibility::Cpu, Deposit::Auto},
 
 class SonarTruthTest : public testing::TestWithParam<Way> {};
 
-/** All numbers of a truth, as bits: NaN equals NaN. */
+/** Returns all numbers of a truth, as bits: NaN equals NaN. */
 std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
     std::vector<uint32_t> all;
     types::SonarTruth::forEachArray(truth, [&](const char*, const auto& numbers, auto) {
@@ -68,8 +68,8 @@ std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
     return all;
 }
 
-/** A bottom 3 m below a level sonar: at slant range r it lies at the depression asin(3 / r), which is its grazing
- *  angle as well. A bin of 0.1 m and samples of 0.1 deg leave the mean within 3 mrad. */
+/** A bottom 3 m below a level sonar: at slant range r it is at the depression asin(3 / r), which is also its grazing
+ *  angle. With bins of 0.1 m and samples of 0.1 deg the mean is within 3 mrad. */
 TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
     const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
     double largest = 0;
@@ -88,8 +88,8 @@ TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
     EXPECT_THAT(labelled.truth.path, testing::Each(0));
 }
 
-/** A plate on the bottom, 5 m ahead and 2 m high, hides what lies between 5.83 m (its foot, straight ahead) and where
- *  the ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
+/** A plate on the bottom, 5 m ahead and 2 m high, hides the bottom from 5.83 m (its foot, straight ahead) to where the
+ *  ray over its upper edge meets the bottom: 15 m ahead, at a slant range of 15.30 m. */
 TEST_P(SonarTruthTest, APlateCastsItsShadowOnTheBottomBehindIt) {
     const auto scene = test::sceneOf({test::ground(-3), test::quad({5, -20, -3}, {0, 40, 0}, {0, 0, 2})});
     const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(scene));
@@ -134,7 +134,7 @@ types::Snapshot scatteredBalls() {
     return test::snapshotOf(test::sceneOf(std::move(meshes), -10, places));
 }
 
-TEST_P(SonarTruthTest, NotABinChanges) {
+TEST_P(SonarTruthTest, TruthChangesNoBin) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         SonarRenderer renderer(GetParam().of(config), snapshot.geometry);
@@ -150,7 +150,7 @@ TEST_P(SonarTruthTest, NotABinChanges) {
     }
 }
 
-TEST_P(SonarTruthTest, ItIsTheSameOnAnyNumberOfThreads) {
+TEST_P(SonarTruthTest, TruthIsTheSameOnAnyNumberOfThreads) {
     const types::Snapshot snapshot = scatteredBalls();
     for (const SonarConfig& config : manyKinds()) {
         const std::vector<uint32_t> one = bitsOf(truthsOf(GetParam().of(config), snapshot, 1).truth);
@@ -162,7 +162,7 @@ TEST_P(SonarTruthTest, ItIsTheSameOnAnyNumberOfThreads) {
 INSTANTIATE_TEST_SUITE_P(Ways, SonarTruthTest, testing::ValuesIn(ways),
                          [](const auto& way) { return std::string(way.param.name); });
 
-/** The published model counts what meets nothing in its first bin, where there is no object. */
+/** The published model counts pixels without an echo in its first bin, which has no object. */
 TEST(PublishedTruthTest, MissesAreNoObjects) {
     SonarConfig config = ways[1].of(truthFan());
     config.model = Model::Cerqueira2017;
@@ -178,8 +178,8 @@ TEST(PublishedTruthTest, MissesAreNoObjects) {
     EXPECT_EQ(labelled.truth.object[labelled.at(8.05, 8)], 0);
 }
 
-/** A ball in one beam is heard by all others in their sidelobes, but seen by its own alone. */
-TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
+/** A ball in one beam echoes in the sidelobes of all other beams, but only its own beam has it in the truth. */
+TEST(PatternedTruthTest, EchoesInSidelobesHaveNoTruth) {
     SonarConfig config = ways[0].of(truthFan());
     acoustics::BeamLaw law;
     law.width_deg = 5;
@@ -194,7 +194,7 @@ TEST(PatternedTruthTest, WhatABeamHearsInItsSidelobesIsNotItsTruth) {
     }
 }
 
-/** Pings of a task with what is connected, and what it tells of them. */
+/** Pings of a task with its connections, and their truth. */
 struct Bench {
     SonarTask task{"sonar"};
     test::Writer<types::SnapshotPtr> in;
@@ -217,9 +217,9 @@ struct Bench {
     }
 };
 
-TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChosenIsTheSame) {
+TEST(SonarTaskTruthTest, WritesNoTruthWithoutAConnectionAndChoosesTheSameQuality) {
     SonarConfig config = ways[0].of(truthFan());
-    config.quality = {};  // it is chosen, and looked after with coarser pings
+    config.quality = {};  // chosen by the task, and monitored with coarser pings
     Bench alone(config), labelled(config);
     labelled.task.truth.connectTo(labelled.truths.port, framework::ConnPolicy::data());
     types::Snapshot snapshot = scatteredBalls();
@@ -242,7 +242,7 @@ TEST(SonarTaskTruthTest, NothingIsToldWhereNobodyListensAndTheQualityThatIsChose
     EXPECT_EQ(labelled.task.returns.written(), 0u);
 }
 
-TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
+TEST(SonarTaskTruthTest, ThePlanOmitsTheTruthWithoutAConnection) {
     for (const Way& way : ways) {
         Bench alone(way.of(truthFan())), to_truth(way.of(truthFan())), to_returns(way.of(truthFan()));
         to_truth.task.truth.connectTo(to_truth.truths.port, framework::ConnPolicy::data());
@@ -260,7 +260,7 @@ TEST(SonarTaskTruthTest, ThePlanListsTheTruthAsOmittedWhereNobodyIsConnected) {
     }
 }
 
-/** A plate square to the sound 9 m ahead, and a bottom below: the bottom is met first, the plate is stronger. */
+/** A plate at normal incidence 9 m ahead, and a bottom below: the bottom is nearer, the plate is stronger. */
 TEST(SonarTaskTruthTest, ReturnsAreTheFirstAndTheStrongestOfEachBeam) {
     Bench bench(ways[0].of(truthFan()));
     bench.task.returns.connectTo(bench.returns.port, framework::ConnPolicy::data());

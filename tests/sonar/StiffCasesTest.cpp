@@ -1,4 +1,4 @@
-// Cases of ACOUSTICS.md 11.2: they hold or they do not.
+// Cases of ACOUSTICS.md 11.2.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -22,13 +22,13 @@ SonarConfig stiffFan(double field_of_view_deg = 60, int beams = 16, int bins = 2
 }
 
 std::vector<float> stiffBins(const SonarConfig& config, const types::GeometryPtr& geometry,
-                          const RenderOptions& options = {}) {
+                             const RenderOptions& options = {}) {
     return test::pingOf(config, test::snapshotOf(geometry), options).bins;
 }
 
 std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.5, 48)}; }
 
-/** The wall and ball as `change` leaves them. */
+/** Returns the wall and ball after `change`. */
 template <class Change>
 std::vector<float> heardWith(const Change& change) {
     std::vector<types::Mesh> meshes = wallAndBall();
@@ -38,7 +38,7 @@ std::vector<float> heardWith(const Change& change) {
 
 }  // namespace
 
-TEST(StiffCasesTest, NeitherTrianglesWithoutAreaNorNormalsWithoutLengthNorWindingAreHeard) {
+TEST(StiffCasesTest, DegenerateTrianglesNormalsAndWindingChangeNoEcho) {
     const std::vector<float> plain = heardWith([](types::Mesh&) {});
     EXPECT_THAT(plain, Contains(testing::Gt(0)));
     EXPECT_EQ(heardWith([](types::Mesh& mesh) {
@@ -59,7 +59,7 @@ TEST(StiffCasesTest, NeitherTrianglesWithoutAreaNorNormalsWithoutLengthNorWindin
 }
 
 /** A plate at each of 399 edges that are exact in binary. */
-TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
+TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsInTheBinThatBeginsThere) {
     SonarConfig config = stiffFan(10, 1, 400);
     config.range = 50;
     config.speed_of_sound = 1250;  // 0.125 m a bin
@@ -77,7 +77,7 @@ TEST(StiffCasesTest, ASurfaceOnTheEdgeOfABinIsHeardInTheBinThatBeginsThere) {
     }
 }
 
-TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
+TEST(StiffCasesTest, ReportsFrequenciesOutsideTheLawsAndKeepsEchoesFinite) {
     for (const double khz : {0.0, 1e4})
         for (const auto law : {acoustics::AbsorptionLaw::FrancoisGarrison, acoustics::AbsorptionLaw::AinslieMccolm}) {
             SonarConfig config = stiffFan();
@@ -91,7 +91,7 @@ TEST(StiffCasesTest, FrequenciesOutsideTheLawsAreToldAndTheirEchoesFinite) {
         }
 }
 
-TEST(StiffCasesTest, TheNumberOfThreadsThatSumADrawnPingChangesNoBit) {
+TEST(StiffCasesTest, TheNumberOfThreadsThatSumARasterisedPingChangesNoBit) {
     for (const Model model : {Model::Physical, Model::Cerqueira2017}) {
         SonarConfig config = stiffFan(130, 61, 300);
         config.model = model;
@@ -105,7 +105,7 @@ TEST(StiffCasesTest, TheNumberOfThreadsThatSumADrawnPingChangesNoBit) {
     }
 }
 
-TEST(StiffCasesTest, ASampleThatHeldAnotherPingKeepsNothingOfIt) {
+TEST(StiffCasesTest, AReusedSampleKeepsNothingOfItsOldPing) {
     const auto scene = test::surfaces();
     const SonarConfig small = stiffFan(40, 5, 120), large = stiffFan(130, 61, 300);
     types::Sonar ping;
@@ -119,16 +119,16 @@ TEST(StiffCasesTest, ASampleThatHeldAnotherPingKeepsNothingOfIt) {
     EXPECT_THAT(ping.bins, Each(0)) << "far above all";
 }
 
-TEST(StiffCasesTest, APictureLargerThanAnyDevicesIsRefusedInWords) {
+TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {
     SonarConfig config = stiffFan(120, 4096);
     config.quality.rows = 16384;
     config.quality.columns_per_beam = 256;
     config.visibility = Visibility::Gl;
     try {
         stiffBins(config, test::sceneOf({test::wall(10)}));
-        FAIL() << "was drawn";
+        FAIL() << "was rasterised";
     } catch (const std::exception& error) {
-        EXPECT_THAT(error.what(), HasSubstr("cannot draw"));
+        EXPECT_THAT(error.what(), HasSubstr("cannot render"));
     }
 }
 

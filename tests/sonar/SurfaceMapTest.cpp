@@ -1,5 +1,5 @@
-// Maps of strengths and of materials on surfaces: levels of painted regions, means over what samples cover, and that
-// nothing else changes (ACOUSTICS.md 3.13).
+// Maps of strengths and of materials on surfaces: levels of painted regions, means over the areas of samples, and no
+// other changes (ACOUSTICS.md 3.13).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using types::SurfaceMap;
 
 float linear(double decibels) { return static_cast<float>(std::pow(10, decibels / 10)); }
 
-/** A map of strengths, or without any of what is set later. */
+/** Returns a map with or without strengths; other members are set later. */
 SurfaceMap mapOf(int width, int height, std::vector<float> strengths = {}, bool repeats = true) {
     return {width, height, std::move(strengths), {}, {}, repeats, repeats};
 }
@@ -48,7 +48,7 @@ std::shared_ptr<types::Geometry> groundWith(const SurfaceMap& map, double size =
 
 types::GeometryPtr plainGround(float lambert_db = -15) { return test::sceneOf({mappedGround(80)}, lambert_db); }
 
-/** A material of the map's classes. */
+/** Adds a material for the classes of the map. */
 int addMaterial(types::Geometry& geometry, float lambert_db) {
     geometry.materials.push_back(geometry.materials[0]);
     geometry.materials.back().lambert_db = lambert_db;
@@ -70,7 +70,7 @@ double sum(const std::vector<float>& bins) { return std::accumulate(bins.begin()
 
 }  // namespace
 
-TEST(SurfaceMapTest, AMapThatChangesNothingLeavesEveryBin) {
+TEST(SurfaceMapTest, ANeutralMapChangesNoBin) {
     std::vector<SonarConfig> configs(3, fanOver());
     configs[1].frequency_khz = 400;
     configs[1].speckle = coherent();
@@ -81,7 +81,7 @@ TEST(SurfaceMapTest, AMapThatChangesNothingLeavesEveryBin) {
             << i;
 }
 
-TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
+TEST(SurfaceMapTest, EachPaintedRegionHasTheLevelOfItsValue) {
     // A map of 64 x 64 with eight stripes along y, at x from -40 to 40 m.
     const double decibels[8] = {0, 0, 0, 0, -3, -20, 6, -40};
     SurfaceMap map = mapOf(64, 64, {}, false);
@@ -105,13 +105,13 @@ TEST(SurfaceMapTest, EachPaintedRegionIsAsLoudAsItsValue) {
     EXPECT_LT(worst, 0.01);
 }
 
-TEST(SurfaceMapTest, ClassesAreAsLoudAsTheirMaterials) {
+TEST(SurfaceMapTest, ClassesHaveTheLevelsOfTheirMaterials) {
     SurfaceMap map = mapOf(2, 64, {}, false);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 2; ++x) map.classes.push_back(y < 32 ? 0 : SurfaceMap::no_class);
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -25)};
-    geometry->materials.back().reflection = 0.5;  // a law of its own, with a lobe
+    geometry->materials.back().reflection = 0.5;  // a separate law with a lobe
     geometry->materials.back().roughness_slope = 0.3f;
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
     auto other = std::make_shared<types::Geometry>(*plainGround());
@@ -136,7 +136,7 @@ TEST(SurfaceMapTest, ClassesAreAsLoudAsTheirMaterials) {
     EXPECT_NEAR(border / border_expected, 1, 0.1) << "half of either, but for the two texels between them";
 }
 
-TEST(SurfaceMapTest, WhatIsFinerThanASampleCountsByItsMean) {
+TEST(SurfaceMapTest, DetailFinerThanASampleCountsByItsMean) {
     SurfaceMap strengths = mapOf(1024, 1024), classes = mapOf(1024, 1024);
     for (int y = 0; y < 1024; ++y)
         for (int x = 0; x < 1024; ++x) {
@@ -155,9 +155,8 @@ TEST(SurfaceMapTest, WhatIsFinerThanASampleCountsByItsMean) {
     EXPECT_NEAR(sum(binsOf(of_classes, config)) / mean, 1, 0.01);
 }
 
-/** A board of random places, sizes, turns and mirrorings, painted in blocks, against as many boards as it has blocks.
- */
-TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
+/** A board of random place, size, rotation and mirroring, painted in blocks, compared with a board per block. */
+TEST(SurfaceMapTest, APaintedBoardEchoesAsBoardsOfItsBlocks) {
     std::mt19937 random(11);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     for (int trial = 0; trial < 20; ++trial) {
@@ -210,7 +209,7 @@ TEST(SurfaceMapTest, APaintedBoardSoundsAsBoardsOfItsBlocks) {
     }
 }
 
-TEST(SurfaceMapTest, FieldsOfScatterersAreAsMuchWeaker) {
+TEST(SurfaceMapTest, FieldsOfScatterersAreWeakerByTheSameFactor) {
     SonarConfig config = fanOver(8);
     config.frequency_khz = 400;
     config.speckle = coherent();
@@ -226,7 +225,7 @@ TEST(SurfaceMapTest, FieldsOfScatterersAreAsMuchWeaker) {
     EXPECT_NEAR(sum(binsOf(geometry, config)) / mean, 1, 0.1);
 }
 
-TEST(SurfaceMapTest, TheWaterBeforeASilentFloorIsHeardAsBefore) {
+TEST(SurfaceMapTest, ASilentFloorDoesNotChangeTheWaterBeforeIt) {
     SonarConfig config = fanOver(8);
     config.volume = {{{}, {}, -50}};
     SurfaceMap half = mapOf(2, 1, {}, false);
@@ -262,7 +261,7 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
         EXPECT_NEAR(plain.object[k] < 0 ? 0 : mapped.elevation[k] - plain.elevation[k], 0, 0.02) << k;
 }
 
-TEST(SurfaceMapTest, WaysByMirrorsAreMappedAsWell) {
+TEST(SurfaceMapTest, MapsApplyToPathsByMirrorsToo) {
     SonarConfig config = fanOver(8);
     config.multipath.emplace().surface.emplace();
     const auto ghostsOf = [&](const types::GeometryPtr& geometry) {
@@ -295,7 +294,7 @@ TEST(SurfaceMapTest, ExtremeCoordinatesAndValuesHaveFiniteEchoes) {
         }
 }
 
-TEST(SurfaceMapTest, WhereTheSceneIsDrawnTheMapIsLeftOutAloud) {
+TEST(SurfaceMapTest, TheRasterisedPathOmitsMapsWithANotice) {
     SonarConfig config = fanOver();
     config.visibility = Visibility::Gl;
     config.device = "software";
@@ -310,7 +309,7 @@ TEST(SurfaceMapTest, WhereTheSceneIsDrawnTheMapIsLeftOutAloud) {
     EXPECT_EQ(without.leftOut("surface maps")->reason, Reason::NoneInScene);
 }
 
-TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanWhateverItsSize) {
+TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanAtAnySize) {
     std::mt19937 random(3);
     for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {3, 7}, {64, 64}, {100, 1}, {37, 53}}) {
         SurfaceMap map = mapOf(width, height);

@@ -1,5 +1,4 @@
-// Smooth bodies have their target strengths whatever the mesh, the frequency, the range and the aspect
-// (ACOUSTICS.md 3.6).
+// Smooth bodies have their target strengths with any mesh and frequency, at any range and aspect (ACOUSTICS.md 3.6).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,14 +23,14 @@ using study::Target;
 constexpr double tolerance = 0.5;  ///< [dB]
 const std::array names = {"ellipsoid", "cylinder", "tilted cylinder", "plate", "cone", "hull"};
 
-/** A random meeting with a random body of a kind. */
+/** A random sonar and a random body of a kind. */
 class Meetings {
 public:
     explicit Meetings(unsigned seed) : random_(seed) {}
 
     Encounter met;
     Target next(size_t kind) {
-        // What is tilted and seen from where it is far at more kHz is fainter than half a quantum of the sums.
+        // A tilted body far away at more kHz is weaker than half a quantum of the sums.
         met.frequency_khz = between(100, kind == 2 ? 600 : 3000);
         met.around = static_cast<int>(between(32, 2048));
         met.turn = uniform(0, 1);
@@ -53,7 +52,7 @@ public:
 private:
     double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
     double between(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-    /** Near or far: not where a length interferes by itself. */
+    /** Near or far, but not at ranges where a length interferes with itself. */
     void meet(double length, bool near) {
         const double number = near ? between(10, 60) : between(0.05, 0.2);
         met.range = length * length / (met.wavelength() * number);
@@ -61,8 +60,8 @@ private:
     std::mt19937 random_;
 };
 
-/** Energies of samples are sums over facets, so that a body of few facets and bent unevenly is off by more than most.
- */
+/** Energies of samples are sums over facets. A body with few facets and uneven curvature therefore has a larger
+ *  error. */
 TEST(TargetStrengthTest, SmoothBodiesHaveTheirTargetStrengthInAnyMesh) {
     constexpr unsigned trials_each = 20, outside_each = 4;
     for (size_t kind = 0; kind < names.size(); ++kind) {
@@ -87,7 +86,7 @@ TEST(TargetStrengthTest, SmoothBodiesHaveTheirTargetStrengthInAnyMesh) {
     }
 }
 
-TEST(TargetStrengthTest, APipeBroadsideIsTheSameByRaysAndDrawn) {
+TEST(TargetStrengthTest, APipeBroadsideIsTheSameRayTracedAndRasterised) {
     const Encounter met{300, 1000, 64, 0.3};
     const Target target = study::cylinderTarget(met, 0.1, 1, 0);
     EXPECT_NEAR(target.strength_db, 10, 0.1);
@@ -109,7 +108,7 @@ TEST(TargetStrengthTest, AFacetSpreadsALobeAcrossACylinderAndNotAlongIt) {
     }
 }
 
-TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeGoesWithItsScale) {
+TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeFollowsItsScale) {
     const types::Mesh plate = study::quad({0, 0, 0}, {2, 0, 0}, {0, 1, 0});
     for (const double scale : {1.0, 2.0})
         for (const FacetRecord& facet : facetLobes(plate, glm::dmat3(scale), 0.01)) {
@@ -126,7 +125,7 @@ TEST(TargetStrengthTest, ACubesFacesStayFlatAndAPlatesLobeGoesWithItsScale) {
     }
 }
 
-TEST(TargetStrengthTest, OnASphereBothDirectionsAreAlikeAndFinerMeshesAddLess) {
+TEST(TargetStrengthTest, BothDirectionsOnASphereAreEqualAndFinerMeshesAddLess) {
     for (const int rings : {32, 256}) {
         const double step = std::numbers::pi / rings;
         const std::vector<FacetRecord> ball = facetLobes(study::sphere(0.1, rings), glm::dmat3(1), 0.005);

@@ -1,4 +1,5 @@
-// Ways to point targets by mirrors against all sequences of mirror triangles, each tried (ACOUSTICS.md 5.23).
+// Paths to point targets by mirrors, compared with a search through all sequences of mirror triangles
+// (ACOUSTICS.md 5.23).
 #include <gmock/gmock.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -66,7 +67,7 @@ types::Mesh tank(uint32_t n, Generator& random, double rough = 0) {
                    cells(corner, ahead, aside, n, random, rough)});
 }
 
-/** Triangles anywhere, and some without area. */
+/** Triangles at random places, some without area. */
 types::Mesh strewn(Generator& random, int count, double size) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -83,7 +84,7 @@ types::Mesh strewn(Generator& random, int count, double size) {
     return test::meshOf(positions, indices);
 }
 
-/** Objects of one mirror material each. With `obstacle` the last is no mirror. */
+/** Objects with one mirror material each. With `obstacle` the last is no mirror. */
 types::GeometryPtr mirrors(std::vector<types::Mesh> meshes, std::vector<glm::dmat4> places = {},
                            bool obstacle = false) {
     auto geometry = std::make_shared<types::Geometry>();
@@ -111,7 +112,7 @@ struct Case {
     const char* name;
     types::GeometryPtr geometry;
     double size;       ///< Half the box of sonars and targets about the origin [m].
-    double tolerance;  ///< 0: the same bit for bit [m].
+    double tolerance;  ///< Max difference; 0: the same bit for bit [m].
     bool surface = false;
     bool moving = false;  ///< The second object has a new place in most pings.
 };
@@ -125,7 +126,7 @@ void expectSame(const TargetWay& way, const TargetWay& tried, double tolerance) 
     EXPECT_NEAR(way.sine_grazing, tried.sine_grazing, tolerance);
 }
 
-/** Returns the number of ways by two mirrors. */
+/** Returns the number of paths by two mirrors. */
 size_t expectAsTried(const Case& one, Generator& random) {
     TargetWays ways(bouncingSonar(one.surface), *one.geometry);
     size_t twice = 0;
@@ -150,7 +151,7 @@ size_t expectAsTried(const Case& one, Generator& random) {
     return twice;
 }
 
-TEST(TargetWaysTest, AreThoseOfAllSequencesOfTriangles) {
+TEST(TargetWaysTest, MatchAllSequencesOfTriangles) {
     Generator random(11);
     const glm::dmat4 turned = glm::rotate(glm::dmat4(1), 0.3, glm::dvec3(1, 2, 3));
     const Case cases[] = {
@@ -187,10 +188,10 @@ types::Mesh wallWithTJunction() {
 
 struct Wall {
     const char* name;
-    std::vector<types::Mesh> meshes;  ///< An object each.
+    std::vector<types::Mesh> meshes;  ///< One per object.
 };
 
-TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
+TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOnePath) {
     Generator random(3);
     types::Mesh half = halvedWall(), other_half = half;
     half.indices.resize(3);
@@ -215,7 +216,7 @@ TEST(TargetWaysTest, AMirrorPointOnACommonEdgeIsOneWay) {
         }
 }
 
-TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
+TEST(TargetWaysTest, TheIntersectionOfTwoMirrorsIsOnePathByBoth) {
     Generator random(5);
     const types::Mesh corner =
         joined({test::quad({4, -4, -4}, {0, 8, 0}, {0, 0, 8}), test::quad({-4, 4, -4}, {8, 0, 0}, {0, 0, 8})});
@@ -233,7 +234,7 @@ TEST(TargetWaysTest, TheLineInWhichTwoMirrorsMeetIsOneWayByBoth) {
     }
 }
 
-TEST(TargetWaysTest, ATargetOnAMirrorHasNoWayByIt) {
+TEST(TargetWaysTest, ATargetOnAMirrorHasNoPathByIt) {
     Generator random(6);
     for (int turn = 0; turn < 100; ++turn) {
         const glm::dmat4 place = uniformPlace(random, 20);

@@ -14,7 +14,7 @@ TEST(ThreadPoolTest, EachPartIsDoneOnceAndBeforeRunReturns) {
         ThreadPool pool(threads);
         EXPECT_EQ(pool.size(), threads);
         for (int job = 0; job < 500; ++job) {
-            std::vector<int> done(static_cast<size_t>(threads));  // not atomic: run() is what orders them
+            std::vector<int> done(static_cast<size_t>(threads));  // not atomic: run() orders the accesses
             pool.run([&](int part, int parts) {
                 EXPECT_EQ(parts, threads);
                 done[static_cast<size_t>(part)] += job + 1;
@@ -24,7 +24,7 @@ TEST(ThreadPoolTest, EachPartIsDoneOnceAndBeforeRunReturns) {
     }
 }
 
-TEST(ThreadPoolTest, WhoeverIsThereSharesAJob) {
+TEST(ThreadPoolTest, AvailableThreadsShareAJob) {
     ThreadPool pool(4);
     for (int job = 0; job < 500; ++job) {
         std::atomic<int> next = 0;
@@ -36,7 +36,7 @@ TEST(ThreadPoolTest, WhoeverIsThereSharesAJob) {
     }
 }
 
-TEST(ThreadPoolTest, WhatAPartThrowsIsThrownAndThePoolGoesOn) {
+TEST(ThreadPoolTest, RethrowsAnExceptionOfAPartAndContinues) {
     ThreadPool pool(3);
     for (int job = 0; job < 100; ++job) {
         EXPECT_THROW(pool.run([&](int part, int) {

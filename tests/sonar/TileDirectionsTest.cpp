@@ -1,4 +1,4 @@
-// Tables of directions against the view that they are made of, for random fans and strips.
+// Tables of directions, compared with the view that they are made from, for random fans and strips.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-TEST(TileDirectionsTest, EachSampleOfEachTileLooksWhereItsCellIs) {
+TEST(TileDirectionsTest, EachSampleOfEachTileLooksAtItsCell) {
     std::mt19937 random(3);
     const auto upTo = [&](int max) { return std::uniform_int_distribution<int>(1, max)(random); };
     for (int run = 0; run < 40; ++run) {

@@ -1,5 +1,5 @@
 #pragma once
-// Ways to a point by mirrors, found without any search structure.
+// Paths to a point by mirrors, found without a search structure.
 #include <algorithm>
 #include <array>
 #include <glm/gtc/quaternion.hpp>

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t unit = 1u << 30;
 
-/** One beam of three bins as it is told. */
+/** Returns the truth of one beam of three bins. */
 types::SonarTruth told(const TruthTable& table) {
     types::Sonar ping;
     ping.beam_count = 1;
@@ -23,7 +23,7 @@ types::SonarTruth told(const TruthTable& table) {
     return truth;
 }
 
-TEST(TruthTableTest, ABinIsOfTheObjectThatReturnsMostAndAnglesAreItsMeans) {
+TEST(TruthTableTest, ABinHasTheObjectWithMostEnergyAndItsMeanAngles) {
     TruthTable table(1, 3);
     table.add(0, 1, ObjectEcho::of(unit, 0.2, 0.5, 7, 1));
     table.add(0, 1, ObjectEcho::of(4 * unit, -1, 1, 3, 4));
@@ -37,7 +37,7 @@ TEST(TruthTableTest, ABinIsOfTheObjectThatReturnsMostAndAnglesAreItsMeans) {
     EXPECT_TRUE(std::isnan(truth.elevation[0]) && std::isnan(truth.grazing[2]));
 }
 
-TEST(TruthTableTest, AnglesAreThoseOfTheirSines) {
+TEST(TruthTableTest, AnglesAreRecoveredFromTheirSines) {
     double largest = 0;
     for (double angle = -1.4; angle <= 1.4; angle += 0.001) {
         TruthTable table(1, 3);
@@ -50,7 +50,7 @@ TEST(TruthTableTest, AnglesAreThoseOfTheirSines) {
     RecordProperty("largest_rad", std::to_string(largest));
 }
 
-TEST(TruthTableTest, WhatIsNearerThanTheLastEchoAndSilentLiesInShadow) {
+TEST(TruthTableTest, SilentBinsNearerThanTheLastEchoAreInShadow) {
     TruthTable table(1, 3);
     table.add(0, 1, ObjectEcho::of(unit, 0, 1, 0, 1));
     EXPECT_THAT(told(table).shadow, testing::ElementsAre(1, 0, 0));
@@ -58,8 +58,8 @@ TEST(TruthTableTest, WhatIsNearerThanTheLastEchoAndSilentLiesInShadow) {
     EXPECT_THAT(told(table).shadow, testing::Each(0));
 }
 
-/** Seven objects in one bin, object k with (k + 1) units: four are told apart, whichever comes first. */
-TEST(TruthTableTest, OfManyObjectsThoseOfTheLowestIndexAreToldApartAndAllEnergyCounts) {
+/** Seven objects in one bin, object k with (k + 1) units: four are distinguished, in any order. */
+TEST(TruthTableTest, DistinguishesTheObjectsOfLowestIndexAndCountsAllEnergy) {
     std::vector<uint32_t> order = {0, 1, 2, 3, 4, 5, 6};
     for (int shuffle = 0; shuffle < 200; ++shuffle) {
         TruthTable table(1, 3), second(1, 3);

@@ -1,4 +1,4 @@
-// Rays on the processor: they meet what is drawn, and their pings are those of the closed forms.
+// Rays on the processor: they meet the rasterised triangles, and their pings match the closed forms.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -29,11 +29,11 @@ SonarConfig seenFan(Visibility visibility) {
     return config;
 }
 
-/** An object and one of its triangles; no object: nothing. */
+/** An object and one of its triangles; no object for a miss. */
 using SeenPart = std::pair<uint32_t, uint32_t>;
 constexpr SeenPart nothing{0xffffffff, 0};
 
-/** What each pixel of the frusta shows, drawn. */
+/** Returns the rasterised triangle in each pixel of the frusta. */
 std::vector<SeenPart> seenIn(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     gpu::EglContext context("software");
     Culler culler(*snapshot.geometry, {.range_min = 0, .reach = {1e4}, .draw_all = true});
@@ -56,7 +56,7 @@ std::vector<SeenPart> seenIn(const types::Snapshot& snapshot, const std::vector<
     return seen;
 }
 
-/** What rays through the same pixels' middles meet. */
+/** Returns the triangles that rays through the centres of the same pixels meet. */
 std::vector<SeenPart> met(const types::Snapshot& snapshot, const std::vector<ViewFrustum>& frusta) {
     RayVisibility visibility(*snapshot.geometry);
     visibility.place(snapshot);
@@ -82,8 +82,8 @@ std::vector<SeenPart> met(const types::Snapshot& snapshot, const std::vector<Vie
     return seen;
 }
 
-/** Without normal maps, which the two look up in different ways, and with a thick plate: one that is seen edge-on in a
- *  pixel or two sounds as its samples happen to lie. */
+/** Returns the scene without normal maps, which the two paths look up differently, and with a thick plate. The echo of
+ *  a thin plate edge-on in one or two pixels would depend on the places of samples. */
 std::shared_ptr<types::Geometry> plainSurfaces() {
     auto geometry = test::surfaces();
     geometry->materials[1].normal_map = -1;
@@ -99,7 +99,7 @@ types::Snapshot movedScene() {
     return snapshot;
 }
 
-/** The scene far from the origin of the world, as in UTM coordinates. */
+/** Returns the scene far from the origin of the world, as in UTM coordinates. */
 types::Snapshot farScene() {
     const glm::dvec3 away(463'000, 5'937'000, 0);
     auto geometry = plainSurfaces();
@@ -119,7 +119,7 @@ std::vector<Scene> seenScenes() {
             {"far", farScene()}};
 }
 
-/** Relative L2 of their difference. */
+/** Returns the relative L2 of the difference. */
 double relativeDifference(const types::Sonar& a, const types::Sonar& b) {
     double error = 0;
     for (size_t i = 0; i < a.bins.size(); ++i) error += std::pow(double{a.bins[i]} - b.bins[i], 2);
@@ -128,7 +128,7 @@ double relativeDifference(const types::Sonar& a, const types::Sonar& b) {
 
 }  // namespace
 
-TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
+TEST(VisibilityTest, RaysMeetTheRasterisedTriangles) {
     const SonarConfig config = seenFan(Visibility::Gl);
     const std::vector<ViewFrustum> frusta = makeFrusta(config, makeBeams(config));
     for (const Scene& scene : seenScenes()) {
@@ -144,7 +144,7 @@ TEST(VisibilityTest, RaysMeetTheTrianglesThatAreDrawn) {
     }
 }
 
-TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
+TEST(VisibilityTest, RayTracedPingsMatchRasterisedPingsUpToTheSampling) {
     for (const Scene& scene : seenScenes())
         for (Model model : {Model::Physical, Model::Cerqueira2017})
             for (BeamGeometry beams : {BeamGeometry::Planar, BeamGeometry::Conical}) {
@@ -152,7 +152,7 @@ TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
                 gl.quality.rows = cpu.quality.rows = 512;
                 gl.model = cpu.model = model;
                 gl.beam_geometry = cpu.beam_geometry = beams;
-                // In a mean, bins that few samples touch count like any other.
+                // In a mean, bins with few samples count like other bins.
                 EXPECT_LT(relativeDifference(pingOf(cpu, scene.snapshot), pingOf(gl, scene.snapshot)),
                           model == Model::Physical ? 0.03 : 0.16)
                     << scene.name << (model == Model::Physical ? ", physical" : ", cerqueira2017")
@@ -160,10 +160,12 @@ TEST(VisibilityTest, PingsAreThoseThatAreDrawnUpToTheSampling) {
             }
     SonarConfig other = seenFan(Visibility::Cpu);
     other.beam_height_deg = 40;
-    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot), pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)), 0.03);
+    EXPECT_GT(relativeDifference(pingOf(other, seenScenes()[0].snapshot),
+                                 pingOf(seenFan(Visibility::Gl), seenScenes()[0].snapshot)),
+              0.03);
 }
 
-TEST(VisibilityTest, NormalMapsBendBothAlike) {
+TEST(VisibilityTest, NormalMapsHaveTheSameEffectInBoth) {
     const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
     SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
     const types::Sonar drawn_ping = pingOf(gl, snapshot), cast_ping = pingOf(cpu, snapshot);
@@ -172,7 +174,7 @@ TEST(VisibilityTest, NormalMapsBendBothAlike) {
     EXPECT_GT(relativeDifference(flat, drawn_ping), 0.06);
 }
 
-TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
+TEST(VisibilityTest, PingsHaveTheSameBytesForAnyNumberOfThreads) {
     for (int columns : {1, 2, 3, 8, 512}) {  // the last: beams that several threads share
         SonarConfig config = seenFan(Visibility::Cpu);
         config.quality.columns_per_beam = columns;
@@ -185,7 +187,7 @@ TEST(VisibilityTest, TheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-TEST(VisibilityTest, WhereASonarHasBeenBeforeHasNoPartInItsPing) {
+TEST(VisibilityTest, APingDoesNotDependOnEarlierPlacesOfTheSonar) {
     const types::GeometryPtr geometry = plainSurfaces();
     const types::Snapshot last = test::snapshotOf(geometry, {0.3, 0.2, 0.1}, 0.1, 0.15, 0.05);
     SonarRenderer renderer(seenFan(Visibility::Cpu), geometry);
@@ -211,7 +213,7 @@ TEST(VisibilityTest, AnObjectMovesFromPingToPing) {
     EXPECT_GT(relativeDifference(after, before), 0.05);
 }
 
-TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
+TEST(VisibilityTest, APingDoesNotDependOnEarlierPings) {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(1);
     geometry->meshes = {test::sphere(0.4f, 40)};
@@ -219,7 +221,7 @@ TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
         geometry->objects.push_back({"ball", 0, glm::translate(glm::dmat4(1), {x, 1, -0.5})});
     const SonarConfig config = seenFan(Visibility::Cpu);
     SonarRenderer renderer(config, geometry);
-    // Places to either side of where the tree's origin changes, and to and fro.
+    // Places on both sides of a change of the tree's origin, back and forth.
     for (const double x : {0.3, 255.9, 256.1, 255.95, 256.2, 700.0, 0.3}) {
         const types::Snapshot snapshot = test::snapshotOf(geometry, {x, 0, 0}, 0.1, 0.15);
         types::Sonar ping;
@@ -229,8 +231,8 @@ TEST(VisibilityTest, APingIsTheSameWhateverCameBeforeIt) {
     }
 }
 
-TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
-    // 70 balls of 65,000 triangles are more than are copied.
+TEST(VisibilityTest, InstancesOfLargeMeshesEchoTheSame) {
+    // 70 balls of 65,000 triangles are too many to be copied.
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(1);
     geometry->meshes = {test::sphere(0.4f, 180), test::ground(-3)};
@@ -240,11 +242,12 @@ TEST(VisibilityTest, ManyPlacingsOfLargeMeshesAreInstancesThatSoundTheSame) {
     geometry->objects.push_back({"ground", 1, glm::dmat4(1)});
     ASSERT_GT(geometry->triangleCount(), 4'000'000u);
     const auto snapshot = test::snapshotOf(geometry, {0, 0, 0}, 0, 0.15);
-    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)), 0.03);
+    EXPECT_LT(relativeDifference(pingOf(seenFan(Visibility::Cpu), snapshot), pingOf(seenFan(Visibility::Gl), snapshot)),
+              0.03);
 }
 
 TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
-    // One wide beam straight down on a flat bottom, as an altimeter has it: a plane that faces the sonar.
+    // One wide beam straight down on a flat bottom, as of an altimeter: a plane that faces the sonar.
     for (double height_deg : {120.0, 170.0, 180.0}) {
         SonarConfig config = seenFan(Visibility::Cpu);
         config.beam_count = 1;
@@ -261,7 +264,7 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
     }
 }
 
-TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
+TEST(VisibilityTest, RejectsATallImageThatRaysAccept) {
     SonarConfig config = seenFan(Visibility::Gl);
     config.beam_height_deg = 170;
     types::Diagnostics diagnostics;
@@ -275,7 +278,7 @@ TEST(VisibilityTest, ATallImageIsRefusedAndRaysTakeIt) {
     EXPECT_THAT(diagnostics, testing::IsEmpty());
 }
 
-TEST(VisibilityTest, WhatIsNearerThanTheBlankingIsSilentAndCastsItsShadow) {
+TEST(VisibilityTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     const auto snapshot = test::snapshotOf(test::sceneOf(
         {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
     for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {

@@ -1,5 +1,5 @@
-// Pings in water that scatters sound back, against closed forms (ACOUSTICS.md 3.9). Every form stands beside a
-// deliberately wrong one, which must fail by the same measure.
+// Pings in water that scatters sound back, compared with closed forms (ACOUSTICS.md 3.9). Each form has a deliberately
+// wrong variant, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include "components/sonar/SonarRenderer.hpp"
@@ -38,14 +38,14 @@ SonarConfig sonarIn(std::vector<VolumeLayer> volume) {
     return config;
 }
 
-/** Of a beam: the water's strength times the solid angle that hears it at a range, over the range squared. */
+/** Intensity of a beam: the water's strength times the solid angle of the beam at a range, over the range squared. */
 test::Form waterOf(const std::function<double(double)>& solid_angle) {
     return test::between(1, 1e9, [=](double near, double far) {
         return test::integral(near, far, [=](double r) { return strength * solid_angle(r) / (r * r); });
     });
 }
 
-/** Ground that gives nothing back and hides the water. */
+/** Ground without an echo that hides the water. */
 types::Snapshot overSilentGround(double height) {
     return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-height))}, -200));
 }
@@ -59,7 +59,7 @@ TEST(VolumePingTest, ABottomHidesTheWaterBelowIt) {
         expectForm(pingOf(way, overSilentGround(height)), right, open);
 }
 
-TEST(VolumePingTest, OpenWaterIsHeardByThePatternInElevation) {
+TEST(VolumePingTest, OpenWaterEchoesByThePatternInElevation) {
     SonarConfig config = sonarIn({layer(-70)});
     acoustics::BeamLaw law;
     law.weighting = acoustics::Weighting::Gaussian;
@@ -74,7 +74,7 @@ TEST(VolumePingTest, OpenWaterIsHeardByThePatternInElevation) {
     for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, far), right, box);
 }
 
-TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
+TEST(VolumePingTest, ALayerEchoesAtItsRanges) {
     // Between 1 and 2 m below a level sonar that is 4 m below the surface, over ground at 3 m below it.
     const double delta = radians(10), top = 1, bottom = 2;
     auto snapshot = overSilentGround(3);
@@ -88,7 +88,7 @@ TEST(VolumePingTest, ALayerIsHeardWhereItLies) {
     for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, snapshot), right, deeper);
 }
 
-TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {
+TEST(VolumePingTest, LayersThatTogetherCoverAllDepthsEqualOneLayer) {
     const auto snapshot = overSilentGround(3);
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)}))) {
         SonarConfig split = way;
@@ -99,13 +99,13 @@ TEST(VolumePingTest, LayersThatShareAllDepthsAreOneWater) {
     }
 }
 
-TEST(VolumePingTest, WhatIsNearerThanTheBlankingHidesAllBehindIt) {
+TEST(VolumePingTest, ObjectsNearerThanTheBlankingHideTheWaterBehind) {
     const auto plate = test::snapshotOf(test::sceneOf({test::wall(0.5)}));
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
         EXPECT_THAT(pingOf(way, plate).bins, testing::Each(testing::Lt(1e-14f)));
 }
 
-TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
+TEST(VolumePingTest, WaterFarBeyondTheSceneEchoesWithNothingInView) {
     const auto behind = test::snapshotOf(test::sceneOf({test::wall(-5)}));
     const auto right = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
     for (const SonarConfig& way : everyWay(sonarIn({layer(-70)})))
@@ -114,7 +114,7 @@ TEST(VolumePingTest, WaterFarBeyondTheSceneIsHeardWithNothingInView) {
         expectForm(pingOf(way, behind), right, test::times(1.02, right));
 }
 
-TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
+TEST(VolumePingTest, WaterWithoutScatteringChangesNoBin) {
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-3)}));
     for (const SonarConfig& way : everyWay(clearSonar())) {
         SonarConfig silent = way, layered = way;
@@ -125,7 +125,7 @@ TEST(VolumePingTest, WaterThatScattersNothingLeavesEveryBinAsItIs) {
     }
 }
 
-/** Sums of all beams, after tiles in which no ray meets anything are deposited for the first `beams` of them. */
+/** Returns the sums of all beams, after tiles without any hit are deposited for the first `beams` beams. */
 std::vector<uint64_t> sumsOfMisses(const RenderPlan& plan, const types::Geometry& geometry, int beams) {
     const PingEffects effects(plan, geometry);
     const EchoRules rules = makeEchoRules(plan, effects);

@@ -1,4 +1,4 @@
-// Ringing of thick walls as returns apart in range (ACOUSTICS.md 3.10, 5.26).
+// Ringing of thick walls as separate returns in range (ACOUSTICS.md 3.10, 5.26).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     EXPECT_LE(share, 1);
 }
 
-TEST(WallReturnsTest, WhatIsBehindComesLateAndRingsToo) {
+TEST(WallReturnsTest, ObjectsBehindAreLateAndRingToo) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
     const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, slab)));
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(40)}, 0)));
@@ -96,8 +96,8 @@ TEST(WallReturnsTest, WhatIsBehindComesLateAndRingsToo) {
     EXPECT_EQ(energyOf(both, 0, 38, 39.3), 0);
 }
 
-/** The far side of a thick tube is met at its inner face, which is its thickness nearer. */
-TEST(WallReturnsTest, TheFarWallOfABodyIsMetFromWithin) {
+/** The far side of a thick tube echoes at its inner face, which is nearer by the thickness. */
+TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
     const types::Shell shell{0.6, 2500, 2000, 0, 1e-3, false};
     const SonarConfig config = wallSonar(1, 1, 1, 300);
     const auto ping = pingOf(config, snapshotOf(shellsOf({test::sphere(4, 256)}, 1, shell, {{10, 0, 0}})));
@@ -112,8 +112,8 @@ TEST(WallReturnsTest, TheFarWallOfABodyIsMetFromWithin) {
     EXPECT_EQ(energyOf(ping, 0, 9, far - 0.2), 0);
 }
 
-/** A wall whose returns are less than half a bin apart, or less than half of what the pulse resolves, has one. */
-TEST(WallReturnsTest, ReturnsWithinHalfABinAreOneByTheResponseAtTheFrequency) {
+/** A wall whose returns are less than half a bin, or half of the pulse's resolution, apart has one return. */
+TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
         types::Shell shell = slab;
         shell.thickness = 2 * spacing;
@@ -131,8 +131,8 @@ TEST(WallReturnsTest, ReturnsWithinHalfABinAreOneByTheResponseAtTheFrequency) {
     }
 }
 
-/** A scene with a wall that rings and one without: the beams that do not meet it are the same bit for bit. */
-TEST(WallReturnsTest, WhatMeetsNoWallThatRingsIsTheSameBitForBit) {
+/** Scenes with and without a ringing wall: the beams that do not meet it are the same bit for bit. */
+TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
     const types::Mesh left = test::quad({10, 1, -100}, {0, 100, 0}, {0, 0, 200}),
                       right = test::quad({10, -101, -100}, {0, 100, 0}, {0, 0, 200});
     SonarConfig config = wallSonar(60, 20, 16);
@@ -150,7 +150,7 @@ TEST(WallReturnsTest, WhatMeetsNoWallThatRingsIsTheSameBitForBit) {
     EXPECT_TRUE(differs);
 }
 
-TEST(WallReturnsTest, WithoutWallsToGoThroughAllReturnsAreInTheFirst) {
+TEST(WallReturnsTest, AllReturnsAreInTheFirstIfMaxWallsIsZero) {
     SonarConfig config = wallSonar(2, 0.5, 1);
     config.max_walls = 0;
     const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, slab)));
@@ -195,7 +195,7 @@ TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
     }
 }
 
-TEST(WallReturnsTest, TheTruthNamesWhatRings) {
+TEST(WallReturnsTest, TheTruthNamesTheRingingWall) {
     const SonarConfig config = wallSonar(8, 2, 4, 300);
     const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, slab));
     SonarRenderer renderer(config, snapshot.geometry);
@@ -218,8 +218,8 @@ TEST(WallReturnsTest, TheTruthNamesWhatRings) {
     EXPECT_GT(rung, 4 * 4);
 }
 
-/** Any plate at any angle to any sonar: finite, and no more than all the energy. */
-TEST(WallReturnsTest, RandomPlatesGiveBackNoMoreThanARigidOne) {
+/** Any plate at any angle to any sonar gives finite echoes with at most the energy of the pulse. */
+TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
     std::mt19937 random(7);
     const auto between = [&](double low, double high) {
         return std::exp(std::uniform_real_distribution(std::log(low), std::log(high))(random));

@@ -9,7 +9,7 @@
 
 namespace insonify::sonar {
 
-/** Eight beams of 10 deg, a hundred bins of 0.15 m, drawn in software. */
+/** Eight beams of 10 deg, a hundred bins of 0.15 m, rasterised in software. */
 inline SonarConfig smallSonar() {
     SonarConfig config;
     config.range = 15;
@@ -44,7 +44,7 @@ inline types::Snapshot facingWall(float distance) {
     return snapshot;
 }
 
-/** Start of the first bin of a beam that holds an echo [m]; infinite when none does. */
+/** Returns the start of the first bin of a beam with an echo [m]; infinite without an echo. */
 inline double firstEcho(const types::Sonar& ping, uint32_t beam) {
     for (uint32_t k = 0; k < ping.bin_count; ++k)
         if (ping.bins[beam * ping.bin_count + k] > 0) return ping.binStart(k);

@@ -1,4 +1,4 @@
-// Ways by mirrors that go through thin walls (ACOUSTICS.md 5.23, 5.26).
+// Paths by mirrors that pass through thin walls (ACOUSTICS.md 5.23, 5.26).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ SonarConfig mirroring(double height_deg) {
     config.multipath.emplace().bounces = 1;
     return config;
 }
-/** Energy of the ways by mirrors alone. */
+/** Returns the energy of the paths by mirrors only. */
 double energyByMirrors(SonarConfig config, const types::GeometryPtr& scene, double pitch, double from, double to) {
     const double all = energyOf(pingOf(config, snapshotOf(scene, {}, 0, pitch)), 0, from, to);
     config.multipath.reset();
@@ -47,7 +47,7 @@ double energyByMirrors(SonarConfig config, const types::GeometryPtr& scene, doub
 }
 
 /** Out and back by the mirror through a screen before it, or behind it, at 35 deg. */
-TEST(WallWaysTest, AWayByAMirrorIsWeakenedByEachWallOfItsLegs) {
+TEST(WallWaysTest, APathByAMirrorIsWeakenedByEachWallOfItsLegs) {
     const double pitch = 35 * std::numbers::pi / 180, cosine = std::cos(pitch);
     const SonarConfig config = mirroring(2);
     const double open = energyByMirrors(config, withMirror({}), pitch, 11, 14);
@@ -61,7 +61,7 @@ TEST(WallWaysTest, AWayByAMirrorIsWeakenedByEachWallOfItsLegs) {
     }
 }
 
-/** Sound that comes directly and goes by the mirror, and all others, are weakened by the walls of both legs. */
+/** All paths, including those with one direct leg and one leg by the mirror, are weakened by the walls of both legs. */
 TEST(WallWaysTest, TheDirectLegIsWeakenedToo) {
     const SonarConfig config = mirroring(85);
     const auto share = [&](const types::Mesh& mesh) {
@@ -79,7 +79,7 @@ TEST(WallWaysTest, TheDirectLegIsWeakenedToo) {
     EXPECT_LT(direct, 1);
 }
 
-TEST(WallWaysTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
+TEST(WallWaysTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
     types::Shell air = thin_screen;
     air.has_air = true;
     for (const types::Shell& shell : {air, types::Shell{0.1, 1300, 900, 0, 0.2, false}}) {
@@ -90,8 +90,8 @@ TEST(WallWaysTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
     }
 }
 
-/** The water surface is a mirror above a tank of a shell: the way up and down its walls. */
-TEST(WallWaysTest, TheWaterSurfaceIsSeenThroughAWall) {
+/** The water surface is a mirror above a tank made of a shell; the path crosses its walls up and down. */
+TEST(WallWaysTest, TheWaterSurfaceIsVisibleThroughAWall) {
     SonarConfig config = wallSonar(2, 2, 1);
     config.multipath.emplace().surface.emplace();
     const auto level = [&](const types::GeometryPtr& scene) {

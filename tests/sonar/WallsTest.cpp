@@ -1,4 +1,4 @@
-// Sound that goes through thin walls, against the sonar equation with the plate's own transmission (ACOUSTICS.md 5.26).
+// Sound through thin walls, compared with the sonar equation and the plate's transmission (ACOUSTICS.md 5.26).
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ using test::snapshotOf;
 constexpr types::Shell sheet{0.0005, 1190, 2700, 1340, 5e-3, false};  // no resonance is narrower than a sample
 constexpr types::Shell rubber{0.1, 1300, 900, 0, 0.2, false};
 
-/** Share of the energy that goes through and back. */
+/** Returns the share of the energy that passes through and back. */
 double passed(const types::Shell& shell, double cosine) {
     return std::pow(std::norm(shellResponse(shell, cosine).transmitted), 2);
 }
@@ -50,12 +50,12 @@ TEST(WallsTest, TwoPlatesHaveTheirReturnsAtTheirRangesAndTheSecondIsWeakenedBoth
     }
 }
 
-TEST(WallsTest, AWallBeforeABottomWeakensTheBottomBehindItAlone) {
+TEST(WallsTest, AWallWeakensOnlyTheBottomBehindIt) {
     const SonarConfig config = wallSonar(2, 60, 1);
     const types::Mesh bottom = test::ground(-4), screen = test::quad({9, -100, -100}, {0, 200, 0}, {0, 0, 98});
     const auto alone = pingOf(config, snapshotOf(shellsOf({bottom}, 0)));
     const auto seen = pingOf(config, snapshotOf(shellsOf({screen, bottom}, 1, sheet)));
-    // The screen stands from below up to 2 m under the sonar, at 9 m: it hides the bottom from 9.85 m on to where rays
+    // The upper edge of the screen at 9 m is 2 m below the sonar. The screen hides the bottom from 9.85 m to where rays
     // pass over it, at 18 m along the ground.
     const double before = std::hypot(9, 4), over = std::hypot(18, 4);
     for (double range = 8; range < 28; range += 0.1) {
@@ -67,7 +67,7 @@ TEST(WallsTest, AWallBeforeABottomWeakensTheBottomBehindItAlone) {
     }
 }
 
-/** The far side of a hollow body is met from within, at the same angle as the near one. */
+/** The far side of a hollow body echoes from within, at the same angle as the near side. */
 TEST(WallsTest, AHollowSphereHasBothItsSides) {
     const double radius = 0.9, distance = 10;
     const SonarConfig config = wallSonar(12, 12, 1, 120);
@@ -97,7 +97,7 @@ TEST(WallsTest, AHollowSphereHasBothItsSides) {
     EXPECT_NEAR(energyOf(ping, 0, distance, 12) / back, 1, 0.05);
 }
 
-TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
+TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndAnAirFilledPipeOne) {
     const SonarConfig config = wallSonar(4, 4, 1, 150);
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -119,7 +119,7 @@ TEST(WallsTest, AWaterFilledPipeHasTwoLinesAndOneWithAirHasOne) {
     EXPECT_GT(energyOf(air, 0, 8.9, 9.2), energyOf(water, 0, 8.9, 9.2)) << "air reflects all";
 }
 
-TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
+TEST(WallsTest, AnOpaqueWallIsAnOrdinarySurfaceBitForBit) {
     for (const types::Shell& shell : {rubber, types::Shell{0.004, 1190, 2700, 1340, 5e-3, true}}) {
         SonarConfig config = wallSonar(60, 20, 16), none = config;
         none.max_walls = 0;
@@ -128,7 +128,7 @@ TEST(WallsTest, AWallThatLetsNothingThroughIsAnyOtherBitForBit) {
     }
 }
 
-TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
+TEST(WallsTest, EachFurtherWallWeakensObjectsBehindUpToTheMaxNumber) {
     std::vector<types::Mesh> walls;
     for (int i = 0; i < 8; ++i) walls.push_back(test::wall(5 + 2.0f * static_cast<float>(i)));
     const auto scene = shellsOf(walls, walls.size(), sheet);
@@ -146,8 +146,8 @@ TEST(WallsTest, EachFurtherWallWeakensWhatIsBehindUpToTheMost) {
     }
 }
 
-/** What follows each echo is the same behind a wall: patterns, pulses, and the field of each scatterer. */
-TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
+/** Effects on each echo are the same behind a wall: patterns, pulses, and the field of each scatterer. */
+TEST(WallsTest, PatternsPulsesAndCoherentSpecklePassAsEnergyDoes) {
     std::mt19937 random(5);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
         SonarConfig config = wallSonar(8, 2, 8);
@@ -166,7 +166,7 @@ TEST(WallsTest, PatternsPulsesAndCoherentSpeckleGoThroughAsEnergyDoes) {
     }
 }
 
-TEST(WallsTest, TheTruthNamesWhatIsBehind) {
+TEST(WallsTest, TheTruthNamesTheObjectBehind) {
     const SonarConfig config = wallSonar(8, 2, 4);
     const auto snapshot = snapshotOf(shellsOf({test::wall(8), test::wall(13)}, 1));
     SonarRenderer renderer(config, snapshot.geometry);
@@ -207,7 +207,7 @@ TEST(WallsTest, ASmoothShellIsNoMirror) {
     EXPECT_NE(solid, solid_bounced);
 }
 
-TEST(WallsTest, WhyItIsLeftOutIsSaid) {
+TEST(WallsTest, ReportsWhyWallsAreOmitted) {
     const auto scene = shellsOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {
         const RenderPlan plan = makeRenderPlan(config, *geometry);
@@ -227,7 +227,7 @@ TEST(WallsTest, WhyItIsLeftOutIsSaid) {
     EXPECT_THAT(why(config, scene), testing::HasSubstr("visibility: cpu"));
     config = wallSonar(8, 2, 4);
     config.motion_in_ping = true;
-    EXPECT_THAT(why(config, scene), testing::HasSubstr("straight ways"));
+    EXPECT_THAT(why(config, scene), testing::HasSubstr("straight paths"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Rays as a rival of the renderer: another program, right to second order as well, and no slower than rays need to be.
+// The independent ray tracer: correct to second order as well, and as fast as rays can be.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ double errorOf(const StudyScene& scene, int rows, int columns) {
         .rel_l2;
 }
 
-TEST(EmbreeCasterTest, PlanesConvergeAsFootprintsDo) {
+TEST(EmbreeCasterTest, PlanesConvergeLikeFootprints) {
     for (const char* name : {"flat_bottom_pitched", "tilted_plane", "wall"}) {
         const double coarse = errorOf(sceneNamed(name), 64, 1), fine = errorOf(sceneNamed(name), 256, 4);
         EXPECT_LT(coarse, 0.02) << name;
@@ -53,12 +53,12 @@ TEST(EmbreeCasterTest, PlanesConvergeAsFootprintsDo) {
     EXPECT_LT(errorOf(sceneNamed("flat_bottom_edge"), 64, 1), 1e-5) << "cells between equal elevations are exact here";
 }
 
-TEST(EmbreeCasterTest, SilhouettesAreRightToTheirPixels) {
+TEST(EmbreeCasterTest, SilhouettesAreCorrectToTheirPixels) {
     EXPECT_LT(errorOf(sceneNamed("sphere"), 256, 256), 0.005);
     EXPECT_LT(errorOf(sceneNamed("shadow_screen"), 256, 4), 0.02);
 }
 
-TEST(EmbreeCasterTest, AMovedObjectIsWhereItWasMovedTo) {
+TEST(EmbreeCasterTest, AMovedObjectIsAtItsNewPlace) {
     StudyScene scene = sceneNamed("sphere");
     glm::dmat4 place(1);
     place[3] = glm::dvec4(11.05, 0, 0, 1);
@@ -70,20 +70,20 @@ TEST(EmbreeCasterTest, AMovedObjectIsWhereItWasMovedTo) {
     EXPECT_EQ(first, 100);  // 10.05 m
 }
 
-TEST(EmbreeCasterTest, WhatIsBlankedStillHides) {
+TEST(EmbreeCasterTest, BlankedSurfacesStillHide) {
     StudyScene scene{"", "", fan(60, 20, 7, 15), lookingAt(sceneOf({facingWall(10), facingWall(0.5f)})), {}};
     scene.config.range_min = 0.6;
     const std::vector<float> heard = cast(scene, 64, 2).energies;
     for (int bin = 7; bin < scene.config.bin_count; ++bin) EXPECT_EQ(heard[static_cast<size_t>(bin)], 0) << bin;
 }
 
-TEST(EmbreeCasterTest, TheLongestCellIsToldInBins) {
+TEST(EmbreeCasterTest, ReportsTheLongestCellInBins) {
     const double coarse = cast(sceneNamed("wall"), 32, 2).kappa, fine = cast(sceneNamed("wall"), 128, 8).kappa;
     EXPECT_GT(coarse, 1);
     EXPECT_NEAR(coarse / fine, 4, 1);
 }
 
-TEST(EmbreeCasterTest, ItsSumsDoNotDependOnWhichThreadCameFirst) {
+TEST(EmbreeCasterTest, ItsSumsDoNotDependOnTheOrderOfThreads) {
     StudyScene many = sceneNamed("tilted_plane"), one = sceneNamed("two_spheres");
     for (const StudyScene& scene : {many, one}) {
         const std::vector<float> first = cast(scene, 128, 8).energies;
@@ -91,9 +91,9 @@ TEST(EmbreeCasterTest, ItsSumsDoNotDependOnWhichThreadCameFirst) {
     }
 }
 
-TEST(EmbreeCasterTest, RaysAloneMeetWhatIsThere) {
+TEST(EmbreeCasterTest, TracesRaysWithoutEnergies) {
     StudyScene scene = sceneNamed("flat_bottom");
-    setSamples(scene.config, 66, 3);  // no whole tiles
+    setSamples(scene.config, 66, 3);  // not a multiple of tiles
     scene.config.beam_count = 33;
     EmbreeCaster caster(scene.snapshot);
     caster.prepare(scene.config);

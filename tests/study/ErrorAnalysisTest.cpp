@@ -8,7 +8,7 @@
 namespace insonify::study {
 namespace {
 
-/** A ladder whose error falls as samples^power from `error` on, in a time proportional to samples. */
+/** Adds a ladder whose error falls as samples^power from `error` on, in a time proportional to samples. */
 void addLadder(ErrorResult& result, const std::string& scene, Method method, double error, double power,
                int levels = 4) {
     for (int level = 0; level < levels; ++level) {
@@ -27,7 +27,7 @@ ErrorResult made() {
     return result;
 }
 
-TEST(ErrorAnalysisTest, TheLadderLeavesOutOtherSweeps) {
+TEST(ErrorAnalysisTest, TheLadderOmitsOtherSweeps) {
     ErrorResult result = made();
     result.measurements.push_back({"flat_bottom", Method::Footprint, 128, 4, 1, {}, 0, 0, 0, 0});
     EXPECT_EQ(ladder(result, "flat_bottom", Method::Footprint).size(), 4u);
@@ -41,18 +41,18 @@ TEST(ErrorAnalysisTest, TheSlopeIsThatOfTheLine) {
     EXPECT_FALSE(slope(ladder(result, "flat_bottom", Method::Footprint), 1e-4)) << "too near the reference's own error";
 }
 
-TEST(ErrorAnalysisTest, ASlopeIsOverCellsOfWhichOneMayBeManySamples) {
+TEST(ErrorAnalysisTest, ASlopeIsOverCellsThatMayMergeSeveralSamples) {
     ErrorResult result;
     addLadder(result, "wall", Method::Footprint, 0.001, -1);
     for (Measurement& m : result.measurements)
-        if (m.rows == 512) m.merged = 4, m.metrics.rel_l2 *= 4;  // as good as the level before
+        if (m.rows == 512) m.merged = 4, m.metrics.rel_l2 *= 4;  // the error of the previous level
     EXPECT_NEAR(*slope(ladder(result, "wall", Method::Footprint), 0), -1, 1e-9);
 }
 
 TEST(ErrorAnalysisTest, LevelsWithTheSameNumberOfCellsHaveNoSlope) {
     ErrorResult result;
     addLadder(result, "wall", Method::Footprint, 0.001, -1, 2);
-    result.measurements[1].merged = 4;  // twice the rows and columns, and as many cells as before
+    result.measurements[1].merged = 4;  // twice the rows and columns, but the same number of cells
     ASSERT_EQ(result.measurements[0].cells(), result.measurements[1].cells());
     EXPECT_FALSE(slope(ladder(result, "wall", Method::Footprint), 0));
 }
@@ -68,7 +68,7 @@ TEST(ErrorAnalysisTest, ASlopeOfFewLevelsIsOpen) {
     EXPECT_STREQ(claims(result)[0].verdict(), "FAIL");
 }
 
-TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
+TEST(ErrorAnalysisTest, TimesAndErrorsAreOnTheLineOrItsExtension) {
     const auto points = ladder(made(), "flat_bottom", Method::Nearest);
     const double ms = std::pow(0.1 / 0.4, 1 / -0.8);
     EXPECT_NEAR(timeTo(0.1, points)->ms, ms, 1e-9 * ms);
@@ -84,7 +84,7 @@ TEST(ErrorAnalysisTest, TimesAndErrorsLieOnTheLineOrBeyondItsEnd) {
     EXPECT_FALSE(timeTo(0.1, ladder(flat, "x", Method::Published))) << "it never gets there";
 }
 
-TEST(ErrorAnalysisTest, TheParetoFrontIsWhatNothingBeats) {
+TEST(ErrorAnalysisTest, NoPointBeatsTheParetoFront) {
     const ErrorResult result = made();
     for (const Measurement& m : result.measurements)
         EXPECT_EQ(onParetoFront(m, result), m.method == Method::Footprint || m.rows == 64)
@@ -104,10 +104,10 @@ TEST(ErrorAnalysisTest, AClaimThatDoesNotHoldFails) {
     EXPECT_EQ(failures(), 3) << "time at equal error, error at equal time, slope";
 }
 
-TEST(ErrorAnalysisTest, AClaimOnTimesThatWereNotMeasuredSaysSo) {
+TEST(ErrorAnalysisTest, MarksAClaimOnTimesThatWereNotMeasured) {
     ErrorResult result = made();
     for (Measurement& m : result.measurements)
-        if (m.method == Method::Nearest) m.metrics.rel_l2 *= 4;  // 1 % lies beyond its finest point
+        if (m.method == Method::Nearest) m.metrics.rel_l2 *= 4;  // 1 % is beyond its finest point
     const auto all = claims(result);
     EXPECT_TRUE(std::ranges::any_of(all, [](const Claim& c) { return c.text.ends_with("footprints (extrapolated)"); }));
 }
@@ -125,7 +125,7 @@ TEST(ErrorAnalysisTest, ATimeExtrapolatedFromFewLevelsIsOpen) {
     }
 }
 
-TEST(ErrorAnalysisTest, AReferenceTooCoarseToTellLeavesClaimsOpen) {
+TEST(ErrorAnalysisTest, AReferenceTooCoarseToDecideLeavesClaimsOpen) {
     ErrorResult result;
     result.references = {{"reef", "brute force", 0.004, 0.004, 1e6}};
     addLadder(result, "reef", Method::Footprint, 0.03, -1, 1);
@@ -138,7 +138,7 @@ TEST(ErrorAnalysisTest, AReferenceTooCoarseToTellLeavesClaimsOpen) {
         EXPECT_STREQ(claim.verdict(), "open");
     }
     result.references[0].error_tvg = 0.001;
-    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can tell";
+    EXPECT_STREQ(claims(result)[1].verdict(), "FAIL") << "now it can decide";
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(ErrorCommandTest, WritesTablesAndJson) {
         EXPECT_THAT(sheet, HasSubstr(std::string("## ") + table + "\n"));
 }
 
-TEST(ErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseToTell) {
+TEST(ErrorCommandTest, StudiesADeploymentAgainstBruteForceThatMayBeTooCoarse) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "error", "wall.yml", "--levels", "2", "--pings", "1",
                                                   "--reference-rays", "1e5", "--out", "report"});
@@ -44,7 +44,7 @@ TEST(ErrorCommandTest, ADeploymentIsStudiedAgainstBruteForceThatMayBeTooCoarseTo
         EXPECT_TRUE(point["method"] != "footprint" || point["rel_l2"] < 0.02) << point;
 }
 
-TEST(ErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
+TEST(ErrorCommandTest, ReportsTimesOfRaysForAnyDeployment) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "rays", "wall.yml", "--pings", "3"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -56,7 +56,7 @@ TEST(ErrorCommandTest, TimesOfRaysAreToldForAnyDeployment) {
     EXPECT_GT(times["ping_median_ms"], 0);
 }
 
-TEST(ErrorCommandTest, WhatCannotBeStudiedIsRefused) {
+TEST(ErrorCommandTest, RefusesUnsuitableDeployments) {
     const WallFolder folder;
     Outcome outcome = callInsonify(folder, {"study", "error", "--scene", "moon", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);

@@ -1,4 +1,4 @@
-// Scenes without a closed form, small: their reference is brute force, and tells how good it is.
+// Scenes without a closed form, small: their reference is brute force, which estimates its own error.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ const Reference& onlyReference(const ErrorResult& result) {
     return result.references.front();
 }
 
-/** Claims that fail but for those on run times, which are none of a test on a busy machine. */
+/** Returns the claims that fail, except those on run times, which a busy machine may change. */
 std::vector<std::string> failuresOf(const ErrorResult& result) {
     std::vector<std::string> failures;
     for (const Claim& claim : claims(result))
@@ -58,13 +58,13 @@ TEST_P(ClosedFormStudyTest, EveryClaimHolds) {
     EXPECT_EQ(std::ranges::count(all, std::string("open"), &Claim::verdict), 0);
 }
 
-/** What errors less than four times the reference's own, and less than this, are one with. */
+/** Errors below four times the reference's own, and below this bound, are no difference. */
 constexpr double effect_bound = 0.02;
 
 class EffectTest : public testing::TestWithParam<Effect> {};
 INSTANTIATE_TEST_SUITE_P(Effects, EffectTest, testing::ValuesIn(effects));
 
-TEST_P(EffectTest, PingsAreThoseOfBruteForceOnFlatAndRoughFloors) {
+TEST_P(EffectTest, PingsEqualBruteForceOnFlatAndRoughFloors) {
     for (StudyScene plain : {closedFormScenes().front().make(), smallRoughFloor()}) {
         plain.config.beam_count = 4;
         plain.config.field_of_view_deg = 8;
@@ -82,7 +82,7 @@ TEST_P(EffectTest, PingsAreThoseOfBruteForceOnFlatAndRoughFloors) {
     }
 }
 
-TEST(ErrorEffectsTest, EachEffectIsMoreThanItsBoundOffThePlainPing) {
+TEST(ErrorEffectsTest, EachEffectChangesThePingByMoreThanItsBound) {
     StudyScene plain = closedFormScenes().front().make();
     plain.config.beam_count = 4;
     plain.config.field_of_view_deg = 8;
@@ -95,7 +95,7 @@ TEST(ErrorEffectsTest, EachEffectIsMoreThanItsBoundOffThePlainPing) {
     }
 }
 
-TEST(ErrorStudyTest, AReferenceIsMadeFinerUntilItIsTenTimesFinerThanEveryPoint) {
+TEST(ErrorStudyTest, RefinesAReferenceUntilItIsTenTimesFinerThanEveryPoint) {
     const ErrorResult result = studyError({smallRoughFloor()}, quick(1e9));
     EXPECT_THAT(onlyReference(result).source, testing::HasSubstr("brute force"));
     EXPECT_GT(onlyReference(result).error, 0);
@@ -103,8 +103,8 @@ TEST(ErrorStudyTest, AReferenceIsMadeFinerUntilItIsTenTimesFinerThanEveryPoint) 
         EXPECT_GE(m.metrics.rel_l2, reference_margin * onlyReference(result).error) << nameOf(m.method) << m.rows;
 }
 
-TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysSaysSoAndDoesNotFail) {
-    StudyScene plane = closedFormScenes().front().make();  // footprints are too good on planes for few points to tell
+TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysIsOpenAndDoesNotFail) {
+    StudyScene plane = closedFormScenes().front().make();  // few points decide nothing: footprints are too accurate
     plane.name = "plane";
     plane.truth = nullptr;
     const ErrorResult result = studyError({plane}, quick(1));
@@ -115,7 +115,7 @@ TEST(ErrorStudyTest, AReferenceThatRunsOutOfRaysSaysSoAndDoesNotFail) {
     EXPECT_THAT(sheetOf(result), testing::HasSubstr("| open |"));
 }
 
-TEST(ErrorStudyTest, RaysAndPicturesAgreeOnFloors) {
+TEST(ErrorStudyTest, RaysAndImagesAgreeOnFloors) {
     for (StudyScene scene : {smallRoughFloor(), benchFloor(40)}) {
         scene.config.beam_count = 4;
         scene.config.field_of_view_deg = 8;
@@ -129,7 +129,7 @@ TEST(ErrorStudyTest, RaysAndPicturesAgreeOnFloors) {
     }
 }
 
-TEST(ErrorStudyTest, APatternInElevationIsHeldToItsClosedFormByEveryMethod) {
+TEST(ErrorStudyTest, EveryMethodAgreesWithTheClosedFormOfAPatternInElevation) {
     const auto maker = std::ranges::find(closedFormScenes(), std::string("pitched_bottom_pattern"), &SceneMaker::name);
     ASSERT_NE(maker, closedFormScenes().end());
     StudyScene scene = maker->make();
@@ -144,7 +144,7 @@ TEST(ErrorStudyTest, APatternInElevationIsHeldToItsClosedFormByEveryMethod) {
     EXPECT_GT(ladder(one_way, scene.name, Method::Footprint).back().metrics.rel_l2, 0.1) << "a wrong form passes";
 }
 
-TEST(ErrorStudyTest, ASceneThatIsSilentIsRefused) {
+TEST(ErrorStudyTest, RefusesASceneWithoutEchoes) {
     StudyScene scene = smallRoughFloor();
     scene.snapshot.sonar.position.z = 1000;
     EXPECT_THROW(studyError({scene}, quick(1e5)), std::runtime_error);

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of fits to simulated recordings share.
+// Helpers for tests of fits to simulated recordings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace insonify::study {
 
-/** Random numbers that are the same with each standard library. */
+/** Random numbers that are the same with every standard library. */
 class Draws {
 public:
     explicit Draws(uint32_t seed) : random_(seed) {}
@@ -24,7 +24,7 @@ private:
     std::mt19937 random_;
 };
 
-/** Mean level of the loudest block of a chain's ping, relative to full scale [dB]. */
+/** Returns the mean level of the loudest block of a chain's ping, relative to full scale [dB]. */
 inline double loudestLevelDb(FitChain chain) {
     chain.receiver.code->full_scale_db = 60;
     chain.receiver.code->law = receiver::CodeLaw::Log;
@@ -35,7 +35,7 @@ inline double loudestLevelDb(FitChain chain) {
     return 60 + *std::ranges::max_element(blocks.level);
 }
 
-/** Expects a finding that is determined, and not farther off than a tolerance. */
+/** Expects a finding that is determined, and within a tolerance. */
 inline void expectFound(const RecordingFit& fit, const char* name, double expected, double tolerance) {
     const Finding* finding = fit.finding(name);
     ASSERT_NE(finding, nullptr) << name;
@@ -43,12 +43,12 @@ inline void expectFound(const RecordingFit& fit, const char* name, double expect
     EXPECT_NEAR(finding->found.value, expected, tolerance) << name << ": " << finding->text();
 }
 
-/** Gain of a receiver's tvg at the end of the range above that at its tenth [dB]. */
+/** Returns the gain of a receiver's tvg at the end of the range minus that at a tenth of the range [dB]. */
 inline double tvgSpanDb(double log_coefficient, double db_per_m, double range) {
     return log_coefficient + 2 * db_per_m * 0.9 * range;
 }
 
-/** These seeds; those from 2 to INSONIFY_FIT_SEEDS where that is set, for the figures on the pages of studies. */
+/** Returns `few`, or the seeds from 2 to INSONIFY_FIT_SEEDS if that is set, for the numbers on the pages of studies. */
 inline std::vector<uint32_t> fitSeeds(std::vector<uint32_t> few) {
     const char* const last = std::getenv("INSONIFY_FIT_SEEDS");
     if (!last) return few;

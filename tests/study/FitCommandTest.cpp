@@ -1,4 +1,4 @@
-// `insonify fit` as a user calls it.
+// `insonify fit`, called as a user does.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using testing::Not;
 
 namespace {
 
-/** A flat floor 0.6 m below the sonar, noise, and a receiver that gives out codes. */
+/** A flat floor 0.6 m below the sonar, noise, and a receiver that outputs codes. */
 std::string floorGltf() {
     return gltfOf({-50, -0.6f, 50, 50, -0.6f, 50, 50, -0.6f, -50, -50, -0.6f, -50}, {0, 1, 2, 0, 2, 3});
 }
@@ -63,7 +63,7 @@ struct FitFolder : WallFolder {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return callInsonify(*this, std::move(arguments));
     }
-    /** Pings of one code throughout, of 64 beams by 128 bins. */
+    /** Records pings of one code throughout, of 64 beams by 128 bins. */
     void recordEven(const std::string& name, uint8_t code) const {
         const auto bytes =
             OculusMessage{.beams = 64, .bins = 128, .code = [code](size_t, size_t) { return code; }}.bytes();
@@ -71,7 +71,7 @@ struct FitFolder : WallFolder {
     }
 };
 
-/** The three pings of a real Oculus, or an empty name. */
+/** Returns the folder of three pings of a real Oculus, or an empty name. */
 std::string realPings() {
     const std::string file = insonify::test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     return fs::exists(file) ? file : "";
@@ -79,7 +79,7 @@ std::string realPings() {
 
 }  // namespace
 
-TEST(FitCommandTest, FittedToOnePingOfARealOculusAllClaimsOfLikenessHoldOnTheOthers) {
+TEST(FitCommandTest, AFitToOnePingOfARealOculusPassesLikenessOnTheOthers) {
     if (realPings().empty()) GTEST_SKIP() << "NOT TESTED: the recordings of an Oculus are not next to the repository";
     const FitFolder folder;
     const std::string all = readFile(realPings());
@@ -100,7 +100,7 @@ TEST(FitCommandTest, FittedToOnePingOfARealOculusAllClaimsOfLikenessHoldOnTheOth
     EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
 }
 
-TEST(FitCommandTest, FittedToTheFirstHalfOfASideScansLogLikenessHoldsOnTheSecond) {
+TEST(FitCommandTest, AFitToTheFirstHalfOfASideScansLogPassesLikenessOnTheSecond) {
     const std::string recording = insonify::test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!fs::exists(recording))
         GTEST_SKIP() << "NOT TESTED: the recording of a side-scan is not next to the repository";
@@ -121,7 +121,7 @@ TEST(FitCommandTest, FittedToTheFirstHalfOfASideScansLogLikenessHoldsOnTheSecond
     outcome = likeness("port");
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
     EXPECT_THAT(outcome.out, Not(HasSubstr("FAIL")));
-    outcome = likeness("starboard");  // a wreck, which no scene has, covers half of these lines and saturates
+    outcome = likeness("starboard");  // a wreck, which the scene lacks, covers and saturates half of these lines
     std::string failed;
     std::istringstream lines(outcome.out);
     for (std::string line; std::getline(lines, line);)
@@ -130,7 +130,7 @@ TEST(FitCommandTest, FittedToTheFirstHalfOfASideScansLogLikenessHoldsOnTheSecond
     EXPECT_EQ(std::ranges::count(failed, '\n'), 1) << failed;
 }
 
-TEST(FitCommandTest, AFitIsTheSameEachTime) {
+TEST(FitCommandTest, AFitIsReproducible) {
     const FitFolder folder;
     writeFile(folder / "speckle.raw", insonify::test::recordedSpeckle());
     ASSERT_EQ(folder.fit("speckle.raw").code, 0);
@@ -139,7 +139,7 @@ TEST(FitCommandTest, AFitIsTheSameEachTime) {
     EXPECT_EQ(readFile(folder / "fitted.yml"), first);
 }
 
-TEST(FitCommandTest, WrongUseIsRefusedWithTheReasonAndNothingIsWritten) {
+TEST(FitCommandTest, RefusesWrongUseWithAReasonAndWritesNothing) {
     const FitFolder folder;
     writeFile(folder / "speckle.raw", insonify::test::recordedSpeckle());
     writeFile(folder / "text.raw", "no recording");
@@ -164,7 +164,7 @@ TEST(FitCommandTest, WrongUseIsRefusedWithTheReasonAndNothingIsWritten) {
         {{"fit", "wall.yml", "--out", "fitted.yml"}, "--real is required"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--scene-is", "flat", "--out", "fitted.yml"}, "flat"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "nowhere/fitted.yml"},
-         "is in a folder that is not there: nowhere"},
+         "is in a folder that does not exist: nowhere"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "fitted.txt"}, "must end in .yml or .yaml"},
         {{"fit", "nothing.yml", "--real", "speckle.raw", "--out", "fitted.yml"}, "nothing.yml"},
         {{"fit", "without_noise.yml", "--real", "speckle.raw", "--out", "fitted.yml"},

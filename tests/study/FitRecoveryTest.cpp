@@ -1,4 +1,4 @@
-// What a fit finds in simulated recordings of sonars with random properties.
+// Fits to simulated recordings of sonars with random properties.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ types::GeometryPtr floorAt(double z) {
     return geometry;
 }
 
-/** What a user has before the fit: values from nowhere. */
+/** Returns a user's initial values, which are arbitrary. */
 FitChain guess() {
     FitChain chain;
     chain.sonar.range = range;
@@ -73,7 +73,7 @@ struct Truth {
         chain.receiver.code->full_scale_db = -20;
         chain.receiver.code->full_scale_db += loudestLevelDb(chain) + 29 + between(-3, 3);
     }
-    /** Pings from three places. */
+    /** Returns pings from three places. */
     std::vector<CodedPing> recorded() const {
         std::vector<CodedPing> pings = simulatedPings(chain, 3);
         for (CodedPing& ping : pings) ping.frequency_khz = *chain.sonar.frequency_khz;
@@ -99,7 +99,7 @@ TEST_P(FitRecoveryTest, FindsThePropertiesOfASimulatedSonar) {
     const Finding* shape = fit.finding("scatterers per cell");
     ASSERT_NE(shape, nullptr);
     const double ratio = fit.chain.sonar.speckle->scatterers_per_m2.value_or(0) / truth.density;
-    const double true_shape = shape->found.value / ratio;  // as the cell is the same
+    const double true_shape = shape->found.value / ratio;  // because the cell is the same
     EXPECT_TRUE(shape->found.low < true_shape && true_shape < shape->found.high) << shape->text();
     if (shape->is_determined) {
         EXPECT_NEAR(ratio, 1, 0.2) << shape->text();
@@ -108,7 +108,7 @@ TEST_P(FitRecoveryTest, FindsThePropertiesOfASimulatedSonar) {
     }
 }
 
-/** Deviation of the grey levels of columns [from, to) of a picture. */
+/** Returns the deviation of the grey levels of columns [from, to) of a picture. */
 double deviationOf(const types::Image& image, size_t from, size_t to) {
     double sum = 0, squares = 0, count = 0;
     for (size_t y = 0; y < image.size.height; ++y)
@@ -139,7 +139,7 @@ TEST(FitReportTest, ThePageHasBothPicturesAndEveryFindingAndTheDeploymentEverySe
         EXPECT_TRUE(paths.contains(path)) << path;
 }
 
-TEST(FitSpeckleTest, SidelobesAreThoseOfIsolatedTargetsAndOfNoSpeckle) {
+TEST(FitSpeckleTest, MeasuresSidelobesOfIsolatedTargetsButNotOfSpeckle) {
     Truth truth(6);
     truth.chain.sonar.beam_pattern->receive.azimuth->sidelobe_db = -25;
     truth.chain.noise.ambient->level_db = -140;
@@ -148,7 +148,7 @@ TEST(FitSpeckleTest, SidelobesAreThoseOfIsolatedTargetsAndOfNoSpeckle) {
     truth.chain.receiver.code->bits = 16;
     truth.chain.receiver.code->dynamic_range_db = 200;
     const double width_beams = truth.beam_width_deg / (fan_deg / beams);
-    EXPECT_FALSE(sidelobesOf(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is no target";
+    EXPECT_FALSE(sidelobesOf(simulatedPings(truth.chain, 1), width_beams).isKnown()) << "speckle is not a target";
     for (const double bearing : {-0.2, 0.0, 0.25})
         truth.chain.snapshot.targets.push_back(
             {.position = 1.6 * glm::dvec3(std::cos(bearing) * std::cos(0.45), std::sin(bearing),
@@ -160,7 +160,7 @@ TEST(FitSpeckleTest, SidelobesAreThoseOfIsolatedTargetsAndOfNoSpeckle) {
     EXPECT_NEAR(found.value, -25, 1.5);
 }
 
-TEST(RecordingFitTest, WhatStatesNothingIsRefusedWithTheReason) {
+TEST(RecordingFitTest, RefusesUnusableRecordingsWithAReason) {
     const auto refusal = [](const std::vector<CodedPing>& recorded, FitChain chain) -> std::string {
         try {
             fitRecording(recorded, std::move(chain), false, [](const std::string&) {});

@@ -1,5 +1,4 @@
-// What a fit finds in simulated recordings of side-scans with random properties, and in what a recording states of
-// their lines.
+// Fits to simulated recordings of side-scans with random properties, and the places of recorded lines.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -17,7 +16,7 @@ using testing::HasSubstr;
 constexpr size_t line_count = 96, line_bins = 512;
 constexpr double line_range = 30, sound = 1500, floor_depth = 20;
 
-/** A vehicle that comes down from 8 to 7 m above the floor, a line each 0.3 m. */
+/** Returns lines of a vehicle that descends from 8 to 7 m above the floor, one every 0.3 m. */
 CodedPing linesOf() {
     CodedPing lines{.name = "lines", .beam_count = line_count, .bin_count = line_bins};
     for (size_t i = 0; i < line_count; ++i) {
@@ -30,14 +29,14 @@ CodedPing linesOf() {
     return lines;
 }
 
-/** What a user has before the fit: values from nowhere. */
+/** Returns a user's initial values, which are arbitrary. */
 FitChain guessedSideScan() {
     FitChain chain;
     chain.looks_abeam = true;
     chain.sonar.range = line_range;
     chain.sonar.bin_count = line_bins;
     chain.sonar.bearings_deg = {-60, 60};
-    chain.sonar.beam_width_deg = 50;  // across the track, as the fan that looks straight down has it
+    chain.sonar.beam_width_deg = 50;  // across the track, like the fan that looks straight down
     chain.sonar.beam_height_deg = 0.5;
     chain.sonar.speed_of_sound = sound;
     chain.sonar.frequency_khz = 450;
@@ -73,7 +72,7 @@ struct TrueSideScan {
         sonar::SonarConfig& sonar = chain.sonar;
         sonar.absorption->db_per_m = between(0.09, 0.13);
         sonar.bearings_deg = {depression_deg - 90, 90 - depression_deg};
-        sonar.beam_width_deg = 110;  // so that a beam fades down to the nadir, as real ones do, and is not cut off before
+        sonar.beam_width_deg = 110;  // so that a beam fades down to the nadir, as real beams do, and is not truncated
         auto& across = sonar.beam_pattern.emplace().receive.azimuth.emplace();
         across.weighting = acoustics::Weighting::Gaussian;
         across.width_deg = width_deg;
@@ -125,7 +124,7 @@ TEST_P(FitSideScanTest, FindsThePropertiesOfASimulatedSideScan) {
             << shape->text();
 }
 
-TEST(FitLooksTest, SpeckleThatIsAveragedIsDrawnAndVariesAsMuch) {
+TEST(FitLooksTest, DrawsAveragedSpeckleThatVariesAsRecorded) {
     TrueSideScan truth(3);
     truth.chain.sonar.speckle.reset();
     truth.chain.noise.speckle = noise::SpeckleConfig{.law = noise::SpeckleLaw::K, .looks = {}, .shape = 8};
@@ -172,7 +171,7 @@ types::Pose at(double x, double pitch_deg = 0) {
     return pose;
 }
 
-TEST(LinePlaceTest, WhatStaysWhileLinesGoOnIsSpreadOverThem) {
+TEST(LinePlaceTest, InterpolatesRepeatedValuesOverLines) {
     types::Pose unknown = at(0);
     unknown.position.x = NAN;
     const std::vector<LinePlace> places = placesOf(
@@ -186,7 +185,7 @@ TEST(LinePlaceTest, WhatStaysWhileLinesGoOnIsSpreadOverThem) {
     EXPECT_TRUE(placesOf({unknown, unknown}, {0, 0}).empty());
 }
 
-TEST(LinePlaceTest, LinesBeyondTheFloorAreRefusedWithTheReason) {
+TEST(LinePlaceTest, RefusesLinesBeyondTheFloorWithAReason) {
     FitChain chain = guessedSideScan();
     CodedPing lines = linesOf();
     lines.places.back().along = 1e5;

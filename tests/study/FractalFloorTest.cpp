@@ -18,7 +18,7 @@ FractalFloor smallFloor(uint64_t seed = 1) {
     return floor;
 }
 
-/** Mean power of the profiles along one axis at k waves along a side, by the sum that defines it. */
+/** Returns the mean power of the profiles along one axis at k waves along a side, by the defining sum. */
 double profilePower(const std::vector<double>& heights, size_t n, size_t k) {
     double power = 0;
     for (size_t row = 0; row < n; ++row) {
@@ -31,7 +31,7 @@ double profilePower(const std::vector<double>& heights, size_t n, size_t k) {
     return power;
 }
 
-TEST(FractalFloorTest, TheSpectrumOfAProfileFallsAsItIsAskedTo) {
+TEST(FractalFloorTest, TheSpectrumOfAProfileHasTheGivenSlope) {
     for (const double slope : {-2.7, -2.0}) {
         double low = 0, high = 0;
         for (uint64_t seed = 1; seed <= 8; ++seed) {
@@ -45,7 +45,7 @@ TEST(FractalFloorTest, TheSpectrumOfAProfileFallsAsItIsAskedTo) {
     }
 }
 
-TEST(FractalFloorTest, HeightsVaryAsMuchAsAskedAboutTheirMean) {
+TEST(FractalFloorTest, HeightsHaveTheGivenRmsAboutTheirMean) {
     const std::vector<double> heights = heightsOf(smallFloor());
     double sum = 0, squares = 0;
     for (const double height : heights) sum += height, squares += height * height;
@@ -53,12 +53,12 @@ TEST(FractalFloorTest, HeightsVaryAsMuchAsAskedAboutTheirMean) {
     EXPECT_NEAR(std::sqrt(squares / static_cast<double>(heights.size())), 0.35, 1e-12);
 }
 
-TEST(FractalFloorTest, ASeedIsAFloor) {
+TEST(FractalFloorTest, ASeedDeterminesTheFloor) {
     EXPECT_EQ(heightsOf(smallFloor(5)), heightsOf(smallFloor(5)));
     EXPECT_NE(heightsOf(smallFloor(5)), heightsOf(smallFloor(6)));
 }
 
-TEST(FractalFloorTest, TilesAreTheSameTriangles) {
+TEST(FractalFloorTest, TilesHaveTheSameTriangles) {
     using Corners = std::array<float, 9>;
     const auto collect = [](const types::Mesh& mesh, std::vector<Corners>& all) {
         for (size_t i = 0; i < mesh.indices.size(); i += 3) {

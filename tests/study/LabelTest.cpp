@@ -1,4 +1,4 @@
-// Which object a bin shows, against rays that are cast for this alone.
+// Labels of bins by object, compared with rays that are traced for this purpose.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using types::radians;
 
-/** A bottom, a wall behind it, and eight balls before and behind one another. */
+/** Returns a bottom, a wall behind it, and eight balls in front of and behind each other. */
 types::Snapshot tenObjects() {
     std::vector<types::Mesh> meshes = {quad({-50, -50, -4}, {100, 0, 0}, {0, 100, 0}),
                                        quad({22, -50, -10}, {0, 100, 0}, {0, 0, 20})};
@@ -40,7 +40,8 @@ sonar::SonarConfig fan() {
     return test::sonarOf({.beams = 64, .width_deg = 90, .height_deg = 40, .bins = 250, .rows = 512, .columns = 4});
 }
 
-/** Energy of each object in each bin, [beam][bin][object], by the sonar equation along each of many rays. */
+/** Computes the energy of each object in each bin, [beam][bin][object], by the sonar equation along each of many
+ *  rays. */
 class RayEnergies {
 public:
     RayEnergies(const types::Snapshot& scene, const sonar::SonarConfig& config)
@@ -88,7 +89,7 @@ private:
     std::vector<double> energies_;
 };
 
-/** Share of all energy that lies in bins whose label is the object that returns most there. */
+/** Returns the fraction of all energy in bins whose label is the object that returns most there. */
 double agreement(const std::vector<double>& energies, size_t objects, const std::vector<int32_t>& labels) {
     double agreed = 0, all = 0;
     for (size_t at = 0; at < labels.size(); ++at) {
@@ -101,7 +102,7 @@ double agreement(const std::vector<double>& energies, size_t objects, const std:
     return agreed / all;
 }
 
-/** Of each bin the object whose centre is nearest to where the bin lies in the plane of the fan. */
+/** Returns for each bin the object whose centre is nearest to the bin in the plane of the fan. */
 std::vector<int32_t> labelsByNearestObject(const types::Snapshot& scene, const types::SonarTruth& truth) {
     std::vector<int32_t> labels;
     for (const types::Angle& bearing : truth.bearings)
@@ -120,7 +121,7 @@ std::vector<int32_t> labelsByNearestObject(const types::Snapshot& scene, const t
 
 class LabelTest : public testing::TestWithParam<sonar::Visibility> {};
 
-TEST_P(LabelTest, TenObjectsAreToldApartAsByRays) {
+TEST_P(LabelTest, LabelsTenObjectsAsRaysDo) {
     sonar::SonarConfig config = fan();
     config.visibility = GetParam();
     if (GetParam() == sonar::Visibility::Gl) config.device = "software";

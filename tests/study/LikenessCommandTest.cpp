@@ -12,7 +12,7 @@ namespace {
 
 void record(const fs::path& file) { writeFile(file, insonify::test::recordedSpeckle()); }
 
-/** The wall as a receiver gives it out in codes. */
+/** Returns a deployment with a wall and a receiver that outputs codes. */
 std::string codedWall() {
     std::string text =
         replaced(replaced(wall_deployment, "beam_count: 16", "beam_count: 64"), "bin_count: 50", "bin_count: 128");
@@ -26,7 +26,7 @@ std::string codedWall() {
 
 }  // namespace
 
-TEST(LikenessCommandTest, WritesTablesJsonDiagramAndPictureAndJudges) {
+TEST(LikenessCommandTest, WritesTablesJsonDiagramAndPictureAndVerdicts) {
     const WallFolder folder;
     record(folder / "pings.raw");
     writeFile(folder / "coded.yml", codedWall());
@@ -47,7 +47,7 @@ TEST(LikenessCommandTest, WritesTablesJsonDiagramAndPictureAndJudges) {
     EXPECT_THAT(readFile(folder / "report/fans.png").substr(1, 3), "PNG");
 }
 
-TEST(LikenessCommandTest, WithoutADeploymentItTellsOfTheRecordingsAlone) {
+TEST(LikenessCommandTest, WithoutADeploymentDescribesTheRecordings) {
     const WallFolder folder;
     fs::create_directory(folder / "recordings");
     record(folder / "recordings/pings.raw");
@@ -56,7 +56,7 @@ TEST(LikenessCommandTest, WithoutADeploymentItTellsOfTheRecordingsAlone) {
     EXPECT_EQ(json::parse(readFile(folder / "report/likeness.json"))["pings"].size(), 4u);
 }
 
-TEST(LikenessCommandTest, ALogOfCodesIsReadAsARecordingIs) {
+TEST(LikenessCommandTest, ReadsALogOfCodesLikeARecording) {
     const WallFolder folder;
     writeFile(folder / "coded.yml",
               codedWall() + "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}\n");
@@ -67,7 +67,7 @@ TEST(LikenessCommandTest, ALogOfCodesIsReadAsARecordingIs) {
     const json report = json::parse(readFile(folder / "report/likeness.json"));
     EXPECT_EQ(report["pings"][0]["name"], "recorded_0");
     EXPECT_NEAR(report["pings"][1]["emd_codes"].get<double>(), 0, 1e-6)
-        << "the wall stands still: the same ping, the law from the log";
+        << "the wall is still: the same ping, the law from the log";
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--out", "plain"}).code, 0);
     outcome = callInsonify(folder, {"study", "likeness", "--real", "plain/wall.0.log", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);
@@ -96,12 +96,12 @@ TEST(LikenessCommandTest, ASideScanIsAPictureOfItsLines) {
     EXPECT_NEAR(report["pings"][0]["saturated"].get<double>(), 0.03, 0.01);
 }
 
-TEST(LikenessCommandTest, WhatCannotBeComparedIsRefused) {
+TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     const WallFolder folder;
     record(folder / "pings.raw");
     Outcome outcome = callInsonify(folder, {"study", "likeness", "wall.yml", "--real", "pings.raw", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that gives out codes"));
+    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that outputs codes"));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "wall.yml", "--out", "report"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("wall.yml: holds no ping of an Oculus"));
@@ -113,6 +113,6 @@ TEST(LikenessCommandTest, WhatCannotBeComparedIsRefused) {
     writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "small.raw", "--out", "report"});
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("has too few beams or bins to tell what it looks like"));
+    EXPECT_THAT(outcome.err, HasSubstr("has too few beams or bins for these statistics"));
     EXPECT_FALSE(fs::exists(folder / "report")) << "nothing is written";
 }

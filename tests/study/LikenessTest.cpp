@@ -1,4 +1,4 @@
-// Measures of what a ping looks like, on pictures made by hand whose answers are known, and on recordings of a device.
+// Statistics of a ping's appearance, on made-up pictures with known answers, and on recordings of a device.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ Histogram only(std::initializer_list<std::pair<size_t, double>> shares) {
     return histogram;
 }
 
-/** A picture of 64 beams x 256 bins whose codes are amplitudes. */
+/** Returns a picture of 64 beams x 256 bins whose codes are amplitudes. */
 template <class F>
 CodedPing pictureOf(const F& amplitude) {
     CodedPing ping{.name = "made", .beam_count = 64, .bin_count = 256, .law = {.law = receiver::CodeLaw::Sqrt}};
@@ -36,12 +36,12 @@ CodedPing pictureOf(const F& amplitude) {
     return ping;
 }
 
-/** Amplitude of an exponential intensity of unit mean: speckle of many scatterers. */
+/** Returns the amplitude of an exponential intensity of unit mean: speckle of many scatterers. */
 double rayleigh(uint64_t seed, size_t a, size_t b) {
     return std::sqrt(-std::log(types::unit(types::hashed(seed, a, b) >> 32)));
 }
 
-TEST(LikenessTest, HistogramsAreAsFarApartAsTheirCodesMustBeMoved) {
+TEST(LikenessTest, TheDistanceOfHistogramsIsThatOfMovedCodes) {
     const Histogram a = only({{10, 1}}), b = only({{30, 1}}), half = only({{10, 0.5}, {30, 0.5}});
     EXPECT_DOUBLE_EQ(earthMoversDistance(a, a), 0);
     EXPECT_DOUBLE_EQ(earthMoversDistance(a, b), 20);
@@ -49,7 +49,7 @@ TEST(LikenessTest, HistogramsAreAsFarApartAsTheirCodesMustBeMoved) {
     EXPECT_DOUBLE_EQ(earthMoversDistance(a, half), 10);
 }
 
-TEST(LikenessTest, DivergenceIsNoneOfTheSameAndOneBitOfWhatSharesNothing) {
+TEST(LikenessTest, DivergenceIsZeroForEqualAndOneBitForDisjointHistograms) {
     const Histogram a = only({{10, 1}}), b = only({{30, 1}}), half = only({{10, 0.5}, {30, 0.5}});
     EXPECT_DOUBLE_EQ(jensenShannonDivergence(a, a), 0);
     EXPECT_DOUBLE_EQ(jensenShannonDivergence(a, b), 1);
@@ -69,7 +69,7 @@ TEST(LikenessTest, LevelsFollowTheLawOfTheCodes) {
     EXPECT_NEAR(ping.levelDb(0), ping.levelDb(0.5f / 255), 1e-6);
 }
 
-TEST(LikenessTest, SharesAndDynamicRangeAreThoseOfTheCodes) {
+TEST(LikenessTest, FractionsAndDynamicRangeAreThoseOfTheCodes) {
     const Looks looks = looksOf(pictureOf([](size_t beam, size_t) { return beam < 16 ? 0.0 : beam < 48 ? 0.1 : 1.0; }));
     EXPECT_NEAR(looks.zeros, 0.25, 1e-9);
     EXPECT_NEAR(looks.saturated, 0.25, 1e-9);
@@ -95,7 +95,7 @@ TEST(LikenessTest, ContrastOfManyScatterersIsThatOfRayleigh) {
     EXPECT_NEAR(looks.beam_correlation, 0, 0.02);
 }
 
-TEST(LikenessTest, NeighboursThatShareHalfTheirSpeckleAreCorrelatedByAHalf) {
+TEST(LikenessTest, NeighboursThatShareHalfTheirSpeckleCorrelateByAHalf) {
     const auto shared = [](size_t beam, size_t bin) {
         return 0.2 + 0.02 * (rayleigh(1, beam, bin) + rayleigh(1, beam + 1, bin));
     };
@@ -104,19 +104,19 @@ TEST(LikenessTest, NeighboursThatShareHalfTheirSpeckleAreCorrelatedByAHalf) {
     EXPECT_NEAR(looks.range_correlation, 0, 0.03);
 }
 
-TEST(LikenessTest, AnArcBesideATargetHasItsLevel) {
+TEST(LikenessTest, AnArcNextToATargetHasItsLevel) {
     const auto arc = [](size_t beam, size_t bin) {
         const bool is_target = beam >= 31 && beam <= 33 && bin >= 99 && bin <= 101;
         return is_target ? 1.0 : bin >= 99 && bin <= 101 ? 0.1 : 0.01;
     };
-    const Looks one = looksOf(pictureOf([&](size_t beam, size_t bin) {  // five targets, at ranges of their own
+    const Looks one = looksOf(pictureOf([&](size_t beam, size_t bin) {  // five targets, at separate ranges
         return bin < 250 && bin % 50 >= 20 ? arc(beam, 99 + bin % 50 - 24) : 0.01;
     }));
     EXPECT_NEAR(one.arc_db, -20, 0.1);
     EXPECT_NEAR(one.arc_excess_db, 20, 0.1);
 }
 
-TEST(LikenessTest, APictureOfOneCodeAndOneOfTheCosineAreFarFromASpeckledOne) {
+TEST(LikenessTest, PicturesOfOneCodeAndOfTheCosineDifferFromASpeckledPicture) {
     const auto recorded = [](uint64_t seed) {
         return pictureOf([&](size_t beam, size_t bin) {
             return std::min(1.0, 0.25 * rayleigh(seed, beam, bin) * (bin > 100 && bin < 150 ? 2 : 1));
@@ -134,14 +134,14 @@ TEST(LikenessTest, APictureOfOneCodeAndOneOfTheCosineAreFarFromASpeckledOne) {
     EXPECT_EQ(result.row("simulated"), nullptr);
 }
 
-TEST(LikenessTest, TooSmallAPictureIsRefused) {
+TEST(LikenessTest, RefusesAPictureThatIsTooSmall) {
     CodedPing ping = pictureOf([](size_t, size_t) { return 0.1; });
     ping.beam_count = 16;
     EXPECT_THROW(looksOf(ping), std::invalid_argument);
     EXPECT_THROW(studyLikeness({}, nullptr), std::invalid_argument);
 }
 
-TEST(LikenessTest, FansAreDrawnBesideEachOther) {
+TEST(LikenessTest, DrawsFansSideBySide) {
     const CodedPing ping = pictureOf([](size_t beam, size_t) { return beam < 32 ? 1.0 : 0.5; });
     const types::Image one = fansOf({ping}), two = fansOf({ping, ping});
     EXPECT_EQ(two.size.width, 2 * one.size.width + 12);
@@ -151,7 +151,7 @@ TEST(LikenessTest, FansAreDrawnBesideEachOther) {
     EXPECT_EQ(one.image[row], 0) << "outside the fan";
 }
 
-TEST(LikenessTest, RecordingsOfAnM1200dLookLikeEachOtherAndNotLikeWrongForms) {
+TEST(LikenessTest, RecordingsOfAnM1200dResembleEachOtherButNotWrongPictures) {
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
     std::vector<CodedPing> recorded;
@@ -164,7 +164,7 @@ TEST(LikenessTest, RecordingsOfAnM1200dLookLikeEachOtherAndNotLikeWrongForms) {
     EXPECT_NEAR(looks.zeros, 0.0002, 0.0001);
     EXPECT_THAT(looks.contrast, AllOf(Ge(0.5), Le(0.6)));
     EXPECT_THAT(looks.beam_correlation, AllOf(Ge(0.4), Le(0.7)));
-    EXPECT_LT(looks.arc_excess_db, 3) << "no strong target stands in it";
+    EXPECT_LT(looks.arc_excess_db, 3) << "it has no strong target";
     EXPECT_LT(result.row("simulated")->apart.emd_codes, 1) << "one ping of it is like the others";
     for (const Claim& claim : claims(result.row("simulated")->apart, looks)) EXPECT_TRUE(claim.holds()) << claim.text;
     for (const char* wrong : {"uniform", "cosine"})

@@ -1,4 +1,4 @@
-// Runs of a sonar that chooses its quality while it moves, each ping against a much finer one of the same snapshot.
+// Runs of a moving sonar that chooses its quality, each ping compared with a much finer ping of the same snapshot.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ using sonar::compare, sonar::Layout, sonar::Metrics;
 
 using types::radians;
 
-constexpr double target = 0.05;  ///< Where nothing is said.
+constexpr double target = 0.05;  ///< Default.
 
-/** What became of a run. */
+/** Results of a run. */
 struct HeardPings {
     std::vector<types::SonarPtr> pings;
     std::vector<std::string> notices;
@@ -50,7 +50,7 @@ HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snaps
     return run;
 }
 
-/** rel_l2_tvg of each ping; a turning head is where its ping's bearing says. */
+/** Returns rel_l2_tvg of each ping; a turning head is at its ping's bearing. */
 std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots,
                                  const HeardPings& run, int columns_per_beam) {
     config.quality = {};
@@ -72,7 +72,7 @@ std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<ty
     return errors;
 }
 
-/** 95th percentile. */
+/** Returns the 95th percentile. */
 double nearlyAll(std::vector<double> errors) {
     std::ranges::sort(errors);
     return errors[errors.size() * 95 / 100];
@@ -112,13 +112,13 @@ struct Place {
     double yaw;
 };
 
-/** A floor of small stones, 3 m below (0, 0, 0). */
+/** Returns a floor of small stones, 3 m below (0, 0, 0). */
 types::Mesh stones(double side, double rms, uint64_t seed) {
     return meshOf(
         FractalFloor{.points = 256, .side = side, .slope = -1.7, .rms = rms, .centre_x = 0, .depth = 3, .seed = seed});
 }
 
-/** Faces a wall 4 m behind it, and then turns to the open floor by 4 deg a ping. */
+/** Returns snapshots that face a wall 4 m away, and then turn to the open floor by 4 deg per ping. */
 std::vector<types::Snapshot> turnFromAWall(unsigned seed) {
     const auto scene = test::sceneOf({stones(80, 0.3, seed), test::wall(-4)});
     return snapshotsOf(scene, 100, [](int i) {
@@ -126,14 +126,14 @@ std::vector<types::Snapshot> turnFromAWall(unsigned seed) {
     });
 }
 
-TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorKeepsToItsTarget) {
+TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorMeetsItsTarget) {
     const auto snapshots = turnFromAWall(3);
     const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
 
-TEST(MovingQualityTest, APassOverARoughFloorKeepsToItsTarget) {
+TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
     const auto scene = test::sceneOf({stones(100, 0.4, 8)});
     const auto snapshots = snapshotsOf(scene, 100, [](int i) {
         return Place{glm::dvec3(-35 + 0.4 * i, 2, 0.5 * std::sin(0.1 * i)), 0.2 * std::sin(0.05 * i)};
@@ -143,7 +143,7 @@ TEST(MovingQualityTest, APassOverARoughFloorKeepsToItsTarget) {
     EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
 
-/** A basin of 10 x 8 x 3 m and a tyre's worth of a ball on its floor. */
+/** Returns a basin of 10 x 8 x 3 m with a ball of a tyre's size on its floor. */
 types::GeometryPtr pool() {
     return test::sceneOf(
         {test::quad({-5, -4, -2}, {10, 0, 0}, {0, 8, 0}), test::quad({-5, -4, -2}, {10, 0, 0}, {0, 0, 3}),
@@ -152,7 +152,7 @@ types::GeometryPtr pool() {
         0, {{}, {}, {}, {}, {}, {3, -1, -1.7}});
 }
 
-TEST(MovingQualityTest, AScanningHeadInAPoolKeepsToItsTarget) {
+TEST(MovingQualityTest, AScanningHeadInAPoolMeetsItsTarget) {
     sonar::ScanningSonarConfig config;
     config.sonar.range = 12;
     config.sonar.bin_count = 400;

@@ -16,7 +16,7 @@ TEST(MultipathCommandTest, WritesTableJsonAndDiagramAndEveryClaimHolds) {
     EXPECT_THAT(readFile(folder / "report/multipath.csv"), HasSubstr("\nsquare trihedral,-20,"));
 }
 
-TEST(MultipathCommandTest, AFolderThatCannotBeWrittenIsTold) {
+TEST(MultipathCommandTest, ReportsAFolderThatCannotBeWritten) {
     const WallFolder folder;
     writeFile(folder / "taken", "a file");
     const Outcome outcome = callInsonify(folder, {"study", "multipath", "--out", "taken/report"});

@@ -15,7 +15,7 @@ json rowOf(const json& rows, const std::string& name) {
 
 }  // namespace
 
-TEST(OmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
+TEST(OmissionCommandTest, OmissionsChangeNoBinByMoreThanTheirBound) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "omission", "wall.yml", "--pings", "3", "--out", "report"});
     ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
@@ -34,7 +34,7 @@ TEST(OmissionCommandTest, WhatIsLeftOutChangesNoBinByMoreThanItsBound) {
     EXPECT_THAT(outcome.out, HasSubstr("| normal maps | no material has one |"));
 }
 
-TEST(OmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
+TEST(OmissionCommandTest, ShowsConfiguredEffectsWithTheirCost) {
     const WallFolder folder;
     writeFile(folder / "loud.yml",
               replaced(wall_deployment, "      range: 20\n", "      range: 20\n      absorption: {db_per_m: 0.2}\n"));
@@ -49,7 +49,7 @@ TEST(OmissionCommandTest, WhatIsConfiguredIsShownWithWhatItCosts) {
     EXPECT_LE(inside["change"], inside["bound"]);
 }
 
-TEST(OmissionCommandTest, PointTargetsAndARingDownAreShownWithWhatTheyCost) {
+TEST(OmissionCommandTest, ShowsPointTargetsAndARingDownWithTheirCost) {
     const WallFolder folder;
     const std::string ringing =
         replaced(wall_deployment, "      range: 20\n",
@@ -68,7 +68,7 @@ TEST(OmissionCommandTest, PointTargetsAndARingDownAreShownWithWhatTheyCost) {
     EXPECT_EQ(rowOf(rows, "1 of 2 point targets")["verdict"], "not measured");
 }
 
-TEST(OmissionCommandTest, WhatCannotBeStudiedIsRefused) {
+TEST(OmissionCommandTest, RefusesUnsuitableDeployments) {
     const WallFolder folder;
     EXPECT_EQ(callInsonify(folder, {"study", "omission"}).code, 2);
     const Outcome outcome = callInsonify(folder, {"study", "omission", "none.yml", "--out", "report"});

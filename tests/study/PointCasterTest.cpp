@@ -1,4 +1,4 @@
-// Brute force is the reference of scenes without a closed form: here it is held against those that have one.
+// Brute force, the reference of scenes without a closed form, compared with scenes that have a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct Errors {
     double true_error, estimated;
 };
 
-/** Of the mean of two halves: against the truth, and as the halves tell it. */
+/** Returns the errors of the mean of two halves: from the truth, and estimated from the halves. */
 Errors errorsOf(const StudyScene& scene, int up, int across) {
     PointCaster caster(scene.snapshot);
     std::vector<double> mean = caster.render(scene.snapshot.sonar, scene.config, up, across, 1);
@@ -46,12 +46,12 @@ StudyScene studyNamed(const std::string& name) {
 
 class PointCasterTest : public testing::TestWithParam<const char*> {};
 
-TEST_P(PointCasterTest, ItsErrorIsWhatItsHalvesTellAndFallsWithRays) {
+TEST_P(PointCasterTest, ItsErrorIsThatEstimatedFromItsHalvesAndFallsWithRays) {
     const StudyScene scene = studyNamed(GetParam());
     const int across = std::max(1, 8 / scene.config.beam_count);
     const Errors coarse = errorsOf(scene, 8, across), fine = errorsOf(scene, 32, 4 * across);
     EXPECT_LT(fine.estimated, coarse.estimated / 3) << "16 times the tiles: 8 with independent tiles, 4 without";
-    const double facets = 1.5e-3;  // of the ball, which stands for a round one
+    const double facets = 1.5e-3;  // of the ball, which approximates a sphere
     EXPECT_LT(fine.true_error, 1.3 * fine.estimated + facets);
     EXPECT_GT(fine.true_error, 0.7 * fine.estimated);
     EXPECT_LT(fine.true_error, 0.01);
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PointCasterTest,
                          testing::Values("flat_bottom_edge", "tilted_plane", "wall", "sphere", "shadow_screen"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOthersOthers) {
+TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOtherSeedsOthers) {
     const StudyScene scene = studyNamed("shadow_screen");
     const auto sums = [&](uint64_t seed) {
         return PointCaster(scene.snapshot).render(scene.snapshot.sonar, scene.config, 50, 3, seed);
@@ -72,7 +72,7 @@ TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOthersOthers) {
     EXPECT_NE(sums(1), sums(2));
 }
 
-/** A wall 10 m ahead whose map says everywhere that its normal leans. */
+/** Returns a wall 10 m ahead whose map tilts its normal everywhere. */
 types::GeometryPtr leaningWall(glm::ivec3 rgb) {
     const auto geometry = copyOf(sceneOf({facingWall(10, 20)}));
     types::Mesh& mesh = geometry->meshes[0];
@@ -85,7 +85,7 @@ types::GeometryPtr leaningWall(glm::ivec3 rgb) {
     return geometry;
 }
 
-TEST(PointCasterTest, ANormalMapBendsTheCosineAlone) {
+TEST(PointCasterTest, ANormalMapChangesOnlyTheCosine) {
     const glm::ivec3 rgb(190, 160, 230);
     sonar::SonarConfig config = fan(20, 20, 1, 15);
     setSamples(config, 256, 256);
@@ -102,7 +102,7 @@ TEST(PointCasterTest, ANormalMapBendsTheCosineAlone) {
         }
     EXPECT_NEAR(std::accumulate(sums.begin(), sums.end(), 0.0), expected, 1e-3 * expected);
     const Probe drawn = probe(config, scene);
-    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and so it is drawn";
+    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and it is rendered like this";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a target error chooses, against the truth: at most twice the target, and not far below it.
+// Qualities chosen for a target error, compared with the truth: at most twice the target, and not far below it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ double achieved(const StudyScene& scene, const sonar::Quality& quality) {
         .rel_l2_tvg;
 }
 
-/** What `chosen` leaves out of what `finest` hears. */
+/** Returns the difference between `chosen` and `finest`. */
 double difference(const StudyScene& scene, const sonar::Quality& chosen, const sonar::Quality& finest) {
     sonar::SonarRenderer renderer(scene.config, scene.snapshot.geometry);
     types::Sonar ping, finer;
@@ -47,7 +47,7 @@ double difference(const StudyScene& scene, const sonar::Quality& chosen, const s
     return compare(ping.bins, truth, {scene.config.beam_count, grid.bin_count, grid.bin_width, 0}).rel_l2_tvg;
 }
 
-TEST_P(QualityTest, TheTargetIsReachedAndNotWastefully) {
+TEST_P(QualityTest, ReachesTheTargetWithoutWaste) {
     const double target = 0.02;
     const StudyScene scene = GetParam().make();
     sonar::SonarConfig config = scene.config;
@@ -63,7 +63,8 @@ TEST_P(QualityTest, TheTargetIsReachedAndNotWastefully) {
 INSTANTIATE_TEST_SUITE_P(Scenes, QualityTest, testing::ValuesIn(closedFormScenes()),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-/** Scenes that no constant of the estimate was found on: floors rough in many ways, and clutter seen from all sides. */
+/** Returns scenes that were not used to find the estimate's constants: floors of various roughness, and clutter seen
+ *  from all sides. */
 std::vector<StudyScene> unseenScenes() {
     std::vector<StudyScene> scenes;
     sonar::SonarConfig config;

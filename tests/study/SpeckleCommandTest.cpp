@@ -18,7 +18,7 @@ json verdictOf(const json& report, const std::string& claim) {
 
 }  // namespace
 
-TEST(SpeckleCommandTest, WritesTablesJsonAndDiagramAndJudgesRecordingsWithoutFailingForThem) {
+TEST(SpeckleCommandTest, WritesTablesJsonDiagramAndVerdictsThatRecordingsCannotFail) {
     const WallFolder folder;
     writeFile(folder / "new.raw", recordedSpeckle());
     writeFile(folder / "frozen.raw", recordedSpeckle(true));
@@ -41,7 +41,7 @@ TEST(SpeckleCommandTest, WritesTablesJsonAndDiagramAndJudgesRecordingsWithoutFai
     EXPECT_THAT(readFile(folder / "report/lags.csv"), HasSubstr("\nrecorded_6,8,"));
 }
 
-TEST(SpeckleCommandTest, ASceneThatIsTooSmallForItIsStillReported) {
+TEST(SpeckleCommandTest, ReportsASceneThatIsTooSmall) {
     const WallFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "speckle", "wall.yml", "--out", "report"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -1,5 +1,5 @@
-// Pings whose echoes interfere (ACOUSTICS.md 5.21): laws come out of sums of scatterers, none is put in. Every law
-// stands beside a wrong one, which must fail by the same measure.
+// Pings whose echoes interfere (ACOUSTICS.md 5.21). Statistical laws result from sums of scatterers; none is put in.
+// Each law is compared with a wrong law, which must fail by the same measure.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using namespace sonar;
 using ::testing::ElementsAreArray;
 using types::radians;
 
-/** Boxes of 1 deg by 0.05 m over a level bottom: each bin is a resolution cell. */
+/** Returns boxes of 1 deg by 0.05 m over a level bottom: each bin is a resolution cell. */
 SonarConfig boxes() {
     SonarConfig config;
     config.speed_of_sound = 1500;
@@ -49,7 +49,7 @@ types::Snapshot overBottom(glm::dvec3 place = {}, double yaw = 0) {
     return test::snapshotOf(test::sceneOf({test::ground(-3)}), place, yaw);
 }
 
-/** Of each bin, the intensity over what it has on the average. */
+/** Returns the intensity of each bin over its mean. */
 SpeckleField fieldOf(const SonarConfig& config, const types::Snapshot& snapshot) {
     SonarConfig energies = config;
     energies.speckle.reset();
@@ -63,12 +63,12 @@ double meanOf(const SpeckleField& field) {
     return sum / count;
 }
 
-/** How alike two pings from different places are, in intensity. */
+/** Returns the correlation of the intensities of two pings from different places. */
 double alike(const SonarConfig& config, const types::Snapshot& a, const types::Snapshot& b) {
     return likewise(fieldOf(config, a), fieldOf(config, b)).intensities;
 }
 
-TEST(SpecklePingTest, WhatIsNotCoherentIsAsIfItWereNotThere) {
+TEST(SpecklePingTest, WithoutCoherenceNothingChanges) {
     SonarConfig config = boxes();
     const types::Sonar absent = pingOf(config, overBottom());
     config.speckle = SpeckleConfig{};
@@ -90,7 +90,7 @@ TEST(SpecklePingTest, ManyScatterersAreRayleighAndKeepTheMean) {
     EXPECT_GT(few.rayleigh_distance, rayleigh_distance_limit);
 }
 
-/** A fan across the track whose beams are half a degree along it. */
+/** Returns a fan across the track whose beams are half a degree along it. */
 SonarConfig acrossTheTrack() {
     SonarConfig config = boxes();
     config.range_min = 10;
@@ -142,7 +142,7 @@ TEST(SpecklePingTest, EveryFanAndPatternKeepsTheMean) {
     EXPECT_NEAR(meanOf(fieldOf(tone, overBottom())), 1, 0.04);
 }
 
-TEST(SpecklePingTest, AStillSceneIsTheSamePingAndAnotherBottomIsNot) {
+TEST(SpecklePingTest, AStillSceneGivesTheSamePingAndAnotherBottomDoesNot) {
     const SonarConfig config = coherent(boxes());
     const types::Snapshot here = overBottom();
     EXPECT_EQ(pingOf(config, here).bins, pingOf(config, here).bins);
@@ -177,7 +177,7 @@ TEST(SpecklePingTest, SpeckleDoesNotDependOnQualityOrTriangles) {
     EXPECT_GT(alike(config, overBottom(), pieces), 0.98);
 }
 
-/** A line that sends in all directions and hears by an aperture, of beams 0.25 deg apart. */
+/** Returns a line that transmits in all directions and receives with an aperture, of beams 0.25 deg apart. */
 SonarConfig lineArray(double aperture) {
     SonarConfig config = coherent(boxes());
     config.beam_count = 360;
@@ -187,15 +187,15 @@ SonarConfig lineArray(double aperture) {
     return config;
 }
 
-TEST(SpecklePingTest, SidewaysItLosesItselfAsTheApertureLeavesItself) {
-    // van Cittert and Zernike: the field's correlation is the autocorrelation of the aperture at twice the way, that of
-    // intensities its square, which is a half at 0.146 of the aperture.
+TEST(SpecklePingTest, DecorrelatesSidewaysLikeTheShiftedAperture) {
+    // van Cittert and Zernike: the field's correlation is the autocorrelation of the aperture at twice the shift, that
+    // of intensities its square, which is a half at 0.146 of the aperture.
     const double aperture = 0.1;
     const SonarConfig config = lineArray(aperture);
     const types::Snapshot here = overBottom();
     const auto after = [&](double way) {
         SonarConfig ahead = config;
-        ahead.field_of_view_deg = 30;  // beams that look ahead, for the aperture is seen at a slant by the others
+        ahead.field_of_view_deg = 30;  // only beams ahead: the others see the aperture at a slant
         ahead.beam_count = 120;
         return alike(ahead, here, overBottom({0, way, 0}));
     };
@@ -207,8 +207,9 @@ TEST(SpecklePingTest, SidewaysItLosesItselfAsTheApertureLeavesItself) {
     EXPECT_LT(after(0.6 * aperture), 0.06);
 }
 
-TEST(SpecklePingTest, APureShiftInRangeTakesItAlong) {
-    // Over a bin of 0.05 m towards the bottom ahead: what was in a bin is in the one before, where little else changes.
+TEST(SpecklePingTest, MovesWithAPureShiftInRange) {
+    // Over a bin of 0.05 m towards the bottom ahead: each bin's content moves to the previous bin, where little else
+    // changes.
     SonarConfig config = coherent(boxes());
     config.field_of_view_deg = 4;
     config.beam_count = 4;
@@ -228,7 +229,7 @@ TEST(SpecklePingTest, APureShiftInRangeTakesItAlong) {
     EXPECT_LT(likewise(here, wall(0.05)).intensities, 0.3);
 }
 
-/** What of a field lies beyond a range, where the pulse spreads it from both sides. */
+/** Returns the part of a field beyond a range, where the pulse spreads it from both sides. */
 SpeckleField beyond(SpeckleField field, double range, const SonarConfig& config) {
     const auto first = static_cast<size_t>(range / config.range * config.bin_count);
     for (size_t i = 0; i < field.relative.size(); ++i)
@@ -236,8 +237,8 @@ SpeckleField beyond(SpeckleField field, double range, const SonarConfig& config)
     return field;
 }
 
-TEST(SpecklePingTest, NeighboursAreAsAlikeAsPulseAndPatternSay) {
-    // Of a chirp without a window, the square of the sinc of the distance over c / 2B; of an aperture that of the
+TEST(SpecklePingTest, NeighboursCorrelateAccordingToPulseAndPattern) {
+    // For a chirp without a window, the square of the sinc of the distance over c / 2B; for an aperture that of the
     // difference of sines over wavelength / L.
     SonarConfig chirp = coherent(boxes());
     chirp.pulse.emplace().bandwidth_khz = 1500.0 / (2 * 0.2) / 1e3;  // resolves 0.2 m: bins are a quarter of it
@@ -254,7 +255,7 @@ TEST(SpecklePingTest, NeighboursAreAsAlikeAsPulseAndPatternSay) {
     EXPECT_NEAR(across.across[2], 0.41, 0.05);
 }
 
-TEST(SpecklePingTest, ThreadsMakeNoDifference) {
+TEST(SpecklePingTest, DoesNotDependOnThreads) {
     SonarConfig pattern = lineArray(0.003 / radians(1));
     pattern.pulse.emplace().bandwidth_khz = 10;
     for (const SonarConfig& config : {coherent(boxes()), coherent(boxes(), 10, 400), pattern}) {
@@ -273,7 +274,7 @@ TEST(SpecklePingTest, ThreadsMakeNoDifference) {
     }
 }
 
-TEST(SpecklePingTest, EqualScatterersScintillateByTwoLessTheirShare) {
+TEST(SpecklePingTest, EqualScatterersHaveAScintillationIndexOfTwoMinusTheirFraction) {
     // N equal scatterers at random in one cell: <I^2> / <I>^2 = 2 - 1/N (Stanton, Lee and Baik 2018).
     SonarConfig config = coherent(boxes());
     config.beam_count = 1;
@@ -337,7 +338,7 @@ TEST(SpecklePingTest, FewScatterersAreKDistributedByTheirNumberInACell) {
     EXPECT_NEAR(wider / near, 2, 0.5);
 }
 
-TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
+TEST(SpecklePingTest, ScatteringWaterHasSpeckleToo) {
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -50}};
     const types::Snapshot open = test::snapshotOf(test::sceneOf({test::ground(-500)}));
@@ -347,7 +348,7 @@ TEST(SpecklePingTest, WaterThatScattersHasSpeckleToo) {
     EXPECT_EQ(pingOf(config, open).bins, pingOf(config, open).bins);
 }
 
-TEST(SpecklePingTest, WaterInFrontOfABottomIsInTheBeamThatHearsIt) {
+TEST(SpecklePingTest, WaterInFrontOfABottomIsInTheReceivingBeam) {
     // Most samples of two beams side by side see the same triangle.
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -10}};
@@ -360,7 +361,7 @@ TEST(SpecklePingTest, WaterInFrontOfABottomIsInTheBeamThatHearsIt) {
     EXPECT_NEAR(sums[1] / counts[1], 1, 0.04) << "beams of odd numbers";
 }
 
-TEST(SpecklePingTest, WaterAndMirrorsAddTheirEnergiesForTheirFieldsHaveNothingInCommon) {
+TEST(SpecklePingTest, WaterAndMirrorsAddEnergiesBecauseTheirFieldsAreIndependent) {
     SonarConfig config = coherent(boxes());
     config.volume = {VolumeLayer{{}, {}, -20}};
     config.multipath.emplace().surface.emplace();
@@ -375,7 +376,7 @@ TEST(SpecklePingTest, WaterAndMirrorsAddTheirEnergiesForTheirFieldsHaveNothingIn
 }
 
 TEST(SpecklePingTest, ATargetUnderAFlatSurfaceHasTheFringesOfLloydsMirror) {
-    // Out and back each by the straight way and by the surface, which turns the pressure round: the square of the sum.
+    // Out and back by the straight path or by the surface, which inverts the pressure: the square of the sum.
     SonarConfig config = coherent(boxes());
     config.frequency_khz = 20;
     config.range = 60;
@@ -399,7 +400,7 @@ TEST(SpecklePingTest, ATargetUnderAFlatSurfaceHasTheFringesOfLloydsMirror) {
             return std::polar(1 / length, 2 * std::numbers::pi * std::fmod(length / wavelength, 1));
         };
         const double fringe = std::norm(way(direct) - way(mirrored));
-        if (fringe < 0.1 / (direct * direct)) continue;  // near a null anything matters
+        if (fringe < 0.1 / (direct * direct)) continue;  // near a null small errors matter
         const double level = 10 * std::log10(static_cast<double>(ping.bins[20]));
         worst = std::max(worst, std::abs(level - 20 * std::log10(fringe)));
         without =
@@ -432,7 +433,7 @@ TEST(SpecklePingTest, StiffCasesAreFinite) {
     EXPECT_TRUE(isFinite(pingOf(around, test::snapshotOf(test::sceneOf({test::ground(0)})))));
 }
 
-TEST(SpecklePingTest, WhatItNeedsIsAskedFor) {
+TEST(SpecklePingTest, ReportsMissingRequirements) {
     const auto wordsOf = [](const SonarConfig& config) {
         types::Diagnostics diagnostics;
         config.check(diagnostics);

@@ -1,4 +1,4 @@
-// Statistics of speckle on fields whose answers are known, and on recordings of a device.
+// Statistics of speckle on fields with known answers, and on recordings of a device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,14 +29,14 @@ SpeckleFigures figuresOfLaw(const noise::SpeckleConfig& law) {
     return figuresOf(overMeans(speckled(law), test::pingOf(beams, bins)));
 }
 
-/** A complex Gaussian of unit mean square, the same for the same place. */
+/** Returns a complex Gaussian of unit mean square, the same for the same place. */
 std::complex<double> gaussian(uint64_t seed, size_t a, size_t b) {
     const uint64_t word = types::hashed(seed, a, b);
     return std::polar(std::sqrt(-std::log(types::unit(word >> 32))),
                       2 * std::numbers::pi * types::unit(word & 0xffffffff));
 }
 
-/** Intensities of a complex field. */
+/** Returns intensities of a complex field. */
 template <class F>
 types::Sonar fieldOf(const F& field) {
     types::Sonar ping = test::pingOf(beams, bins);
@@ -46,7 +46,7 @@ types::Sonar fieldOf(const F& field) {
     return ping;
 }
 
-TEST(SpeckleStatisticsTest, OfRayleighAreThoseOfTheExponentialLaw) {
+TEST(SpeckleStatisticsTest, RayleighFieldsFollowTheExponentialLaw) {
     const SpeckleFigures figures = figuresOfLaw({});
     EXPECT_NEAR(figures.scintillation.value, 1, 3 * figures.scintillation.error);
     EXPECT_NEAR(figures.scintillation.error, std::sqrt(4 / figures.bins), 0.15 * figures.scintillation.error)
@@ -62,7 +62,7 @@ TEST(SpeckleStatisticsTest, OfRayleighAreThoseOfTheExponentialLaw) {
     }
 }
 
-TEST(SpeckleStatisticsTest, TellTheShapeOfKWithinTheirErrorAndThatItIsNotRayleigh) {
+TEST(SpeckleStatisticsTest, FindTheShapeOfKWithinTheirErrorAndRejectRayleigh) {
     for (const double shape : {1.0, 3.0, 10.0}) {
         const SpeckleFigures figures = figuresOfLaw({.law = noise::SpeckleLaw::K, .shape = shape});
         EXPECT_NEAR(figures.texture.value, 1 / shape, 3 * figures.texture.error) << shape;
@@ -72,7 +72,7 @@ TEST(SpeckleStatisticsTest, TellTheShapeOfKWithinTheirErrorAndThatItIsNotRayleig
     }
 }
 
-TEST(SpeckleStatisticsTest, TellAveragedLooksFromRayleigh) {
+TEST(SpeckleStatisticsTest, SeparateAveragedLooksFromRayleigh) {
     const SpeckleFigures figures = figuresOfLaw({.law = noise::SpeckleLaw::Gamma, .looks = 4});
     EXPECT_NEAR(figures.scintillation.value, 0.25, 0.02);
     EXPECT_LT(figures.shape(), 0);
@@ -80,7 +80,7 @@ TEST(SpeckleStatisticsTest, TellAveragedLooksFromRayleigh) {
 }
 
 TEST(SpeckleStatisticsTest, CorrelationIsThatOfTheIntensitiesOfNeighbours) {
-    const auto shared = [](size_t beam, size_t bin) {  // fields of neighbours share a half, their intensities a quarter
+    const auto shared = [](size_t beam, size_t bin) {  // neighbouring fields share a half, their intensities a quarter
         return (gaussian(1, beam, bin) + gaussian(1, beam + 1, bin)) / std::numbers::sqrt2;
     };
     const types::Sonar ping = fieldOf(shared);
@@ -92,7 +92,7 @@ TEST(SpeckleStatisticsTest, CorrelationIsThatOfTheIntensitiesOfNeighbours) {
     EXPECT_LT(figures.rayleigh_distance, rayleigh_distance_limit);
 }
 
-TEST(SpeckleStatisticsTest, WhatIsNewInEachPingIsTheNoiseShare) {
+TEST(SpeckleStatisticsTest, TheNewPartOfEachPingIsTheNoiseShare) {
     for (const double share : {0.0, 0.1, 0.5, 1.0}) {
         const auto ping = [&](uint64_t seed) {
             return overMeans(fieldOf([&](size_t beam, size_t bin) {
@@ -108,7 +108,7 @@ TEST(SpeckleStatisticsTest, WhatIsNewInEachPingIsTheNoiseShare) {
     }
 }
 
-/** The ping as an instrument of 8 bits gives it out, its middle level at code 60. */
+/** Returns the ping as output by an instrument of 8 bits, its middle level at code 60. */
 CodedPing coded(const types::Sonar& ping) {
     CodedPing result{.name = "coded",
                      .beam_count = ping.beam_count,
@@ -119,7 +119,7 @@ CodedPing coded(const types::Sonar& ping) {
     return result;
 }
 
-TEST(SpeckleStatisticsTest, CodesOfEightBitsTellNearlyTheSame) {
+TEST(SpeckleStatisticsTest, CodesOfEightBitsGiveNearlyTheSame) {
     for (const noise::SpeckleConfig& law :
          {noise::SpeckleConfig{}, noise::SpeckleConfig{.law = noise::SpeckleLaw::K, .shape = 3}}) {
         const types::Sonar ping = speckled(law);
@@ -134,7 +134,7 @@ TEST(SpeckleStatisticsTest, CodesOfEightBitsTellNearlyTheSame) {
     }
 }
 
-TEST(SpeckleStatisticsTest, PatchesOfTwoKindsOfBottomOrOfCutOffCodesSayNothing) {
+TEST(SpeckleStatisticsTest, OmitPatchesOfTwoKindsOfBottomOrOfClippedCodes) {
     types::Sonar ping = speckled({});
     for (size_t bin = 24; bin < 32; ++bin) ping.bins[bin] *= 100;  // beams 0 to 7 of the patch at bin 16
     for (size_t beam = 1; beam < 8; ++beam)
@@ -147,13 +147,13 @@ TEST(SpeckleStatisticsTest, PatchesOfTwoKindsOfBottomOrOfCutOffCodesSayNothing) 
     EXPECT_FALSE(std::isnan(field.at(0, 48)));
 }
 
-TEST(SpeckleStatisticsTest, WhatIsTooSmallOrOfAnotherShapeIsRefused) {
+TEST(SpeckleStatisticsTest, RefuseFieldsThatAreTooSmallOrOfAnotherShape) {
     EXPECT_THROW(figuresOf(overPatches(test::pingOf(32, 31))), std::invalid_argument);
     EXPECT_THROW(overMeans(test::pingOf(2, 3), test::pingOf(3, 2)), std::invalid_argument);
     EXPECT_THROW(likewise(overPatches(test::pingOf(32, 32)), overPatches(test::pingOf(32, 48))), std::invalid_argument);
 }
 
-TEST(SpeckleStatisticsTest, EighthsOfTheRangeAreToldOfByThemselves) {
+TEST(SpeckleStatisticsTest, DescribeEighthsOfTheRangeSeparately) {
     types::Sonar ping = speckled({}), means = test::pingOf(beams, bins);
     for (size_t beam = 0; beam < beams; ++beam)
         for (size_t bin = 320; bin < 384; ++bin) ping.bins[beam * bins + bin] = means.bins[beam * bins + bin] = 9;
@@ -164,7 +164,7 @@ TEST(SpeckleStatisticsTest, EighthsOfTheRangeAreToldOfByThemselves) {
     EXPECT_EQ(figuresOf(sliceOf(field, 4)).bins, beams * 64);
 }
 
-TEST(SpeckleStatisticsTest, PingsOfAnM1200dStandStillWhereTheyAreLoudAndAreRayleighNoiseWhereTheyAreNot) {
+TEST(SpeckleStatisticsTest, LoudPartsOfPingsOfAnM1200dAreStillAndTheRestIsRayleighNoise) {
     const std::filesystem::path file = test::sharedFile("sonar/oculus/three_pings_8bit.raw");
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there: nothing is held against recordings";
     std::vector<SpeckleField> loud, far;

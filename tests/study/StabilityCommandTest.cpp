@@ -6,8 +6,8 @@ using namespace insonify::deployer;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-// That none of all cases fails is StabilityTest.
-TEST(StabilityCommandTest, EveryCaseThatIsAskedForIsJudgedOnBothSheets) {
+// StabilityTest checks that no case fails.
+TEST(StabilityCommandTest, EvaluatesEverySelectedCaseOnBothSheets) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"study", "stability", "--only", "beam", "--out", "new/sheets"});
     EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
@@ -24,7 +24,7 @@ TEST(StabilityCommandTest, EveryCaseThatIsAskedForIsJudgedOnBothSheets) {
     }
 }
 
-TEST(StabilityCommandTest, AFolderThatIsMissingOrCannotBeMadeIsWrongUsage) {
+TEST(StabilityCommandTest, AMissingOrImpossibleFolderIsWrongUsage) {
     const TestFolder folder;
     EXPECT_EQ(callInsonify(folder, {"study", "stability"}).code, 2);
     writeFile(folder / "file", "");

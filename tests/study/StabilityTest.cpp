@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/** The cases that subsection `heading` of the reference lists. */
+/** Returns the cases that subsection `heading` of the reference lists. */
 std::set<int> listedIn(const std::string& heading) {
     std::set<int> listed;
     std::ifstream page(test::sourceFile("components/sonar/ACOUSTICS.md"));
@@ -30,7 +30,7 @@ std::set<int> listedIn(const std::string& heading) {
     return listed;
 }
 
-/** "33 TVG gain of 1e20" as a name for a test. */
+/** Converts "33 TVG gain of 1e20" to the name of a test. */
 std::string testName(const testing::TestParamInfo<StabilityCase>& info) {
     std::string name = "Case" + std::to_string(info.param.number) + "_";
     bool begins = true;
@@ -55,20 +55,20 @@ TEST_P(StabilityTest, DoesAsExpected) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, StabilityTest, testing::ValuesIn(stabilityCases()), testName);
 
-TEST(StabilityStudyTest, TheReferenceListsTheCasesThatThereAre) {
+TEST(StabilityStudyTest, TheReferenceListsTheExistingCases) {
     EXPECT_EQ(stabilityCases().size(), 69u) << "as README.md and components/study/README.md say";
     std::set<int> numbers;
     for (const StabilityCase& c : stabilityCases()) numbers.insert(c.number);
     EXPECT_EQ(listedIn("11.1"), numbers);
 }
 
-TEST(StabilityStudyTest, NoneOfThe60CasesIsLeftOut) {
+TEST(StabilityStudyTest, NoneOfThe60CasesIsMissing) {
     std::set<int> listed = listedIn("11.1");
     listed.merge(listedIn("11.2"));
     for (int number = 1; number <= 60; ++number) EXPECT_TRUE(listed.contains(number)) << number;
 }
 
-TEST(StabilityStudyTest, ACaseThatThrowsHasFailedAndTheSheetsSaySo) {
+TEST(StabilityStudyTest, ACaseThatThrowsFailsAndTheSheetsReportIt) {
     const std::vector<StabilityCase> cases = {
         {7, "a \"quoted\" | case", "calm",
          [] {

@@ -1,4 +1,4 @@
-// The study's exact echoes against the closed forms of ACOUSTICS.md 9.
+// The study's exact echoes compared with the closed forms of ACOUSTICS.md 9.
 #include <gtest/gtest.h>
 
 #include "components/study/StudyScene.hpp"
@@ -34,7 +34,7 @@ TEST(TruthTest, APitchedBottomFollowsTheThinBeamForm) {
             << r;
 }
 
-TEST(TruthTest, APatternInElevationWeighsThePitchedThinBeamForm) {
+TEST(TruthTest, APatternInElevationWeightsThePitchedThinBeamForm) {
     const double pitch = radians(30), half = radians(20), delta = 1e-4;
     const glm::dvec3 down(std::sin(pitch), 0, -std::cos(pitch));
     const Pattern pattern = [](double elevation) { return std::exp(-20 * elevation * elevation - elevation); };
@@ -57,7 +57,7 @@ TEST(TruthTest, AWallFollowsTheThinBeamForm) {
             << r;
 }
 
-TEST(TruthTest, DiscAndSphereAreThePublishedForms) {
+TEST(TruthTest, DiscAndSphereFollowThePublishedForms) {
     const BeamLimits wide{-1, 1, 1};
     expectForm(sphereTruth(1, 10), wide, test::sphereEcho(1, 10), 8.5, 11);
     const double edge = std::hypot(10, 2.9);
@@ -65,8 +65,8 @@ TEST(TruthTest, DiscAndSphereAreThePublishedForms) {
         EXPECT_NEAR(discTruth(10, 2.9)(wide, r, r + 0.1), test::planeDisc(10, edge, 1)(r, r + 0.1), 1e-8) << r;
 }
 
-TEST(TruthTest, AWindowTakesAwayWhatItHides) {
-    const Window none = [](double) { return Elevations{0.1, 0.2}; };  // above the horizon, where no bottom is
+TEST(TruthTest, AWindowRemovesHiddenParts) {
+    const Window none = [](double) { return Elevations{0.1, 0.2}; };  // above the horizon, where there is no bottom
     EXPECT_EQ(planeTruth({0, 0, -1}, 5, none)({-0.1, 0.1, 0.5}, 10, 20), 0);
     const Window lower = [](double) { return Elevations{-1, -0.3}; };
     const double seen = planeTruth({0, 0, -1}, 5, lower)({-0.1, 0.1, 0.5}, 5, 50);

@@ -19,7 +19,7 @@ thread_local bool counted_here = false;
 std::atomic<size_t> count{0};
 std::array<std::atomic<void*>, 64> callers;
 
-/** Drivers may allocate, and compile shaders for a state of the device that they meet late. */
+/** Drivers may allocate, and compile shaders for a device state that first occurs late. */
 bool calledByDriver() {
     std::array<void*, 24> frames{};
     const int depth = backtrace(frames.data(), static_cast<int>(frames.size()));
@@ -48,8 +48,8 @@ std::string placeOf(void* address) {
 
 }  // namespace
 
-// Not inlined: g++ would take the pairs apart and warn that they do not match. The non-throwing new is replaced as
-// well, because the sanitizers' own does not go with this delete.
+// Not inlined: g++ would split the pairs and warn that they do not match. The non-throwing new is replaced as well,
+// because the sanitizers' version does not match this delete.
 [[gnu::noinline]] void* operator new(size_t size) {
     note(__builtin_return_address(0));
     if (void* memory = std::malloc(size)) return memory;

@@ -1,6 +1,6 @@
 #pragma once
-// Counts calls of operator new. A test binary that uses this has tests/support/Allocations.cpp among its sources, which
-// replaces operator new for the whole process, shared libraries included.
+// Counts calls of operator new. A test binary that uses this compiles tests/support/Allocations.cpp, which replaces
+// operator new for the whole process, shared libraries included.
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,13 +10,14 @@
 
 namespace insonify::test {
 
-/** From now on the calling thread's calls of operator new are counted, or no longer. */
+/** Starts or stops counting the calling thread's calls of operator new. */
 void countHere(bool on);
 
-/** The calls counted since this was called last: "object+offset" of the code that made each, at most 64 of them. */
+/** Returns the calls counted since the last call of this function: "object+offset" of the code that made each, at most
+ *  64. */
 std::vector<std::string> takeCounted();
 
-/** The calls of operator new on a task's thread while `work` runs on the test's. */
+/** Returns the calls of operator new on a task's thread while `work` runs on the test's thread. */
 template <class Work>
 std::vector<std::string> allocationsOn(framework::TaskContext& task, Work&& work) {
     takeCounted();
@@ -26,7 +27,7 @@ std::vector<std::string> allocationsOn(framework::TaskContext& task, Work&& work
     return takeCounted();
 }
 
-/** The same of the cycles 2 to 99, after a first one. */
+/** Returns the calls of operator new in cycles 2 to 99, after a first cycle. */
 template <class Cycle>
 std::vector<std::string> allocationsAfterTheFirst(framework::TaskContext& task, const Cycle& cycle) {
     cycle(1);

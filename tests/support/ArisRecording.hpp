@@ -8,7 +8,7 @@ namespace insonify::test {
 
 constexpr uint32_t aris_mark = 0x05464444;
 
-/** What a frame states; the angles are those of the sonar's compass [deg]. */
+/** The content of a frame; the angles are from the sonar's compass [deg]. */
 struct ArisFrame {
     uint32_t model = 1, ping_mode = 9;  ///< An ARIS 3000 with 128 beams.
     bool is_telephoto = false, is_high = true;
@@ -17,7 +17,7 @@ struct ArisFrame {
     uint64_t time_us = 1'700'000'000'000'000;
     double latitude = 0, longitude = 0;
     float depth = 0, altitude = 0, heading = 0, pitch = 0, roll = 0;
-    RecordedBytes samples{};  ///< Of 1 byte, all beams of the nearest range first, from starboard.
+    RecordedBytes samples{};  ///< 1 byte each, all beams of the nearest range first, from starboard.
 
     uint32_t beams() const { return ping_mode <= 2 ? 48 : ping_mode <= 5 ? 96 : ping_mode <= 8 ? 64 : 128; }
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Echoes that are known in closed form (ACOUSTICS.md 9, with S0 = 1), and how far a ping is from one.
+// Echoes with a closed form (ACOUSTICS.md 9, with S0 = 1), and the deviation of a ping from a form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace insonify::test {
 /** Energy between slant ranges [r1, r2] in one beam, or the mean of S there. */
 using Form = std::function<double(double r1, double r2)>;
 
-/** How far a ping is from a form that holds in all of its beams. */
+/** The deviation of a ping from a form that applies to all of its beams. */
 struct Deviation {
     double relative_l2;  ///< Over all bins of all beams [1].
-    double worst_db;     ///< Of the bins above -40 dB of the form's maximum [dB].
+    double worst_db;     ///< Over the bins above -40 dB of the form's maximum [dB].
     double ripple;       ///< rms over the beams of energy / energy of the form - 1 [1].
     bool small() const { return relative_l2 < 0.01 && worst_db < 0.2 && ripple < 0.01; }
 };
@@ -48,7 +48,7 @@ inline std::ostream& operator<<(std::ostream& out, const Deviation& d) {
     return out << "relative L2 " << d.relative_l2 << ", worst " << d.worst_db << " dB, ripple " << d.ripple;
 }
 
-/** Expects that the ping follows `right`, and that the same measure sees that it does not follow `wrong`. */
+/** Expects that the ping follows `right`, and that the same measure detects that it does not follow `wrong`. */
 inline void expectForm(const types::Sonar& ping, const Form& right, const Form& wrong) {
     const Deviation d = deviation(ping, right);
     EXPECT_TRUE(d.small()) << d;
@@ -84,8 +84,8 @@ inline double integral(double from, double to, const std::function<double(double
 /** Integral of r^-5. */
 inline double inverseFourth(double r1, double r2) { return 0.25 * (std::pow(r1, -4) - std::pow(r2, -4)); }
 
-/** Form 1: a plane at perpendicular distance D, of which a disc around the foot of the perpendicular is seen, out to
- *  slant range `edge`; beta is the two-way absorption [1/m]. */
+/** Form 1: a plane at perpendicular distance D, visible in a disc around the foot of the perpendicular out to slant
+ *  range `edge`; beta is the two-way absorption [1/m]. */
 inline Form planeDisc(double distance, double edge, double mu, double beta = 0) {
     return between(distance, edge, [=](double r1, double r2) {
         const auto density = [=](double r) { return std::pow(r, -5) * std::exp(-beta * r); };
@@ -105,8 +105,8 @@ inline Form flatBottomWithoutCosine(double height, double elevation, double delt
                    [=](double r1, double r2) { return height * delta * (std::pow(r1, -3) - std::pow(r2, -3)) / 3; });
 }
 
-/** Form 3: a flat bottom under a thin beam pitched down, of half aperture `half`; `tilt` is the pitch, and anything
- *  else is wrong [rad]. */
+/** Form 3: a flat bottom under a thin beam pitched down, of half aperture `half`. `tilt` is the pitch; any other value
+ *  is wrong [rad]. */
 inline Form pitchedBottom(double height, double pitch, double half, double delta, double tilt) {
     const auto f4 = [](double p) { return 3 * p / 8 - std::sin(2 * p) / 4 + std::sin(4 * p) / 32; };
     return between(height / std::sin(pitch + half), height / std::sin(pitch - half), [=](double r1, double r2) {
@@ -165,8 +165,8 @@ inline Form publishedSphere(double a, double centre) {
                                  [=](double r) { return (q - r * r) / (r * r); }));
 }
 
-/** Form 8: slant range at which the shadow ends that an object of height h casts on the bottom under a sonar of height
- *  H; `ground_range` is the object's horizontal distance [m]. */
+/** Form 8: slant range at the end of the shadow of an object of height h on the bottom, under a sonar of height H;
+ *  `ground_range` is the object's horizontal distance [m]. */
 inline double shadowEnd(double sonar_height, double object_height, double ground_range) {
     const double above = sonar_height - object_height;
     return std::hypot(ground_range, above) * sonar_height / above;

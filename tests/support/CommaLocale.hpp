@@ -1,5 +1,5 @@
 #pragma once
-// A host whose numbers have a comma.
+// A host with a decimal comma.
 //
 //     const CommaLocale german;
 //     if (!german.isThere()) GTEST_SKIP() << german.why();
@@ -11,8 +11,7 @@
 
 namespace insonify::test {
 
-/** The numbers of the process as in German, 0,5, for the length of a test. The locale is made in a folder of its own.
- */
+/** Sets the process to German numbers, 0,5, for the duration of a test. The locale is made in a temporary folder. */
 class CommaLocale {
 public:
     CommaLocale() {

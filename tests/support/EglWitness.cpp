@@ -1,5 +1,4 @@
-// An EGL vendor's library that renders nothing: it leaves a file where it is loaded, which it is when somebody asks
-// EGL.
+// An EGL vendor's library that renders nothing. When it is loaded, because a program uses EGL, it writes a file.
 #include <cstdlib>
 #include <fstream>
 

@@ -1,12 +1,12 @@
 #pragma once
-// The ways in which echoes are found and summed.
+// The ways to find and sum echoes.
 #include <vector>
 
 #include "components/sonar/plan/SonarConfig.hpp"
 
 namespace insonify::test {
 
-/** By rays, drawn and summed on the processor, and drawn and summed on the (software) device. */
+/** By rays; rasterised with sums on the processor; rasterised with sums on the (software) device. */
 inline std::vector<sonar::SonarConfig> everyWay(const sonar::SonarConfig& config) {
     std::vector<sonar::SonarConfig> all(3, config);
     all[0].visibility = sonar::Visibility::Cpu;

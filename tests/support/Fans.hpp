@@ -33,7 +33,7 @@ inline types::Sonar reordered(const types::Sonar& ping, const std::vector<uint32
 /** Angle between two directions, at most pi [rad]. */
 inline double apart(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)); }
 
-/** The least of these angles to a beam of a ping [rad]. */
+/** The min of these angles to a beam of a ping [rad]. */
 inline double nearestBeam(const types::Sonar& ping, double bearing) {
     double least = 10;
     for (const types::Angle& each : ping.bearings) least = std::min(least, apart(each.rad, bearing));

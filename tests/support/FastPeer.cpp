@@ -1,8 +1,8 @@
 // A ROS 2 peer by Fast DDS, ROS 2's default, over the loopback interface in the domain of ROS_DOMAIN_ID:
 //
 //     dds_fast_peer listen TYPE TOPIC SECONDS COUNT         "ready" once it knows a writer, "met" at the first message
-//                                                           without a stamp; then how many came with one, and their
-//                                                           size
+//                                                           without a stamp; then the number of messages with a stamp,
+//                                                           and their size
 //     dds_fast_peer send TYPE TOPIC GREETING FILE COUNT     the bytes of GREETING until SIGUSR1, then those of FILE, 40
 //                                                           times a second
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
@@ -36,7 +36,7 @@ using Bytes = std::vector<char>;
 using eprosima::fastrtps::rtps::InstanceHandle_t;
 using eprosima::fastrtps::rtps::SerializedPayload_t;
 
-/** Messages as they stand on the wire. */
+/** Messages in their encoding on the wire. */
 class Raw : public TopicDataType {
 public:
     explicit Raw(const std::string& name) {
@@ -71,7 +71,7 @@ Bytes bytesOf(const char* path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/** Of the header that the message begins with, after four bytes on its encoding. */
+/** Returns whether the header at the beginning, after four bytes on the encoding, has a stamp. */
 bool hasStamp(const Bytes& message) {
     return message.size() >= 12 &&
            std::any_of(message.begin() + 4, message.begin() + 12, [](char c) { return c != 0; });

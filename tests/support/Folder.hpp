@@ -10,7 +10,7 @@
 
 namespace insonify {
 
-/** An empty folder that goes with the test. */
+/** An empty folder that is removed after the test. */
 class Folder {
 public:
     Folder() {

@@ -20,7 +20,7 @@
 
 namespace {
 
-/** What the program has been through: a mark for each step from one block of code to another. */
+/** The path of the program: a mark for each step from one block of code to another. */
 std::array<uint8_t, 1 << 16> steps;
 thread_local uintptr_t block_before = 0;
 
@@ -97,7 +97,7 @@ private:
     static void overwrite(std::string& bytes, size_t at, const std::string& by) {
         bytes.replace(at, std::min(by.size(), bytes.size() - at), by);
     }
-    /** Of 1, 2, 4 or 8 bytes: a bound, or a number about as large as the input. */
+    /** A number of 1, 2, 4 or 8 bytes: a bound, or about the size of the input. */
     std::string extremeNumber() {
         const uint64_t numbers[] = {0,          1,          0x7f,       0x80,       0xff,  0x7fff,
                                     0xffff,     0x7fffffff, 0x80000000, 0xffffffff, ~0ull, 0x7fffffffffffffff,
@@ -126,7 +126,7 @@ private:
     std::minstd_rand random_;
 };
 
-/** Whether the last input led where none had been. */
+/** Returns whether the last input reached new steps. */
 bool leadsElsewhere() {
     static std::array<uint8_t, steps.size()> known;
     bool is_new = false;
@@ -144,7 +144,7 @@ void enter(const Door& door, const std::string& bytes, const fs::path& folder) {
     EXPECT_NO_THROW(door.enter(Input(bytes, file))) << "the input is in " << file;
 }
 
-/** Without a sanitizer, which takes address space without end and has a limit of its own. */
+/** Limits memory, except with a sanitizer, which reserves unlimited address space and has a limit of its own. */
 void limitMemory() {
 #ifndef __SANITIZE_ADDRESS__
     const rlimit limit{rlim_t{4} << 30, rlim_t{4} << 30};

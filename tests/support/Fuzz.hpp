@@ -1,5 +1,5 @@
 #pragma once
-// Doors through which bytes of others come in, and what pushes at them.
+// Doors, the readers of external bytes, and the inputs that test them.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace insonify::fuzz {
 
-/** Bytes to be read, which become a file when one is asked for. */
+/** Bytes to read, which are written to a file on request. */
 class Input {
 public:
     Input(std::string bytes, std::filesystem::path file) : bytes_(std::move(bytes)), file_(std::move(file)) {}
@@ -24,22 +24,20 @@ private:
     std::filesystem::path file_;
 };
 
-/** One reader of foreign bytes. */
+/** One reader of external bytes. */
 struct Door {
-    std::string name;                ///< Of its folder in tests/fuzz/corpus.
+    std::string name;                ///< Name of its folder in tests/fuzz/corpus.
     std::string file;                ///< Name of the file that it reads.
-    std::vector<std::string> words;  ///< Of its language, that are put in.
+    std::vector<std::string> words;  ///< Words of its format, inserted into inputs.
     std::function<void(const Input&)>
-        enter;  ///< Reads; returns as well where types::ConfigError or its like is thrown.
+        enter;  ///< Reads; returns also if types::ConfigError or a similar exception is thrown.
 };
 
-/** Reads every file of the door's corpus. With INSONIFY_FUZZ_SECONDS, goes on for that time with inputs made from them:
- *  the one at hand is always in INSONIFY_FUZZ_FOLDER, where those stay that led to code which none before had reached,
- *  as far as the program was built to tell (CMake's INSONIFY_FUZZ). One that takes more than a minute ends the process.
- *  An exception that leaves `enter` is a failure. */
+/** Reads every file of the door's corpus. With INSONIFY_FUZZ_SECONDS, continues for that time with inputs made from
+ *  these files. The current input is always in INSONIFY_FUZZ_FOLDER, where inputs that reached new code are kept. */
 void push(const Door& door);
 
-/** A message for a user: fails where it is what only a library's author understands. */
+/** Checks a message for users: fails if only the author of a library would understand it. */
 void expectOurWords(const std::string& message);
 
 }  // namespace insonify::fuzz

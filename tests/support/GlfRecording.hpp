@@ -1,5 +1,5 @@
 #pragma once
-// .glf files of a Gemini by its layout: the maker's headers, and open programs that read such files.
+// .glf files of a Gemini, by the maker's headers and by open programs that read these files.
 #include <cstdint>
 #include <string>
 
@@ -7,10 +7,10 @@
 
 namespace insonify::test {
 
-/** What an image states. */
+/** The content of an image. */
 struct GlfImage {
     uint16_t version = 3, device = 1194;
-    uint16_t compression = 1;  ///< 0: `packed` is zlib's, 1: as they are, 2: H.264.
+    uint16_t compression = 1;  ///< 0: `packed` is from zlib, 1: uncompressed, 2: H.264.
     uint32_t start_range = 0, end_range = 0;
     uint32_t rate_hz = 37'500;
     float sound_speed = 1500;
@@ -20,7 +20,7 @@ struct GlfImage {
     uint8_t platform = 2;
     std::vector<double> bearings{};  ///< Positive to port [rad].
     RecordedBytes packed{};          ///< Samples of 1 byte, all beams of the nearest range first.
-    RecordedBytes zoom{};            ///< Behind the image; not empty: it is there.
+    RecordedBytes zoom{};            ///< Follows the image, unless empty.
 };
 
 inline RecordedBytes glfHeader(uint8_t type, uint16_t device, double time_s) {
@@ -64,7 +64,7 @@ inline RecordedBytes glfRecord(const GlfImage& image) {
     return bytes;
 }
 
-/** A file of an archive. @param method 0: `packed` is the file, 8: it is deflated */
+/** Returns a file of an archive. @param method 0: `packed` is the file, 8: it is deflated */
 inline RecordedBytes zipped(const std::string& name, const RecordedBytes& packed, uint32_t size, uint32_t checksum,
                             uint16_t method = 0) {
     RecordedBytes bytes(30);
@@ -90,13 +90,13 @@ inline uint32_t zipChecksum(const RecordedBytes& bytes) {
     return ~sum;
 }
 
-/** The bytes of log.dat: these records and the mark of the end. */
+/** The bytes of log.dat: these records and the end mark. */
 inline RecordedBytes glfLog(std::vector<RecordedBytes> records) {
     records.push_back({'\xDE', '\xDE'});
     return joinedBytes(records);
 }
 
-/** An archive with log.cfg and log.dat, neither of them packed. */
+/** An archive with log.cfg and log.dat, both uncompressed. */
 inline RecordedBytes glfFile(const std::vector<RecordedBytes>& records) {
     const RecordedBytes settings{'<', '/', '>'}, log = glfLog(records);
     return joinedBytes({zipped("log.cfg", settings, 3, zipChecksum(settings)),

@@ -1,5 +1,5 @@
 #pragma once
-// A task that listens for the poses of others, and who reads its outputs.
+// A task that receives poses of others, and readers of its outputs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,15 +14,15 @@
 
 namespace insonify::test {
 
-/** At work by itself once its activity is released; before, where `by_hand`, a cycle each time that something is waited
- *  for. */
+/** A bench for a task that listens. The task runs by its own activity or, with `by_hand`, a cycle in each attempt of a
+ *  wait. */
 template <class Task>
 class Listening {
 protected:
     explicit Listening(const std::string& name, bool by_hand = false) : task(name), by_hand_(by_hand) {}
     ~Listening() { task.activity().hold(); }
 
-    /** With a reader for each entry of a list of the configuration. */
+    /** Makes a reader for each entry of a list of the configuration. */
     template <class Config, class Entries>
     void start(const Config& config, const Entries& entries) {
         task.config.set(config);
@@ -33,13 +33,13 @@ protected:
         ASSERT_TRUE(task.start());
         if (!by_hand_) task.activity().release();
     }
-    /** The next pose, waited for. */
+    /** Waits for the next pose. */
     std::optional<types::Pose> next(size_t reader = 0) {
         types::Pose pose;
         if (!comesTrue([&] { return work(), readers[reader].port.readNew(pose); })) return std::nullopt;
         return pose;
     }
-    /** Waits for a notice with this in it. */
+    /** Waits for a notice that contains this text; returns whether it came. */
     bool tells(const std::string& text) {
         return comesTrue([&] {
             work();

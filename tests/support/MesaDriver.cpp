@@ -1,4 +1,5 @@
-// Linked into tests that draw. Where GALLIUM_DRIVER names a driver of Mesa's, all are skipped unless that one draws.
+// Linked into tests that use OpenGL. If GALLIUM_DRIVER names a driver of Mesa, the tests are skipped unless that driver
+// renders.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,7 +9,7 @@
 namespace insonify {
 namespace {
 
-/** GL_RENDERER of a context for software. */
+/** Returns GL_RENDERER of a software context. */
 std::string rendererHere() {
     try {
         return gpu::EglContext("software").renderer();
@@ -22,7 +23,7 @@ struct MesaDriver : testing::Environment {
         const char* driver = std::getenv("GALLIUM_DRIVER");
         if (!driver || !*driver) return;
         if (const std::string found = rendererHere(); !found.starts_with(driver))
-            GTEST_SKIP() << "NOT TESTED: Mesa's " << driver << " does not draw here (" << found
+            GTEST_SKIP() << "NOT TESTED: Mesa's " << driver << " does not render here (" << found
                          << "); Debian: mesa-vulkan-drivers, scripts/setup installs it";
     }
 };

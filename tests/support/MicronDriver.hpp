@@ -1,5 +1,5 @@
 #pragma once
-// A driver of a Micron, by the bytes that open drivers send and by the checks that they make.
+// A driver of a Micron, with the bytes of open drivers and their checks.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -28,7 +28,7 @@ public:
         Bytes bins;
     };
 
-    /** `write` sends; `read` waits for more and throws where none comes. */
+    /** `write` sends; `read` waits for more and throws if nothing arrives. */
     MicronDriver(std::function<void(const Bytes&)> write, std::function<Bytes()> read)
         : write_(std::move(write)), read_(std::move(read)) {}
 
@@ -55,8 +55,8 @@ public:
         }
         throw std::runtime_error("the configuration was not accepted");
     }
-    /** Opens a head as McGill's ros-tritech-micron does, which takes the bits of the state from the wrong end: it waits
-     * until a head says that it is recentring and not centred. False: it would wait for ever. */
+    /** Opens a head like McGill's ros-tritech-micron, which reads the bits of the state in reverse order: it waits
+     *  until a head reports that it is recentring and not centred. Returns false if it would wait for ever. */
     bool openLikeMcGill(Settings settings) {
         settings.head_type = mcgill_head_type;
         send(16);
@@ -67,7 +67,7 @@ public:
         for (int i = 0; i < max_packets && !mcgillTakes(state); ++i) state = packetOf(4)[20];
         return mcgillTakes(state) && mcgillTakes(packetOf(4)[20]);  // asked again before the first line
     }
-    /** Turns the head round, with the head command of one byte. */
+    /** Reverses the head, with the head command of one byte. */
     void reverse() { send(19, {0x0F}); }
     void request() { send(25, Bytes(4)); }
     Beam beam() {
@@ -102,7 +102,7 @@ private:
         const auto limit = [](double angle) {
             return static_cast<int>((angle + std::numbers::pi) / (2 * std::numbers::pi) * 6399);
         };
-        Bytes payload(68);  // with the parameters of either channel
+        Bytes payload(68);  // with the parameters of both channels
         payload[0] = 0x1D;
         put(payload, 1, (settings.low_resolution ? 0 : 1) | (settings.continuous ? 2 : 0) | 128 | 256 | 512 | 8192);
         payload[3] = settings.head_type;
@@ -133,7 +133,7 @@ private:
         write_(packet);
     }
 
-    /** The next packet of a type; others are passed over. */
+    /** Returns the next packet of a type, and skips others. */
     Bytes packetOf(uint8_t type) {
         for (int others = 0; others < 100; ++others) {
             while (bytes_.size() < 14 || bytes_.size() < size()) {
@@ -147,7 +147,7 @@ private:
         }
         throw std::runtime_error("nothing but other packets");
     }
-    /** Of the packet at the beginning, which has to be one: nothing of ours is ever out of step. */
+    /** Returns the size of the packet at the beginning, which must be valid: our device is never out of step. */
     size_t size() const {
         unsigned written = 0;
         if (bytes_[0] != '@' || std::sscanf(reinterpret_cast<const char*>(&bytes_[1]), "%4X", &written) != 1 ||
@@ -166,7 +166,7 @@ private:
         if (packet.back() != 0x0A || !good)
             throw std::runtime_error("wrong packet size for type " + std::to_string(packet[10]));
     }
-    /** What must agree with the command. */
+    /** Checks the fields that must agree with the command. */
     void check(const Bytes& packet) const {
         const auto differ = [&](size_t in_packet, size_t in_command) {
             return number(packet, in_packet) != number(command_, in_command);

@@ -1,4 +1,4 @@
-// Needs what nothing has.
+// A library that needs a symbol that does not exist.
 #include "components/framework/Registry.hpp"
 #include "components/loader/Interface.hpp"
 

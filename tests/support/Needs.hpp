@@ -6,8 +6,7 @@
 
 #include "tests/support/Paths.hpp"
 
-/** Leaves a test out, aloud, where a component library could not be built, because the system has no packages for it.
- */
+/** Skips a test with a message if a component library could not be built because the system lacks its packages. */
 #define INSONIFY_NEEDS(library)                                                                            \
     if (!std::filesystem::exists(std::string(insonify::test::build_dir) + "/lib/insonify/" library ".so")) \
     GTEST_SKIP() << "NOT TESTED: this system has no packages for the component library " library

@@ -1,4 +1,4 @@
-// Loaded before a program's own libraries, it is a system without EGL.
+// Loaded before a program's own libraries, this library simulates a system without EGL.
 #include <dlfcn.h>
 
 #include <string_view>

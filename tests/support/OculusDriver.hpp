@@ -1,5 +1,5 @@
 #pragma once
-// What published drivers of the Oculus do on the wire, and insist on.
+// The behaviour of published drivers of the Oculus on the wire, and their checks.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -22,7 +22,7 @@ using device::OculusId;
 using device::OculusResult;
 using device::OculusStatus;
 
-/** A socket that goes with its owner. */
+/** A socket that is closed with its owner. */
 class Socket {
 public:
     explicit Socket(int type) : file_(socket(AF_INET, type, 0)) {}
@@ -37,7 +37,7 @@ public:
         to.sin_addr.s_addr = ip;
         return to;
     }
-    /** Throws where nothing comes for longer than patience. */
+    /** Throws if nothing arrives within patience. */
     void awaitBytes() const {
         pollfd ready{file_, POLLIN, 0};
         const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(patience).count();
@@ -48,10 +48,10 @@ private:
     int file_;
 };
 
-/** Listens for the status of devices on a UDP port, as both published listeners do: by the size of what comes. */
+/** Listens for the status of devices on a UDP port, like both published listeners: by the size of packets. */
 class OculusListener {
 public:
-    /** @param port 0: any that is free */
+    /** @param port 0: any free port */
     explicit OculusListener(uint16_t port = 0) {
         const int on = 1;
         setsockopt(socket_.file(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -80,8 +80,8 @@ private:
     const Socket socket_{SOCK_DGRAM};
 };
 
-/** A connection to a device, read as drivers read it: a header, then as many bytes as it tells. Nobody looks for the
- *  next header: what is no message throws std::runtime_error. */
+/** A connection to a device, read as by drivers: a header, then the number of bytes in the header. Drivers do not
+ *  search for the next header: invalid messages throw std::runtime_error. */
 class OculusDriver {
 public:
     OculusDriver(uint32_t ip, uint16_t port) {
@@ -99,12 +99,12 @@ public:
     device::Bytes nextMessage() {
         device::Bytes message = take(OculusHeader::size);
         const auto header = device::oculusHeader(message);
-        if (!header || !accepts(*header)) throw std::runtime_error("what came is no message of the device");
+        if (!header || !accepts(*header)) throw std::runtime_error("received bytes are no message of the device");
         const device::Bytes payload = take(header->payload_size);
         message.insert(message.end(), payload.begin(), payload.end());
         return message;
     }
-    /** The next ping; dummies and others before it are passed over. */
+    /** Returns the next ping, and skips dummies and other messages. */
     OculusResult nextPing() {
         for (;;) {
             const device::Bytes message = nextMessage();
@@ -112,7 +112,8 @@ public:
             std::string reason;
             const auto ping = device::oculusResult(message, &reason);
             if (!ping) throw std::runtime_error("a ping " + reason);
-            if (ping->message_size != message.size()) throw std::runtime_error("a ping of another size than it tells");
+            if (ping->message_size != message.size())
+                throw std::runtime_error("a ping whose size differs from the size in its header");
             return *ping;
         }
     }
@@ -135,14 +136,14 @@ private:
     const Socket socket_{SOCK_STREAM};
 };
 
-/** As oculus_driver of ENSTA Bretagne: finds the device by its status alone, drops what comes from another source, and
- *  sends settings again until a ping echoes them, or in standby until a dummy comes. */
+/** A driver like oculus_driver of ENSTA Bretagne. It finds the device by its status alone, ignores other sources, and
+ *  sends settings again until a ping echoes them, or in standby until a dummy arrives. */
 class EnstaDriver : public OculusDriver {
 public:
     EnstaDriver(const OculusStatus& status, uint16_t port)
         : OculusDriver(ipOf(status), port), source_(status.header.source) {}
 
-    /** How often it had to be sent; 100: in vain. */
+    /** Returns the number of times that the request was sent; 100: without success. */
     int request(OculusFire fire) {
         fire.flags |= OculusFire::row_gains;
         for (int sent = 1; sent < 100; ++sent) {
@@ -153,7 +154,7 @@ public:
         }
         return 100;
     }
-    /** Of a bin, as it takes gains back. */
+    /** Returns the amplitude of a bin after the driver has removed the gains. */
     static double amplitude(const OculusResult& ping, size_t bin, size_t beam) {
         const size_t row = bin * ping.rowBytes();
         const auto gain = device::read<uint32_t>(ping.image, row);
@@ -177,8 +178,8 @@ private:
     const uint16_t source_;
 };
 
-/** As Rock's drivers/sonar_oculus_m750d: 53 bytes with payload size 0 and version 0, codes of 8 bits without gains, and
- *  a buffer that no message may exceed. */
+/** A driver like Rock's drivers/sonar_oculus_m750d: 53 bytes with payload size 0 and version 0, codes of 8 bits without
+ *  gains, and a buffer that no message may exceed. */
 class RockDriver : public OculusDriver {
 public:
     static constexpr size_t buffer_size = 800'000;
@@ -196,8 +197,8 @@ private:
     bool accepts(const OculusHeader& header) const override { return header.payload_size <= buffer_size; }
 };
 
-/** As liboculus of the University of Washington: version 2, 32 bits, and out it goes where the status tells that the
- *  device boots. */
+/** A driver like liboculus of the University of Washington: version 2, 32 bits; it gives up when the status reports
+ *  that the device boots. */
 class UwDriver : public OculusDriver {
 public:
     UwDriver(const OculusStatus& status, uint16_t port) : OculusDriver(port) {

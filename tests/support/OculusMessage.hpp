@@ -1,5 +1,5 @@
 #pragma once
-// A ping as an Oculus sends it, byte by byte.
+// A ping in the format of an Oculus, byte by byte.
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -9,7 +9,7 @@ namespace insonify::test {
 
 using Bytes = std::vector<uint8_t>;
 
-/** Puts a value where it belongs, little endian, and makes room for it. */
+/** Writes a value at its place, little endian, and extends the message if needed. */
 template <class T>
 void put(Bytes& bytes, size_t at, T value) {
     if (bytes.size() < at + sizeof value) bytes.resize(at + sizeof value);
@@ -20,7 +20,7 @@ void put(Bytes& bytes, size_t at, T value) {
 struct OculusMessage {
     uint16_t version = 1, beams = 3, bins = 2;
     uint8_t code_bytes = 1;
-    bool gains = false;  ///< One for each row, 9 and up.
+    bool gains = false;  ///< One per row, from 9 on.
     uint32_t number = 77;
     std::function<uint8_t(size_t beam, size_t bin)> code = [](size_t beam, size_t bin) {
         return static_cast<uint8_t>(10 * beam + bin);
@@ -56,7 +56,7 @@ struct OculusMessage {
 private:
     size_t rowBytes() const { return (gains ? 4 : 0) + size_t{beams} * code_bytes; }
 
-    /** The upper bytes of wide codes are 1. */
+    /** Writes the image; the upper bytes of wide codes are 1. */
     void putImage(Bytes& message, size_t image) const {
         for (size_t bin = 0; bin < bins; ++bin) {
             const size_t row = image + bin * rowBytes();

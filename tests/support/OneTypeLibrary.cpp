@@ -1,4 +1,4 @@
-// A component of a user's.
+// A user's component.
 #include "components/framework/Port.hpp"
 #include "components/framework/Registry.hpp"
 #include "components/loader/Interface.hpp"

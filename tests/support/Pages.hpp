@@ -1,5 +1,5 @@
 #pragma once
-// The project's pages, as tests read them: headings, links, fenced blocks of code.
+// The project's pages for tests: headings, links, fenced blocks of code.
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -16,8 +16,8 @@ namespace insonify::test {
 
 /** A block between two fences: "```sh", the text, "```". */
 struct CodeBlock {
-    std::string language;  ///< "" where the fence names none.
-    size_t line = 0;       ///< Of the opening fence, from 1.
+    std::string language;  ///< "" if the fence names none.
+    size_t line = 0;       ///< Line of the opening fence, from 1.
     std::string text;
 };
 
@@ -32,9 +32,9 @@ public:
     const std::string& path() const { return path_; }
     const std::vector<std::string>& lines() const { return lines_; }
     const std::vector<CodeBlock>& blocks() const { return blocks_; }
-    /** All that is in no block. */
+    /** Returns the text outside of blocks. */
     const std::string& prose() const { return prose_; }
-    /** Texts of the headings of this level, 2 for "## ". */
+    /** Returns the texts of the headings of this level, 2 for "## ". */
     std::vector<std::string> headings(size_t level) const {
         std::vector<std::string> found;
         const std::string start = std::string(level, '#') + " ";
@@ -42,7 +42,7 @@ public:
             if (line.starts_with(start)) found.push_back(line.substr(start.size()));
         return found;
     }
-    /** What a link may have behind '#', as GitHub makes it of headings. */
+    /** Returns the anchors that a link may have after '#', as GitHub makes them from headings. */
     std::set<std::string> anchors() const {
         std::set<std::string> found;
         for (size_t level = 1; level <= 6; ++level)
@@ -53,19 +53,19 @@ public:
             }
         return found;
     }
-    /** Targets of links and pictures. */
+    /** Returns the targets of links and pictures. */
     std::vector<std::string> links() const {
         static const std::regex link(R"(\]\(([^()\s]*)\))");
         return matches(withoutCode(), link);
     }
-    /** What stands in back quotes. */
+    /** Returns the text in back quotes. */
     std::vector<std::string> inlineCode() const {
         static const std::regex quoted("`([^`]+)`");
         std::vector<std::string> found = matches(prose_, quoted);
         for (std::string& code : found) std::ranges::replace(code, '\n', ' ');
         return found;
     }
-    /** Addresses on the web, in links and in the text. */
+    /** Returns the addresses on the web, in links and in the text. */
     std::vector<std::string> addresses() const {
         static const std::regex address(R"((https?:[^\s)<>,;]+))");
         return matches(withoutCode(), address);
@@ -119,7 +119,7 @@ inline Page readPage(const std::string& path) {
     return {path, text.str()};
 }
 
-/** All pages: those at the top, and those below its folders. */
+/** Returns all pages: those in the root folder, and those below its folders. */
 inline std::vector<Page> allPages() {
     namespace fs = std::filesystem;
     const fs::path root = source_dir;
@@ -135,7 +135,8 @@ inline std::vector<Page> allPages() {
     return pages;
 }
 
-/** The text of the page's first block in this language, from a heading on if one is named; "" if there is none. */
+/** Returns the text of the page's first block in this language, after a heading if one is named; "" if there is
+ *  none. */
 inline std::string codeOf(const Page& page, const std::string& language, const std::string& heading = "") {
     const auto at = std::ranges::find(page.lines(), "## " + heading);
     const size_t from = heading.empty() ? 0 : static_cast<size_t>(at - page.lines().begin());

@@ -1,5 +1,5 @@
 #pragma once
-// A program beside a test.
+// A program that runs during a test.
 #include <signal.h>
 
 #include <optional>
@@ -13,12 +13,12 @@
 
 namespace insonify::test {
 
-/** One that runs until it ends, or until this does. */
+/** A process that runs until it ends, or until this object is destroyed. */
 class Peer {
 public:
-    /** A program and its arguments. */
+    /** Starts a program with its arguments. */
     explicit Peer(std::vector<std::string> words) { process_.emplace(std::move(words), folder_.path()); }
-    /** A script for python by its path from the root, and its arguments: "listen PoseStamped /pose 2". */
+    /** Starts a Python script by its path from the root, with its arguments: "listen PoseStamped /pose 2". */
     Peer(const std::string& script, const std::string& arguments) : Peer(wordsOf(script, arguments)) {}
     ~Peer() {
         if (!process_) return;
@@ -28,12 +28,12 @@ public:
     Peer(const Peer&) = delete;
     Peer& operator=(const Peer&) = delete;
 
-    /** Whether it has printed this, among others. */
+    /** Returns whether its output contains this text. */
     bool hasSaid(const std::string& text) const {
         return deployer::readFile(folder_ / "stdout.txt").find(text) != std::string::npos;
     }
     void signal(int number) const { process_->signal(number); }
-    /** What came of it, once it has ended. */
+    /** Waits for the end, and returns the outcome. */
     deployer::Outcome wait() {
         const deployer::Outcome outcome = process_->wait();
         process_.reset();

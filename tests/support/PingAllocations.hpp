@@ -1,5 +1,5 @@
 #pragma once
-// Tasks that take pings and give pings, and what they allocate.
+// Allocations of tasks that take pings and give pings.
 #include <gmock/gmock.h>
 
 #include "tests/support/Allocations.hpp"
@@ -8,7 +8,7 @@
 
 namespace insonify::test {
 
-/** Expects that a task that is fed by `input` and answers by `output` allocates nothing after the first ping. */
+/** Expects that a task allocates nothing after the first ping; `input` feeds it, `output` receives its answers. */
 template <class Task, class Config>
 void expectNoAllocation(const Config& config, framework::InputPort<types::SonarPtr> Task::*input,
                         framework::OutputPort<types::SonarPtr> Task::*output) {

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes of recordings that are made by a published layout.
+// Bytes of recordings, made by a published layout.
 #include <cstring>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What is refused, and with which words.
+// Rejected input and its messages.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace insonify::test {
 
-/** The diagnostics of a call that throws types::ConfigError, as they are told; none where it throws nothing. */
+/** Returns the text of the types::ConfigError that a call throws; empty if it throws none. */
 template <class Call>
 std::vector<std::string> refused(Call&& call) {
     std::vector<std::string> texts;

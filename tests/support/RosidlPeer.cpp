@@ -1,5 +1,5 @@
-// A program of ROS 2's own generated code: of each message of insonify_msgs it prints the definition, as type support
-// has it, reads FOLDER/NAME.cdr into the generated struct, and writes the struct to FOLDER/NAME.again.
+// A program with ROS 2's generated code. For each message of insonify_msgs it prints the definition from type support,
+// reads FOLDER/NAME.cdr into the generated struct, and writes the struct to FOLDER/NAME.again.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -43,7 +43,7 @@ const types::MessageMembers& membersOf(const rosidl_message_type_support_t* supp
     return *static_cast<const types::MessageMembers*>(support->data);
 }
 
-/** Bytes of CDR behind their four bytes of header, read or written: plain CDR of version 1, little endian. */
+/** Bytes of CDR after the four bytes of header, read or written: plain CDR of version 1, little endian. */
 struct Cdr {
     std::string bytes;
     bool writing;

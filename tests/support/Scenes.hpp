@@ -38,7 +38,7 @@ inline types::GeometryPtr sceneOf(std::vector<types::Mesh> meshes, float mu_db =
     return geometry;
 }
 
-/** Nothing that a sonar about the origin hears. */
+/** A scene without an echo for a sonar near the origin. */
 inline types::GeometryPtr openWater() { return sceneOf({disc(1, 0.1f)}, 0, {{-500, 0, 0}}); }
 
 /** A sonar at `position`, turned by yaw, pitch, roll [rad] (R = Rz Ry Rx). */

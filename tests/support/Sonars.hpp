@@ -1,19 +1,19 @@
 #pragma once
-// Small forward-looking sonars, and the pings that they make.
+// Small forward-looking sonars, and their pings.
 #include <optional>
 
 #include "components/sonar/SonarRenderer.hpp"
 
 namespace insonify::test {
 
-/** What most tests set of a sonar. What is absent is as a sonar::SonarConfig has it. */
+/** Settings of a sonar that most tests use. An absent setting has the default of sonar::SonarConfig. */
 struct Fan {
     int beams = 1;
-    std::optional<double> width_deg = {};  ///< Of all beams together.
+    std::optional<double> width_deg = {};  ///< Total width of all beams.
     double height_deg = 20;                ///< Aperture in elevation.
     int bins = 300;
     double bin = 0.1;                            ///< Length of each bin [m].
-    std::optional<int> rows = {}, columns = {};  ///< Of samples; the columns are those of each beam.
+    std::optional<int> rows = {}, columns = {};  ///< Rows and columns of samples; the columns are per beam.
 };
 
 /** A sonar in water of 1000 m/s, where a bin of 0.1 m lasts 100 us. */
@@ -30,7 +30,7 @@ inline sonar::SonarConfig sonarOf(const Fan& fan) {
     return config;
 }
 
-/** What a sonar hears in its first ping. */
+/** Returns the first ping of a sonar. */
 inline types::Sonar pingOf(const sonar::SonarConfig& config, const types::Snapshot& snapshot,
                            const sonar::RenderOptions& options = {}) {
     sonar::SonarRenderer renderer(config, snapshot.geometry, options);

@@ -1,5 +1,5 @@
 #pragma once
-// Recordings of speckle as an Oculus would send them.
+// Recordings of speckle in the format of an Oculus.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// A scene with all that is hard to draw: grazing ground, silhouettes, thin plates, clusters and a normal map.
+// A scene with everything that is hard to render: grazing ground, silhouettes, thin plates, clusters and a normal map.
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <random>
@@ -16,7 +16,7 @@ inline types::Mesh block() {
                             2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
 }
 
-/** A square wall across the view at x = 0, 2 m wide, with what a normal map needs. */
+/** A square wall across the view at x = 0, 2 m wide, with the attributes for a normal map. */
 inline types::Mesh mappedWall() {
     types::Mesh mesh = quad({0, -1, -1}, {0, 2, 0}, {0, 0, 2});
     mesh.normals.assign(4, {-1, 0, 0});
@@ -34,11 +34,11 @@ inline types::NormalMap bumpyMap(int size = 16) {
     return map;
 }
 
-/** A map that changes nothing: normals straight out, (128, 128, 255), which is as straight as eight bits can be. */
+/** A map without effect: normals straight out, (128, 128, 255), as straight as eight bits allow. */
 inline types::NormalMap flatMap() { return {1, 1, {128, 128, 255}, true, true}; }
 
-/** Ground at z = -4, a ball, a turned block, a plate seen nearly edge-on, and a wall with a normal map; two materials,
- *  the second of which has the map. */
+/** Ground at z = -4, a sphere, a turned block, a plate seen nearly edge-on, and a wall with a normal map; two
+ *  materials, the second of which has the map. */
 inline std::shared_ptr<types::Geometry> surfaces() {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->materials.resize(2);

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of bearings that no regular fan has, at random.
+// Random tables of bearings that no regular fan has.
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -25,7 +25,7 @@ struct Table {
 /** The direction within -180 and 180 deg. */
 inline double wrappedDeg(double degrees) { return std::remainder(degrees, 360); }
 
-/** One table of each kind, all ahead but for those across the seam and all round. */
+/** One table of each kind, all ahead except those across the seam and all around. */
 inline std::vector<Table> tablesOf(std::mt19937& random) {
     const auto between = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);

@@ -28,7 +28,7 @@ protected:
         ASSERT_TRUE(task_.configure()) << task_.lastError();
         ASSERT_TRUE(task_.start()) << task_.lastError();
     }
-    /** What one cycle makes of a sample; none when the task refuses it. */
+    /** Returns the output of one cycle for a sample; none if the task rejects the sample. */
     Out answerTo(const In& sample) {
         in_.port.write(sample);
         task_.update();

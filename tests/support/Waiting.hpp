@@ -1,16 +1,16 @@
 #pragma once
-// Waiting for what other threads and processes do, so that no verdict depends on how fast or how evenly a machine runs.
+// Waiting for other threads and processes, so that no result depends on the speed of the machine.
 #include <atomic>
 #include <chrono>
 #include <thread>
 
 namespace insonify::test {
 
-/** How long a test waits for what does not come before it fails. What comes ends the wait at once, so this is no
- *  measure of speed: it is far beyond what a loaded machine takes. */
+/** Time that a test waits for an event before it fails. An event ends the wait at once, so this is no measure of speed:
+ *  it is far longer than a loaded machine takes. */
 constexpr std::chrono::seconds patience{60};
 
-/** Waits until the condition holds; false where patience has run out. */
+/** Waits until the condition is true; returns false after patience. */
 template <class Condition>
 bool comesTrue(Condition&& condition) {
     const auto end = std::chrono::steady_clock::now() + patience;
@@ -21,7 +21,7 @@ bool comesTrue(Condition&& condition) {
     return true;
 }
 
-/** Whether a count that another thread raises reaches `whole` without standing still for longer than patience. */
+/** Returns whether a count that another thread increments reaches `whole` without pausing for longer than patience. */
 inline bool reaches(const std::atomic<int>& count, int whole) {
     while (count < whole)
         if (!comesTrue([&, before = count.load()] { return count > before; })) return false;

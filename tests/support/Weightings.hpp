@@ -1,5 +1,5 @@
 #pragma once
-// What textbooks tell of the weightings of an aperture.
+// Textbook values of the weightings of an aperture.
 #include <optional>
 
 #include "components/acoustics/BeamPattern.hpp"
@@ -13,8 +13,8 @@ inline acoustics::BeamLaw lawOf(acoustics::Weighting weighting, double width_deg
     return law;
 }
 
-/** Of a weighting (Harris 1978, Taylor 1955, Dolph 1946): widths and the first null in wavelengths over the length of
- *  the aperture, and integrals of the one-way and two-way power over u. */
+/** Values of a weighting (Harris 1978, Taylor 1955, Dolph 1946): widths and the first null in wavelengths over the
+ *  length of the aperture, and integrals of the one-way and two-way power over u. */
 struct WeightingRow {
     const char* name;
     acoustics::Weighting weighting;
@@ -24,7 +24,7 @@ struct WeightingRow {
     double first_null, peak_sidelobe_db;
     std::optional<double> integral = {}, two_way_integral = {};
 
-    /** A law of no width yet. */
+    /** Returns a law without a width. */
     acoustics::BeamLaw law() const {
         acoustics::BeamLaw law;
         law.weighting = weighting;

@@ -1,5 +1,5 @@
 #pragma once
-// A driver's end of a connection or of a serial line, as the operating system gives it.
+// A driver's end of a connection or of a serial line, as a file descriptor.
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 namespace insonify::device {
 
-/** An open file that a driver talks to. */
+/** An open file that a driver communicates with. */
 class Wire {
 public:
     static int connected(int port) {
@@ -43,7 +43,7 @@ public:
     Wire& operator=(const Wire&) = delete;
 
     void say(const Bytes& bytes) const { EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size())); }
-    /** What comes next; throws where nothing does. */
+    /** Returns the next bytes; throws if none arrive. */
     Bytes hear() const {
         pollfd ready{file_, POLLIN, 0};
         Bytes bytes(4096);

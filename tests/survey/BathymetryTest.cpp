@@ -1,4 +1,4 @@
-// The floor of a survey: where its posts stand, how much of it is there, and files that are none.
+// The floor of a survey: places of its posts, its extent, and invalid files.
 #include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <gdal_priv.h>
@@ -34,7 +34,8 @@ protected:
         std::ofstream(folder_ / name) << text;
         return (folder_ / name).string();
     }
-    /** An ESRI grid of posts 2 m apart whose south-west one is at easting 1000, northing 5000 and so many columns. */
+    /** An ESRI grid of posts 2 m apart with this number of columns; its south-west post is at easting 1000, northing
+     *  5000. */
     std::string grid(const std::string& name, int columns, int rows, int first_column = 0) {
         std::vector<float> values;
         for (int row = rows - 1; row >= 0; --row)
@@ -51,7 +52,7 @@ protected:
         fs::resize_file(file, fs::file_size(file) / 2);
         return file;
     }
-    /** The same as a GeoTIFF of strips. The half of its bytes. */
+    /** The same grid as a GeoTIFF of strips, cut to half of its bytes. */
     std::string cutTiff(const std::string& name, int columns, int rows) {
         const std::string file = (folder_ / name).string();
         GDALRegister_GTiff();
@@ -63,7 +64,7 @@ protected:
         return shortened(file);
     }
     types::GeometryPtr about(Bathymetry& floor, glm::dvec3 place) { return floor.about(place, rest_); }
-    /** A mosaic of values `spacing` apart whose south-west one is at an easting and northing; NaN: none. */
+    /** A mosaic of values `spacing` apart, whose south-west value is at an easting and northing; NaN: none. */
     template <class Value>
     std::string mosaic(const std::string& name, int columns, int rows, double east, double north, double spacing,
                        Value&& value) {
@@ -113,7 +114,7 @@ protected:
     }();
 };
 
-/** Of all tiles. */
+/** Positions of all tiles. */
 std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
     std::vector<glm::vec3> positions;
     for (const types::Mesh& mesh : geometry.meshes)
@@ -121,7 +122,7 @@ std::vector<glm::vec3> positionsOf(const types::Geometry& geometry) {
     return positions;
 }
 
-TEST_F(BathymetryTest, PostsStandNorthAndWestOfTheWorldsZeroAndFaceUp) {
+TEST_F(BathymetryTest, PostsAreNorthAndWestOfTheOriginAndFaceUp) {
     Bathymetry floor(config_, grid("floor", 60, 40));
     const types::GeometryPtr geometry = about(floor, {30, -50, -40});
     ASSERT_GT(geometry->objects.size(), 1u);
@@ -140,7 +141,7 @@ TEST_F(BathymetryTest, PostsStandNorthAndWestOfTheWorldsZeroAndFaceUp) {
     }
 }
 
-TEST_F(BathymetryTest, TilesThatAreStillThereAreTheSameMeshesAndTheNextOnesAreReadBefore) {
+TEST_F(BathymetryTest, KeepsMeshesOfTilesAndReadsTheNextTilesAhead) {
     const std::string file = grid("floor", 200, 200);
     Bathymetry floor(config_, file), scout(config_, file);
     types::GeometryPtr before = about(floor, {30, -200, -40});
@@ -172,7 +173,7 @@ TEST_F(BathymetryTest, TilesThatAreStillThereAreTheSameMeshesAndTheNextOnesAreRe
     EXPECT_GT(changes, 15);
 }
 
-TEST_F(BathymetryTest, TheFloorIsTheSameHoweverFastTheVehicleComes) {
+TEST_F(BathymetryTest, TheFloorDoesNotDependOnTheVehiclesSpeed) {
     const std::string file = grid("floor", 200, 200);
     for (double step : {0.5, 7.0, 45.0, 170.0}) {
         Bathymetry floor(config_, file);
@@ -186,7 +187,7 @@ TEST_F(BathymetryTest, TheFloorIsTheSameHoweverFastTheVehicleComes) {
     }
 }
 
-TEST_F(BathymetryTest, TheFloorReachesAsFarAsIsAskedForWhereverTheVehicleComesAndNoMoreThanTilesFurther) {
+TEST_F(BathymetryTest, TheFloorCoversTheReachAndAtMostTwoTilesMore) {
     Bathymetry floor(config_, grid("floor", 200, 200));
     int made = 0;
     types::GeometryPtr before;
@@ -216,7 +217,7 @@ TEST_F(BathymetryTest, AVehicleThatHoversAtTheEdgeOfATileHasOneFloor) {
     }
 }
 
-TEST_F(BathymetryTest, AFloorThatBeginsAnewFollowsFromThePlaceAlone) {
+TEST_F(BathymetryTest, AForgottenFloorFollowsFromThePlaceAlone) {
     Bathymetry floor(config_, grid("floor", 200, 200)), fresh(config_, grid("floor", 200, 200));
     about(floor, {91.5, -200, -40});
     const types::GeometryPtr kept = about(floor, {89.9, -200, -40});
@@ -226,7 +227,7 @@ TEST_F(BathymetryTest, AFloorThatBeginsAnewFollowsFromThePlaceAlone) {
     EXPECT_NE(positionsOf(*anew), positionsOf(*kept)) << "places chosen so that it matters";
 }
 
-TEST_F(BathymetryTest, WithoutAPlaceTheWorldsZeroIsTheMiddleOfTheSurvey) {
+TEST_F(BathymetryTest, TheDefaultOriginIsTheMiddleOfTheSurvey) {
     config_.easting = config_.northing = std::nullopt;
     Bathymetry floor(config_, grid("floor", 61, 41));
     config_.easting = 1060, config_.northing = 5040;
@@ -241,7 +242,7 @@ TEST_F(BathymetryTest, DepthsGoDown) {
         EXPECT_NEAR(p.z, -elevation(1000 - p.y, 5000 + p.x), 2e-5);
 }
 
-TEST_F(BathymetryTest, WhatWasNotSurveyedIsAHole) {
+TEST_F(BathymetryTest, UnsurveyedPostsAreAHole) {
     const std::string whole = grid("whole", 30, 30);
     hole_ = {10, 12};
     const std::string pierced = grid("pierced", 30, 30);
@@ -272,7 +273,7 @@ TEST_F(BathymetryTest, TheFilesOfAMosaicAreOneFloor) {
     EXPECT_EQ(positionsOf(*about(tiled, {40, -60, 0})), positionsOf(*about(floor, {40, -60, 0})));
 }
 
-TEST_F(BathymetryTest, AMosaicLiesWhereTheMapSaysWhateverItsGrid) {
+TEST_F(BathymetryTest, AMosaicIsPlacedByItsMapOnAnyGrid) {
     config_.map.emplace();
     config_.map->file = "given apart";
     config_.map->meaning.decibels = {-60, 0};
@@ -303,7 +304,7 @@ TEST_F(BathymetryTest, AMosaicLiesWhereTheMapSaysWhateverItsGrid) {
     }
 }
 
-TEST_F(BathymetryTest, AMosaicOfClassesHasTheirMaterialsAndNoneWhereItHasNone) {
+TEST_F(BathymetryTest, AMosaicOfClassesSetsMaterialsWhereItHasValues) {
     config_.map.emplace();
     config_.map->file = "given apart";
     config_.map->meaning.classes = {{"3", "rock"}, {"7", "clay"}};
@@ -388,14 +389,14 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
          {Case{(folder_ / "none.tif").string(), "is not there"}, Case{folder_.path().string(), "may be GeoTIFF"},
           Case{write("text.txt", "a text"), "supported file format.); may be GeoTIFF"},
           Case{write("empty.tif", ""), "may be GeoTIFF, BAG"},
-          Case{grid("degrees", 9, 9), "lies in degrees; project it to metres: gdalwarp"},
-          Case{write("nowhere.vrt", with("")), "does not say where it lies on the map"},
+          Case{grid("degrees", 9, 9), "is in degrees; project it to metres: gdalwarp"},
+          Case{write("nowhere.vrt", with("")), "has no place on the map"},
           Case{shortened(grid("short", 9, 9)), "ends too early: has 162 of 324 bytes"},
           Case{write("turned.vrt", with("<GeoTransform>0, 2, 0.1, 0, 0.1, -2</GeoTransform>")),
-               "is turned against north"},
+               "is rotated against north"},
           Case{write("flat.vrt", with("<GeoTransform>0, 0, 0, 0, 0, -2</GeoTransform>")), "posts 0 m and -2 m apart"},
           Case{write("feet.vrt", in_feet), "has elevations in ft; may be metres"},
-          Case{grid("one", 9, 9), "has 1 bands, and not one of number 2", 2},
+          Case{grid("one", 9, 9), "has 1 bands, but no band 2", 2},
           Case{grid("fine", 9, 9), "at most 4096: lower reach", 1, 5000}}) {
         BathymetryConfig config = config_;
         config.band = c.band;
@@ -427,14 +428,14 @@ TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunGoesOn) {
     };
     EXPECT_FALSE(snapshotAt(100)) << "rows that the file lacks";
     EXPECT_EQ(task.state(), framework::TaskState::RunTimeError);
-    EXPECT_THAT(task.lastError(), HasSubstr("short.tif cannot be read on; GDAL: "));
+    EXPECT_THAT(task.lastError(), HasSubstr("short.tif cannot be read any further; GDAL: "));
     const types::SnapshotPtr there = snapshotAt(300);
     ASSERT_TRUE(there);
     EXPECT_FALSE(there->geometry->objects.empty());
     EXPECT_EQ(task.state(), framework::TaskState::Running);
 }
 
-TEST_F(BathymetryTest, TheFloorSoundsAsMaterialsSayAndAWrongNameIsTold) {
+TEST_F(BathymetryTest, TheFloorHasTheConfiguredMaterialAndAWrongNameIsReported) {
     SceneConfig config;
     config.bathymetry = config_;
     config.bathymetry->file = grid("floor", 30, 30);

@@ -19,7 +19,7 @@ TEST(AngleTest, UnknownStaysUnknown) {
     EXPECT_TRUE(Angle::fromRad(Angle{}.rad).isUnknown());
 }
 
-TEST(ConfigErrorTest, TellsEveryPlaceAndMessage) {
+TEST(ConfigErrorTest, HasEveryPlaceAndMessage) {
     const ConfigError error({{"tasks.sonar.range", "is -1, must be above 0", "a.yml", 3, 7}, {"", "no tasks"}});
     EXPECT_STREQ(error.what(), "a.yml:3:7: tasks.sonar.range: is -1, must be above 0\nno tasks");
 }

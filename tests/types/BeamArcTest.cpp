@@ -19,7 +19,7 @@ Sonar pingAt(const std::vector<double>& bearings_deg, double width_deg) {
     return ping;
 }
 
-TEST(BeamArcTest, BeamsGoFromStarboardToPortAndUnknownBearingsAreOmitted) {
+TEST(BeamArcTest, OrdersBeamsFromStarboardToPortWithoutUnknownBearings) {
     Sonar ping = emptyPing(90, 3);
     ping.bearings = {Angle{0.5}, Angle{}, Angle{-0.5}};
     const BeamArc arc(ping);
@@ -48,7 +48,7 @@ TEST(BeamArcTest, AFanAcrossTheSeamIsOneArcAstern) {
     EXPECT_FALSE(arc.beamAt(0));
 }
 
-TEST(BeamArcTest, BearingsBeyondHalfATurnAreTurnedBackAndInfiniteOnesAreUnknown) {
+TEST(BeamArcTest, NormalisesBearingsAndTreatsInfiniteBearingsAsUnknown) {
     Sonar ping = emptyPing(30, 3);
     ping.bearings = {Angle{0.1 + 4 * std::numbers::pi}, Angle{std::numeric_limits<double>::infinity()}, Angle{0}};
     const BeamArc arc(ping);

@@ -17,7 +17,7 @@ std::vector<std::vector<double>> rowsOf(const std::string& text, size_t least = 
     return readCsv(folder / "a.csv", columns, least, judge);
 }
 
-/** "line:column: path: message" of each. */
+/** Returns "line:column: path: message" of each diagnostic. */
 std::vector<std::string> diagnosticsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
     std::vector<std::string> diagnostics;
     try {
@@ -32,12 +32,12 @@ std::vector<std::string> diagnosticsOf(const std::string& text, size_t least = 1
     return diagnostics;
 }
 
-TEST(CsvTest, RowsAreNumbersWhateverStandsAboutThem) {
+TEST(CsvTest, RowsAreNumbersWithAnySpacing) {
     EXPECT_THAT(rowsOf("\xEF\xBB\xBFtime,level_db\r\n0,-1\r\n\r\n 1.5 ,-2e0"),
                 ElementsAre(ElementsAre(0, -1), ElementsAre(1.5, -2)));
 }
 
-TEST(CsvTest, WhatIsWrongIsToldWithItsPlace) {
+TEST(CsvTest, ReportsErrorsWithTheirPlace) {
     EXPECT_THAT(
         diagnosticsOf("time,level_db\n0,-1\n1\n2,-3,4\nnan,5\n"),
         ElementsAre("3:2: level_db: is missing; a line has 2 fields", "4:6: : has too many fields; a line has 2",
@@ -51,7 +51,7 @@ TEST(CsvTest, WhatIsWrongIsToldWithItsPlace) {
     EXPECT_THROW(readCsv(".", columns, 1), ConfigError);
 }
 
-TEST(CsvTest, AJudgeSeesEachRowAndTheOneBefore) {
+TEST(CsvTest, TheCheckGetsEachRowAndThePreviousRow) {
     const CsvJudge ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
         return before && row[0] <= before->front() ? std::vector<CsvDiagnostic>{{0, "must increase"}}
                                                    : std::vector<CsvDiagnostic>{};

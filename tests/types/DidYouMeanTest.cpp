@@ -7,19 +7,19 @@ namespace {
 
 const std::vector<std::string> known{"range", "range_min", "bin_count", "sonar::SonarTask", "sonar::ScanningSonarTask"};
 
-TEST(DidYouMeanTest, ANameIsFoundWithLettersMissingAddedChangedOrSwapped) {
+TEST(DidYouMeanTest, FindsANameWithLettersMissingAddedChangedOrSwapped) {
     for (const char* wrong : {"rang", "rangee", "renge", "rnage", "Range", "RANGE"})
         EXPECT_EQ(didYouMean(wrong, known), "did you mean range? ") << wrong;
     EXPECT_EQ(didYouMean("bincount", known), "did you mean bin_count? ");
 }
 
-TEST(DidYouMeanTest, TheLastPartOfANameOrAPartThatOnlyOneHasIsEnough) {
+TEST(DidYouMeanTest, TheLastPartOrAUniquePartOfANameIsEnough) {
     EXPECT_EQ(didYouMean("SonarTask", known), "did you mean sonar::SonarTask? ");
     EXPECT_EQ(didYouMean("count", known), "did you mean bin_count? ");
     EXPECT_EQ(didYouMean("Scanning", known), "did you mean sonar::ScanningSonarTask? ");
 }
 
-TEST(DidYouMeanTest, WhatIsNotNearIsNotGuessed) {
+TEST(DidYouMeanTest, DoesNotGuessADistantName) {
     for (const std::string& wrong : {std::string("depth"), std::string(""), std::string("x"), std::string(100000, 'r')})
         EXPECT_EQ(didYouMean(wrong, known), "") << wrong.substr(0, 20);
     EXPECT_EQ(didYouMean("range", {}), "");

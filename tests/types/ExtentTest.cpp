@@ -9,8 +9,7 @@
 namespace insonify::types {
 namespace {
 
-/** A unit square in z = 0 from the origin, one vertex beside it that no triangle uses, twice: the second one 10 m on.
- */
+/** Two unit squares in z = 0, at the origin and 10 m away, each with a vertex next to it that no triangle uses. */
 Snapshot twoSquares() {
     Mesh square;
     square.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {50, 50, 50}};
@@ -24,7 +23,7 @@ Snapshot twoSquares() {
     return snapshot;
 }
 
-TEST(ExtentTest, ABoxHoldsWhatTrianglesUseWhereItIs) {
+TEST(ExtentTest, ABoxContainsThePlacedVerticesOfTheTriangles) {
     Snapshot snapshot = twoSquares();
     EXPECT_EQ(extentOf(*snapshot.geometry).low, glm::dvec3(0));
     EXPECT_EQ(extentOf(*snapshot.geometry).high, glm::dvec3(11, 1, 0));

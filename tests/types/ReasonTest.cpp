@@ -22,9 +22,9 @@ std::string reasonFor(Act act) {
     return "nothing was thrown";
 }
 
-TEST(ReasonTest, WhatTheStandardLibraryThrowsIsToldInOurWords) {
-    const std::string bounds = "a number, a count or an index in it is out of its bounds";
-    const std::string memory = "there is not memory enough for it";
+TEST(ReasonTest, ReplacesTextsOfTheStandardLibrary) {
+    const std::string bounds = "a number, a count or an index in it is out of bounds";
+    const std::string memory = "out of memory";
     EXPECT_EQ(reasonFor([] { return std::stoi("x"); }), bounds);
     EXPECT_EQ(reasonFor([] { return std::stoull("99999999999999999999999"); }), bounds);
     EXPECT_EQ(reasonFor([] { return std::stod("1e999"); }), bounds);
@@ -39,7 +39,7 @@ TEST(ReasonTest, WhatTheStandardLibraryThrowsIsToldInOurWords) {
     EXPECT_EQ(reasonFor([] { throw std::bad_alloc(); }), memory);
 }
 
-TEST(ReasonTest, ASentenceIsPassedOn) {
+TEST(ReasonTest, KeepsASentence) {
     for (const char* text : {"range: is -3; must be positive", "stop: sonar::SonarTask has no such port", "",
                              "store.log: No space left on device", "out of paper"})
         EXPECT_EQ(reasonOf(std::runtime_error(text)), text);

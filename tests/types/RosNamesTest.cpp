@@ -27,7 +27,7 @@ std::string randomName(std::mt19937& random) {
 
 }  // namespace
 
-TEST(RosNamesTest, WithoutANamespaceEachNameStaysAsItIs) {
+TEST(RosNamesTest, NamesStayUnchangedWithoutANamespace) {
     for (const char* none : {"", "/"}) {
         const RosNames names = namesIn(none, "");
         for (const char* name : {"sonar", "/auv/sonar", "auv/sonar"}) {
@@ -38,7 +38,7 @@ TEST(RosNamesTest, WithoutANamespaceEachNameStaysAsItIs) {
     }
 }
 
-TEST(RosNamesTest, RelativeNamesAreInTheNamespaceAndAbsoluteOnesAreNot) {
+TEST(RosNamesTest, OnlyRelativeNamesAreInTheNamespace) {
     std::mt19937 random(1);
     for (int i = 0; i < 1000; ++i) {
         const std::string space = randomName(random), name = randomName(random);
@@ -51,7 +51,7 @@ TEST(RosNamesTest, RelativeNamesAreInTheNamespaceAndAbsoluteOnesAreNot) {
     }
 }
 
-TEST(RosNamesTest, AFramePrefixIsPutOnceAndEndsInOneSlash) {
+TEST(RosNamesTest, AFramePrefixIsAddedOnceAndEndsInOneSlash) {
     for (const char* prefix : {"auv1", "auv1/"}) {
         const RosNames names = namesIn("", prefix);
         EXPECT_EQ(names.frame("base_link"), "auv1/base_link");
@@ -60,7 +60,7 @@ TEST(RosNamesTest, AFramePrefixIsPutOnceAndEndsInOneSlash) {
     }
 }
 
-TEST(RosNamesTest, WrongNamespacesAndPrefixesLeaveAllAsItWas) {
+TEST(RosNamesTest, InvalidNamespacesAndPrefixesChangeNothing) {
     RosNames names = namesIn("a", "b");
     for (const char* bad : {"1a", "a b", "a//b", "a/", "//a", "a-b", "~a"})
         EXPECT_FALSE(names.setNamespace(bad)) << bad;
@@ -69,7 +69,7 @@ TEST(RosNamesTest, WrongNamespacesAndPrefixesLeaveAllAsItWas) {
     EXPECT_EQ(names.frame_prefix, "b/");
 }
 
-TEST(RosNamesTest, TheFirstRemapThatFitsHolds) {
+TEST(RosNamesTest, TheFirstMatchingRemapApplies) {
     RosNames names = namesIn("auv1");
     names.remaps = {
         {"other", "sonar", "/wrong"}, {"", "/auv1/sonar", "fan"}, {"", "sonar", "/late"}, {"ros", "/x", "y/z"}};

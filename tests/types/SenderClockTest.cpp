@@ -9,19 +9,19 @@ using Order = SenderClock::Order;
 
 Time at(double seconds) { return Time::fromSeconds(seconds); }
 
-/** Ours reads so many seconds more than the sender's. */
+/** Offset of our clock to the sender's [s]. */
 constexpr double ahead = 1000;
 
-TEST(SenderClockTest, TheLeastDelayCountsAndNotThatOfEachMessage) {
+TEST(SenderClockTest, UsesTheMinDelayAndNotThatOfEachMessage) {
     SenderClock clock;
     EXPECT_EQ(clock.read(at(1), at(ahead + 1.020)).time, at(ahead + 1.020));
     EXPECT_EQ(clock.read(at(2), at(ahead + 2.005)).time, at(ahead + 2.005));
     const Time delayed = clock.read(at(2.9), at(ahead + 2.985)).time;
-    EXPECT_NEAR(delayed.seconds(), ahead + 2.905, 0.001) << "80 ms more of which next to nothing is believed";
+    EXPECT_NEAR(delayed.seconds(), ahead + 2.905, 0.001) << "a delay of 80 ms more has almost no effect";
     EXPECT_NEAR(clock.read(at(3), at(ahead + 3.005)).time.seconds(), ahead + 3.005, 0.001);
 }
 
-TEST(SenderClockTest, OurTimesNeitherGoBackNorLieAfterTheArrival) {
+TEST(SenderClockTest, TimesNeitherDecreaseNorExceedTheArrival) {
     SenderClock clock;
     Time last;
     for (int i = 1; i < 2000; ++i) {
@@ -35,7 +35,7 @@ TEST(SenderClockTest, OurTimesNeitherGoBackNorLieAfterTheArrival) {
     }
 }
 
-TEST(SenderClockTest, AClockThatIsSlowerThanOursIsFollowed) {
+TEST(SenderClockTest, FollowsASlowerClock) {
     SenderClock clock;  // as of a simulation that runs at half the speed
     for (int i = 1; i < 1000; ++i) {
         const Time arrival = at(ahead + 0.02 * i);
@@ -45,14 +45,14 @@ TEST(SenderClockTest, AClockThatIsSlowerThanOursIsFollowed) {
     }
 }
 
-TEST(SenderClockTest, AClockThatDriftsIsFollowedClosely) {
+TEST(SenderClockTest, FollowsADriftingClockClosely) {
     SenderClock clock;
     Time time;
     for (int i = 1; i <= 50 * 600; ++i) time = clock.read(at(0.02 * i * (1 - 5e-5)), at(ahead + 0.02 * i)).time;
     EXPECT_NEAR(time.seconds(), ahead + 600, 0.001) << "after ten minutes, in which it has lost 30 ms";
 }
 
-TEST(SenderClockTest, MessagesThatHaveWaitedForUsKeepTheirDistances) {
+TEST(SenderClockTest, DelayedMessagesKeepTheirSpacing) {
     SenderClock clock;
     clock.read(at(1), at(ahead + 1));
     clock.read(at(1.1), at(ahead + 1.1));
@@ -62,7 +62,7 @@ TEST(SenderClockTest, MessagesThatHaveWaitedForUsKeepTheirDistances) {
     EXPECT_EQ(clock.read(at(1.9), burst).time, at(ahead + 1.9));
 }
 
-TEST(SenderClockTest, AStampThatStandsStillIsToldAndGoesOnAfterAPause) {
+TEST(SenderClockTest, ReportsARepeatedStampAndContinuesAfterAPause) {
     SenderClock clock;
     clock.read(at(5), at(ahead + 5));
     for (int i = 0; i < 100; ++i)
@@ -72,7 +72,7 @@ TEST(SenderClockTest, AStampThatStandsStillIsToldAndGoesOnAfterAPause) {
     EXPECT_EQ(time, at(ahead + 105)) << "the pause is no delay";
 }
 
-TEST(SenderClockTest, WhatWasOvertakenIsLateAndASenderThatBeginsAnewIsBelieved) {
+TEST(SenderClockTest, DropsLateStampsAndAcceptsARestartedSender) {
     SenderClock clock;
     clock.read(at(100), at(ahead + 100));
     EXPECT_EQ(clock.read(at(99.5), at(ahead + 100.1)).order, Order::Late);
@@ -83,14 +83,14 @@ TEST(SenderClockTest, WhatWasOvertakenIsLateAndASenderThatBeginsAnewIsBelieved) 
     EXPECT_EQ(clock.read(at(0.1), at(ahead + 100.3)).time, at(ahead + 100.3));
 }
 
-TEST(SenderClockTest, AfterASilenceStampsThatLieALittleBackAreTaken) {
+TEST(SenderClockTest, AcceptsEarlierStampsAfterASilence) {
     SenderClock clock;
     clock.read(at(0.8), at(ahead));
     EXPECT_EQ(clock.read(at(0.1), at(ahead + 0.5)).order, Order::Late);
     EXPECT_EQ(clock.read(at(0.2), at(ahead + 2)).order, Order::Restarted);
 }
 
-TEST(SenderClockTest, AStampFarAheadDoesNotSilenceThoseAfterIt) {
+TEST(SenderClockTest, AStampFarAheadDoesNotBlockLaterStamps) {
     SenderClock clock;
     clock.read(at(1), at(ahead + 1));
     EXPECT_EQ(clock.read(at(1e6), at(ahead + 1.1)).time, at(ahead + 1.1));
@@ -99,7 +99,7 @@ TEST(SenderClockTest, AStampFarAheadDoesNotSilenceThoseAfterIt) {
     EXPECT_EQ(time, at(ahead + 1.2));
 }
 
-TEST(SenderClockTest, WhereOurClockIsSetBackOurTimesGoBackWithIt) {
+TEST(SenderClockTest, TimesFollowOurClockWhenItIsSetBack) {
     SenderClock clock;
     clock.read(at(1), at(ahead + 3600));
     EXPECT_EQ(clock.read(at(1.1), at(ahead)).time, at(ahead));

@@ -18,7 +18,7 @@ SonarScan scanOf(std::vector<uint8_t> data, uint16_t beams, uint16_t bins) {
     return scan;
 }
 
-TEST(SonarScanTest, TheBearingsOfAScanFallFromPortToStarboard) {
+TEST(SonarScanTest, BearingsOfAScanDecreaseFromPortToStarboard) {
     const Sonar ping = toSonar(scanOf({0, 51, 255}, 3, 1));
     std::vector<double> degrees;
     for (const Angle& bearing : ping.bearings) degrees.push_back(bearing.deg());
@@ -45,7 +45,7 @@ TEST(SonarScanTest, ABeamThatIsNotSetIsUnknown) {
     EXPECT_EQ(ping.beamStart(0), Time{4});
 }
 
-TEST(SonarScanTest, WhatIsNoScanIsRefused) {
+TEST(SonarScanTest, RejectsInvalidScans) {
     SonarScan scan = scanOf({1, 2, 3}, 2, 2);
     EXPECT_THROW(toSonar(scan), std::logic_error);
     scan = scanOf({1, 2}, 2, 1);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/** Beams of bins that hold 1, 2, 3... */
+/** Returns beams with bins of 1, 2, 3... */
 Sonar ping(uint32_t bins, uint32_t beams) {
     Sonar sample;
     sample.resize(bins, beams);
@@ -65,8 +65,8 @@ TEST(SonarTest, ABeamStartsAtItsOwnTimeOrAtThatOfThePing) {
     EXPECT_THROW(sample.beamStart(2), std::out_of_range);
 }
 
-TEST(SonarTest, ValidationTellsEveryDiagnostic) {
-    EXPECT_EQ(complaintOf(Sonar{}), "") << "empty, as Rock has it";
+TEST(SonarTest, ValidationReportsEveryError) {
+    EXPECT_EQ(complaintOf(Sonar{}), "") << "empty, as in Rock";
     EXPECT_EQ(complaintOf(ping(4, 3)), "") << "unknown bearings";
     Sonar sample = ping(4, 3);
     sample.bins.pop_back();
@@ -81,7 +81,7 @@ TEST(SonarTest, ValidationTellsEveryDiagnostic) {
         "has bins without a duration; has bins without a speed of sound");
 }
 
-TEST(SonarTest, CountsWhoseProductTurnsOverAreNoShape) {
+TEST(SonarTest, RejectsCountsWhoseProductOverflows) {
     Sonar sample;
     sample.bin_count = 1u << 16;
     sample.beam_count = 1u << 16;  // 2^32 bins: 0 in 32 bits

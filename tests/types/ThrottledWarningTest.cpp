@@ -8,7 +8,7 @@ namespace {
 
 using std::chrono::seconds;
 
-TEST(ThrottledWarningTest, TheFirstIsToldAtOnceAndTheOthersEveryTenSeconds) {
+TEST(ThrottledWarningTest, WarnsAtOnceAndThenEveryTenSeconds) {
     const auto start = ThrottledWarning::Clock::now();
     ThrottledWarning refused("connection", "refused");
     EXPECT_EQ(refused.takeWarning(start), "");
@@ -26,7 +26,7 @@ TEST(ThrottledWarningTest, TheFirstIsToldAtOnceAndTheOthersEveryTenSeconds) {
     EXPECT_TRUE(refused.summary().empty());
 }
 
-TEST(ThrottledWarningTest, ReasonsWithoutEndAreOneReasonFromTheThirtySecondOn) {
+TEST(ThrottledWarningTest, FurtherReasonsAreCountedTogetherFromTheThirtySecondOn) {
     ThrottledWarning dropped("message", "dropped");
     for (int i = 0; i < 100; ++i) dropped.add("reason " + std::to_string(i));
     EXPECT_EQ(dropped.count(), 100u);

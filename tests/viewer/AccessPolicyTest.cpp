@@ -12,7 +12,7 @@ unsigned judged(const std::string& token, const AccessPolicy::Request& request, 
     return refusal ? refusal->status : 200;
 }
 
-TEST(AccessPolicyTest, ATokenComesInTheQueryOrAsABearer) {
+TEST(AccessPolicyTest, TakesATokenFromTheQueryOrAsABearer) {
     EXPECT_EQ(judged("a b", {"/?x=1&token=a%20b", "far.example", "", ""}), 200u);
     EXPECT_EQ(judged("ab", {"/", "far.example", "", "Bearer ab"}), 200u);
     EXPECT_EQ(judged("ab", {"/?token=ax", "127.0.0.1", "", ""}), 401u);
@@ -23,7 +23,7 @@ TEST(AccessPolicyTest, ATokenComesInTheQueryOrAsABearer) {
         << "files of the page hold nothing secret";
 }
 
-TEST(AccessPolicyTest, WithoutATokenOnlyPagesOfThisServerSteer) {
+TEST(AccessPolicyTest, WithoutATokenOnlyPagesOfThisServerControl) {
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "http://127.0.0.1:8765", ""}), 200u);
     EXPECT_EQ(judged("", {"/", "[::1]:8765", "http://[::1]:8765", ""}), 200u);
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "", ""}), 200u) << "a program, no browser";
@@ -32,7 +32,7 @@ TEST(AccessPolicyTest, WithoutATokenOnlyPagesOfThisServerSteer) {
         << "a name that leads here today";
 }
 
-TEST(AccessPolicyTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
+TEST(AccessPolicyTest, WithoutATokenOnlyFoxglovesWebSitesRead) {
     const auto reads = [](const std::string& origin) {
         return judged("", {"/", "127.0.0.1:8765", origin, ""}, Use::Read);
     };
@@ -45,10 +45,10 @@ TEST(AccessPolicyTest, WithoutATokenNoOtherWebSiteReadsButFoxgloves) {
         EXPECT_EQ(reads(origin), 403u) << origin;
     EXPECT_EQ(judged("", {"/", "127.0.0.1:8765", "https://app.foxglove.dev", ""}, Use::Control), 403u);
     EXPECT_EQ(judged("ab", {"/?token=ab", "127.0.0.1:8765", "https://evil.example", ""}, Use::Read), 200u)
-        << "who has the token may";
+        << "clients with the token may";
 }
 
-TEST(AccessPolicyTest, ParametersAreSetByProgramsAndWhoHasTheToken) {
+TEST(AccessPolicyTest, ProgramsAndClientsWithTheTokenSetParameters) {
     const auto sets = [](const std::string& token, const std::string& origin) {
         return AccessPolicy{token}.maySet({"/?token=ab", "127.0.0.1:8765", origin, ""});
     };

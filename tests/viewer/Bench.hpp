@@ -40,7 +40,7 @@ struct Bench {
     ViewerTask viewer{"viewer"};
     Feed<types::SonarPtr> sonar{viewer, "sonar"};
 
-    /** One that gives up no client: those of these tests do not answer when they are asked whether they live. */
+    /** Returns a configuration that disconnects no client: clients of these tests do not answer pings. */
     static ViewerConfig patient() {
         ViewerConfig config;
         config.idle_timeout = 3600;

@@ -19,7 +19,7 @@ namespace insonify::viewer {
 
 inline const char* const chromium = "/usr/bin/chromium";
 
-/** A python that has websockets: that of scripts/setup, or Debian's; empty: there is none. */
+/** Returns a python with websockets: that of scripts/setup, or Debian's; empty if there is none. */
 inline std::string pythonWithWebsockets() {
     for (const std::string& candidate : {test::sourceFile("build/venv/bin/python3"), std::string("/usr/bin/python3")})
         if (std::filesystem::exists(candidate) &&
@@ -55,26 +55,26 @@ public:
     Browser(const Browser&) = delete;
     Browser& operator=(const Browser&) = delete;
 
-    /** The value of an expression; a failure of the test when it throws. */
+    /** Returns the value of an expression; a test failure if it throws. */
     nlohmann::json value(const std::string& expression) { return ask({{"eval", expression}}); }
-    /** Waits until it is true. */
+    /** Waits until the expression is true. */
     bool becomes(const std::string& expression) {
         return ask({{"until", expression}, {"seconds", test::patience.count()}}) == true;
     }
-    /** Presses the keys of a text, into what has the focus. */
+    /** Presses the keys of a text, in the focused element. */
     void type(const std::string& text) { ask({{"type", text}}); }
     /** Presses a key by its name: "Tab", "Shift+Tab", "ArrowLeft". */
     void press(const std::string& key, int times = 1) { ask({{"press", std::vector<std::string>(times, key)}}); }
-    /** Clicks the middle of an element, which is scrolled into view; a failure of the test where another covers it. */
+    /** Scrolls an element into view and clicks its middle; a test failure if another element covers it. */
     void click(const std::string& element) { ask({{"click", element}}); }
-    /** What two fingers do: "touchStart", "touchMove"; without places, "touchEnd". */
+    /** Sends a touch event of two fingers: "touchStart", "touchMove"; without places, "touchEnd". */
     void touch(const std::string& kind, const std::vector<std::array<double, 2>>& places) {
         nlohmann::json points = nlohmann::json::array();
         for (const auto& [x, y] : places) points.push_back({{"x", x}, {"y", y}, {"id", points.size()}});
         ask({{"touch", {{"type", kind}, {"touchPoints", points}}}});
     }
     void saveFilesIn(const std::string& folder) { ask({{"downloads", folder}}); }
-    /** What the mouse does, as Input.dispatchMouseEvent has it, in pixels from the upper left corner of the page. */
+    /** Sends a mouse event, as in Input.dispatchMouseEvent, in pixels from the upper left corner of the page. */
     void mouse(const std::string& kind, double x, double y, nlohmann::json more = nlohmann::json::object()) {
         more.update({{"type", kind}, {"x", x}, {"y", y}});
         ask({{"mouse", more}});
@@ -90,7 +90,7 @@ public:
         mouse("mouseMoved", x + dx, y + dy, {{"button", "left"}, {"buttons", 1}});
         mouse("mouseReleased", x + dx, y + dy, {{"button", "left"}, {"clickCount", 1}});
     }
-    /** Turns the wheel by so many pixels, positive towards oneself. */
+    /** Turns the wheel by `by` pixels, positive towards the user. */
     void wheel(double x, double y, double by) { mouse("mouseWheel", x, y, {{"deltaX", 0}, {"deltaY", by}}); }
     /** @param scale pixels of the screen per pixel of CSS. */
     void size(int width, int height, double scale = 1) { ask({{"size", {width, height, scale}}}); }

@@ -1,5 +1,5 @@
 #pragma once
-// HTTP and WebSocket over a plain socket, so that wrong bytes can be sent as well.
+// HTTP and WebSocket over a plain socket, so that invalid bytes can be sent too.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -16,7 +16,7 @@
 
 namespace insonify::viewer {
 
-/** A port that is free now and is given to nobody by chance: it lies below those that the system hands out. */
+/** Returns a free port that is not assigned by chance: it is below those that the system assigns. */
 inline uint16_t quietPort() {
     std::random_device random;
     while (true) {
@@ -52,18 +52,18 @@ public:
     bool send(const std::string& bytes) {
         return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
     }
-    /** Asks for `target`; gives all that is answered until the connection is closed. */
+    /** Requests `target`; returns everything received until the connection is closed. */
     std::string get(const std::string& target, const std::string& more = "") {
         send("GET " + target + " HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n");
         return rest();
     }
-    /** All that comes until the connection is closed. */
+    /** Returns everything received until the connection is closed. */
     std::string rest() {
         while (receive()) {
         }
         return std::move(received_);
     }
-    /** Becomes a WebSocket; gives the first line of the answer. */
+    /** Becomes a WebSocket; returns the first line of the answer. */
     std::string upgrade(const std::string& protocol, const std::string& target = "/", const std::string& more = "") {
         sendUpgrade(protocol, target, more);
         return upgraded();
@@ -73,7 +73,7 @@ public:
              "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
              protocol + "\r\n" + more + "\r\n");
     }
-    /** The first line of the answer to sendUpgrade(). */
+    /** Returns the first line of the answer to sendUpgrade(). */
     std::string upgraded() {
         while (received_.find("\r\n\r\n") == std::string::npos)
             if (!receive()) break;
@@ -83,7 +83,7 @@ public:
         return head_.substr(0, head_.find("\r\n"));
     }
     const std::string& head() const { return head_; }  ///< Headers of the answer to sendUpgrade().
-    /** A text message of less than 64 KiB. */
+    /** Sends a text message of less than 64 KiB. */
     void say(const std::string& text) {
         std::string frame = "\x81";
         if (text.size() < 126)
@@ -93,7 +93,7 @@ public:
         frame += std::string(4, '\0');  // a mask that changes nothing
         send(frame + text);
     }
-    /** The payload of the next message; none when the connection was closed or a close frame came. */
+    /** Returns the payload of the next message; none if the connection was closed or a close frame arrived. */
     std::optional<std::string> hear() {
         while (true) {
             if (!fill(2)) return std::nullopt;
@@ -112,14 +112,14 @@ public:
         }
     }
     std::string heard() { return hear().value_or("nothing"); }
-    int closeCode() const { return close_code_; }  ///< 0: no close frame came.
+    int closeCode() const { return close_code_; }  ///< 0: no close frame arrived.
 
 private:
     bool receive() {
         char bytes[65536];
         ssize_t got = 0;
         do got = recv(socket_, bytes, sizeof bytes, 0);
-        while (got < 0 && errno == EINTR);  // this process stood still
+        while (got < 0 && errno == EINTR);  // this process was stopped
         if (got > 0) received_.append(bytes, static_cast<size_t>(got));
         return got > 0;
     }

@@ -1,4 +1,4 @@
-// What clients get, and what they cannot do, over a plain socket.
+// What clients receive, and what they cannot do, over a plain socket.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -27,7 +27,7 @@ T at(const std::string& bytes, size_t place) {
     return value;
 }
 
-/** A page that has got its first message. */
+/** Returns a page that has received its first message. */
 Client page(uint16_t port) {
     Client client(port);
     EXPECT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
@@ -35,7 +35,7 @@ Client page(uint16_t port) {
     return client;
 }
 
-/** The next ping that a page gets: its JSON. */
+/** Returns the JSON of the next ping that a page receives. */
 json nextPing(Client& client) {
     while (const auto message = client.hear())
         if (message->size() > 8 && at<uint32_t>(*message, 0) == ping_kind)
@@ -43,7 +43,7 @@ json nextPing(Client& client) {
     return nullptr;
 }
 
-TEST(ClientTest, ThePageAndItsFilesAreServed) {
+TEST(ClientTest, ServesThePageAndItsFiles) {
     Bench bench;
     bench.start();
     EXPECT_THAT(Client(bench.port()).get("/"),
@@ -56,7 +56,7 @@ TEST(ClientTest, ThePageAndItsFilesAreServed) {
     EXPECT_THAT(post.get("/"), StartsWith("HTTP/1.1 405"));
 }
 
-TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
+TEST(ClientTest, SendsFoxgloveItsChannelAndThePingAsACdrMessage) {
     Bench bench;
     bench.start();
     Client client(bench.port());
@@ -70,7 +70,7 @@ TEST(ClientTest, FoxgloveGetsItsChannelAndThePingAsACdrMessage) {
     EXPECT_THAT(client.heard(), HasSubstr("no channel 99"));
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":0}]})");
     client.say("is the subscription taken?");
-    EXPECT_THAT(client.heard(), HasSubstr("no JSON object"));
+    EXPECT_THAT(client.heard(), HasSubstr("not a JSON object"));
     bench.show(blockPing());
 
     const std::string message = client.heard();
@@ -108,7 +108,7 @@ TEST(ClientTest, FoxglovesNewerProtocolIsTheSame) {
     EXPECT_THAT(Client(bench.port()).upgrade("foxglove.sdk.v10"), HasSubstr("400"));
 }
 
-TEST(ClientTest, EachServerHasASessionOfItsOwn) {
+TEST(ClientTest, EachServerHasItsOwnSession) {
     std::set<std::string> sessions;
     for (int i = 0; i < 2; ++i) {
         Bench bench;
@@ -119,10 +119,10 @@ TEST(ClientTest, EachServerHasASessionOfItsOwn) {
             sessions.insert(json::parse(client.heard())["sessionId"].get<std::string>());
         }
     }
-    EXPECT_EQ(sessions.size(), 2u) << "the same for who comes back, another after a start";
+    EXPECT_EQ(sessions.size(), 2u) << "the same after a reconnection, another after a restart";
 }
 
-TEST(ClientTest, FoxgloveIsToldTheTimeOfTheDeployment) {
+TEST(ClientTest, SendsFoxgloveTheTimeOfTheDeployment) {
     Bench bench;
     bench.start();
     Client client(bench.port());
@@ -136,7 +136,7 @@ TEST(ClientTest, FoxgloveIsToldTheTimeOfTheDeployment) {
     EXPECT_EQ(at<uint64_t>(time, 1), 3'500'000'000u) << "the clock, not the stamp";
 }
 
-TEST(ClientTest, WhoSubscribesToAChannelGetsItsNewestSampleAtOnce) {
+TEST(ClientTest, SendsTheNewestSampleAtOnceToANewSubscriber) {
     Bench bench;
     bench.start();
     bench.show(blockPing());
@@ -153,7 +153,7 @@ TEST(ClientTest, WhoSubscribesToAChannelGetsItsNewestSampleAtOnce) {
     FAIL() << "no picture came";
 }
 
-TEST(ClientTest, APageGetsTheLastPingWhenItComesAndEachAfterwards) {
+TEST(ClientTest, SendsAPageTheLastPingAtOnceAndEachFollowingPing) {
     Bench bench;
     bench.start();
     bench.show(blockPing(1'000'000));
@@ -166,7 +166,7 @@ TEST(ClientTest, APageGetsTheLastPingWhenItComesAndEachAfterwards) {
     EXPECT_EQ(nextPing(client)["time_us"], 2'000'000);
 }
 
-TEST(ClientTest, AWrongTokenIsRefusedWith401) {
+TEST(ClientTest, RefusesAWrongTokenWith401) {
     ViewerConfig config;
     config.token = "open sesame";
     Bench bench(config);
@@ -180,7 +180,7 @@ TEST(ClientTest, AWrongTokenIsRefusedWith401) {
     EXPECT_EQ(bench.viewer.counts().refused, 3u);
 }
 
-TEST(ClientTest, OtherWebSitesCanNeitherSteerNorRead) {
+TEST(ClientTest, OtherWebSitesCanNeitherControlNorRead) {
     Bench bench;
     bench.start();
     EXPECT_THAT(Client(bench.port()).upgrade(page_protocol, "/", "Origin: http://evil.example\r\n"), HasSubstr("403"));
@@ -192,14 +192,14 @@ TEST(ClientTest, OtherWebSitesCanNeitherSteerNorRead) {
     EXPECT_THAT(Client(bench.port()).upgrade("other.protocol"), HasSubstr("400"));
 }
 
-/** All that comes until the connection is closed. */
+/** Returns everything received until the connection is closed. */
 std::string answerTo(uint16_t port, const std::string& bytes) {
     Client client(port);
     client.send(bytes);
     return client.rest();
 }
 
-TEST(ClientTest, WhatIsNoRequestIsAnsweredAndCounted) {
+TEST(ClientTest, AnswersAndCountsInvalidRequests) {
     Bench bench;
     std::vector<std::string> warnings;
     std::mutex mutex;
@@ -228,7 +228,7 @@ TEST(ClientTest, WhatIsNoRequestIsAnsweredAndCounted) {
     EXPECT_THAT(bench.viewer.notices(), testing::Contains("4 connections refused"));
 }
 
-TEST(ClientTest, FramesThatAreNoneCloseThatClientOnlyAndAreCounted) {
+TEST(ClientTest, InvalidFramesCloseOnlyThatClientAndAreCounted) {
     Bench bench;
     bench.start();
     Client good = page(bench.port());
@@ -248,7 +248,7 @@ TEST(ClientTest, FramesThatAreNoneCloseThatClientOnlyAndAreCounted) {
     EXPECT_EQ(nextPing(good)["count"], 1);
 }
 
-TEST(ClientTest, RequestsThatAreNeverFinishedKeepNobodyOut) {
+TEST(ClientTest, UnfinishedRequestsBlockNobody) {
     Bench bench;
     bench.start();
     std::vector<Client> halves;
@@ -264,7 +264,7 @@ TEST(ClientTest, RequestsThatAreNeverFinishedKeepNobodyOut) {
     EXPECT_EQ(halves.back().rest(), "") << "given up after five seconds";
 }
 
-TEST(ClientTest, MoreClientsThanMayBeAreRefused) {
+TEST(ClientTest, RefusesMoreClientsThanTheMax) {
     ViewerConfig config;
     config.clients = 2;
     Bench bench(config);
@@ -274,7 +274,7 @@ TEST(ClientTest, MoreClientsThanMayBeAreRefused) {
     EXPECT_THAT(Client(bench.port()).get("/"), StartsWith("HTTP/1.1 200")) << "files need no place";
 }
 
-TEST(ClientTest, ThousandsOfConnectionsStallNobody) {
+TEST(ClientTest, ThousandsOfConnectionsBlockNobody) {
     Bench bench;
     bench.start();
     Client good = page(bench.port());
@@ -283,7 +283,7 @@ TEST(ClientTest, ThousandsOfConnectionsStallNobody) {
     for (int i = 0; i < 10000; ++i) {
         Client client(bench.port());
         connected += client.connected() ? 1 : 0;
-        if (i < 200) idle.push_back(std::move(client));  // those that are open at once and say nothing
+        if (i < 200) idle.push_back(std::move(client));  // connections that stay open and send nothing
     }
     EXPECT_GT(connected, 9900);
     bench.show(blockPing(7'000'000));
@@ -313,12 +313,12 @@ TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
     EXPECT_GT(bench.viewer.counts().dropped, 200u) << "of 300 pings of 512 kB a socket holds few";
 }
 
-TEST(ClientTest, AClientThatDoesNotAnswerIsGivenUp) {
+TEST(ClientTest, DisconnectsAClientThatDoesNotAnswer) {
     ViewerConfig config;
     config.idle_timeout = 1;
     Bench bench(config);
     bench.start();
-    const Client silent = page(bench.port());  // which was a client, for it was told what there is
+    const Client silent = page(bench.port());  // a client, because it has received the first message
     EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 0; }));
 }
 

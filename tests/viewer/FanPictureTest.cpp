@@ -16,7 +16,7 @@ ros::Image pictureOf(const types::Sonar& ping) {
     return message;
 }
 
-TEST(FanPictureTest, ARandomFanIsDrawnAsTheSameBeamsInAscendingOrder) {
+TEST(FanPictureTest, ARandomFanIsDrawnLikeTheBeamsInAscendingOrder) {
     for (const test::RandomFan& fan : test::randomFans(2, 40))
         EXPECT_EQ(pictureOf(fan.ping).data, pictureOf(fan.ascending).data) << fan.name;
 }

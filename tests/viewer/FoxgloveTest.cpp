@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
 
-TEST(FoxgloveTest, ChannelsAreAdvertisedWithTheirSchemas) {
+TEST(FoxgloveTest, AdvertisesChannelsWithTheirSchemas) {
     const json said = json::parse(advertise({{"/a/b", "pkg/Type", "int32 x\n"}, {"/c", "pkg/Other", ""}}));
     EXPECT_EQ(said["op"], "advertise");
     EXPECT_EQ(said["channels"][1]["id"], 1);
@@ -28,7 +28,7 @@ TEST(FoxgloveTest, AMessageBeginsWithItsSubscriptionAndTime) {
     EXPECT_EQ(messageHead(0x04030201, 0x0807060504030201), std::string("\1\1\2\3\4\1\2\3\4\5\6\7\x8", 13));
 }
 
-TEST(FoxgloveTest, TheServerTellsItsSessionTimeAndParameters) {
+TEST(FoxgloveTest, TheServerSendsItsSessionTimeAndParameters) {
     const json said = json::parse(serverInfo("17"));
     EXPECT_EQ(said["op"], "serverInfo");
     EXPECT_EQ(said["sessionId"], "17");
@@ -36,7 +36,7 @@ TEST(FoxgloveTest, TheServerTellsItsSessionTimeAndParameters) {
     EXPECT_EQ(timeMessage(0x0807060504030201), std::string("\2\1\2\3\4\5\6\7\x8", 9));
 }
 
-TEST(FoxgloveTest, ParametersAreAskedForSetAndToldOf) {
+TEST(FoxgloveTest, ReadsRequestsForParametersSettingsAndSubscriptions) {
     using enum ParameterRequest::Kind;
     EXPECT_EQ(readParameterRequest(R"({"op":"subscribe"})").kind, Other);
     EXPECT_EQ(readParameterRequest("[").kind, Other);
@@ -61,7 +61,7 @@ TEST(FoxgloveTest, ParametersAreAskedForSetAndToldOf) {
                               {"name":"b","value":3},{"name":"c","value":"x"}]})"));
 }
 
-TEST(FoxgloveTest, WhoSubscribesToParametersHearsOfThoseAndNoOthers) {
+TEST(FoxgloveTest, AParameterSubscriberReceivesOnlyItsParameters) {
     using enum ParameterRequest::Kind;
     ParameterSubscriptions wanted;
     EXPECT_FALSE(wanted.any());
@@ -88,10 +88,10 @@ TEST(FoxgloveTest, SubscriptionsComeAndGo) {
     EXPECT_EQ(subscriptions.take(R"({"op":"fetchAsset"})"), "") << "of the protocol, but not for this server";
 }
 
-TEST(FoxgloveTest, WhatIsWrongIsToldAndChangesNothing) {
+TEST(FoxgloveTest, ReportsInvalidMessagesAndChangesNothing) {
     Subscriptions subscriptions(2);
     for (const char* text : {"", "{", "[]", "{}", R"({"op":1})", "\xff\xfe"})
-        EXPECT_THAT(subscriptions.take(text), HasSubstr("no JSON object with an op")) << text;
+        EXPECT_THAT(subscriptions.take(text), HasSubstr("not a JSON object with an op")) << text;
     for (const char* one :
          {"1", "{}", R"({"id":-1,"channelId":0})", R"({"id":1,"channelId":"0"})", R"({"id":5000000000,"channelId":0})"})
         EXPECT_THAT(subscriptions.take(std::string(R"({"op":"subscribe","subscriptions":[)") + one + "]}"),
@@ -102,7 +102,7 @@ TEST(FoxgloveTest, WhatIsWrongIsToldAndChangesNothing) {
     EXPECT_TRUE(subscriptions.all().empty());
 }
 
-TEST(FoxgloveTest, AChannelHasOneSubscriptionOfAClient) {
+TEST(FoxgloveTest, AllowsOneSubscriptionOfAClientForEachChannel) {
     Subscriptions subscriptions(2);
     EXPECT_EQ(subscriptions.take(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})"), "");
     EXPECT_THAT(subscriptions.take(R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":0}]})"),
@@ -112,7 +112,7 @@ TEST(FoxgloveTest, AChannelHasOneSubscriptionOfAClient) {
     EXPECT_THAT(subscriptions.all(), ElementsAre(Pair(1, 0), Pair(2, 1)));
 }
 
-TEST(FoxgloveTest, WhatShouldBeAListAndIsNoneIsEmpty) {
+TEST(FoxgloveTest, AMissingListIsEmpty) {
     Subscriptions subscriptions(2);
     EXPECT_EQ(subscriptions.take(R"({"op":"subscribe","subscriptions":{"a":{"id":1,"channelId":0}}})"), "");
     EXPECT_TRUE(subscriptions.all().empty());

@@ -30,7 +30,7 @@ types::Pose knownPose() {
     return pose;
 }
 
-TEST(MessagesTest, PosesAreEastNorthUpUnlessAskedOtherwise) {
+TEST(MessagesTest, PosesAreEastNorthUpByDefault) {
     EXPECT_EQ(ViewerConfig().world_frame, ros::WorldFrame::Enu);
     const auto pose = poseAs(ros::WorldFrame::Enu, knownPose()).pose;
     EXPECT_NEAR(pose.position.x, -2, 1e-12);
@@ -49,7 +49,7 @@ TEST(MessagesTest, TheSonarInASnapshotIsInTheSameAxes) {
     EXPECT_NEAR(poseAs(ros::WorldFrame::Ned, sample).pose.position.z, 1, 1e-12);
 }
 
-// -- what Foxglove's panels draw --------------------------------------------------------------------------------------
+// -- messages that Foxglove's panels draw ------------------------------------------------------------------------------
 
 template <class Message>
 Message decoded(const Bytes& bytes) {
@@ -106,7 +106,7 @@ TEST(MessagesTest, APingIsAPictureOfTheFanAndPoints) {
     EXPECT_EQ(points.header.frame_id, "sonar");
 }
 
-TEST(MessagesTest, RosbagsKnowsFoxglovesMessagesByTheSameHashes) {
+TEST(MessagesTest, RosbagsComputesTheSameHashesOfFoxglovesMessages) {
     if (!pythonHas("rosbags"))
         GTEST_SKIP() << "SKIPPED: the Python package rosbags is missing; scripts/setup installs it";
     const Folder folder;

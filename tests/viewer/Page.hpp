@@ -1,5 +1,5 @@
 #pragma once
-// The page in a real browser, used by mouse and keys.
+// The page in a real browser, controlled by mouse and keys.
 #include <gmock/gmock.h>
 
 #include <optional>
@@ -21,8 +21,8 @@ protected:
         if (pythonWithWebsockets().empty()) GTEST_SKIP() << "NOT TESTED: no python has websockets";
         open();
     }
-    /** @param first a script that runs before those of the page.
-     *  @param query of the page's address. */
+    /** @param first a script that runs before those of the page
+     *  @param query of the page's address */
     void open(const std::string& first = "", uint16_t port = 0, const Running::Additions& additions = {},
               const std::string& query = "") {
         browser.reset();
@@ -31,7 +31,7 @@ protected:
         browser.emplace("http://127.0.0.1:" + std::to_string(running->port()) + "/" + query, first);
         ASSERT_TRUE(browser->becomes("self.insonify && insonify.shown() > 3 && insonify.status()"));
     }
-    /** A machine that stalls is not to look like a connection that says nothing. */
+    /** A stalled machine must not look like a silent connection. */
     void keepConnection() {
         value("Object.defineProperty(insonify.link, 'patience', {get: () => 1e9, set: () => {}})");
     }
@@ -39,12 +39,12 @@ protected:
     bool becomes(const std::string& expression) { return browser->becomes(expression); }
     std::string text(const std::string& id) { return value("document.getElementById('" + id + "').textContent"); }
     static std::string byId(const std::string& id) { return "document.getElementById('" + id + "')"; }
-    /** The field of a property in the table. */
+    /** Returns the field of a property in the table. */
     static std::string fieldOf(const std::string& property) {
         return "[...document.querySelectorAll('#properties tr')].find((one) => one.cells[0].textContent === '" +
                property + "')?.querySelector('input, select')";
     }
-    /** Red text next to a field. */
+    /** Returns the red text next to a field. */
     static std::string refusalOf(const std::string& field) {
         return field + ".parentElement.querySelector('.refused').textContent";
     }
@@ -65,14 +65,14 @@ protected:
         browser->press("ArrowRight", to - std::stoi(value(byId(id) + ".min").get<std::string>()));
         EXPECT_EQ(value(byId(id) + ".value"), std::to_string(to));
     }
-    /** Replaces what is in a field, as far as pressing Enter. */
+    /** Replaces the content of a field and presses Enter. */
     void enter(const std::string& field, const std::string& text) {
         browser->click(field);
         browser->press("Control+a");
         text.empty() ? browser->press("Backspace") : browser->type(text);
         browser->press("Enter");
     }
-    /** Red, green and blue of the pixel at which a place is drawn. */
+    /** Returns red, green and blue of the pixel at which a place is drawn. */
     json pixelAt(double range, double bearing_deg) {
         nextFrame();
         return value(
@@ -82,7 +82,7 @@ protected:
             "); fan.gl.readPixels(x, y, 1, 1, fan.gl.RGBA, fan.gl.UNSIGNED_BYTE, p);"
             "return [...p].slice(0, 3); })()");
     }
-    /** Where a place of the water is in the window [px]. */
+    /** Returns the window pixel of a place in the water [px]. */
     std::array<double, 2> windowAt(double range, double bearing_deg) {
         nextFrame();
         return value(
@@ -92,7 +92,7 @@ protected:
             "); return [box.left + x / devicePixelRatio, box.bottom - y / devicePixelRatio]; })()");
     }
     void nextFrame() { value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"); }
-    /** Points with the mouse at a place; the text over the picture. */
+    /** Points with the mouse at a place; returns the text over the picture. */
     std::string readAt(double range, double bearing_deg) {
         const auto at = windowAt(range, bearing_deg);
         browser->point(at[0], at[1]);

@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST_F(PageTest, APingIsDrawnAsItIs) {
+TEST_F(PageTest, DrawsAPingUnchanged) {
     for (const bool polar : {false, true}) {
         if (polar) click("fan");
         for (const double bearing : {-16.0, 0.0, 10.5})
@@ -22,10 +22,10 @@ TEST_F(PageTest, APingIsDrawnAsItIs) {
     EXPECT_NE(pixelAt(16, 0), darkest) << "beyond the last bin there is no picture";
 }
 
-TEST_F(PageTest, AFanAcrossTheSeamIsDrawnBehindTheSonarAndGapsAreEmpty) {
+TEST_F(PageTest, DrawsAFanAcrossTheSeamBehindTheSonarWithEmptyGaps) {
     choose("map", "gray");
     click("freeze");
-    // Beams from 150 to 160 and from 170 to 190 degrees, silent but for the last one.
+    // Beams from 150 to 160 and from 170 to 190 degrees; only the last has an echo.
     value(
         "(() => { const {fan} = insonify, rad = (all) => all.map((each) => each * Math.PI / 180), bins = 10;"
         "const ping = {...fan.ping, beams: 3, bins, bin_m: 1.5, edges: rad([150, 160, 170, 180, 180, 190]), data: new "
@@ -52,7 +52,7 @@ TEST_F(PageTest, ColourMapAndGainChangeThePicture) {
     EXPECT_NEAR(pixelAt(6.75, 0)[0].get<int>(), 255 * 70 / 90, 5);
 }
 
-TEST_F(PageTest, TheCursorTellsRangeBearingAndLevel) {
+TEST_F(PageTest, TheCursorShowsRangeBearingAndLevel) {
     for (const char* level : {"0.0 dB", "10.0 dB"}) {
         double range = 0, bearing = 0;
         char side[8] = "", rest[32] = "";
@@ -69,17 +69,17 @@ TEST_F(PageTest, TheCursorTellsRangeBearingAndLevel) {
     EXPECT_EQ(readAt(15.5, 0), "") << "beyond the last bin";
 }
 
-TEST_F(PageTest, BearingsAreSignedAsInPicturesAndTheRangeIsTold) {
+TEST_F(PageTest, ShowsSignedBearingsAndTheRange) {
     EXPECT_THAT(readAt(6.75, -8), HasSubstr("-8"));
     EXPECT_THAT(readAt(6.75, -8), HasSubstr("stbd"));
     EXPECT_EQ(text("reach"), "15.0 m, 32 x 100, 150 mm");
 }
 
-TEST_F(PageTest, NoLabelOfThePictureIsCut) {
+TEST_F(PageTest, CutsNoLabelOfThePicture) {
     for (const int width : {400, 500, 1600}) {
         browser->size(width, 900);
         nextFrame();
-        // In one go, before the next ping is shown: a range at which rings have the widest labels.
+        // In one step, before the next ping is shown: a range with the widest labels of rings.
         const json cut = value(R"((() => {
             const {fan} = insonify, {prototype} = CanvasRenderingContext2D, draw = prototype.fillText, texts = [];
             prototype.fillText = function(text, x, ...more) {
@@ -99,7 +99,7 @@ TEST_F(PageTest, NoLabelOfThePictureIsCut) {
     }
 }
 
-TEST_F(PageTest, AFrozenPingStaysWhileTheSonarGoesOn) {
+TEST_F(PageTest, AFrozenPingStaysWhileTheSonarContinues) {
     click("freeze");
     const json frozen = value("insonify.fan.ping.time_us");
     ASSERT_TRUE(
@@ -110,11 +110,11 @@ TEST_F(PageTest, AFrozenPingStaysWhileTheSonarGoesOn) {
     EXPECT_TRUE(becomes("insonify.fan.ping.time_us > " + frozen.dump()));
 }
 
-TEST_F(PageTest, TheWheelGoesNearerAndDraggingMovesThePicture) {
+TEST_F(PageTest, TheWheelZoomsAndDraggingMovesThePicture) {
     const auto at = windowAt(6.75, 0);
     browser->wheel(at[0], at[1], -800);
     ASSERT_TRUE(becomes("insonify.fan.zoom > 3"));
-    // The mouse stands at whole pixels.
+    // The mouse is at whole pixels.
     EXPECT_NEAR(windowAt(6.75, 0)[0], at[0], 3) << "what is under the mouse stays there";
     EXPECT_NEAR(windowAt(6.75, 0)[1], at[1], 3);
     EXPECT_THAT(readAt(6.75, 0), HasSubstr("6.7"));
@@ -130,7 +130,7 @@ TEST_F(PageTest, TheWheelGoesNearerAndDraggingMovesThePicture) {
     EXPECT_EQ(value("document.getElementById('whole').disabled"), true);
 }
 
-TEST_F(PageTest, TwoFingersGoNearer) {
+TEST_F(PageTest, TwoFingersZoom) {
     const auto at = windowAt(6.75, 0);
     const auto fingers = [&](const char* kind, double apart) {
         browser->touch(kind, {{at[0], at[1] - apart / 2}, {at[0], at[1] + apart / 2}});
@@ -146,7 +146,7 @@ TEST_F(PageTest, TwoFingersGoNearer) {
     EXPECT_NEAR(windowAt(6.75, 0)[0], at[0] + 40, 20) << "one finger moves it";
 }
 
-TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
+TEST_F(PageTest, TwoClicksMeasureDistanceAndDirection) {
     click("measure");
     clickAt(6, 30);
     EXPECT_THAT(text("measured"), testing::StartsWith("6.0"));
@@ -170,7 +170,7 @@ TEST_F(PageTest, TwoClicksMeasureHowFarAndWhichWay) {
     EXPECT_EQ(text("measured"), "");
 }
 
-TEST_F(PageTest, AScreenOfAnyScaleIsReadAndMeasuredAlike) {
+TEST_F(PageTest, MeasuresAlikeOnScreensOfAnyScale) {
     for (const double scale : {1.25, 2.0}) {
         browser->size(1280, 800, scale);
         ASSERT_TRUE(
@@ -211,7 +211,7 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
     EXPECT_EQ(json({pixel[2], pixel[1], pixel[0]}), brightest);
 }
 
-TEST_F(PageTest, AFrozenPictureIsSavedWithTheAttitudeThatItWasShownWith) {
+TEST_F(PageTest, SavesAFrozenPictureWithTheAttitudeShown) {
     ASSERT_TRUE(becomes("document.getElementById('attitude').textContent.includes('depth2.00 m')"));
     click("freeze");
     value(R"(import('./places.js').then(({Places}) => {
@@ -230,7 +230,7 @@ TEST_F(PageTest, AFrozenPictureIsSavedWithTheAttitudeThatItWasShownWith) {
     EXPECT_THAT(value("self.caption").get<std::string>(), HasSubstr("depth 2.00 m"));
 }
 
-TEST_F(PageTest, HeadingDepthAndAttitudeStandOverThePicture) {
+TEST_F(PageTest, ShowsHeadingDepthAndAttitudeOverThePicture) {
     ASSERT_TRUE(becomes("!document.getElementById('attitude').hidden"));
     EXPECT_TRUE(
         becomes("document.getElementById('attitude').textContent === "

@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST_F(PageTest, APropertyIsSetWhereItStands) {
+TEST_F(PageTest, SetsAPropertyInItsField) {
     EXPECT_EQ(value("[...document.getElementById('task').options].map((one) => one.value)"),
               json({"source", "world", "viewer"}));
     choose("task", "source");
@@ -21,7 +21,7 @@ TEST_F(PageTest, APropertyIsSetWhereItStands) {
     EXPECT_TRUE(becomes(fieldOf("level") + ".value === '10'")) << "it shows what holds";
 }
 
-TEST_F(PageTest, ABlockIsSetToWhatIsWrittenThereSoThatRowsMayBecomeABudget) {
+TEST_F(PageTest, ReplacesABlockSoThatRowsMayBecomeABudget) {
     choose("task", "source");
     enter(fieldOf("quality"), "{budget_ms: 20}");
     EXPECT_TRUE(becomes("insonify.status().tasks[0].properties.quality === '{\"budget_ms\": 20}'"));
@@ -45,16 +45,16 @@ TEST_F(PageTest, TheButtonsRecordPauseAndStep) {
     EXPECT_TRUE(becomes("!insonify.status().paused && insonify.status().now_us > " + std::to_string(paused + 50'000)));
 }
 
-TEST_F(PageTest, TasksPlansAndLossesAreListed) {
+TEST_F(PageTest, ListsTasksPlansAndLosses) {
     EXPECT_TRUE(becomes("document.querySelectorAll('#tasks .Running').length === 3"));
     EXPECT_EQ(value("[...document.querySelectorAll('#tasks tr')].map((row) => row.cells[0].textContent)"),
               json({"task", "source", "world", "viewer"}));
     EXPECT_EQ(value("[...document.querySelectorAll('#plan dt, #plan dd')].map((one) => one.textContent)"),
               json({"multipath", "not asked for"}));
     EXPECT_EQ(value("[...document.querySelectorAll('#plan h3')].map((one) => one.textContent)"),
-              json({"world", "left out", "lost samples", "left aside for newer samples, as asked for"}));
+              json({"world", "omitted", "lost samples", "replaced by newer samples, as configured"}));
     EXPECT_THAT(text("plan"),
-                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 slabs, predicted error 0.01"),
+                testing::AllOf(HasSubstr("64 rows, 2 columns per beam, 1 frusta, predicted error 0.01"),
                                HasSubstr("compiled: cones"), HasSubstr("run: draw, sum"), HasSubstr("a notice")));
     EXPECT_TRUE(
         becomes("/^[1-9][0-9]*  world.pose > viewer.pose \\(buffer\\)$/.test(document.querySelector('#plan "
@@ -62,7 +62,7 @@ TEST_F(PageTest, TasksPlansAndLossesAreListed) {
         << "a buffer of one that gets two poses each time";
     const std::string meant = "[...document.querySelectorAll('#plan .dim')].at(-1)";
     EXPECT_TRUE(becomes("/^[1-9][0-9]*  world.pose > viewer.newest \\(data\\)$/.test(" + meant + ".textContent)"))
-        << "the newest of two poses is wanted, and is no loss";
+        << "the newest of two poses is wanted, and is not a loss";
     EXPECT_EQ(value("document.querySelectorAll('#plan .refused').length"), 1);
     EXPECT_TRUE(
         becomes("document.querySelector('#graph .lost').textContent === "
@@ -72,7 +72,7 @@ TEST_F(PageTest, TasksPlansAndLossesAreListed) {
     EXPECT_EQ(value("document.querySelectorAll('#graph .edge').length"), 2);
 }
 
-TEST_F(PageTest, WhatATaskHasRefusedStandsWhereItWasAskedForAndNotInTheTaskTable) {
+TEST_F(PageTest, DoesNotShowARefusedSettingInTheTaskTable) {
     EXPECT_THROW(running->deployment().call("source.setLevel", {"66"}), std::exception);
     ASSERT_TRUE(becomes("/66 is no level/.test(insonify.status().tasks[0].error)"));
     EXPECT_TRUE(becomes("/66 is no level/.test(document.querySelectorAll('#tasks tr')[1].title)"));
@@ -81,7 +81,7 @@ TEST_F(PageTest, WhatATaskHasRefusedStandsWhereItWasAskedForAndNotInTheTaskTable
 }
 
 TEST_F(PageTest, HoveringMovesNothing) {
-    running->deployment().pause(true);  // figures get wider as the vehicle goes on
+    running->deployment().pause(true);  // numbers get wider as the vehicle moves
     ASSERT_TRUE(becomes("insonify.status().paused"));
     const std::string places =
         "JSON.stringify([...document.querySelectorAll('header, main, section, .bar, .picture, nav > *')].map((one) => "
@@ -97,7 +97,7 @@ TEST_F(PageTest, HoveringMovesNothing) {
     }
 }
 
-TEST_F(PageTest, AllOfItCanBeReachedFrom400To1920Pixels) {
+TEST_F(PageTest, AllPartsCanBeReachedFrom400To1920Pixels) {
     for (const auto& [width, height] : {std::pair(400, 800), {768, 1024}, {1024, 768}, {1440, 900}, {1920, 1080}}) {
         browser->size(width, height);
         nextFrame();
@@ -120,10 +120,10 @@ TEST_F(PageTest, AllOfItCanBeReachedFrom400To1920Pixels) {
     EXPECT_EQ(value("document.querySelector('meta[name=viewport]').content"), "width=device-width, initial-scale=1");
 }
 
-TEST_F(PageTest, ALogsTimelineTellsWhereItIsAndGoesElsewhere) {
+TEST_F(PageTest, ALogsTimelineShowsItsTimeAndSeeks) {
     ASSERT_TRUE(becomes("document.querySelector('.timeline .figure')?.textContent === '25.0 / 100.0 s'"));
     const std::string slider = "document.querySelector('.timeline input')";
-    /** Drags the knob, or clicks the line where there is no knob. */
+    /** Drags the knob, or clicks the line away from the knob. */
     const auto pull = [&](double from_s, double to_s) {
         const json box = value(slider + ".getBoundingClientRect().toJSON()");
         const double knob = 16, width = box["width"].get<double>() - knob, y = box["top"].get<double>() + 8;
@@ -146,7 +146,7 @@ TEST_F(PageTest, ALogsTimelineTellsWhereItIsAndGoesElsewhere) {
     EXPECT_EQ(value("document.querySelector('.timeline .refused').textContent"), "");
 }
 
-TEST_F(PageTest, ATimelineThatIsDraggedThereAndBackGoesOnShowingWhereTheLogIs) {
+TEST_F(PageTest, ATimelineDraggedBackKeepsFollowingTheLog) {
     ASSERT_TRUE(becomes("document.querySelector('.timeline .figure')?.textContent === '25.0 / 100.0 s'"));
     const std::string slider = "document.querySelector('.timeline input')";
     const json at = value("(() => { const box = " + slider + R"(.getBoundingClientRect();
@@ -159,7 +159,7 @@ TEST_F(PageTest, ATimelineThatIsDraggedThereAndBackGoesOnShowingWhereTheLogIs) {
 }
 
 TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
-    // Of the sonar that is shown, in this order, whichever task has them.
+    // The properties of the shown sonar, in this order, from any task that has them.
     const json found = value(R"(import('./first.js').then(({First}) => {
         const property = (name) => ({name, type: 'double', unit: 'x', doc: ''}), task = (name, ...names) => ({name, properties: names.map(property)});
         const first = new First({}, document.createElement('span'));
@@ -173,7 +173,7 @@ TEST_F(PageTest, RangeGainAndFrequencyComeFirst) {
     EXPECT_EQ(sorted, json({"range", "gain_db", "frequency_khz", "bins", "more"}));
 }
 
-TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {
+TEST_F(PageTest, DrawsTheSceneTheWaterThePathAndTheFan) {
     if (!hasThree()) {
         EXPECT_TRUE(becomes("!document.getElementById('no_view').hidden")) << "no word of the 3-D view";
         GTEST_SKIP() << "NOT TESTED: no three.js was built in";
@@ -183,7 +183,7 @@ TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {
     EXPECT_EQ(text("scene_text"), "4 triangles, 2 objects");
     ASSERT_TRUE(
         becomes("insonify.world().vehicles.get('world.pose')?.count > 20 && insonify.world().sonar.position.x > 3"));
-    // What each part changes in the picture, and how many colours there are.
+    // The change that each part makes in the picture, and the number of colours.
     value(R"(self.look = () => {
         const world = insonify.world(), gl = world.renderer.getContext(), size = 4 * gl.drawingBufferWidth * gl.drawingBufferHeight;
         const pixels = () => {
@@ -212,7 +212,7 @@ TEST_F(PageTest, TheSceneTheWaterThePathAndTheFanAreDrawn) {
     EXPECT_TRUE(becomes("!insonify.world().water.visible")) << "a later snapshot has none";
 }
 
-TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelGoesNearer) {
+TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelZooms) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
     const json box = value(byId("view") + ".getBoundingClientRect().toJSON()");
@@ -228,7 +228,7 @@ TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelGoesNearer) {
     EXPECT_TRUE(becomes("insonify.world().distance < " + before["distance"].dump() + " * 0.8"));
 }
 
-TEST_F(PageTest, FingersTurnTheSceneAndGoNearer) {
+TEST_F(PageTest, FingersTurnTheSceneAndZoom) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
     const json box = value(byId("view") + ".getBoundingClientRect().toJSON()");
@@ -249,7 +249,7 @@ TEST_F(PageTest, FingersTurnTheSceneAndGoNearer) {
     EXPECT_EQ(value(camera)["azimuth"], turned["azimuth"]) << "two fingers turn nothing";
 }
 
-TEST_F(PageTest, ASceneThatStandsStillIsNotDrawnAgainOnAnyScreen) {
+TEST_F(PageTest, DoesNotRedrawAnUnchangedSceneOnAnyScreen) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));
     for (const double scale : {1.0, 1.1, 1.25, 1.5, 2.0}) {
@@ -267,7 +267,7 @@ TEST_F(PageTest, ASceneThatStandsStillIsNotDrawnAgainOnAnyScreen) {
     }
 }
 
-TEST_F(PageTest, TheFanIsWhereItsPingWasMade) {
+TEST_F(PageTest, TheFanIsAtThePoseOfItsPing) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world() && insonify.snapshot()"));
     running->deployment().pause(true);
@@ -283,7 +283,7 @@ TEST_F(PageTest, TheFanIsWhereItsPingWasMade) {
     }
 }
 
-TEST_F(PageTest, EachVehicleHasAPathOfItsOwnThatEndsWhereTimeGoesBack) {
+TEST_F(PageTest, EachVehicleHasItsOwnPathThatEndsWhenTimeGoesBack) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.vehicles.size === 1"));
     value(
@@ -294,7 +294,7 @@ TEST_F(PageTest, EachVehicleHasAPathOfItsOwnThatEndsWhereTimeGoesBack) {
               json({5, 0, 0, 6, 0, 0, 7, 0, 0}));
 }
 
-TEST_F(PageTest, ABrokenConnectionComesBack) {
+TEST_F(PageTest, RestoresABrokenConnection) {
     const uint16_t port = quietPort();
     open("", port);
     keepConnection();
@@ -309,7 +309,7 @@ TEST_F(PageTest, ABrokenConnectionComesBack) {
     EXPECT_EQ(value("insonify.link.opened"), opened + 1);
 }
 
-TEST_F(PageTest, AConnectionThatSaysNothingIsOpenedAgain) {
+TEST_F(PageTest, ReopensASilentConnection) {
     const int opened = value("insonify.link.opened");
     value("insonify.link.socket.onmessage = () => {}");
     EXPECT_TRUE(becomes("insonify.link.opened > " + std::to_string(opened)));

@@ -49,7 +49,7 @@ TEST(PingPictureTest, ALevelIsWithinHalfAStepOfTheBin) {
     EXPECT_EQ(message.json["bearings"], nlohmann::json::parse("[0.25]"));
 }
 
-TEST(PingPictureTest, WhatIsNoEchoIsZero) {
+TEST(PingPictureTest, NoEchoIsZero) {
     types::Sonar ping = pingOf(2, 4);
     const float infinite = std::numeric_limits<float>::infinity();
     ping.bins = {NAN, 0, -1, infinite, 1, 1e-38f, -infinite, -0.0f};
@@ -57,7 +57,7 @@ TEST(PingPictureTest, WhatIsNoEchoIsZero) {
     EXPECT_EQ(message.levels, std::string("\0\0\0\0\xff\0\0\0", 8));
 }
 
-TEST(PingPictureTest, DecibelsAreTakenAsTheyAre) {
+TEST(PingPictureTest, DecibelsAreUnchanged) {
     types::Sonar ping = pingOf(1, 4);
     ping.bins = {-20, -24, -3000, NAN};
     const Message message = takenApart(PingPicture(ros::BinScale::Decibel).encode(ping, {}));
@@ -65,7 +65,7 @@ TEST(PingPictureTest, DecibelsAreTakenAsTheyAre) {
     EXPECT_EQ(message.json["top_db"], -20);
 }
 
-TEST(PingPictureTest, OfManyBinsTheLoudestStandsForItsNeighbours) {
+TEST(PingPictureTest, TheStrongestOfMergedBinsCounts) {
     types::Sonar ping = pingOf(2, 10001);
     std::ranges::fill(ping.bins, 0.0f);
     ping.bins[10001 + 4] = 1;
@@ -75,7 +75,7 @@ TEST(PingPictureTest, OfManyBinsTheLoudestStandsForItsNeighbours) {
     EXPECT_EQ(message.levels.find('\xff'), size_t{3334 + 1});
 }
 
-TEST(PingPictureTest, BeamsGoFromStarboardToPortWithTheirEdgesAndUnknownBearingsAreOmitted) {
+TEST(PingPictureTest, BeamsAreFromStarboardToPortWithEdgesWithoutUnknownBearings) {
     types::Sonar ping = pingOf(4, 1);
     ping.bins = {0.1f, 1, 0.01f, 10};
     ping.bearings = {types::Angle::fromDeg(-175), types::Angle::fromDeg(175), types::Angle{},
@@ -91,7 +91,7 @@ TEST(PingPictureTest, BeamsGoFromStarboardToPortWithTheirEdgesAndUnknownBearings
     EXPECT_NEAR(types::degrees(message.json["bearings"][2].get<double>()), 185, 1e-9);
 }
 
-TEST(PingPictureTest, APingWithoutEchoOrBinsIsOneToo) {
+TEST(PingPictureTest, EncodesAPingWithoutEchoOrBins) {
     types::Sonar silent = pingOf(1, 3);
     EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(silent, {})).levels, std::string(3, '\0'));
     EXPECT_EQ(takenApart(PingPicture(ros::BinScale::Linear).encode(pingOf(0, 0), {})).levels, "");

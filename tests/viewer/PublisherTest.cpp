@@ -12,7 +12,7 @@
 namespace insonify::viewer {
 namespace {
 
-/** The next answer, whatever else comes. */
+/** Returns the next answer, skipping other messages. */
 nlohmann::json answer(Client& client) {
     while (const auto message = client.hear()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
@@ -25,7 +25,7 @@ std::string call(uint64_t id, const std::string& operation) {
     return nlohmann::json{{"id", id}, {"call", operation}}.dump();
 }
 
-/** Of tasks of which one does not answer until it is let go. */
+/** A deployment in which one task does not answer until it is released. */
 class Blocked : public types::DeploymentControl {
     std::promise<void> release_;
     std::shared_future<void> released_{release_.get_future()};
@@ -52,7 +52,7 @@ private:
     }
 };
 
-TEST(PublisherTest, ATaskThatDoesNotAnswerHoldsUpNoOther) {
+TEST(PublisherTest, ATaskThatDoesNotAnswerBlocksNoOther) {
     Blocked blocked;
     Client client(blocked.publisher.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
@@ -67,32 +67,32 @@ TEST(PublisherTest, ATaskThatDoesNotAnswerHoldsUpNoOther) {
     EXPECT_EQ(answer(client)["result"], "deaf.ask");
 }
 
-TEST(PublisherTest, TheViewerAndTheStatesOfTasksAreNotForPages) {
+TEST(PublisherTest, PagesCannotControlTheViewerAndTheStatesOfTasks) {
     Blocked blocked;
     Client client(blocked.publisher.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
     client.say(call(1, "viewer.setControl"));
-    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("the viewer does not steer itself"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("the viewer does not control itself"));
     client.say(call(2, "lively.stop"));
-    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("states of tasks are the deployment's to change"));
+    EXPECT_THAT(answer(client)["refused"], testing::HasSubstr("only the deployment changes the states of tasks"));
     client.say(call(3, "lively.stopwatch"));
     EXPECT_EQ(answer(client)["result"], "lively.stopwatch");
 }
 
-TEST(PublisherTest, OneRequestTooManyIsRefusedByItsId) {
+TEST(PublisherTest, RefusesARequestTooManyByItsId) {
     Blocked blocked;
     Client client(blocked.publisher.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
     for (uint64_t id = 1; id <= SerialExecutors::max_waiting + 2; ++id) client.say(call(id, "deaf.ask"));
     const auto refused = answer(client);
     EXPECT_GT(refused["id"], SerialExecutors::max_waiting);
-    EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests wait"));
+    EXPECT_THAT(refused["refused"], testing::HasSubstr("too many requests are waiting"));
     blocked.release();
 }
 
 // -- scenes for Foxglove ----------------------------------------------------------------------------------------------
 
-/** Pings, then a scene: a source that takes long before one that is sent once. */
+/** Pings, then a scene: a source that takes long before a source that is sent once. */
 class SceneBench {
 public:
     static constexpr int ping_channel = 0, picture_channel = 1, scene_channel = 5;
@@ -120,7 +120,7 @@ private:
     }
 };
 
-/** A Foxglove client that the server knows. */
+/** Returns a Foxglove client that the server knows. */
 Client joined(const SceneBench& bench) {
     Client client(bench.publisher.port());
     client.upgrade(foxglove_protocol);
@@ -133,7 +133,7 @@ void subscribe(Client& client, int channel) {
     client.say(R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":)" + std::to_string(channel) + "}]}");
 }
 
-/** Whether a sample comes, whatever else does. */
+/** Returns whether a sample arrives, skipping other messages. */
 bool hearsSample(Client& client) {
     const auto end = std::chrono::steady_clock::now() + test::patience;
     while (std::chrono::steady_clock::now() < end) {
@@ -143,7 +143,7 @@ bool hearsSample(Client& client) {
     return false;
 }
 
-TEST(PublisherTest, WhoSubscribesWhileAnotherSourceIsShownGetsTheSceneToo) {
+TEST(PublisherTest, ASubscriberDuringAnotherSourceReceivesTheSceneToo) {
     SceneBench bench;
     Client watcher = joined(bench);
     subscribe(watcher, SceneBench::scene_channel);
@@ -161,7 +161,7 @@ TEST(PublisherTest, WhoSubscribesWhileAnotherSourceIsShownGetsTheSceneToo) {
     }
 }
 
-/** Samples that come before the server's clock shows this. */
+/** Returns the number of samples received before the server's clock shows this time. */
 int samplesUntil(Client& client, uint64_t seconds) {
     int samples = 0;
     while (const auto message = client.hear()) {
@@ -172,7 +172,7 @@ int samplesUntil(Client& client, uint64_t seconds) {
     return samples;
 }
 
-TEST(PublisherTest, ASceneIsNotSentAgainWhenSomebodySubscribesToSomethingElse) {
+TEST(PublisherTest, DoesNotSendASceneAgainForOtherSubscriptions) {
     SceneBench bench;
     Client watcher = joined(bench);
     bench.offerScene(1);

@@ -1,5 +1,5 @@
 #pragma once
-// A deployment with a viewer, while it runs.
+// A running deployment with a viewer.
 #include <atomic>
 #include <functional>
 #include <optional>
@@ -21,7 +21,7 @@ struct QualityConfig {
         visit(types::Field{"budget_ms", "ms", "instead", 1, 1000}, self.budget_ms);
     }
     void check(types::Diagnostics& diagnostics) const {
-        if (rows && budget_ms) diagnostics.push_back({"rows", "stands beside budget_ms"});
+        if (rows && budget_ms) diagnostics.push_back({"rows", "is given in addition to budget_ms"});
     }
 };
 
@@ -63,7 +63,7 @@ struct WaterConfig {
     }
 };
 
-/** Sand 5 m below the surface and a stone on it, and a vehicle that goes north over it. */
+/** Sand 5 m below the surface with a stone, and a vehicle that moves north over it. */
 class WorldTask final : public framework::TaskContext, public framework::Planned, public framework::Player {
 public:
     using TaskContext::TaskContext;
@@ -71,7 +71,7 @@ public:
     framework::OutputPort<types::SnapshotPtr> snapshot{this, "snapshot", "of the scene"};
     framework::OutputPort<types::Pose> pose{this, "pose", "two each time"};
 
-    framework::Operation<void(double)> seek{this, "seek", "goes there in its log of 100 s", [this](double seconds) {
+    framework::Operation<void(double)> seek{this, "seek", "seeks in its log of 100 s", [this](double seconds) {
                                                 if (seconds > 90) throw std::runtime_error("not the last 10 s");
                                                 at_s_ = seconds;
                                             }};
@@ -121,16 +121,16 @@ private:
                             0.01,      "llvmpipe"};
 };
 
-/** A lockstep deployment that runs on a thread of its own, slowly. */
+/** A lockstep deployment that runs slowly on a separate thread. */
 class Running {
 public:
-    /** What a test adds to the deployment. */
+    /** A test's additions to the deployment. */
     struct Additions {
         std::vector<std::string> settings = {};    ///< "viewer.control=false"
         std::string tasks = "", connections = "";  ///< In YAML, a line each.
         std::function<void(framework::Registry&)> registerTasks = [](framework::Registry&) {};
     };
-    /** @param port 0: any that is free. */
+    /** @param port 0: any free port */
     explicit Running(uint16_t port = 0) : Running(port, Additions()) {}
     Running(uint16_t port, const Additions& additions) : deployment_(spec(port, additions), registry_) {
         deployment_.configure();

@@ -27,7 +27,7 @@ MeshMessage meshTakenApart(const std::string& bytes) {
     return {nlohmann::json::parse(bytes.substr(8, head[1])), bytes.substr(8 + head[1])};
 }
 
-/** A strip of triangles, and a vertex that none uses. */
+/** Returns a strip of triangles, and a vertex that no triangle uses. */
 types::Mesh strip(uint32_t triangles) {
     types::Mesh mesh;
     mesh.positions.push_back({99, 99, 99});
@@ -48,7 +48,7 @@ types::Geometry scene(uint32_t large, uint32_t small) {
     return geometry;
 }
 
-TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
+TEST(SceneMeshTest, SendsMeshesWithTheVerticesThatTheyUse) {
     const MeshMessage message = meshTakenApart(sceneMessage(scene(4, 1), 1000, "scene.snapshot"));
     const auto& mesh = message.json["meshes"][1];
     EXPECT_EQ(message.list<float>(mesh["positions"]), (std::vector<float>{0, 0, 0, 1, 1, 0, 2, 0, 0}));
@@ -61,7 +61,7 @@ TEST(SceneMeshTest, MeshesAreSentWithTheVerticesThatTheyUse) {
     EXPECT_EQ(message.json["left_out"], 0);
 }
 
-TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
+TEST(SceneMeshTest, OmitsAndCountsTheSmallestObjectsOfTooManyTriangles) {
     const MeshMessage message = meshTakenApart(sceneMessage(scene(100, 10), 115, "scene.snapshot"));
     EXPECT_EQ(message.json["triangles"], 120);
     EXPECT_EQ(message.json["left_out"], 1);
@@ -69,7 +69,7 @@ TEST(SceneMeshTest, OfTooManyTrianglesTheSmallestObjectsAreLeftOutAndCounted) {
     EXPECT_EQ(message.json["objects"][1]["name"], "large");
 }
 
-TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
+TEST(SceneMeshTest, DoesNotSendOmittedMeshes) {
     types::Geometry geometry = scene(500, 10);
     for (int i = 0; i < 50; ++i) {
         geometry.meshes.push_back(strip(400));
@@ -82,7 +82,7 @@ TEST(SceneMeshTest, WhatIsLeftOutIsNotSent) {
     EXPECT_EQ(message.data.size(), size_t{(502 + 12) * 3 * 4 + (500 + 10) * 3 * 4});
 }
 
-TEST(SceneMeshTest, LargeMeshesAreTheirOutlines) {
+TEST(SceneMeshTest, ReducesLargeMeshesToOutlines) {
     types::Geometry geometry = scene(100, 10);
     geometry.meshes[0].coarse_indices = {1, 50, 100};
     const MeshMessage message = meshTakenApart(sceneMessage(geometry, 50, "scene.snapshot"));
@@ -91,7 +91,7 @@ TEST(SceneMeshTest, LargeMeshesAreTheirOutlines) {
     EXPECT_EQ(message.json["left_out"], 0);
 }
 
-TEST(SceneMeshTest, ASnapshotTellsWhereThingsAre) {
+TEST(SceneMeshTest, ASnapshotHasThePlacesOfObjects) {
     types::Snapshot snapshot;
     snapshot.sonar.position = {1, 2, 3};
     snapshot.moved = {{7, glm::dmat4(1)}};

@@ -8,7 +8,7 @@ namespace {
 Frame frame(const char* text) { return {"", bytesOf(text), true}; }
 std::string textOf(const std::optional<Frame>& frame) { return frame ? *frame->body : "nothing"; }
 
-TEST(SendQueueTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
+TEST(SendQueueTest, KeepsOnlyTheNewestFrameOfAStreamAndCountsTheOthers) {
     SendQueue outbox;
     outbox.put(1, frame("old"));
     outbox.put(2, frame("other"));
@@ -20,7 +20,7 @@ TEST(SendQueueTest, OfAStreamOnlyTheNewestFrameWaitsAndTheOthersAreCounted) {
     EXPECT_EQ(outbox.dropped(), 2u);
 }
 
-TEST(SendQueueTest, ABusyStreamDoesNotHoldBackAnother) {
+TEST(SendQueueTest, ABusyStreamDoesNotBlockAnother) {
     SendQueue outbox;
     outbox.put(1, frame("busy"));
     outbox.put(2, frame("rare"));
@@ -29,7 +29,7 @@ TEST(SendQueueTest, ABusyStreamDoesNotHoldBackAnother) {
     EXPECT_EQ(textOf(outbox.next()), "rare");
 }
 
-TEST(SendQueueTest, RepliesGoFirstAndTooManyAreRefused) {
+TEST(SendQueueTest, SendsRepliesFirstAndRefusesTooMany) {
     SendQueue outbox;
     outbox.put(1, frame("stream"));
     for (size_t i = 0; i < SendQueue::max_replies; ++i) EXPECT_TRUE(outbox.post(frame("reply")));
@@ -38,7 +38,7 @@ TEST(SendQueueTest, RepliesGoFirstAndTooManyAreRefused) {
     EXPECT_TRUE(outbox.post(frame("now there is room")));
 }
 
-TEST(SendQueueTest, ANewerReplyOfAStreamTakesThePlaceOfTheOneThatWaits) {
+TEST(SendQueueTest, ANewerReplyOfAStreamReplacesAWaitingReply) {
     SendQueue outbox;
     EXPECT_TRUE(outbox.post(frame("reply")));
     for (size_t i = 0; i < SendQueue::max_replies; ++i) EXPECT_TRUE(outbox.post(frame("scene"), 1));
@@ -50,7 +50,7 @@ TEST(SendQueueTest, ANewerReplyOfAStreamTakesThePlaceOfTheOneThatWaits) {
     outbox.forget(2);
     EXPECT_EQ(textOf(outbox.next()), "what moves");
     EXPECT_EQ(textOf(outbox.next()), "nothing");
-    EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene tells all that an older one does";
+    EXPECT_EQ(outbox.dropped(), 0u) << "a whole scene includes all of an older scene";
 }
 
 }  // namespace

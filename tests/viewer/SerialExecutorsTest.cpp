@@ -12,7 +12,7 @@ namespace {
 
 bool comes(const std::future<void>& done) { return done.wait_for(test::patience) == std::future_status::ready; }
 
-TEST(SerialExecutorsTest, ABlockedLaneHoldsUpNoOther) {
+TEST(SerialExecutorsTest, ABlockedExecutorBlocksNoOther) {
     std::promise<void> release, begun, other;
     SerialExecutors lanes;
     ASSERT_TRUE(lanes.run("blocked", [&] {
@@ -25,7 +25,7 @@ TEST(SerialExecutorsTest, ABlockedLaneHoldsUpNoOther) {
     release.set_value();
 }
 
-TEST(SerialExecutorsTest, ALaneKeepsTheOrder) {
+TEST(SerialExecutorsTest, AnExecutorKeepsTheOrder) {
     std::string order;
     std::promise<void> last;
     SerialExecutors lanes;
@@ -35,7 +35,7 @@ TEST(SerialExecutorsTest, ALaneKeepsTheOrder) {
     EXPECT_EQ(order, "abc");
 }
 
-TEST(SerialExecutorsTest, TooManyThatWaitInALaneAreRefusedAndOthersAreNot) {
+TEST(SerialExecutorsTest, RefusesTooMuchWorkOfOneExecutorOnly) {
     std::promise<void> release, begun;
     SerialExecutors lanes;
     ASSERT_TRUE(lanes.run("full", [&] {
@@ -49,7 +49,7 @@ TEST(SerialExecutorsTest, TooManyThatWaitInALaneAreRefusedAndOthersAreNot) {
     release.set_value();
 }
 
-TEST(SerialExecutorsTest, TheEndWaitsForWhatHasBegunAndBeginsNothingMore) {
+TEST(SerialExecutorsTest, TheEndWaitsForRunningWorkAndStartsNoMore) {
     std::promise<void> release, begun;
     std::atomic<bool> done{false}, more{false};
     SerialExecutors lanes;

@@ -11,7 +11,7 @@
 namespace insonify::viewer {
 namespace {
 
-/** Fails at everything. */
+/** Throws in every function. */
 struct Throwing final : ServerHandler {
     std::optional<PageFile> file(std::string_view) override { throw std::runtime_error("no files today"); }
     std::vector<Frame> greeting() override { return {}; }
@@ -21,11 +21,11 @@ struct Throwing final : ServerHandler {
     void subscribedToParameters() override { throw std::runtime_error("no subscriptions today"); }
 };
 
-TEST(ServerTest, AnErrorClosesTheSessionThatItWasFor) {
+TEST(ServerTest, AnErrorClosesOnlyItsSession) {
     Throwing throwing;
     Server server({}, throwing);
     EXPECT_EQ(Client(server.port()).get("/"), "");
-    EXPECT_EQ(server.takeWarning(), "1 connection refused; the last: an error of this server: no files today");
+    EXPECT_EQ(server.takeWarning(), "1 connection refused; the last: an error in this server: no files today");
     Client asks(server.port()), silent(server.port());
     for (Client* client : {&asks, &silent}) ASSERT_THAT(client->upgrade(page_protocol), testing::HasSubstr("101"));
     asks.say("{}");
@@ -46,7 +46,7 @@ struct Quiet final : ServerHandler {
     void subscribedToParameters() override {}
 };
 
-TEST(ServerTest, HandshakesUnderWayCountAsClients) {
+TEST(ServerTest, CountsHandshakesUnderWayAsClients) {
     Quiet quiet;
     ServerOptions options;
     options.clients = 3;
@@ -62,14 +62,14 @@ TEST(ServerTest, HandshakesUnderWayCountAsClients) {
     EXPECT_TRUE(comesTrue([&] { return server.counts().clients == 0; }));
 }
 
-/** A link on the page would give the token in its address away otherwise. */
-TEST(ServerTest, ThePagesAddressIsNoReferrer) {
+/** Otherwise a link on the page would reveal the token in its address. */
+TEST(ServerTest, DoesNotSendThePagesAddressAsReferrer) {
     Quiet quiet;
     Server server({}, quiet);
     EXPECT_THAT(Client(server.port()).get("/?token=secret"), testing::HasSubstr("Referrer-Policy: no-referrer\r\n"));
 }
 
-TEST(ServerTest, WhatIsReplacedBeforeItIsSentIsCountedForEachClient) {
+TEST(ServerTest, CountsReplacedFramesForEachClient) {
     Quiet quiet;
     Server server({}, quiet);
     Client client(server.port());

@@ -16,7 +16,7 @@ Request readRequest(const std::string& text) {
     return request;
 }
 
-TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
+TEST(StatusTextTest, AStatusHasTasksPlansAndLosses) {
     types::DeploymentStatus status;
     status.lockstep = true;
     types::TaskStatus task;
@@ -39,7 +39,7 @@ TEST(StatusTextTest, AStatusHoldsTasksPlansAndLosses) {
     EXPECT_EQ(text["dropped"], 5);
 }
 
-TEST(StatusTextTest, ATokenIsNotShown) {
+TEST(StatusTextTest, HidesATokenInTheStatus) {
     types::DeploymentStatus status;
     status.tasks.emplace_back();
     status.tasks.back().record = {
@@ -48,14 +48,14 @@ TEST(StatusTextTest, ATokenIsNotShown) {
     EXPECT_EQ(json::parse(statusText(status, {}))["tasks"][0]["properties"]["token"], "...");
 }
 
-TEST(StatusTextTest, TextThatIsNotUtf8DoesNotStopIt) {
+TEST(StatusTextTest, ReplacesTextThatIsNotUtf8) {
     types::DeploymentStatus status;
     status.tasks.emplace_back();
     status.tasks.back().error = "bad \xff byte";
     EXPECT_EQ(json::parse(statusText(status, {}))["tasks"][0]["error"], "bad \xef\xbf\xbd byte");
 }
 
-TEST(StatusTextTest, BoundsThatAreNoneAreNull) {
+TEST(StatusTextTest, InfiniteBoundsAreNull) {
     const double infinite = std::numeric_limits<double>::infinity();
     const json text = json::parse(
         interfacesText({{"sonar", {{"range", "double", "m", "", 0, infinite, "far edge"}}, {"start void()"}}}, true));
@@ -63,7 +63,7 @@ TEST(StatusTextTest, BoundsThatAreNoneAreNull) {
     EXPECT_TRUE(text["tasks"][0]["properties"][0]["max"].is_null());
 }
 
-TEST(StatusTextTest, RequestsAreRead) {
+TEST(StatusTextTest, ReadsRequests) {
     const Request call = readRequest(R"({"id":3,"call":"sonar.setRange","arguments":["30"]})");
     EXPECT_EQ(call.id, 3u);
     EXPECT_EQ(call.operation, "sonar.setRange");
@@ -72,20 +72,20 @@ TEST(StatusTextTest, RequestsAreRead) {
     EXPECT_EQ(readRequest(R"({"step":true})").kind, Request::Kind::Step);
 }
 
-TEST(StatusTextTest, ARequestThatIsNestedDeeplyIsRefusedLikeAnother) {
+TEST(StatusTextTest, RefusesADeeplyNestedRequestLikeAnother) {
     const std::string open(30'000, '['), close(30'000, ']');
     EXPECT_THROW(readRequest(R"({"call":"a.b","arguments":)" + open + close + "}"), std::invalid_argument);
     EXPECT_THROW(readRequest(R"({"id":)" + open + close + R"(,"step":true})"), std::invalid_argument);
 }
 
-TEST(StatusTextTest, WhatIsNoRequestIsRefused) {
+TEST(StatusTextTest, RefusesInvalidRequests) {
     for (const char* text : {"", "[]", "{}", "{\"id\":-1,\"step\":true}", R"({"call":1})", R"({"pause":1})",
                              R"({"call":"a.b","arguments":[1]})", R"({"call":"a.b","arguments":"5"})",
                              R"({"call":"a.b","arguments":{"x":"5"}})", R"({"call":"a.b","arguments":null})", "\xff"})
         EXPECT_THROW(readRequest(text), std::invalid_argument) << text;
 }
 
-TEST(StatusTextTest, ARefusalOfARequestCarriesItsId) {
+TEST(StatusTextTest, ARefusalHasTheIdOfTheRequest) {
     Request request;
     EXPECT_THROW(viewer::readRequest(R"({"id":7,"call":"a.b","arguments":"5"})", request), std::invalid_argument);
     EXPECT_EQ(request.id, 7u);

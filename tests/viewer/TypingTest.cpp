@@ -30,7 +30,7 @@ protected:
                 "  - {from: form.ping, to: viewer.form, policy: {type: buffer, size: 8}}\n",
                 [](framework::Registry& registry) { registry.add<FormTask>("test::FormTask", ""); }};
     }
-    /** What the task holds, in JSON; null: nothing. */
+    /** Returns the task's value in JSON; null if it has none. */
     json held(const std::string& property) {
         for (const types::TaskStatus& task : running->deployment().status().tasks)
             if (const auto found = task.record.properties.find(property);
@@ -41,7 +41,7 @@ protected:
     bool holds(const std::string& property, const json& wanted) {
         return comesTrue([&] { return held(property) == wanted; });
     }
-    /** Statuses that come from now on; each is shown by every field. */
+    /** Waits for further statuses; every field shows each of them. */
     void nextStatuses(int count = 2) {
         for (int i = 0; i < count; ++i) {
             const std::string sent = value("insonify.status().sent_s").dump();
@@ -54,7 +54,7 @@ protected:
         return value("!!" + field + ".parentElement.querySelector('.refused')?.textContent");
     }
 
-    /** All that can be set on the page now, but the choice of the task whose properties it shows. */
+    /** All fields of the page that can be set now, except the choice of the task whose properties are shown. */
     const std::string fields =
         "[...document.querySelectorAll('input, select, textarea')].filter((one) => one.id !== 'task')";
     void typeInto(const std::string& field);
@@ -157,7 +157,7 @@ TEST_F(TypingTest, EveryFieldOfThePageTakesKeys) {
     }
 }
 
-TEST_F(TypingTest, TabGoesToEveryControlAndShowsWhereItIs) {
+TEST_F(TypingTest, TabReachesEveryControlAndShowsTheFocus) {
     const std::string all =
         "[...document.querySelectorAll('button:enabled, input:enabled, select:enabled')].filter((one) => "
         "one.getBoundingClientRect().width)";
@@ -187,7 +187,7 @@ TEST_F(TypingTest, TabGoesToEveryControlAndShowsWhereItIs) {
     }
 }
 
-TEST_F(TypingTest, ButtonsArePressedByKeys) {
+TEST_F(TypingTest, KeysPressButtons) {
     browser->click("document.getElementById('map')");
     browser->press("Escape");
     browser->press("Shift+Tab");
@@ -201,7 +201,7 @@ TEST_F(TypingTest, ButtonsArePressedByKeys) {
     EXPECT_EQ(value(byId("freeze") + ".className"), "");
 }
 
-TEST_F(TypingTest, WhatIsTypedReachesTheTask) {
+TEST_F(TypingTest, TypedValuesReachTheTask) {
     struct Case {
         const char *property, *typed;
         json held;
@@ -240,7 +240,7 @@ TEST_F(TypingTest, WhatIsTypedReachesTheTask) {
     EXPECT_TRUE(holds("shape", "square"));
 }
 
-TEST_F(TypingTest, WhatIsTypedIsSetWhenTheFieldIsLeft) {
+TEST_F(TypingTest, LeavingAFieldSetsTheTypedValue) {
     const std::string range = "document.querySelector('#first input')";
     browser->click(range);
     browser->press("Control+a");
@@ -256,7 +256,7 @@ TEST_F(TypingTest, WhatIsTypedIsSetWhenTheFieldIsLeft) {
     EXPECT_TRUE(becomes(fieldOf("range") + ".value === '100'")) << "the table shows the same";
 }
 
-TEST_F(TypingTest, AnAnswerThatComesLateLeavesTheCaret) {
+TEST_F(TypingTest, ALateAnswerKeepsTheCaret) {
     browser->click(fieldOf("title"));
     browser->press("Control+a");
     browser->type("slow");
@@ -269,7 +269,7 @@ TEST_F(TypingTest, AnAnswerThatComesLateLeavesTheCaret) {
     EXPECT_TRUE(holds("title", "slower")) << held("title");
 }
 
-TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
+TEST_F(TypingTest, ARefusalIsRedAndTheFieldShowsThePresentValue) {
     struct Case {
         const char *property, *typed, *message;
     };
@@ -283,7 +283,7 @@ TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
                             {"maybe", "oval", "maybe: is oval; may be round, square, flat"},
                             {"place", "[1, 2]", "place"},
                             {"weights", "1, 2", "weights"},
-                            {"quality", "{rows: 5, budget_ms: 5}", "stands beside budget_ms"},
+                            {"quality", "{rows: 5, budget_ms: 5}", "is given in addition to budget_ms"},
                             {"quality", "{row: 5}", "row"},
                             {"spare", "{rows: [", "spare"}}) {
         const std::string field = fieldOf(one.property), message = refusalOf(field);
@@ -301,7 +301,7 @@ TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
         browser->press("Escape");
         EXPECT_EQ(value(message), "");
     }
-    // Typing again after a refusal replaces what the field shows.
+    // Typing after a refusal replaces the field's text.
     enter(fieldOf("range"), "1000");
     ASSERT_TRUE(becomes(refusalOf(fieldOf("range")) + " !== ''"));
     browser->type("20");
@@ -319,7 +319,7 @@ TEST_F(TypingTest, WhatIsRefusedIsRedAndTheFieldShowsWhatHolds) {
     EXPECT_EQ(value(fieldOf("shape") + ".value"), "round") << "and a list";
 }
 
-TEST_F(TypingTest, AFieldThatIsNotBeingTypedInShowsWhatOthersSet) {
+TEST_F(TypingTest, AFieldWithoutFocusShowsValuesSetByOthers) {
     browser->click(fieldOf("range"));
     running->deployment().call("form.setRange", {"33"});
     EXPECT_TRUE(becomes(fieldOf("range") + ".value === '33'"));
@@ -334,7 +334,7 @@ TEST_F(TypingTest, AFieldThatIsNotBeingTypedInShowsWhatOthersSet) {
     EXPECT_TRUE(becomes(fieldOf("range") + ".value === insonify.status().tasks.at(-1).properties.range.toString()"));
 }
 
-TEST_F(TypingTest, ABrokenConnectionLeavesWhatIsBeingTyped) {
+TEST_F(TypingTest, ABrokenConnectionKeepsTypedText) {
     const uint16_t port = quietPort();
     openForm({}, "", port);
     browser->click(fieldOf("title"));
@@ -365,7 +365,7 @@ TEST_F(TypingTest, ToolbarAndHeaderHaveOneLineOfEachKindFrom1280Pixels) {
     }
 }
 
-TEST_F(TypingTest, AViewerWithoutControlShowsAndSetsNothing) {
+TEST_F(TypingTest, AViewerWithoutControlShowsButSetsNothing) {
     openForm({"viewer.control=false"});
     EXPECT_EQ(value("document.querySelectorAll('#properties input:enabled, #properties select:enabled, #first "
                     "input:enabled, .timeline input:enabled, #controls button').length"),
@@ -377,7 +377,7 @@ TEST_F(TypingTest, AViewerWithoutControlShowsAndSetsNothing) {
     EXPECT_EQ(value(fieldOf("range") + ".value"), "1");
 }
 
-TEST_F(TypingTest, APageWithATokenIsUsedLikeOneWithout) {
+TEST_F(TypingTest, APageWithATokenIsUsedLikeAPageWithout) {
     openForm({"viewer.token='p&ss w#rd'"}, "?token=p%26ss%20w%23rd");
     enter(fieldOf("range"), "12");
     EXPECT_TRUE(holds("range", 12.0));

@@ -32,7 +32,7 @@ ViewerConfig viewerAt(const std::string& address, const std::string& token = "")
     return config;
 }
 
-TEST(ViewerTaskTest, AnAddressThatOthersReachNeedsAToken) {
+TEST(ViewerTaskTest, AnAddressReachableByOthersNeedsAToken) {
     for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(diagnosticsOf(viewerAt(local)), "") << local;
     for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
         EXPECT_THAT(diagnosticsOf(viewerAt(open)), HasSubstr("token: is missing")) << open;
@@ -42,7 +42,7 @@ TEST(ViewerTaskTest, AnAddressThatOthersReachNeedsAToken) {
                 HasSubstr("address: is 'localhost'; it must be a numeric address"));
 }
 
-TEST(ViewerTaskTest, APortThatIsTakenIsOneClearDiagnostic) {
+TEST(ViewerTaskTest, ReportsAPortInUse) {
     Bench first;
     first.start();
     ViewerTask second("second");
@@ -53,18 +53,18 @@ TEST(ViewerTaskTest, APortThatIsTakenIsOneClearDiagnostic) {
     ASSERT_NE(second.configError(), nullptr);
     EXPECT_THAT(second.configError()->what(),
                 testing::AllOf(HasSubstr("second.port: is " + std::to_string(first.port())),
-                               HasSubstr("Address already in use"), HasSubstr("0 for any that is free")));
+                               HasSubstr("Address already in use"), HasSubstr("0 for any free port")));
 }
 
-TEST(ViewerTaskTest, AnAddressOfAnotherMachineIsOneClearDiagnostic) {
+TEST(ViewerTaskTest, ReportsAnAddressOfAnotherMachine) {
     ViewerTask viewer("viewer");
-    viewer.config.set(viewerAt("203.0.113.7", "secret"));  // of an example
+    viewer.config.set(viewerAt("203.0.113.7", "secret"));  // reserved for examples
     EXPECT_FALSE(viewer.configure());
     ASSERT_NE(viewer.configError(), nullptr);
     EXPECT_THAT(viewer.configError()->what(), HasSubstr("viewer.address: is 203.0.113.7, on which nothing can listen"));
 }
 
-TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
+TEST(ViewerTaskTest, ReadsATokenFromAFile) {
     const Folder folder;
     Bench bench;
     bench.viewer.environment().input_folder = folder.path();
@@ -81,7 +81,7 @@ TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
                     both.token = "x";
                     return both;
                 }()),
-                HasSubstr("token_file: is of no use"));
+                HasSubstr("token_file: is given in addition to token"));
     config.port = 0;
     bench.viewer.config.set(config);
     EXPECT_FALSE(bench.viewer.configure());
@@ -94,7 +94,7 @@ TEST(ViewerTaskTest, ATokenMayStandInAFileOfItsOwn) {
     EXPECT_THAT(Client(bench.port()).get("/"), testing::StartsWith("HTTP/1.1 401"));
 }
 
-TEST(ViewerTaskTest, TheNoticeTellsThePortThatWasFree) {
+TEST(ViewerTaskTest, TheNoticeHasTheFreePort) {
     Bench bench;
     EXPECT_TRUE(bench.viewer.notices().empty());
     bench.start();
@@ -106,12 +106,12 @@ TEST(ViewerTaskTest, TheNoticeTellsThePortThatWasFree) {
     EXPECT_FALSE(Client(port).connected());
 }
 
-/** What no sample is. */
+/** A type that is not a sample. */
 struct Unknown {
     static constexpr const char* type_name = "/unknown";
 };
 
-TEST(ViewerTaskTest, WhatItCannotShowIsRefusedByName) {
+TEST(ViewerTaskTest, RefusesATypeThatItCannotShowByName) {
     ViewerTask viewer("viewer");
     test::Writer<std::shared_ptr<const Unknown>> source("depth");
     try {
@@ -134,7 +134,7 @@ TEST(ViewerTaskTest, APingOfTheWrongShapeIsAnErrorUntilTheNext) {
     EXPECT_EQ(bench.viewer.state(), framework::TaskState::Running);
 }
 
-TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
+TEST(ViewerTaskTest, AcceptsAllKindsOfSamples) {
     Bench bench;
     Feed<types::Pose> pose(bench.viewer, "vehicle");
     Feed<types::ImagePtr> image(bench.viewer, "fan");
@@ -160,7 +160,7 @@ TEST(ViewerTaskTest, AllKindsOfSamplesAreTaken) {
 
 // -- in a deployment --------------------------------------------------------------------------------------------------
 
-/** Says it and gives the answer to it. */
+/** Sends a request and returns the answer. */
 nlohmann::json replyTo(Client& client, const std::string& request) {
     client.say(request);
     while (const auto message = client.hear()) {
@@ -186,11 +186,11 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
     EXPECT_THAT(refused("source.setLevl", "7"), HasSubstr("no operation setLevl"));
     EXPECT_THAT(refused("sauce.setLevel", "7"), HasSubstr("no task sauce"));
     EXPECT_THAT(refused("source.stop", ""), HasSubstr("states of tasks"));
-    EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not steer itself"));
-    EXPECT_THAT(replyTo(client, "nonsense")["refused"], "is no JSON object");
+    EXPECT_THAT(refused("viewer.setPort", "1"), HasSubstr("does not control itself"));
+    EXPECT_THAT(replyTo(client, "nonsense")["refused"], "is not a JSON object");
 }
 
-/** The next text message with this op. */
+/** Returns the next text message with this op. */
 nlohmann::json nextOf(Client& client, const std::string& op) {
     while (const auto message = client.hear()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
@@ -199,7 +199,7 @@ nlohmann::json nextOf(Client& client, const std::string& op) {
     return nullptr;
 }
 
-/** By name, from parameterValues. */
+/** Returns the values by name, from parameterValues. */
 std::map<std::string, nlohmann::json> valuesIn(const nlohmann::json& message) {
     std::map<std::string, nlohmann::json> values;
     for (const auto& one : message["parameters"]) values[one["name"]] = one["value"];
@@ -227,9 +227,9 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
 
     for (const auto& [name, why] : {std::pair("source.level", "source.level: level: is 700"),
                                     {"source.levl", "no operation setLevl"},
-                                    {"sauce.level", "is no property of a task"},
-                                    {"source", "is no property of a task"},
-                                    {"viewer.port", "does not steer itself"}}) {
+                                    {"sauce.level", "is not a property of any task"},
+                                    {"source", "is not a property of any task"},
+                                    {"viewer.port", "does not control itself"}}) {
         client.say(std::string(R"({"op":"setParameters","parameters":[{"name":")") + name + R"(","value":700}]})");
         const auto refused = nextOf(client, "status");
         EXPECT_THAT(refused["message"].get<std::string>(), HasSubstr(why));
@@ -237,7 +237,7 @@ TEST(ViewerTaskTest, FoxglovesParametersAreThePropertiesOfTasks) {
     }
 }
 
-TEST(ViewerTaskTest, FoxgloveIsToldOfParametersThatChange) {
+TEST(ViewerTaskTest, SendsFoxgloveParametersThatChange) {
     Running running;
     Client client(running.port());
     ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
@@ -263,7 +263,7 @@ TEST(ViewerTaskTest, AWebSiteReadsParametersAndSetsThemOnlyWithTheToken) {
     EXPECT_EQ(valuesIn(nextOf(client, "parameterValues")).at("source.level"), 1);
 }
 
-/** A plate and a door of one triangle of steel. */
+/** Returns a plate and a door of one triangle of steel each. */
 types::GeometryPtr plateAndDoor() {
     auto geometry = std::make_shared<types::Geometry>();
     geometry->meshes.resize(1);
@@ -277,7 +277,7 @@ types::GeometryPtr plateAndDoor() {
     return geometry;
 }
 
-/** With the door so far north of its place [m]. */
+/** Returns a snapshot with the door moved north [m]. */
 types::SnapshotPtr withDoorAt(const types::GeometryPtr& geometry, double north) {
     auto snapshot = std::make_shared<types::Snapshot>();
     snapshot->geometry = geometry;
@@ -288,7 +288,7 @@ types::SnapshotPtr withDoorAt(const types::GeometryPtr& geometry, double north) 
     return snapshot;
 }
 
-/** The next message of a channel; empty when none came. */
+/** Returns the next message of a channel; empty if none arrives. */
 foxglove::SceneUpdate nextScene(Client& client) {
     foxglove::SceneUpdate update;
     std::optional<std::string> message;
@@ -298,7 +298,7 @@ foxglove::SceneUpdate nextScene(Client& client) {
     return update;
 }
 
-TEST(ViewerTaskTest, FoxgloveGetsTheWholeSceneWhenItSubscribesAndThenWhatMoves) {
+TEST(ViewerTaskTest, FoxgloveReceivesTheWholeSceneOnSubscriptionAndThenMovedObjects) {
     Bench bench;
     Feed<types::SnapshotPtr> scene(bench.viewer, "scene");
     bench.start();
@@ -308,7 +308,7 @@ TEST(ViewerTaskTest, FoxgloveGetsTheWholeSceneWhenItSubscribesAndThenWhatMoves) 
         bench.viewer.update();
     };
     show(0);
-    for (int i = 0; i < 2; ++i) {  // who comes later gets it, too
+    for (int i = 0; i < 2; ++i) {  // a later subscriber receives it too
         Client client(bench.port());
         ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
         client.say(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":5}]})");

@@ -1,17 +1,17 @@
-"""A headless Chromium that does what is asked: python3 browse.py CHROMIUM URL [SCRIPT]
+"""Drives a headless Chromium: python3 browse.py CHROMIUM URL [SCRIPT]
 
 Reads lines of JSON and answers each with one. SCRIPT runs before those of the page. An expression that throws gives
 {"error": TEXT}; so does an element that a person could not reach.
 
-    {"eval": EXPRESSION}                   gives its value
+    {"eval": EXPRESSION}                   returns its value
     {"until": EXPRESSION, "seconds": S}    waits until it is true
     {"click": EXPRESSION}                  scrolls the element into view with the wheel and clicks its middle
     {"type": TEXT}                         presses the keys of a text, one after the other
     {"press": ["Tab", "Shift+Tab"]}        presses keys by name
-    {"mouse": {"type": KIND, ...}}         what the mouse does, as Input.dispatchMouseEvent has it
-    {"touch": {"type": KIND, ...}}         what fingers do, as Input.dispatchTouchEvent has it
+    {"mouse": {"type": KIND, ...}}         a mouse event, as in Input.dispatchMouseEvent
+    {"touch": {"type": KIND, ...}}         a touch event, as in Input.dispatchTouchEvent
     {"downloads": FOLDER}                  where the browser saves files
-    {"size": [W, H, SCALE]}                makes the window that large, on a screen of SCALE pixels per CSS pixel
+    {"size": [W, H, SCALE]}                sets the window's size, on a screen of SCALE pixels per CSS pixel
     {"screenshot": FILE}                   writes a PNG
 """
 
@@ -48,8 +48,8 @@ FLAGS = [
     "--remote-debugging-port=0",
 ]
 
-# The middle of an element, what is seen there instead of it, and a place where the wheel scrolls to it: over a canvas the
-# wheel does something else.
+# The middle of an element, the element that covers it, and a place where the wheel scrolls to it: not over a canvas, where
+# the wheel zooms.
 LOOK = """(() => {
   const element = %s;
   if (!element) throw new Error('there is no such element');
@@ -68,10 +68,10 @@ LOOK = """(() => {
 
 
 def start(chromium, profile):
-    """The browser, and the address of its only page for tools."""
+    """Starts the browser; returns it and the address of its only page for tools."""
     browser = subprocess.Popen(
         [chromium, *FLAGS, f"--user-data-dir={profile}", "about:blank"],
-        env={**os.environ, "TMPDIR": profile},  # what it leaves there is removed as well
+        env={**os.environ, "TMPDIR": profile},  # its temporary files are removed too
         stderr=subprocess.PIPE,
         text=True,
     )
@@ -81,7 +81,7 @@ def start(chromium, profile):
             break
     else:
         raise SystemExit("browser did not start")
-    threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()  # or it fills and holds up
+    threading.Thread(target=lambda: [None for _ in browser.stderr], daemon=True).start()  # a full pipe would block it
     end = time.monotonic() + 60
     while time.monotonic() < end:
         pages = json.load(urllib.request.urlopen(f"http://{found[1]}/json/list"))
@@ -105,7 +105,7 @@ class Page:
                 return message.get("result", message)
 
     async def act(self, method, **parameters):
-        """Like send, for what has no result."""
+        """Like send, for messages without a result."""
         answer = await self.send(method, **parameters)
         return {"error": answer["error"]} if "error" in answer else {"value": True}
 
@@ -113,7 +113,7 @@ class Page:
         answer = await self.send("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             return {"error": answer["exceptionDetails"].get("exception", {}).get("description", "unknown")}
-        if "result" not in answer:  # an object that JSON cannot hold
+        if "result" not in answer:  # an object that JSON cannot represent
             return {"error": str(answer)}
         return {"value": answer["result"].get("value")}
 

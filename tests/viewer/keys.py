@@ -23,7 +23,7 @@ MODIFIERS = {"Alt": 1, "Control": 2, "Shift": 8}
 
 
 def _sign(character):
-    """Virtual key code, and whether shift is held."""
+    """Returns the virtual key code, and whether shift is held."""
     if character.isalpha():
         return ord(character.upper()), character.isupper()
     for pair, code in SIGNS.items():
@@ -33,7 +33,7 @@ def _sign(character):
 
 
 def events_of(key):
-    """Down, the character if the key writes one, and up: "a", "Enter", "Shift+Tab", "Control+a"."""
+    """Returns the events down, the character if the key writes one, and up: "a", "Enter", "Shift+Tab", "Control+a"."""
     *held, name = key.split("+") if len(key) > 1 else [key]
     modifiers = sum(MODIFIERS[one] for one in held)
     name = "Space" if name == " " else name
@@ -47,6 +47,6 @@ def events_of(key):
               "windowsVirtualKeyCode": code, "modifiers": modifiers}
     down = {**stroke, "type": "rawKeyDown"}
     if key == "Control+a":
-        down["commands"] = ["selectAll"]  # what the window system makes of these keys
+        down["commands"] = ["selectAll"]  # the window system's meaning of these keys
     char = [{**stroke, "type": "char", "text": text}] if text and not modifiers & ~MODIFIERS["Shift"] else []
     return [down, *char, {**stroke, "type": "keyUp"}]

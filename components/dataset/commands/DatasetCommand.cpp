@@ -34,7 +34,7 @@ struct Made {
     bool stopped = false;
 };
 
-/** Makes what is missing of a shard. */
+/** Makes the missing samples of a shard. */
 Made makeMissing(DatasetRun& run, Store& store, const DatasetOptions& options) {
     const command::Shard shard = command::Shard::read(options.shard);
     const std::atomic<bool>& stop = deployer::stopOnSignals();
@@ -72,7 +72,7 @@ int makeDataset(const DatasetOptions& options) {
                       run.format(), run.sweep().trajectory.has_value() && !run.sweep().lines};
     Collection collection(title, run.samples().count(), run.classes(), store);
     if (!collection.isWhole(false)) {
-        if (!options.quiet) fmt::print("others are missing; who makes the last writes manifest.json\n");
+        if (!options.quiet) fmt::print("others are missing; the run that makes the last one writes manifest.json\n");
         return 0;
     }
     if (!collection.isWhole(true))
@@ -87,12 +87,12 @@ int makeDataset(const DatasetOptions& options) {
 void addCommand(CLI::App& app, command::Action& action) {
     const auto options = std::make_shared<DatasetOptions>();
     CLI::App* command =
-        app.add_subcommand("dataset", "Makes a data set to learn from: pictures, what they show, where");
+        app.add_subcommand("dataset", "Makes a training data set: pictures with their objects and places");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
     command->add_option("--sweep", options->sweep, "a YAML file with scenes, poses, settings")->required();
-    command->add_option("--out", options->out, "folder of the data set; what is there is kept")->required();
+    command->add_option("--out", options->out, "folder of the data set; existing samples are kept")->required();
     const auto& names = types::EnumNames<Format>::names;
-    command->add_option("--format", options->format, "what samples are written as")
+    command->add_option("--format", options->format, "file format of samples")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(names), std::end(names))))
         ->capture_default_str();
     command->add_option("--shard", options->shard, "i/N: makes each sample whose number leaves i when divided by N")
@@ -101,7 +101,7 @@ void addCommand(CLI::App& app, command::Action& action) {
         ->add_option("--set", options->changes.set,
                      "task.property.path=value: a property other than in the deployment; may be repeated")
         ->allow_extra_args(false);
-    command->add_option("--seed", options->changes.seed, "the sweep's seed (0: as the sweep says)")
+    command->add_option("--seed", options->changes.seed, "the sweep's seed (0: the seed in the sweep)")
         ->type_name("N")
         ->check(deployer::refuseUnlessWhole);
     command->add_flag("--quiet", options->quiet, "no progress and no summary");

@@ -28,14 +28,14 @@ namespace {
 using framework::child, framework::splitPort;
 
 constexpr const char* scene_type = "scene::SceneTask";
-constexpr uint64_t max_poses = 1'000'000;  ///< Of a trajectory.
+constexpr uint64_t max_poses = 1'000'000;  ///< Max poses of a trajectory.
 constexpr uint32_t max_beams_per_line = 2;
 
 constexpr const char* no_budget =
     "budget_ms lets the speed of the machine decide how samples are rendered, which must not depend on it; "
     "give rows or target_error";
 
-/** A text as a value in YAML. */
+/** Returns a text as a value in YAML. */
 std::string quoted(const std::string& text) { return command::Json(text).dump(); }
 
 Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
@@ -43,7 +43,7 @@ Sweep seeded(Sweep sweep, std::optional<uint64_t> seed) {
     return sweep;
 }
 
-/** The poses of each sample along a trajectory. */
+/** Returns the poses of each sample along a trajectory. */
 std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
     std::vector<std::vector<TimedPose>> runs;
     if (!sweep.trajectory) return runs;
@@ -51,7 +51,7 @@ std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
     const pose::Trajectory trajectory = pose::Trajectory::fromCsv(asked.file);
     const double first = trajectory.stamps().front().time, last = trajectory.stamps().back().time;
     const double from = asked.from.value_or(std::max(first, 0.0)), to = asked.to.value_or(last);
-    const double length = to - from - (sweep.lines ? sweep.lines->duration() : 0);  // in which samples begin
+    const double length = to - from - (sweep.lines ? sweep.lines->duration() : 0);  // where samples begin
     for (const auto& [key, time] : {std::pair("from", from), std::pair("to", to)})
         if (time < first || time > last)
             throw types::ConfigError(
@@ -82,13 +82,13 @@ std::vector<std::vector<TimedPose>> runsOf(const Sweep& sweep) {
     return runs;
 }
 
-/** Whether what a task has in files decides what a sonar hears. */
+/** Returns whether files of a task affect what a sonar measures. */
 bool decides(const framework::TaskSpec& task) {
     static const std::set<std::string> others = {"dds", "device", "logger", "output", "replay", "viewer"};
     return !others.contains(task.type.substr(0, task.type.find("::")));
 }
 
-/** Every text in a block that is the name of a file, relative to a folder, with the sum of its bytes. */
+/** Adds every text in a block that names a file, relative to a folder, with the hash of its bytes. */
 void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text) {
     if (!node.IsDefined()) return;
     if (node.IsSequence())
@@ -100,7 +100,7 @@ void addFiles(const YAML::Node& node, const fs::path& folder, std::string& text)
         text += fmt::format("file {}\n", command::sha256OfFile(folder / node.Scalar()));
 }
 
-/** The files that a sweep names for properties, whose folder is that of the deployment, and its scenes. */
+/** Adds the files that a sweep names for properties, relative to the folder of the deployment, and its scenes. */
 void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
     for (const Setting& setting : sweep.settings)
         for (const Written& value : setting.values) addFiles(framework::parseValue(value.yaml), folder, text);
@@ -114,7 +114,7 @@ void addFiles(const Sweep& sweep, const fs::path& folder, std::string& text) {
 
 YAML::Node budgetOf(const framework::TaskSpec& task) { return child(child(task.properties, "quality"), "budget_ms"); }
 
-/** The deployment's one, where it has one. */
+/** Returns the only name; throws if there are several or none. */
 const std::string& onlyOf(const std::vector<std::string>& names, const std::string& file, const char* what) {
     if (names.size() == 1) return names.front();
     throw types::ConfigError(file, "connections",
@@ -130,7 +130,7 @@ DatasetRun::DatasetRun(const std::string& deployment, const std::string& sweep, 
       format_(format),
       spec_(loaded()) {
     framework::Registry registry = deployer::coreTasks();
-    framework::Deployment checked(spec_, registry);  // throws what is wrong with the deployment as it stands
+    framework::Deployment checked(spec_, registry);  // throws the errors of the unchanged deployment
     refuseBudgets();
     checkAssignments();
     readScenes();
@@ -163,7 +163,7 @@ std::vector<std::string> DatasetRun::tasksOfType(const std::string& type) const 
     return names;
 }
 
-/** A time that a machine takes decides nothing that is to be the same everywhere. */
+/** Rejects time budgets: samples must not depend on the speed of the machine. */
 void DatasetRun::refuseBudgets() const {
     framework::ConfigReader reader(spec_.file, spec_.origins);
     for (const framework::TaskSpec& task : spec_.tasks) {
@@ -182,8 +182,8 @@ void DatasetRun::checkAssignments() const {
             checkAssignment(fmt::format("scenes[{}].set.{}", i, property), property, value);
 }
 
-/** Every value of a choice; of a law the least and the greatest that a sample draws, and the first, which may have
- *  decimals where the ends have none. */
+/** Checks every value of a choice. Of a law it checks the min and max that samples draw, and the first value, which may
+ *  have decimals when min and max have none. */
 void DatasetRun::checkDrawn() const {
     for (size_t i = 0; i < sweep_.drawn.size(); ++i) {
         const DrawnSetting& drawn = sweep_.drawn[i];
@@ -202,7 +202,7 @@ void DatasetRun::checkDrawn() const {
     }
 }
 
-/** Throws what is wrong with a value of a property, at its place in the sweep. */
+/** Throws the errors of a property's value, with its place in the sweep. */
 void DatasetRun::checkAssignment(const std::string& path, const std::string& property, const Written& value) const {
     framework::Registry registry = deployer::coreTasks();
     framework::DeploymentSpec spec = loaded();
@@ -213,7 +213,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
     };
     for (const framework::TaskSpec& each : spec.tasks) {
         if (each.type == scene_type && property == each.name + ".file")
-            refuse("names the file of " + each.name + ", which decides what objects there are; name it under scenes");
+            refuse("names the file of " + each.name + ", which sets the objects of the scene; name it under scenes");
         if (budgetOf(each).IsDefined()) refuse(no_budget);
     }
     const auto [task, name] = splitPort(property);
@@ -232,7 +232,7 @@ void DatasetRun::checkAssignment(const std::string& path, const std::string& pro
 DatasetRun::SceneFile DatasetRun::readScene(const std::string& file) const {
     scene::Scene scene;
     scene.geometry = std::make_shared<const types::Geometry>();
-    if (!file.empty()) scene = scene::readScene(file);  // else there is but the floor of a survey
+    if (!file.empty()) scene = scene::readScene(file);  // otherwise there is only the floor of a survey
     SceneFile read{file.empty() ? "bathymetry" : fs::path(file).filename().string(),
                    partsOf(sweep_, scene),
                    {},
@@ -284,7 +284,7 @@ std::vector<std::string> DatasetRun::overridesOf(const Sample& sample) const {
     return all;
 }
 
-/** The scales of a scene's nodes as its task has them, and those of a sample's objects. */
+/** Returns the scales of a scene's nodes from its task, with those of a sample's objects. */
 std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) const {
     command::Json scales = command::Json::object();
     const YAML::Node own = child(spec_.task(task)->properties, "scale");
@@ -294,7 +294,8 @@ std::string DatasetRun::scaleOf(const std::string& task, const Sample& sample) c
     return scales.dump();
 }
 
-/** Keeps the simulation before, so that what both have of a scene is not made again: it, trees, facts of its meshes. */
+/** Makes the simulation of a sample. Keeps the previous one so that they share the scene, trees, and derived data of
+ *  meshes. */
 void DatasetRun::simulate(const Sample& sample) {
     deployer::SimulationOptions options;
     options.overrides = overridesOf(sample);
@@ -319,7 +320,7 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
     const bool is_3d = simulation_->hasRangeImages(0);
     if (sweep_.picture.shape == output::PlainShape::Range && !is_3d)
         throw types::ConfigError(
-            {{"picture.shape", "is range, a picture of 3-D sonars; the sonar of " + deployment_ + " is none",
+            {{"picture.shape", "is range, a picture of 3-D sonars; the sonar of " + deployment_ + " is not 3-D",
               sweep_.file, sweep_.picture_line, sweep_.picture_column}});
     simulation_->reset(sample.seed);
     const double start = simulation_->time();
@@ -331,11 +332,11 @@ void DatasetRun::make(uint64_t index, SampleFiles& files) {
         if (!made.ping || !made.truth || (is_3d && (!made.range_image || !made.range_truth)))
             throw std::runtime_error(fmt::format("sample {} made no ping", index));
         if (sweep_.lines && made.ping->beam_count > max_beams_per_line)
-            throw types::ConfigError({{"lines",
-                                       fmt::format("are of side-scans, whose pings have one or two beams; those of {} "
-                                                   "have {}",
-                                                   deployment_, made.ping->beam_count),
-                                       sweep_.file, sweep_.lines->line, sweep_.lines->column}});
+            throw types::ConfigError(
+                {{"lines",
+                  fmt::format("are of side-scans, whose pings have one or two beams; the pings of {} have {}",
+                              deployment_, made.ping->beam_count),
+                  sweep_.file, sweep_.lines->line, sweep_.lines->column}});
         run.add(made.ping, made.truth);
         before_.reset();
     }

@@ -15,35 +15,35 @@
 
 namespace insonify::dataset {
 
-/** What the command line changes of the files. */
+/** Changes of the files by the command line. */
 struct Changes {
-    std::vector<std::string> set;  ///< "task.property.path=value", under what the sweep sets.
-    std::optional<uint64_t> seed;  ///< In place of the sweep's.
+    std::vector<std::string> set;  ///< "task.property.path=value"; values of the sweep take precedence.
+    std::optional<uint64_t> seed;  ///< Replaces the sweep's seed.
 };
 
-/** Makes the samples of a data set with a deployment: what `insonify dataset` does.
+/** Makes the samples of a data set with a deployment: the work of `insonify dataset`.
  *
- *  Each sample is rendered from the start, as if nothing had been before it, with noise of its own seed, so that its
- *  bytes are the same whoever makes it and whatever else is made. Sonars that are free to find triangles by rays or by
- *  drawing take rays where they can, for drawing differs by graphics card. */
+ *  Each sample is rendered from a reset state, with noise of its own seed. So its bytes do not depend on the process
+ *  that makes it or on other samples. Sonars with automatic visibility use rays where they can, because rasterisation
+ *  differs between graphics cards. */
 class DatasetRun {
 public:
-    /** Throws types::ConfigError with what is wrong with the deployment, with the sweep, or between them. */
+    /** Throws types::ConfigError with the errors of the deployment, of the sweep, or between them. */
     DatasetRun(const std::string& deployment, const std::string& sweep, Format format, Changes changes = {});
 
     const Sweep& sweep() const { return sweep_; }
     const Samples& samples() const { return *samples_; }
     const Classes& classes() const { return *classes_; }
-    const std::string& digest() const { return digest_; }  ///< Of all that decides what the samples are.
+    const std::string& digest() const { return digest_; }  ///< Hash of everything that determines the samples.
     Format format() const { return format_; }
     const std::string& deployment() const { return deployment_; }
 
-    /** Renders one sample and writes it. */
+    /** Renders and writes one sample. */
     void make(uint64_t index, SampleFiles& files);
 
 private:
     struct SceneFile {
-        std::string name;  ///< Without folders.
+        std::string name;  ///< File name without folders.
         SceneParts parts;
         std::vector<Lineage> objects;
         std::string digest;
@@ -72,9 +72,9 @@ private:
     std::optional<Classes> classes_;
     std::string digest_;
     std::unique_ptr<deployer::Simulation> simulation_;  ///< One scene with its settings.
-    std::unique_ptr<deployer::Simulation> before_;      ///< The one before, until the first sample of the next.
-    std::vector<std::string> overrides_;                ///< Overrides of the simulation.
-    size_t scene_ = 0;                                  ///< Scene of the simulation.
+    std::unique_ptr<deployer::Simulation> before_;      ///< The previous one, kept until the next first sample.
+    std::vector<std::string> overrides_;                ///< Overrides of the current simulation.
+    size_t scene_ = 0;                                  ///< Scene of the current simulation.
 };
 
 }  // namespace insonify::dataset

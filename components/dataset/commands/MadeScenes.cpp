@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/** Folder of made scenes: that of the XDG base directory specification, or the folder of temporary files. */
+/** Returns the folder of made scenes: by the XDG base directory specification, or the folder of temporary files. */
 fs::path cacheFolder() {
     const auto valueOf = [](const char* name) { return fs::path(std::getenv(name) ? std::getenv(name) : ""); };
     fs::path base = valueOf("XDG_CACHE_HOME");
@@ -35,8 +35,8 @@ std::string originOf(const SceneChoice& scene, const std::string& generator) {
     return fmt::format("recipe {} seed {} generator {}\n", command::sha256OfFile(scene.recipe), scene.seed, generator);
 }
 
-/** The file of a scene, which is made where it is not there yet. It comes to its name whole: others may make it as
- * well. */
+/** Returns the file of a scene, which is made if it does not exist. It is renamed to its final name when complete,
+ *  because other processes may make it too. */
 std::string madeFile(const SceneChoice& scene, const std::string& generator) {
     const fs::path folder = cacheFolder() / command::sha256Of(originOf(scene, generator)).substr(0, 32);
     const std::string stem = fmt::format("{}_{}", fs::path(scene.recipe).stem().string(), scene.seed);

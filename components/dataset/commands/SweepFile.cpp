@@ -17,7 +17,7 @@ using types::Field;
 
 YAML::Node absent() { return YAML::Node(YAML::NodeType::Undefined); }
 
-/** The keys of a sweep; what is not described by its values alone is read later. */
+/** The keys of a sweep; nested blocks are read later. */
 struct SweepKeys {
     uint64_t seed = 1;
     YAML::Node scenes = absent(), poses = absent(), lines = absent(), settings = absent(), objects = absent(),
@@ -30,9 +30,9 @@ struct SweepKeys {
         visit(Field{"seed", "1", "of all that is drawn at random"}, self.seed);
         visit(Field{"scenes", "", "files, or blocks of file and set"}, self.scenes);
         visit(Field{"poses", "", "of the vehicle: grid, random or trajectory"}, self.poses);
-        visit(Field{"lines", "", "of a side-scan, as many for each sample"}, self.lines);
+        visit(Field{"lines", "", "of a side-scan, a run for each sample"}, self.lines);
         visit(Field{"settings", "", "by task.property: lists of values, or what they are drawn from"}, self.settings);
-        visit(Field{"objects", "", "those that are placed"}, self.objects);
+        visit(Field{"objects", "", "objects to place"}, self.objects);
         visit(Field{"split", "", "shares of train, val and test"}, self.split);
         visit(Field{"classes", "", "names of objects by class"}, self.classes);
         visit(Field{"picture", "", "how samples look"}, self.picture);
@@ -68,10 +68,10 @@ struct SceneKeys {
         visit(Field{"set", "", "values by task.property"}, self.set);
     }
     void check(types::Diagnostics& diagnostics) const {
-        if (!file.empty() && !make.empty()) diagnostics.push_back({"make", "is given beside file; give one of them"});
+        if (!file.empty() && !make.empty()) diagnostics.push_back({"make", "is given with file; give one of them"});
         if (!seeds.empty() + count.has_value() != !make.empty())
             diagnostics.push_back({"", make.empty() ? "has seeds or count without make, the recipe that they are for"
-                                                    : "must have one of seeds and count beside make"});
+                                                    : "must have one of seeds and count with make"});
     }
 };
 
@@ -80,7 +80,7 @@ struct DrawnKeys {
     YAML::Node choice = absent();
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(Field{"uniform", "", "drawn from between two values: [lowest, highest]", -1e12, 1e12}, self.uniform);
+        visit(Field{"uniform", "", "drawn uniformly: [min, max]", -1e12, 1e12}, self.uniform);
         visit(Field{"normal", "", "drawn from a normal law: [mean, deviation]", -1e12, 1e12}, self.normal);
         visit(Field{"choice", "", "one of a list"}, self.choice);
     }
@@ -189,10 +189,10 @@ private:
         if (!reader_.read(node, "lines", lines)) return;
         if (lines.speed.has_value() == sweep_.trajectory.has_value())
             reader_.report(node, "lines.speed",
-                           sweep_.trajectory ? "is given beside a trajectory, which has its own"
-                                             : "is missing: how fast the vehicle goes straight ahead [m/s]");
+                           sweep_.trajectory ? "is given with a trajectory, which has its own"
+                                             : "is missing; give the speed of the vehicle straight ahead [m/s]");
         if (lines.motion && sweep_.trajectory)
-            reader_.report(node, "lines.motion", "is given beside a trajectory; give it as poses.trajectory.motion");
+            reader_.report(node, "lines.motion", "is given with a trajectory; give it as poses.trajectory.motion");
     }
 
     void checkRangePicture() {
@@ -210,11 +210,11 @@ private:
         sweep_.random = readAxes(node, "poses.random", {"count"});
         const YAML::Node count = child(node, "count");
         if (!count.IsDefined())
-            return reader_.report(node, "poses.random", "has no count, which says how many poses are drawn");
+            return reader_.report(node, "poses.random", "has no count, the number of poses to draw");
         reader_.readValue(count, "poses.random.count", Field{"count", "1", "", 1, 1e8}, sweep_.random_count);
     }
 
-    /** Coordinates of a grid, or of drawn poses, which have a `count` of all. */
+    /** Reads coordinates of a grid, or of drawn poses, which have a total `count`. */
     PoseAxes readAxes(const YAML::Node& node, const std::string& path, std::vector<std::string> known) {
         const bool is_drawn = !known.empty();
         PoseAxes axes;
@@ -225,7 +225,7 @@ private:
             if (!value.IsDefined() || !readAxis(value, path + "." + name, unit, axis)) return;
             if (is_drawn && axis.stepCount() != 1)
                 reader_.report(value, path + "." + name,
-                               "has several values; of drawn poses it is a number, {uniform: ...} or {normal: ...}");
+                               "has several values; for random poses give a number, {uniform: ...} or {normal: ...}");
             if (!is_drawn && axis.isDrawn())
                 reader_.report(value, path + "." + name, "is drawn at random; a grid has a number, a list or steps");
         });

@@ -5,8 +5,8 @@
 
 namespace insonify::dataset {
 
-/** Reads the sweep of a data set; paths in it become relative to where it stands. Throws types::ConfigError with every
- *  diagnostic of it, each at its place. */
+/** Reads the sweep of a data set. Its paths are resolved against its folder. Throws types::ConfigError with all
+ *  diagnostics and their places. */
 Sweep readSweep(const std::filesystem::path& file);
 
 }  // namespace insonify::dataset

@@ -12,7 +12,7 @@
 namespace insonify::dataset {
 namespace {
 
-/** The node's objects in the axes of the world, about the node's origin, as the file turns them. */
+/** Returns the node's objects in the axes of the world, about the node's origin, turned as in the file. */
 Placeable placeableOf(const scene::Scene& scene, const std::vector<scene::Part>& parts, bool tilts) {
     const types::Geometry& geometry = *scene.geometry;
     const scene::Part& first = parts.front();
@@ -58,7 +58,7 @@ void addTriangles(const scene::Scene& scene, size_t node, std::vector<std::array
     }
 }
 
-/** The triangles of all nodes that a pattern matches. */
+/** Returns the triangles of all nodes that match a pattern. */
 std::vector<std::array<glm::dvec3, 3>> groundOf(const scene::Scene& scene, const std::string& pattern) {
     std::vector<std::array<glm::dvec3, 3>> triangles;
     for (size_t node = 0; node < scene.nodes.size(); ++node)

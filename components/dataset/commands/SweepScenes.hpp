@@ -9,14 +9,14 @@
 
 namespace insonify::dataset {
 
-/** What a sweep takes of a scene: the nodes that it places, where the file has them, what they keep off, and what they
- *  stand on. Throws types::ConfigError where the node is absent on which its objects stand. */
+/** Returns the parts of a scene that a sweep needs: the nodes to place with their places in the file, the nodes to keep
+ *  clear of, and the nodes to place on. Throws types::ConfigError if a node for objects to stand on is absent. */
 SceneParts partsOf(const Sweep& sweep, const scene::Scene& scene);
 
-/** The names of each object of a scene, and of the nodes above it. */
+/** Returns the names of each object of a scene, and of the nodes above it. */
 std::vector<Lineage> lineagesOf(const scene::Scene& scene);
 
-/** SHA-256 of all triangles of a scene, where its objects are, and of what material. */
+/** Returns the SHA-256 of all triangles, objects' places and materials of a scene. */
 std::string digestOf(const types::Geometry& geometry);
 
 }  // namespace insonify::dataset

@@ -2,8 +2,8 @@
 """Makes scene.glb and two trajectories, pass.csv and hover.csv, in this script's folder. Needs Python alone.
 
 Change it, run it, and run the deployment again. Everything here is in world axes, x north, y west, z up, and in metres;
-the writer turns it into glTF's y-up axes. The water surface is z = 0, the sea floor lies at about z = -8. What a
-material does to sound stands in its `extras.acoustics`: {"sediment": NAME} or {"material": NAME}, by the names of
+the writer turns it into glTF's y-up axes. The water surface is z = 0, the sea floor is at about z = -8. The acoustics
+of a material are in its `extras.acoustics`: {"sediment": NAME} or {"material": NAME}, by the names of
 `insonify describe materials`, or numbers. Same script, same bytes.
 """
 import json
@@ -158,7 +158,7 @@ class Glb:
         return self.add("materials", item)
 
     def object(self, name, shape, material, normals=None, uvs=None):
-        """One node of this name: `insonify describe scene::SceneTask` tells how a connection moves it."""
+        """One node of this name: `insonify describe scene::SceneTask` explains how a connection moves it."""
         points = [struct.unpack("<3f", struct.pack("<3f", x, z, -y)) for x, y, z in shape[0]]   # y-up, as stored
         attributes = {"POSITION": self.numbers(points, min=[min(c) for c in zip(*points)], max=[max(c) for c in zip(*points)])}
         if normals:
@@ -180,8 +180,8 @@ class Glb:
 
 
 def ripples(size=64, tile=4.0):
-    """Sand ripples 0.33 m apart as a normal map of 4 x 4 m, an 8-bit PNG: it bends what the sonar hears of the floor
-    without a triangle more."""
+    """Sand ripples 0.33 m apart as a normal map of 4 x 4 m, an 8-bit PNG: it modulates the echoes of the floor
+    without adding triangles."""
     waves = [(12, 3, 0.3, 0.0035), (11, 4, 1.9, 0.0025), (13, 2, 4.0, 0.0025)]
     waves += [(rng.randint(-20, 20), rng.randint(-20, 20), rng.uniform(0, 6.28), 0.0006) for _ in range(24)]
     rows = b""

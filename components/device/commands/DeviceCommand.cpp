@@ -21,7 +21,7 @@ constexpr int answered = 0, silent = 1;
 
 using command::Action, command::Json, command::print;
 
-/** Properties of a task that are ports, and their defaults: "port 12345, discovery.port 30303". */
+/** Returns the properties of a task that are ports, with their defaults: "port 12345, discovery.port 30303". */
 Json portsOf(const framework::TaskContext& task) {
     Json ports = Json::object();
     for (const auto* properties : task.properties())
@@ -67,7 +67,7 @@ void printDevices(const std::vector<ProbeOutcome>& outcomes) {
         if (!outcome.device.empty()) fmt::print("{}: {}\n", outcome.asked, outcome.device);
 }
 
-/** Lines that failed for one reason stand together, before the reason and what to do. */
+/** Groups lines that failed for the same reason before the reason and its remedy. */
 void printFailures(std::vector<ProbeOutcome> outcomes) {
     const auto reason = [](const ProbeOutcome& outcome) { return std::tie(outcome.failure, outcome.advice); };
     while (!outcomes.empty()) {
@@ -102,7 +102,7 @@ int probeDevice(const std::string& address, double timeout, bool json) {
 
 void addList(CLI::App& app, Action& action) {
     const auto json = std::make_shared<bool>(false);
-    CLI::App* command = app.add_subcommand("list", "Lists the devices that tasks stand in for, and their usual ports");
+    CLI::App* command = app.add_subcommand("list", "Lists the devices that tasks replace, and their usual ports");
     command->add_flag("--json", *json, "for machines");
     command->callback([json, &action] { action = [json] { return listDevices(*json); }; });
 }
@@ -115,7 +115,7 @@ void addProbe(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "probe", "Asks what device answers at an address, real or simulated, and tells why a driver may wait");
+        "probe", "Identifies the device at an address, real or simulated, or prints why a driver may wait");
     command->add_option("ADDRESS", options->address, "a host, host:port, or the path of a serial line")->required();
     command->add_option("--timeout", options->timeout, "for each question [s]")
         ->capture_default_str()
@@ -129,7 +129,8 @@ void addProbe(CLI::App& app, Action& action) {
 }  // namespace
 
 void addCommand(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("device", "Devices on the wire: those that are simulated, and what answers");
+    CLI::App* command =
+        app.add_subcommand("device", "Devices on the wire: simulated devices, and the device at an address");
     command->require_subcommand(1);
     addList(*command, action);
     addProbe(*command, action);

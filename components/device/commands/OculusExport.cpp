@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
     throw types::ConfigError(log.path(), stream, why);
 }
 
-/** How the codes of a stream came about. */
+/** How the codes of a stream were made. */
 struct Codes {
     int bits = 8;
     double gamma = 1;
@@ -28,7 +28,7 @@ struct Codes {
 
 Codes codesOf(const log::Reader& log, const std::string& stream, const Json& meaning) {
     const char* const what =
-        "an Oculus' recording takes codes that go as amplitude: of a receiver with output: code and "
+        "an Oculus' recording takes codes of amplitude: of a receiver with output: code and "
         "code: {law: sqrt}";
     if (meaning.value("output", Json()) != "code")
         refuse(log, stream, fmt::format("holds {}; {}", meaning.value("output", "bins"), what));
@@ -37,15 +37,15 @@ Codes codesOf(const log::Reader& log, const std::string& stream, const Json& mea
         refuse(log, stream, fmt::format("holds codes of law {}; {}", code.value("law", "log"), what));
     const Codes codes{code.value("bits", 8), code.value("gamma", 1.0)};
     if (codes.gamma < 1.0 / 255 || codes.gamma > 1)
-        refuse(log, stream, fmt::format("holds codes of gamma {:g}; an Oculus tells of 0.004 to 1", codes.gamma));
+        refuse(log, stream, fmt::format("holds codes of gamma {:g}; an Oculus has 0.004 to 1", codes.gamma));
     return codes;
 }
 
-/** What holds for all pings of a recording. */
+/** Returns what is common to all pings of a recording. */
 OculusResult settingsOf(const Codes& codes, double frequency_khz) {
     OculusResult result;
     result.fire.header.version = 2;
-    if (codes.bits > 8) result.fire.flags |= OculusFire::wide_16;  // a code is scaled to the width that is sent
+    if (codes.bits > 8) result.fire.flags |= OculusFire::wide_16;  // a code is scaled to the sent width
     result.frequency_hz = 1e3 * frequency_khz;
     return result;
 }
@@ -74,7 +74,7 @@ void exportOculus(log::Reader& log, const std::string& stream, const fs::path& t
         if (ping.bin_count > 65535 || ping.beam_count > 65535)
             refuse(log, pings.name, "holds pings of more than 65535 beams or bins");
         setPing(ping, (ping.time - pings.first).seconds(), result);
-        result.fire.gamma = 0xFF;  // the codes are bent already
+        result.fire.gamma = 0xFF;  // gamma is applied to the codes already
         encoder.encode(ping, result);
         result.fire.gamma = static_cast<uint8_t>(std::lround(255 * codes.gamma));
         result.settle();

@@ -15,7 +15,7 @@ namespace {
 
 using framework::DeploymentSpec;
 
-/** What the recording states of its tasks, for the metadata of a log without a deployment. */
+/** Returns what the recording states of its tasks, for the metadata of a log without a deployment. */
 std::string fanText(int bits, double gamma) {
     return fmt::format(
         "# A sonar as its recording states it.\n"
@@ -29,10 +29,10 @@ std::string fanText(int bits, double gamma) {
         bits, gamma);
 }
 
-/** Properties with which the deployment's pings have the shape and the law of this one. */
+/** Returns properties that give the deployment's pings the shape and the law of this ping. */
 std::vector<std::string> propertiesOf(const deployer::FanTasks& tasks, const OculusPing& ping) {
     std::vector<std::string> all =
-        tasks.propertiesOf(sonarOf(ping, {}),  // its beams are in order
+        tasks.propertiesOf(sonarOf(ping, {}),  // the beams of sonarOf are in order
                            ping.range_resolution * ping.bin_count, ping.speed_of_sound, ping.frequency_hz / 1e3);
     all.push_back(tasks.receiver + ".code.law=sqrt");
     all.push_back(fmt::format("{}.code.gamma={}", tasks.receiver, ping.gamma));
@@ -63,7 +63,7 @@ deployer::Imported importOculus(const std::filesystem::path& recording, std::opt
     deployer::Imported imported;
     imported.stream = tasks.receiver + ".ping";
 
-    constexpr double start_of_captures = 1;  // 0 is no time
+    constexpr double start_of_captures = 1;  // 0 is not a valid time
     const double begin = recorded->time, start = begin > 0 ? begin : start_of_captures;
     for (; recorded; recorded = source.next(), ++imported.pings) {
         const OculusPing ping = pingOf(recorded->ping);

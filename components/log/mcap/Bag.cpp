@@ -21,7 +21,7 @@ std::string quoted(const std::string& text) {
     return line + "\"";
 }
 
-/** The first of the files that a bag's metadata lists; empty: it lists none. */
+/** Returns the first file in a bag's metadata; empty: there is none. */
 std::string firstFileOf(const fs::path& metadata) try {
     return YAML::LoadFile(metadata)["rosbag2_bagfile_information"]["relative_file_paths"][0].as<std::string>("");
 } catch (const YAML::Exception&) {

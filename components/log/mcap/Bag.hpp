@@ -7,19 +7,19 @@
 
 namespace insonify::log::mcap {
 
-/** Reliable, volatile, the last ten. It stands in channels and in metadata.yaml: where the two differ, readers may find
+/** Reliable, volatile, the last ten. Channels and metadata.yaml have this text; where the two differ, readers may find
  *  no message. */
 extern const std::string qos_profile;
 
-/** The file metadata.yaml, by which `ros2 bag` knows a folder's MCAP files as one bag. */
+/** The file metadata.yaml, with which `ros2 bag` reads a folder's MCAP files as one bag. */
 class Bag {
 public:
-    /** Throws ConfigError when the folder of the bag's first file holds the metadata.yaml of another bag. */
+    /** Throws ConfigError when the folder of the bag's first file has the metadata.yaml of another bag. */
     explicit Bag(const std::filesystem::path& first_file);
 
     void add(const FileSummary& finished) { finished_.push_back(finished); }
-    /** Writes metadata.yaml, with the file that is being written as it is now. Throws std::runtime_error with the
-     *  system's reason. */
+    /** Writes metadata.yaml, with the present state of the open file. Throws std::runtime_error with the system's
+     *  reason. */
     void write(const ChunkWriter& present) const;
 
 private:

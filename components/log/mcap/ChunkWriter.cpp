@@ -10,7 +10,7 @@ namespace insonify::log::mcap {
 namespace {
 
 constexpr size_t chunk_size = 1 << 20;                                        // [B]
-constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // of one that is not compressed [B]
+constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // of an uncompressed chunk [B]
 constexpr size_t max_ids = std::numeric_limits<uint16_t>::max();
 
 uint32_t crcOf(const char* data, size_t size, uint32_t before = 0) {
@@ -28,7 +28,7 @@ ChunkWriter::~ChunkWriter() {
     try {
         close();
     } catch (const std::exception&) {
-        // A destructor has nobody to tell; flush() and close() do.
+        // A destructor cannot report errors; flush() and close() do.
     }
 }
 
@@ -217,7 +217,7 @@ void ChunkWriter::putChunkIndex(RecordWriter& out, const ChunkIndex& index) cons
     out.end();
 }
 
-/** Summary, offsets and footer, which stand behind the end of the data. */
+/** Writes the summary, offsets and footer, behind the end of the data. */
 std::vector<char> ChunkWriter::summaryBytes() const {
     std::vector<char> bytes;
     RecordWriter out(bytes);

@@ -10,7 +10,7 @@
 
 namespace insonify::log::mcap {
 
-/** What messages of a type look like. */
+/** The declaration of a message type. */
 struct Schema {
     std::string name, encoding, text;
     friend auto operator<=>(const Schema&, const Schema&) = default;
@@ -23,31 +23,29 @@ struct Channel {
     Texts metadata;
 };
 
-/** What one file holds. */
+/** The contents of one file. */
 struct FileSummary {
     std::filesystem::path path;
     uint64_t messages = 0;
     uint64_t first_ns = 0, last_ns = 0;  ///< Earliest and latest log time [ns].
-    std::vector<uint64_t> counts;        ///< Of each channel, from the first on.
+    std::vector<uint64_t> counts;        ///< Of each channel, in order.
 };
 
-/** Writes an MCAP file of the profile "ros2": chunks that are not compressed, with checksums and indices.
+/** Writes an MCAP file of the profile "ros2": uncompressed chunks with checksums and indices.
  *
- *  Messages gather in memory and go to the file in chunks of a megabyte, or with flush(). A file that is cut off
- *  anywhere keeps its whole chunks readable. A write that fails throws std::runtime_error with the system's reason and
- *  leaves what was written before; after it the writer takes nothing more until next(). For one
- *  thread. */
+ *  Messages are collected in memory and written in chunks of a megabyte, or by flush(). The complete chunks of a
+ *  truncated file stay readable. A failed write throws std::runtime_error with the system's reason; earlier writes
+ *  stay. After a failure the writer accepts no message until next(). For one thread. */
 class ChunkWriter {
 public:
     /** Throws ConfigError as OutputFile. */
     explicit ChunkWriter(std::filesystem::path path);
-    ~ChunkWriter();  ///< Closes; a failure at that point is not told.
+    ~ChunkWriter();  ///< Closes; ignores a failure.
 
-    /** Give the numbers by which they are named from then on, from 1 and from 0. Throw std::length_error for the
-     *  65536th. */
+    /** Return the number of the schema, from 1, or channel, from 0. Throw std::length_error for the 65536th. */
     uint16_t addSchema(Schema schema);
     uint16_t addChannel(Channel channel);
-    /** Whether a message is among those of kept(). */
+    /** Whether a message counts in kept(). */
     enum class Counts { Yes, No };
     /** Adds a message; times since 1970 [ns]. Throws std::runtime_error when the file is closed. */
     void write(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes,
@@ -55,18 +53,18 @@ public:
     void addMetadata(const std::string& name, const Texts& texts);
 
     void flush();  ///< Ends the chunk: its messages survive the end of this process.
-    void close();  ///< Flushes, writes the summary. Nothing may be written after it.
-    /** Forgets the messages that are not in the file, after a write that failed. */
+    void close();  ///< Flushes and writes the summary. Nothing may be written afterwards.
+    /** Drops the messages that are not in the file, after a failed write. */
     void discard();
-    /** Closes and goes on in another file, with the same schemas, channels and metadata. */
+    /** Closes and continues in another file, with the same schemas, channels and metadata. */
     void next(std::filesystem::path path);
 
-    bool isOpen() const { return file_ && file_->isOpen(); }  ///< Not after a write that failed.
+    bool isOpen() const { return file_ && file_->isOpen(); }  ///< False after a failed write.
     const std::filesystem::path& path() const { return summary_.path; }
-    uint64_t size() const { return file_->size() + chunk_.size(); }  ///< With what is not flushed [B].
+    uint64_t size() const { return file_->size() + chunk_.size(); }  ///< Including unflushed messages [B].
     uint64_t kept() const { return kept_; }                          ///< Messages in all files [1].
     const FileSummary& summary() const { return summary_; }          ///< Of the present file.
-    const std::vector<Schema>& schemas() const { return schemas_; }  ///< The first is number 1.
+    const std::vector<Schema>& schemas() const { return schemas_; }  ///< Number 1 is the first.
     const std::vector<Channel>& channels() const { return channels_; }
 
 private:
@@ -96,7 +94,7 @@ private:
 
     std::optional<OutputFile> file_;
     FileSummary summary_;
-    uint32_t crc_ = 0;  ///< Of all that is in the file.
+    uint32_t crc_ = 0;  ///< Of all bytes in the file.
     uint64_t kept_ = 0;
     std::vector<Schema> schemas_;
     std::vector<Channel> channels_;
@@ -104,7 +102,7 @@ private:
     std::vector<MetadataIndex> metadata_index_;
     std::vector<ChunkIndex> chunks_;
 
-    std::vector<char> chunk_;  ///< Room for its header, then its records.
+    std::vector<char> chunk_;  ///< Space for its header, then its records.
     uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, chunk_messages_ = 0, chunk_counted_ = 0;
     std::vector<std::vector<IndexEntry>> index_;  ///< Of the chunk's messages, for each channel.
 };

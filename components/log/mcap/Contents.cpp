@@ -11,8 +11,8 @@ namespace {
 /** Fills Contents, record by record. */
 class Collector {
 public:
-    /** All in its order, with the indices; or of a damaged file first what declares, wherever it stands (in a summary,
-     *  too), of several of one number the first; then the messages. */
+    /** Takes an intact file's records in order, with the indices. Of a damaged file, first takes all declarations (also
+     *  in a summary; the first of those with one number), then the messages. */
     enum class Takes { Strictly, Declarations, Messages };
     explicit Collector(Contents& contents, Takes takes = Takes::Strictly) : found_(contents), takes_(takes) {}
 
@@ -37,7 +37,7 @@ public:
     }
 
 private:
-    /** What may stand in chunks and outside. */
+    /** Takes the records allowed both inside and outside of chunks. */
     void basic(Op op, RecordReader& reader, const ChunkInfo* chunk) {
         const uint64_t at = reader.at();
         if (op == Op::Schema)
@@ -48,7 +48,7 @@ private:
             message(reader, chunk);
         else if (chunk || op < Op::Header || (op == Op::Header && takes_ == Takes::Strictly))
             throw FormatError(at - record_header_size,
-                              "a record of kind " + std::to_string(static_cast<int>(op)) + " may not stand here");
+                              "a record of kind " + std::to_string(static_cast<int>(op)) + " is not allowed here");
     }
 
     void schema(RecordReader& reader) {
@@ -151,7 +151,7 @@ private:
             const auto time_ns = entries.number<uint64_t>();
             const auto found = messages.find(entries.number<uint64_t>());
             if (found == messages.end() || found->second != std::pair(channel, time_ns))
-                throw FormatError(at, "the index tells of a message that is not there");
+                throw FormatError(at, "the index has a message that is not in the file");
         }
     }
 
@@ -185,7 +185,9 @@ Contents File::contents(AtDamage at_damage) {
     Contents found;
     const bool begins = hasMagic(0);
     if (at_damage == AtDamage::Stop && !begins) throw types::ConfigError(path_, "", "is no MCAP file");
-    if (!begins) found.gaps.push_back({0, std::min<uint64_t>(magic.size(), size()), 0, "the file begins otherwise"});
+    if (!begins)
+        found.gaps.push_back(
+            {0, std::min<uint64_t>(magic.size(), size()), 0, "the file does not begin as an MCAP file"});
     at_damage == AtDamage::Stop ? readStrictly(found) : readWhatIsWhole(found);
     if (!begins && found.channels.empty()) throw types::ConfigError(path_, "", "is no MCAP file");
     return found;
@@ -224,7 +226,7 @@ void File::readWhatIsWhole(Contents& found) {
                 at = next.end();
             }
         } catch (const FormatError&) {
-            ++at;  // told in the pass that follows
+            ++at;  // reported in the next pass
         }
     Collector collector(found, Collector::Takes::Messages);
     bool ended = false;

@@ -1,4 +1,4 @@
-// An open file, record by record.
+// An open file, read record by record.
 #include <algorithm>
 
 #include "components/log/mcap/Contents.hpp"
@@ -13,7 +13,7 @@ bool File::hasMagic(uint64_t at) const {
 void File::expectEnd(uint64_t at) const {
     if (size() - at < magic.size()) throw FormatError(size(), "the file ends within its last eight bytes");
     if (!hasMagic(at)) throw FormatError(at, "the file does not end as an MCAP file");
-    if (size() > at + magic.size()) throw FormatError(at + magic.size(), "the file goes on after its end");
+    if (size() > at + magic.size()) throw FormatError(at + magic.size(), "the file continues after its end");
 }
 
 File::Record File::record(uint64_t at) {

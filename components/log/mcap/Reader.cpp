@@ -50,11 +50,11 @@ bool isOfStream(const Texts& channel, const std::string& key) {
     return channel.contains("insonify_stream") && !of_messages.contains(key);
 }
 
-/** Reads messages of one channel as samples. */
+/** Reads the messages of one channel as samples. */
 class Reader::Decoder {
 public:
     virtual ~Decoder() = default;
-    /** Throws std::exception for what is no such message. */
+    /** Throws std::exception for invalid messages. */
     virtual void decode(std::span<const char> bytes, types::SampleRoom room) = 0;
 };
 
@@ -107,7 +107,7 @@ void Reader::addStream(const Channel& channel, size_t place) {
     for (const Contents::Metadata& metadata : contents.metadata)
         if (metadata.name == "insonify" && metadata.channels_before <= place) stream.metadata = metadata.texts;
     if (streams_.size() > 1 && streams_.front().metadata.contains("insonify_deployment"))
-        stream.metadata.erase("insonify_deployment");  // of the whole log, which its first stream carries
+        stream.metadata.erase("insonify_deployment");  // belongs to the whole log; its first stream has it
     for (const auto& [key, value] : channel.metadata)
         if (isOfStream(channel.metadata, key)) stream.metadata[key] = value;
     std::erase_if(stream.metadata, [](const auto& text) { return text.second.empty(); });

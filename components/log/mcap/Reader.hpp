@@ -7,15 +7,17 @@
 
 namespace insonify::log::mcap {
 
-/** Whether a text of a channel's metadata is of its stream's, not of how its messages are written. */
+/** Whether a text of a channel's metadata belongs to its stream, rather than describing how its messages are
+ *  written. */
 bool isOfStream(const Texts& channel, const std::string& key);
 
-/** Reads an MCAP file. Messages of known types in CDR are samples; other channels are streams of a type that is not
- *  known, except for those that Transforms wrote: these are omitted. Streams are named as they were written, or topic
- * /a/b is stream a.b; images and poses of others are taken as ours by default, poses as ENU (REP 103). */
+/** Reads an MCAP file. Messages of known types in CDR are samples. Other channels are streams of an unknown type,
+ *  except those written by Transforms, which are omitted. Streams have their written names; else topic /a/b is stream
+ *  a.b. Images and poses of other programs are read with the default settings of this program, poses as ENU (REP
+ *  103). */
 class Reader final : public log::Reader {
 public:
-    /** Throws ConfigError when it cannot be read or is no MCAP file. */
+    /** Throws ConfigError when the file cannot be read or is not an MCAP file. */
     explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
     ~Reader() override;
 
@@ -23,11 +25,11 @@ public:
     std::span<const char> bytesOf(const SampleRef& at) override;
 
     const std::string& layout(size_t stream) const override;
-    /** How a stream's messages are declared; null: it has no schema. */
+    /** The schema of a stream's messages; null: it has none. */
     const Schema* schema(size_t stream) const;
     const Channel& channel(size_t stream) const;
     const MessageRef& message(const SampleRef& at) const { return contents_.messages[at.number]; }
-    /** Whether the file has topics that follow from its streams: /tf and others, which are no streams. */
+    /** Whether the file has topics that follow from its streams: /tf and others, which are not streams. */
     bool hasTransforms() const { return has_transforms_; }
 
 private:
@@ -36,16 +38,16 @@ private:
     class TypedDecoder;
 
     void decode(const SampleRef& at, types::SampleRoom room) override;
-    /** @param place of the channel among all of the file. */
+    /** @param place index of the channel among all of the file */
     void addStream(const Channel& channel, size_t place);
-    /** What a stream's messages are read as; null: not at all. */
+    /** Returns the decoder of a stream's messages; null: unknown type. */
     std::unique_ptr<Decoder> decoderFor(Stream& stream, const Channel& channel, const std::string& schema) const;
 
     File file_;
     Contents contents_;
     bool has_transforms_ = false;
     std::vector<uint16_t> channels_;                  ///< Number of each stream's channel.
-    std::vector<std::unique_ptr<Decoder>> decoders_;  ///< Of each stream; null: its type is not known.
+    std::vector<std::unique_ptr<Decoder>> decoders_;  ///< Of each stream; null: unknown type.
     std::vector<char> bytes_;
 };
 

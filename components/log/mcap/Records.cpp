@@ -7,9 +7,9 @@
 namespace insonify::log::mcap {
 namespace {
 
-constexpr uint64_t max_bytes = uint64_t{1} << 30;  // of what is decompressed [B]
+constexpr uint64_t max_bytes = uint64_t{1} << 30;  // of decompressed data [B]
 
-/** Bytes that were written; 0 for damaged ones. */
+/** Returns the number of bytes written; 0: damaged. */
 size_t unzstd(std::span<const char> from, std::span<char> to) {
     const size_t size = ZSTD_decompress(to.data(), to.size(), from.data(), from.size());
     return ZSTD_isError(size) ? 0 : size;
@@ -35,7 +35,7 @@ size_t unlz4(std::span<const char> from, std::span<char> to) {
 void RecordWriter::raw(std::string_view data) { bytes_.insert(bytes_.end(), data.begin(), data.end()); }
 
 uint32_t checksum(std::span<const char> bytes, uint32_t before) {
-    if (bytes.empty()) return before;  // zlib would begin anew
+    if (bytes.empty()) return before;  // zlib would restart
     return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
@@ -54,7 +54,7 @@ std::span<const char> recordsOf(const ChunkInfo& chunk, std::span<const char> st
     }
     if (records.size() != chunk.size)
         throw FormatError(chunk.start, "a chunk has " + std::to_string(records.size()) +
-                                           " bytes of records, and tells of " + std::to_string(chunk.size));
+                                           " bytes of records, and its header has " + std::to_string(chunk.size));
     if (const uint32_t crc = checksum(records); chunk.crc != 0 && crc != chunk.crc)
         throw FormatError(chunk.records_at, "the checksum of a chunk is " + std::to_string(crc) + ", and must be " +
                                                 std::to_string(chunk.crc));

@@ -66,7 +66,7 @@ public:
             }
         });
     }
-    /** What `fill` appends, after its size in four bytes. */
+    /** Appends what `fill` appends, preceded by its size in four bytes. */
     template <class Fill>
     void sized(Fill&& fill) {
         number(uint32_t{0});
@@ -82,10 +82,10 @@ private:
     size_t start_ = 0;
 };
 
-/** Takes the fields of one record; throws FormatError where it ends too early. */
+/** Reads the fields of one record; throws FormatError where it ends too early. */
 class RecordReader {
 public:
-    /** @param at place of the bytes in the file [B]. */
+    /** @param at place of the bytes in the file [B] */
     RecordReader(std::span<const char> bytes, uint64_t at) : bytes_(bytes), at_(at) {}
 
     template <class T>
@@ -105,7 +105,7 @@ public:
         return texts;
     }
     std::string_view sized() { return take(number<uint32_t>()); }
-    /** The bytes that a size of four bytes announces. */
+    /** Returns the bytes after a size of four bytes. */
     RecordReader part() {
         const std::string_view bytes = sized();
         return {bytes, at_ - bytes.size()};

@@ -13,7 +13,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-/** "/task/port" of "task.port", of letters, digits and underscores, as ROS has its names. */
+/** Converts "task.port" to "/task/port", with letters, digits and underscores, as in ROS names. */
 std::string usualTopic(const std::string& stream) {
     std::string topic = stream.starts_with('/') ? stream : "/" + stream;
     for (char& c : topic)
@@ -24,7 +24,8 @@ std::string usualTopic(const std::string& stream) {
     return topic;
 }
 
-/** Nanoseconds of a time that lies after 1970, with what its stamp had beyond the microsecond; others are 0. */
+/** Returns the nanoseconds of a time after 1970, with the part of its stamp below a microsecond; 0 for earlier
+ *  times. */
 uint64_t exactNanoseconds(types::Time time) try {
     if (time.microseconds <= 0) return 0;
     const ros::Time stamp = ros::fineStamps().exact(ros::toRos(time));
@@ -35,8 +36,8 @@ uint64_t exactNanoseconds(types::Time time) try {
 
 uint64_t nanoseconds(types::Time time) { return static_cast<uint64_t>(std::max<int64_t>(time.microseconds, 0)) * 1000; }
 
-/** Adds what a stream has otherwise than the record that all share; an empty text stands for what it has not. The
- *  deployment is the whole log's. */
+/** Adds a stream's differences from the shared record; an empty text means a missing key. The deployment is the whole
+ *  log's. */
 void addDifferences(const Metadata& shared, const Metadata& metadata, Texts& channel) {
     for (const auto& [key, value] : shared)
         if (!metadata.contains(key) && key != "insonify_deployment") channel.emplace(key, "");
@@ -50,7 +51,7 @@ std::string nameOf(E value) {
     return std::string(types::EnumNames<E>::names[static_cast<size_t>(value)]);
 }
 
-/** "/auv/sonar" of a topic with or without its slash. */
+/** Returns "/auv/sonar" for a topic with or without its slash. */
 std::string rooted(const std::string& topic) { return "/" + topic.substr(topic.starts_with('/')); }
 
 std::set<std::string> topicsOf(const McapConfig& config) {
@@ -92,7 +93,7 @@ SampleWriter::~SampleWriter() {
     try {
         close();
     } catch (const std::exception&) {
-        // A destructor has nobody to tell; close() does.
+        // A destructor cannot report errors; close() does.
     }
 }
 
@@ -102,7 +103,7 @@ void SampleWriter::checkTopic(const std::string& stream) const {
         if (other.topic == topic)
             throw types::ConfigError(
                 path(), stream,
-                "its topic " + topic + " is that of another stream; give one of them another " + "under mcap.streams");
+                "its topic " + topic + " belongs to another stream; give one of them another " + "under mcap.streams");
 }
 
 size_t SampleWriter::add(size_t sample, const std::string& name, const Metadata& metadata) {
@@ -213,7 +214,7 @@ void SampleWriter::next(std::filesystem::path path) {
     if (out_.isOpen()) transforms_.finish();
     out_.close();
     out_.discard();
-    if (out_.path() != path) bag_.add(out_.summary());  // else next() has failed before
+    if (out_.path() != path) bag_.add(out_.summary());  // otherwise next() has failed before
     out_.next(std::move(path));
     transforms_.nextFile();
     bag_.write(out_);

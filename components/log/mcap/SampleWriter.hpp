@@ -12,22 +12,21 @@
 
 namespace insonify::log::mcap {
 
-/** Writes samples into an MCAP file as ROS 2 messages, with metadata.yaml beside it for `ros2 bag`.
+/** Writes samples to an MCAP file as ROS 2 messages, with metadata.yaml next to it for `ros2 bag`.
  *
- *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another. What the first stream carries
- * goes into a record named "insonify", what others carry otherwise into their channels' metadata. Log time is when a
- *  sample was received, publish time when it was true. /tf, /tf_static and /clock follow from the samples, unless
- *  `McapConfig::transforms` is false. */
+ *  Stream "task.port" is topic /task/port, unless `McapConfig::streams` names another topic. The metadata of the first
+ *  stream are in a record named "insonify", different values of other streams in their channels' metadata. Log time is
+ *  when a sample was received, publish time when it was true. /tf, /tf_static and /clock are derived from the samples,
+ *  unless `McapConfig::transforms` is false. */
 class SampleWriter final : public log::Writer {
 public:
-    /** Throws as createLog, and ConfigError when the folder holds the metadata.yaml of another bag. */
+    /** Throws as createLog, and ConfigError when the folder has the metadata.yaml of another bag. */
     SampleWriter(std::filesystem::path path, const McapConfig& config);
-    ~SampleWriter() override;  ///< Closes; a failure at that point is not told.
+    ~SampleWriter() override;  ///< Closes; ignores a failure.
 
-    /** Throws ConfigError for a topic that is another stream's, too. */
+    /** Throws ConfigError for a topic that another stream has. */
     size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
-    /** Throws std::runtime_error for a sample that cannot be told as a message: a compressed picture, a time after
-     *  2038. */
+    /** Throws std::runtime_error for a sample without a message: a compressed picture, a time after 2038. */
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
     size_t addLike(const log::Reader& log, size_t stream, const Metadata& more = {}) override;
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
@@ -42,14 +41,14 @@ public:
     uint64_t kept() const override { return out_.kept(); }
 
 private:
-    /** @param metadata of the stream. */
+    /** @param metadata of the stream */
     size_t declare(const Schema* schema, Channel channel, const Metadata& metadata);
     void writeMessage(size_t stream, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
     [[noreturn]] void fail(size_t stream, const std::string& why) const;
 
     /** How samples become the messages of one channel. */
     struct Options : ros::MessageOptions {
-        std::optional<std::string> world_frame_id, child_frame_id;  ///< In place of those that a sample names.
+        std::optional<std::string> world_frame_id, child_frame_id;  ///< Instead of a sample's frames.
     };
     Options optionsOf(const std::string& stream, const Metadata& metadata) const;
     std::string topicOf(const std::string& stream) const;
@@ -64,7 +63,7 @@ private:
     std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;
     Metadata metadata_;           ///< Of the record that all streams share.
-    ros::MessageTypes messages_;  ///< Room to convert into.
+    ros::MessageTypes messages_;  ///< Reused for converting.
     std::vector<char> bytes_;
 };
 

@@ -1,4 +1,4 @@
-// What stands behind the data of a file, compared with the data.
+// Compares the summary and footer of a file with its data.
 #include <algorithm>
 
 #include "components/log/mcap/Contents.hpp"
@@ -41,7 +41,7 @@ private:
 
     void dataEnd(const File::Record& record) const {
         const auto crc = record.reader().number<uint32_t>();
-        require(record.content.size() == sizeof crc, record.start, "the end of the data is no such record");
+        require(record.content.size() == sizeof crc, record.start, "the end of the data is not a record of that kind");
         if (crc != 0 && crc != data_.crc)
             throw FormatError(
                 record.start + record_header_size,
@@ -51,9 +51,9 @@ private:
     void entry(const File::Record& record, RecordReader& reader) {
         const uint64_t at = reader.at();
         if (record.op == Op::Schema)
-            require(isKnownSchema(reader), at, "the summary tells of a schema that is not in the data");
+            require(isKnownSchema(reader), at, "the summary has a schema that is not in the data");
         else if (record.op == Op::Channel)
-            require(isKnownChannel(reader), at, "the summary tells of a channel that is not in the data");
+            require(isKnownChannel(reader), at, "the summary has a channel that is not in the data");
         else if (record.op == Op::Statistics)
             statistics(reader);
         else if (record.op == Op::ChunkIndex)
@@ -64,7 +64,7 @@ private:
             summaryOffset(reader);
         else
             require(record.op == Op::AttachmentIndex || record.op > Op::DataEnd, record.start,
-                    "a record of this kind may not stand in the summary");
+                    "a record of this kind is not allowed in the summary");
     }
 
     bool isKnownSchema(RecordReader& reader) const {
@@ -88,15 +88,15 @@ private:
             require(reader.number<T>() == number, at, what);
         };
         const auto& messages = data_.messages;
-        expect(uint64_t{messages.size()}, "the summary tells of another number of messages");
-        expect(static_cast<uint16_t>(data_.schemas.size()), "the summary tells of another number of schemas");
-        expect(static_cast<uint32_t>(data_.channels.size()), "the summary tells of another number of channels");
-        expect(data_.attachments, "the summary tells of another number of attachments");
-        expect(static_cast<uint32_t>(data_.metadata.size()), "the summary tells of another number of metadata");
-        expect(static_cast<uint32_t>(data_.chunks.size()), "the summary tells of another number of chunks");
+        expect(uint64_t{messages.size()}, "the summary has another number of messages");
+        expect(static_cast<uint16_t>(data_.schemas.size()), "the summary has another number of schemas");
+        expect(static_cast<uint32_t>(data_.channels.size()), "the summary has another number of channels");
+        expect(data_.attachments, "the summary has another number of attachments");
+        expect(static_cast<uint32_t>(data_.metadata.size()), "the summary has another number of metadata");
+        expect(static_cast<uint32_t>(data_.chunks.size()), "the summary has another number of chunks");
         const auto [first, last] = std::ranges::minmax_element(messages, {}, &MessageRef::log_ns);
-        expect(messages.empty() ? uint64_t{0} : first->log_ns, "the summary tells of another first message");
-        expect(messages.empty() ? uint64_t{0} : last->log_ns, "the summary tells of another last message");
+        expect(messages.empty() ? uint64_t{0} : first->log_ns, "the summary has another first message");
+        expect(messages.empty() ? uint64_t{0} : last->log_ns, "the summary has another last message");
         std::map<uint16_t, uint64_t> counts;
         for (const MessageRef& message : messages) ++counts[message.channel];
         for (RecordReader all = reader.part(); all.left() > 0;) {
@@ -105,7 +105,7 @@ private:
             const auto count = all.number<uint64_t>();
             const auto found = counts.find(channel);
             require(count == (found == counts.end() ? 0 : found->second) && data_.channels.contains(channel), at,
-                    "the summary tells of another number of messages of a channel");
+                    "the summary has another number of messages of a channel");
         }
     }
 
@@ -116,18 +116,18 @@ private:
         const auto chunk = std::ranges::find(data_.chunks, start, &ChunkInfo::start);
         require(chunk != data_.chunks.end() && chunk->length == length && chunk->first_ns == first &&
                     chunk->last_ns == last,
-                at, "the summary tells of a chunk that is not there");
+                at, "the summary has a chunk that is not in the file");
         for (RecordReader indices = reader.part(); indices.left() > 0;) {
             const uint64_t place = indices.at();
             indices.number<uint16_t>();
             const auto index = indices.number<uint64_t>();
             require(index >= start + length && index < data_.read_to, place,
-                    "the summary tells of an index of messages that is not there");
+                    "the summary has an index of messages that is not in the file");
         }
         reader.number<uint64_t>();
         require(reader.text() == chunk->compression && reader.number<uint64_t>() == chunk->records_size &&
                     reader.number<uint64_t>() == chunk->size,
-                at, "the summary tells of a chunk of another size");
+                at, "the summary has a chunk of another size");
     }
 
     void metadataIndex(RecordReader& reader) const {
@@ -135,7 +135,7 @@ private:
         const auto start = reader.number<uint64_t>(), length = reader.number<uint64_t>();
         const auto found = std::ranges::find(data_.metadata, start, &Contents::Metadata::start);
         require(found != data_.metadata.end() && found->length == length && found->name == reader.text(), at,
-                "the summary tells of metadata that is not there");
+                "the summary has metadata that is not in the file");
     }
 
     void summaryOffset(RecordReader& reader) {
@@ -143,9 +143,9 @@ private:
         const auto group = groups_.find(reader.number<Op>());
         const auto from = reader.number<uint64_t>(), length = reader.number<uint64_t>();
         const bool right = group == groups_.end()
-                               ? length == 0  // some writers list groups of nothing
+                               ? length == 0  // some writers list empty groups
                                : group->second.front().from == from && group->second.back().to == from + length;
-        require(right, at, "the summary's offsets lead elsewhere");
+        require(right, at, "the summary's offsets are wrong");
     }
 
     void footer(const File::Record& record) {
@@ -154,13 +154,13 @@ private:
         const bool has_summary = record.start > start_;
         const auto start = reader.number<uint64_t>(), offsets = reader.number<uint64_t>();
         require(start == (has_summary ? start_ : 0), record.start + record_header_size,
-                "the footer tells of a summary elsewhere");
+                "the footer has another place of the summary");
         require(offsets == offsets_ || offsets == 0, record.start + record_header_size + 8,
-                "the footer tells of offsets elsewhere");
+                "the footer has another place of the offsets");
         crc_ = checksum(record.content.first(16), checksum(record.header, crc_));
         const uint64_t at = reader.at();
         const auto crc = reader.number<uint32_t>();
-        require(crc == 0 || crc == crc_, at, "the checksum of the summary is another");
+        require(crc == 0 || crc == crc_, at, "the checksum of the summary is wrong");
         file_.expectEnd(record.end());
     }
 

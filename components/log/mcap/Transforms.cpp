@@ -32,7 +32,7 @@ std::string textOf(const Metadata& metadata, const char* key) {
     return found == metadata.end() ? "" : found->second;
 }
 
-/** None: the text is not there, or damaged. */
+/** None: the text is missing or damaged. */
 std::optional<types::Mount> mountOf(const Metadata& stream) try {
     const YAML::Node node = YAML::Load(textOf(stream, "insonify_mount"));
     if (!node.IsMap()) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<types::Mount> mountOf(const Metadata& stream) try {
 
 glm::dquat rotationOf(const ros::Quaternion& q) { return {q.w, q.x, q.y, q.z}; }
 
-/** False: no listener of transforms takes it. */
+/** False: listeners of transforms would refuse it. */
 bool normalise(ros::Transform& transform) {
     const glm::dquat q = rotationOf(transform.rotation);
     const double length = glm::length(q);
@@ -58,7 +58,7 @@ bool normalise(ros::Transform& transform) {
     return true;
 }
 
-/** For who comes later as well. */
+/** For late subscribers. */
 std::string latchedProfile() {
     std::string profile = qos_profile;
     return profile.replace(profile.find("durability: 2"), 13, "durability: 1");
@@ -98,7 +98,7 @@ void Transforms::addPose(uint16_t channel, Poses& poses, uint64_t log_ns, uint64
     try {
         ros::decode(bytes, odometry_);
     } catch (const ros::CdrError&) {
-        return;  // of a damaged file that is copied as it is
+        return;  // of a damaged file that is copied unchanged
     }
     const auto& [p, q] = odometry_.pose.pose;
     ros::TransformStamped placed{odometry_.header, odometry_.child_frame_id, {{p.x, p.y, p.z}, q}};
@@ -127,7 +127,7 @@ std::string Transforms::bodyOf(const Pings& pings, AtEnd at_end) const {
     const auto isKnown = [](const auto& each) { return !each.second.child.empty(); };
     const auto own = std::ranges::find_if(poses_, [&](const auto& each) { return each.second.name == pings.body; });
     if (own != poses_.end()) return own->second.child;
-    if (!pings.body.empty() && at_end == AtEnd::No) return "";  // its poses may still come
+    if (!pings.body.empty() && at_end == AtEnd::No) return "";  // its poses may still arrive
     const auto first = std::ranges::find_if(poses_, isKnown);
     if (first != poses_.end()) return first->second.child;
     return at_end == AtEnd::Yes ? "base_link" : "";

@@ -15,50 +15,50 @@
 
 namespace insonify::log::mcap {
 
-/** Text of a channel whose messages follow from those of other channels. Reader omits these channels. */
+/** Text of a channel whose messages are derived from other channels. Reader omits these channels. */
 inline constexpr const char* derived_key = "insonify_derived";
-/** Text of a channel of pings: the frame that its messages name. */
+/** Text of a channel of pings: the frame in its messages. */
 inline constexpr const char* frame_id_key = "insonify_frame_id";
 
-/** Writes the topics by which RViz and Foxglove place the pings of a file in the world.
+/** Writes the topics with which RViz and Foxglove place the pings of a file in the world.
  *
- *  /tf has the poses of each Odometry channel. /tf_static has the mount of each channel of pings, below the body whose
- *  poses the sonar follows; the mount is metadatum `insonify_mount` of the stream, the stream of poses
+ *  /tf has the poses of each Odometry channel. /tf_static has the mount of each channel of pings, relative to the body
+ *  whose poses the sonar follows. The mount is metadatum `insonify_mount` of the stream; the stream of poses is
  *  `insonify_body`, else the first one. /clock has the newest stamp of both.
  *
- *  Frames have one parent: the first stream that places a frame keeps it. A pose of the sonar itself, whose child is
- * the frame of pings, gets the axes of that frame. A topic that a stream of the file has is not written. */
+ *  A frame has one parent: the first stream that places a frame keeps it. A pose of the sonar itself, whose child is
+ *  the frame of pings, is turned to the axes of that frame. A topic that a stream of the file has is not written. */
 class Transforms {
 public:
-    /** @param taken topics that streams have or will have. */
+    /** @param taken topics that streams have or will have */
     Transforms(ChunkWriter& out, std::set<std::string> taken) : out_(out), taken_(std::move(taken)) {}
 
-    /** Follows a channel, if it is of pings or poses. @param stream metadata of its stream. */
+    /** Follows a channel, if it has pings or poses. @param stream metadata of its stream */
     void follow(uint16_t channel, const Metadata& stream);
-    /** Writes what follows from a message, which is to be written next. Times since 1970 [ns]. */
+    /** Writes what is derived from a message, before the message itself. Times since 1970 [ns]. */
     void before(uint16_t channel, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
-    /** Writes mounts whose poses have not come, before a file ends. */
+    /** Writes the mounts whose poses have not arrived, before a file ends. */
     void finish();
-    /** Mounts are to be written in the next file as well. */
+    /** Writes the mounts again in the next file. */
     void nextFile();
 
 private:
     struct Pings {
         std::string frame, body;
-        std::optional<types::Mount> mount;  ///< None: not known, or written.
+        std::optional<types::Mount> mount;  ///< None: unknown, or written.
         ros::SensorFrame axes = ros::SensorFrame::ZForward;
         ros::WorldFrame world = ros::WorldFrame::Enu;
     };
     struct Poses {
-        std::string name, child;  ///< Names of the stream and of the frame that it places; empty: none yet.
+        std::string name, child;  ///< Names of the stream and of the frame that it places; empty: unknown so far.
         std::optional<uint64_t> last_ns;
     };
     enum class AtEnd { Yes, No };
 
     void addPose(uint16_t channel, Poses& poses, uint64_t log_ns, uint64_t publish_ns, std::span<const char> bytes);
-    /** Turns the pose of a sonar to the axes of its pings. False: the frame is not of pings. */
+    /** Turns the pose of a sonar to the axes of its pings. False: the frame is not that of pings. */
     bool turnToPings(ros::TransformStamped& placed) const;
-    /** The frame that carries a sonar; empty: not known yet. */
+    /** Returns the frame that carries a sonar; empty: unknown so far. */
     std::string bodyOf(const Pings& pings, AtEnd at_end) const;
     /** Writes the mounts whose bodies are known and whose frames have no parent. */
     void placeMounts(uint64_t log_ns, AtEnd at_end);
@@ -71,7 +71,7 @@ private:
     std::map<std::string, uint16_t> schemas_, channels_;  ///< Numbers by message and by topic.
     std::map<uint16_t, Pings> pings_;                     ///< By channel.
     std::map<uint16_t, Poses> poses_;
-    std::map<std::string, uint16_t> owners_;  ///< Channel that places a frame.
+    std::map<std::string, uint16_t> owners_;  ///< The channel that places a frame.
     ros::TFMessage mounts_;
     bool mounts_due_ = false;
     std::optional<uint64_t> first_ns_;  ///< Log time of the first message of the file.

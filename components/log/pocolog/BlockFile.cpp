@@ -12,7 +12,7 @@
 namespace insonify::log::pocolog {
 namespace {
 
-/** Takes a text of a declaration and returns its position. */
+/** Reads a text of a declaration and returns its position. */
 uint64_t takeText(Decoder& decoder, uint64_t payload, const char* what, std::string& text) {
     const uint64_t count_at = payload + decoder.taken();
     uint32_t size = 0;

@@ -14,7 +14,7 @@
 
 namespace insonify::log::pocolog {
 
-inline constexpr std::string_view magic{"POCOSIM", 8};  ///< With its terminating zero.
+inline constexpr std::string_view magic{"POCOSIM", 8};  ///< Including its terminating zero.
 inline constexpr uint32_t format_version = 2;
 inline constexpr uint32_t big_endian_flag = 1;
 
@@ -31,15 +31,15 @@ struct BlockHeader {
     BlockType type{};
     uint8_t padding = 0xff;
     uint16_t stream = 0;
-    uint32_t size = 0;  ///< Of what follows the header [B].
+    uint32_t size = 0;  ///< Without the header [B].
 };
 static_assert(sizeof(BlockHeader) == 8);
 
-/** In front of each sample; 21 bytes in the file, without the padding that C++ puts after them. */
+/** Precedes each sample; 21 bytes in the file, without C++'s padding at the end. */
 struct DataHeader {
     uint32_t received_s = 0, received_us = 0;  ///< When it was logged.
     uint32_t time_s = 0, time_us = 0;          ///< When it was true in the world.
-    uint32_t size = 0;                         ///< Of the sample as it stands in the file [B].
+    uint32_t size = 0;                         ///< Of the sample as stored in the file [B].
     uint8_t compressed = 0;                    ///< 1: a zlib stream.
 
     types::Time received() const { return joined(received_s, received_us); }
@@ -50,22 +50,22 @@ private:
 };
 inline constexpr size_t data_header_size = 21;
 
-/** The last moment that the format can hold, in the year 2106. */
+/** The last time that the format can store, in the year 2106. */
 inline constexpr types::Time latest_time{int64_t{std::numeric_limits<uint32_t>::max()} * 1'000'000 + 999'999};
 
-/** What a block declares, and where its four texts begin in the file [B]. */
+/** The declaration in a block, and the positions of its four texts in the file [B]. */
 struct Declaration {
     std::string name, type, registry;
     std::string yaml;  ///< Metadata as written.
     uint64_t name_at = 0, type_at = 0, registry_at = 0, yaml_at = 0;
 };
 
-/** An open file, taken block by block. */
+/** An open file, read block by block. */
 class BlockFile : public InputFile {
 public:
     using InputFile::InputFile;
 
-    // Each throws FormatError for what stands there instead.
+    // Each throws FormatError if the expected structure is not there.
     BlockHeader header(uint64_t block) const;
     Declaration declaration(uint64_t block, const BlockHeader& header) const;
     DataHeader data(uint64_t block, const BlockHeader& header) const;

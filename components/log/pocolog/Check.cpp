@@ -91,7 +91,7 @@ private:
         const auto same = [&](const Seen& other) { return other.declared.name == stream.name; };
         if (stream.name.empty() || std::any_of(streams_.begin(), streams_.end(), same))
             throw FormatError(stream.name_at,
-                              fmt::format("a stream is named '{}'; each must have a name of its own", stream.name));
+                              fmt::format("a stream is named '{}'; each must have a unique name", stream.name));
         if (stream.type.empty()) throw FormatError(stream.type_at, fmt::format("the type of {} is empty", stream.name));
         if (!declares(stream.registry, stream.type))
             throw FormatError(stream.registry_at, fmt::format("the registry of {} must be typelib's XML with {} in it",
@@ -101,7 +101,7 @@ private:
         streams_.push_back({{stream.name, stream.type, sample}, {.declaration = block}, {}});
     }
 
-    /** Typelib writes attributes in double quotes from C++, in single ones from Ruby. */
+    /** Typelib writes attributes in double quotes from C++, in single quotes from Ruby. */
     static bool declares(const std::string& registry, const std::string& type) {
         const auto holds = [&](const std::string& text) { return registry.find(text) != registry.npos; };
         const std::string name = xmlEscaped(type);
@@ -109,7 +109,7 @@ private:
                (holds("name=\"" + name + '"') || holds("name='" + name + '\''));
     }
 
-    /** Rock's C++ reader ends the process on anything but a flat map. */
+    /** Rock's C++ reader ends the process if the metadata are not a flat map. */
     static void metadata(const Declaration& found) {
         if (const std::optional<size_t> at = findNotFlat(found.yaml))
             throw FormatError(found.yaml_at + *at,
@@ -163,7 +163,7 @@ private:
     }
 
     void index(const std::filesystem::path& path) const {
-        constexpr size_t modified = 13 + sizeof(uint32_t) + sizeof(uint64_t);  // where the log's time stands
+        constexpr size_t modified = 13 + sizeof(uint32_t) + sizeof(uint64_t);  // place of the log's modification time
         std::vector<StreamIndex> streams;
         for (const Seen& stream : streams_) streams.push_back(stream.index);
         std::vector<char> expected = indexBytes(streams, file_.size(), {});
@@ -178,7 +178,7 @@ private:
     BlockFile file_;
     std::vector<Seen> streams_;
     std::vector<char> bytes_, inflated_;
-    types::SampleTypes samples_;  ///< Room to decode into.
+    types::SampleTypes samples_;  ///< Reused for decoding.
 };
 
 }  // namespace

@@ -10,25 +10,25 @@
 namespace insonify::log::pocolog {
 namespace {
 
-/** Where a sample stands. */
+/** The place of a sample. */
 struct Block {
     size_t stream = 0;
     uint64_t position = 0;  ///< Of the sample's bytes in the file [B].
     DataHeader header;
 };
 
-/** What one pass over the block headers of a file finds. */
+/** The result of one pass over the block headers of a file. */
 struct Found {
     std::vector<Declaration> declarations;
     std::vector<Block> blocks;
-    std::vector<Gap> gaps;  ///< What is no log, in file order.
+    std::vector<Gap> gaps;  ///< Unreadable parts, in file order.
 };
 
 class Scanner {
 public:
     Scanner(const BlockFile& file, Found& found) : file_(file), found_(found) {}
 
-    /** Takes whole blocks until the file ends; what is none is passed over or ends the pass. */
+    /** Reads complete blocks until the file ends; anything else is skipped or ends the pass. */
     void run(AtDamage at_damage) {
         for (uint64_t position = sizeof(Prologue); position < file_.size();) try {
                 position = take(position);
@@ -41,10 +41,10 @@ public:
     }
 
 private:
-    /** Takes a block and returns where the next one begins. */
+    /** Reads a block and returns where the next one begins. */
     uint64_t take(uint64_t block) {
         const BlockHeader header = file_.header(block);
-        if (header.type == BlockType::Stream && !index_.contains(header.stream)) {  // repeated ones are harmless
+        if (header.type == BlockType::Stream && !index_.contains(header.stream)) {  // repetitions are harmless
             found_.declarations.push_back(file_.declaration(block, header));
             index_[header.stream] = found_.declarations.size() - 1;
         }
@@ -62,7 +62,7 @@ private:
         found_.blocks.push_back({stream->second, position, data});
     }
 
-    /** The first place from `position` on at which a block seems to stand, or the end of the file. */
+    /** Returns the first place from `position` on with a plausible block, or the end of the file. */
     uint64_t nextBlock(uint64_t position) const {
         std::vector<char> window(1 << 20);
         for (; position + sizeof(BlockHeader) <= file_.size(); position += window.size()) {
@@ -74,7 +74,8 @@ private:
         return file_.size();
     }
 
-    /** A format without marks gives no certainty: sizes that agree twice, and a block or the end behind it. */
+    /** Without marks in the format, nothing is certain: checks two sizes against each other, and for a block or the end
+     *  behind. */
     bool looksLikeBlock(uint64_t block) const try {
         const BlockHeader header = file_.header(block);
         if (header.type == BlockType::Stream)
@@ -94,7 +95,7 @@ private:
 
     const BlockFile& file_;
     Found& found_;
-    std::map<uint16_t, size_t> index_;  ///< From the number in the file to the place in `declarations`.
+    std::map<uint16_t, size_t> index_;  ///< From the number in the file to the index in `declarations`.
 };
 
 void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) {
@@ -108,7 +109,7 @@ void checkPrologue(const Prologue& prologue, const std::filesystem::path& path) 
         throw types::ConfigError(path, "", "was logged on a big-endian machine; only little-endian logs can be read");
 }
 
-/** Passes over a file. Throws ConfigError that names `path` when it is no pocolog v2 file. */
+/** Scans a file. Throws ConfigError that names `path` when it is not a pocolog v2 file. */
 Found scan(const BlockFile& file, const std::filesystem::path& path, AtDamage at_damage) {
     Found found;
     Prologue prologue;

@@ -9,10 +9,10 @@
 
 namespace insonify::log::pocolog {
 
-/** Reads a pocolog v2 file, ours or Rock's. Streams of a type that is not known are listed. */
+/** Reads a pocolog v2 file, of Insonify or Rock. Streams of unknown types are listed. */
 class Reader final : public log::Reader {
 public:
-    /** Throws ConfigError when it cannot be read or is no such file. */
+    /** Throws ConfigError when the file cannot be read or is not a pocolog v2 file. */
     explicit Reader(const std::filesystem::path& path, AtDamage at_damage = AtDamage::Stop);
 
     uint64_t bytes() const override { return file_.size(); }
@@ -36,10 +36,10 @@ private:
     std::vector<char> buffer_, inflated_;
 };
 
-/** Place in types::SampleTypes of the type that typelib or Rock's C++ calls so; none: it is not known. */
+/** Returns the index in types::SampleTypes of the type with this name in typelib or Rock's C++; none: unknown. */
 std::optional<size_t> sampleOf(const std::string& type);
 
-/** Fills a sample with its bytes as typelib marshals them. Throws FormatError for what is none. */
+/** Fills a sample from its bytes as typelib marshals them. Throws FormatError for invalid bytes. */
 void decode(std::span<const char> bytes, types::SampleRoom room);
 
 }  // namespace insonify::log::pocolog

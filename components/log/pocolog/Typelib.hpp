@@ -1,5 +1,5 @@
 #pragma once
-// Size, alignment on x86-64 and XML registry of a described C++ type, as Rock's typelib has them.
+// Size, alignment on x86-64 and XML registry of a described C++ type, as in Rock's typelib.
 #include <cstddef>
 #include <span>
 #include <string>
@@ -25,7 +25,7 @@ struct Extent {
         align = align > field.align ? align : field.align;
         return offset;
     }
-    /** Size with the padding that brings the next element of an array into line. */
+    /** Returns the size with the padding up to the next element of an array. */
     constexpr size_t stride() const { return aligned(size, align); }
 };
 
@@ -55,10 +55,10 @@ Extent extentOf() {
         return {sizeof(T), alignof(T)};
 }
 
-/** A type's name as it stands in a registry. */
+/** Returns a type's name as written in a registry. */
 std::string xmlEscaped(const std::string& name);
 
-/** XML nodes of a registry, each type once, what a type needs before the type. */
+/** The XML nodes of a registry: each type once, preceded by the types that it needs. */
 class RegistryXml {
 public:
     template <class T>
@@ -83,14 +83,14 @@ public:
         else
             addDescribed<T>(name);
     }
-    /** The whole document. */
+    /** Returns the whole document. */
     std::string text() const;
 
 private:
     struct Member {
         std::string name, type;
         size_t offset;
-        bool logical_time;  ///< Rock's tools sort by the field that has this role.
+        bool logical_time;  ///< Rock's tools sort by the field with this role.
     };
 
     template <class T>
@@ -122,7 +122,7 @@ private:
     std::vector<std::pair<std::string, std::string>> nodes_;  ///< Name and XML.
 };
 
-/** The registry that a stream of T declares. */
+/** Returns the registry that a stream of T declares. */
 template <class T>
 std::string registryOf() {
     RegistryXml registry;

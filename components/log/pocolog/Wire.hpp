@@ -1,8 +1,8 @@
 #pragma once
-// How a described type stands on the log, byte for byte as typelib marshals it.
+// The bytes of a described type in a log, as typelib marshals it.
 //
-// Fields follow one another as in memory, with the padding between them; padding after the last field of the whole
-// sample is dropped, that of a vector's element is kept. Vectors and strings are a u64 count and their elements.
+// Fields follow one another as in memory, with the padding between them. Padding after the last field of the whole
+// sample is dropped; padding after a vector's element is kept. Vectors and strings are a u64 count and their elements.
 #include <bit>
 #include <cstring>
 #include <stdexcept>
@@ -16,12 +16,12 @@ namespace insonify::log::pocolog {
 static_assert(std::endian::native == std::endian::little,
               "samples are copied in host order, which must be little endian");
 
-/** Elements that stand on the wire as they stand in memory, so that a vector of them is one block. */
+/** Elements with the same bytes on the wire and in memory, so that a vector of them is one block. */
 template <class T>
 concept Bulk =
     (Numeric<T> && !std::is_same_v<T, bool>) || std::is_same_v<T, types::Time> || std::is_same_v<T, types::Angle>;
 
-/** The fewest bytes that a T takes on the wire [B]. */
+/** The min number of bytes of a T on the wire [B]. */
 template <class T>
 size_t minimumSize() {
     if constexpr (Text<T> || Vector<T>)
@@ -64,7 +64,7 @@ private:
     std::vector<char>& bytes_;
 };
 
-/** Takes from a byte buffer; throws FormatError where it ends too early. */
+/** Reads from a byte buffer; throws FormatError where it ends too early. */
 class Decoder {
 public:
     explicit Decoder(std::span<const char> data) : data_(data), size_(data.size()) {}
@@ -78,7 +78,7 @@ public:
         if (size > data_.size()) throw FormatError(size_, "ends within padding");
         data_ = data_.subspan(size);
     }
-    /** Makes room for as many items as the count says. A count that cannot fit is refused before memory is taken. */
+    /** Resizes `items` to the count in the buffer. Refuses an impossible count before allocating memory. */
     template <class Items>
     void count(Items& items) {
         uint64_t wanted = 0;
@@ -109,7 +109,7 @@ private:
     size_t size_;
 };
 
-/** Walks through a value in wire order, for an Encoder (const values) or a Decoder. */
+/** Visits the parts of a value in wire order, for an Encoder (const values) or a Decoder. */
 template <class Archive>
 class Walk {
 public:
@@ -172,7 +172,7 @@ private:
     void flushPadding() { archive_.zeros(std::exchange(padding_, 0)); }
 
     Archive& archive_;
-    size_t padding_ = 0;  ///< Due before the next value; what is due at the end is dropped [B].
+    size_t padding_ = 0;  ///< Due before the next value; dropped at the end [B].
 };
 
 /** Appends the sample to `bytes`. */
@@ -182,7 +182,7 @@ void marshal(const T& sample, std::vector<char>& bytes) {
     Walk<Encoder>(encoder).value(sample);
 }
 
-/** Fills `sample`, whose memory is used again. Throws FormatError unless `bytes` is exactly one sample. */
+/** Fills `sample`, reusing its memory. Throws FormatError unless `bytes` is exactly one sample. */
 template <class T>
 void unmarshal(std::span<const char> bytes, T& sample) {
     Decoder decoder(bytes);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t flush_size = 1 << 20;  // [B]
 
-/** Not before `earliest`, and within what the format can hold. */
+/** Returns the time limited to `earliest` and to the format's range. */
 types::Time logTime(types::Time time, types::Time earliest) {
     return std::clamp(time, std::max(earliest, types::Time{}), latest_time);
 }
@@ -44,7 +44,7 @@ Writer::~Writer() {
     try {
         close();
     } catch (const std::exception&) {
-        // A destructor has nobody to tell; flush() and close() do.
+        // A destructor cannot report errors; flush() and close() do.
     }
 }
 

@@ -12,37 +12,37 @@
 
 namespace insonify::log::pocolog {
 
-/** Writes a pocolog v2 file that Rock's readers open, and its index at the end. Blocks go to the file whole, when a
- *  megabyte has come together. Used again, its memory is not allocated again. */
+/** Writes a pocolog v2 file that Rock's readers open, and its index at the end. Complete blocks are written after each
+ *  megabyte. Memory is reused. */
 class Writer final : public log::Writer {
 public:
-    /** Creates the file, or empties it. Throws as createLog. */
+    /** Creates or empties the file. Throws as createLog. */
     explicit Writer(std::filesystem::path path);
-    ~Writer() override;  ///< Closes; a failure at that point is not told.
+    ~Writer() override;  ///< Closes; ignores a failure.
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
 
     using log::Writer::write;
-    /** `metadata` joins what Rock's tools look for, and stands where both have a key. */
+    /** `metadata` is merged into the keys that Rock's tools expect, and wins for equal keys. */
     size_t add(size_t sample, const std::string& name, const Metadata& metadata) override;
     /** Declares a stream of a type that this program need not know. Throws as addStream(). */
     size_t declare(const std::string& name, const std::string& type, const std::string& registry,
                    const Metadata& metadata);
-    /** The same with metadata as they are written, in YAML. */
+    /** The same with metadata as written, in YAML. */
     size_t declareRaw(const std::string& name, const std::string& type, const std::string& registry,
                       const std::string& yaml);
 
-    /** Times before 1970 or after 2106 are moved to those years in the block's header, and one that runs backwards to
-     *  that of the stream's sample before it: readers search by them. The stamp in the sample is written as it is.
-     *  Throws std::length_error above 4 GiB. */
+    /** In the block's header, times before 1970 or after 2106 are set to those limits, and a time earlier than that of
+     *  the stream's previous sample is set to the latter, because readers search by these times. The stamp in the
+     *  sample is not changed. Throws std::length_error above 4 GiB. */
     void put(size_t stream, types::Time received, types::Time time, types::SampleView sample) override;
-    /** The same for a sample that is bytes already. */
+    /** The same for the bytes of a sample. */
     void write(size_t stream, types::Time received, types::Time time, std::span<const char> bytes);
     size_t addLike(const log::Reader& log, size_t stream, const Metadata& more = {}) override;
     void copy(size_t stream, log::Reader& log, const SampleRef& at) override;
 
     void flush() override;
-    void close() override;  ///< Writes the index, too.
+    void close() override;  ///< Also writes the index.
     void next(std::filesystem::path path) override;
 
     bool isOpen() const override { return file_ && file_->isOpen(); }
@@ -65,7 +65,7 @@ private:
 
     std::filesystem::path path_;
     std::optional<OutputFile> file_;
-    std::vector<char> buffer_;  ///< Whole blocks that are not in the file yet.
+    std::vector<char> buffer_;  ///< Complete blocks that are not in the file yet.
     uint64_t flushed_ = 0;      ///< Size of the file [B].
     uint64_t taken_ = 0, unflushed_ = 0;
     std::vector<char> declarations_;  ///< The blocks that declare all streams, for the next file.

@@ -1,4 +1,4 @@
-"""Learns to keep clear of obstacles by what a sonar hears: a vehicle in the harbour steers by the nearest echo in each of
+"""Learns to keep clear of obstacles by sonar: a vehicle in the harbour is steered by the nearest echo in each of
 eight sectors, through sixteen weights that the cross-entropy method finds (Rubinstein 1999). Needs gymnasium.
 
     python components/python/examples/avoid.py            # about a minute on two cores
@@ -12,7 +12,7 @@ import insonify
 import insonify.gym
 
 SECTORS = 8
-FAN = {  # level and so flat that it hears what is in the way, and not the floor
+FAN = {  # level and so flat that it receives obstacles, and not the floor
     "scene.mount": {"position": [0.4, 0, 0]},
     "sonar.beam_count": 96,
     "sonar.bin_count": 128,
@@ -23,14 +23,16 @@ FAN = {  # level and so flat that it hears what is in the way, and not the floor
 
 
 def nearest(observations, threshold=130):
-    """How near the nearest strong echo of each sector is, starboard first [vehicles, sectors]: 1 at the sonar, 0 for none."""
+    """Proximity of the nearest strong echo in each sector, starboard first [vehicles, sectors]: 1 at the sonar, 0
+    for none."""
     vehicles, beams, bins = observations.shape
     strong = (observations.reshape(vehicles, SECTORS, beams // SECTORS, bins) > threshold).any(axis=2)
     return np.where(strong.any(axis=2), 1 - strong.argmax(axis=2) / bins, 0)
 
 
 def steer(weights, observations):
-    """Straight ahead at full speed, turning by a weighted sum of what is near; slower by another one."""
+    """Straight ahead at full speed, turning by a weighted sum of the proximities; slower by another
+    weighted sum."""
     seen = nearest(observations)
     turn = np.tanh(np.einsum("ij,ij->i", weights[:, :SECTORS], seen))
     ahead = 1 - np.clip(np.einsum("ij,ij->i", weights[:, SECTORS:], seen), 0, 0.9)
@@ -38,7 +40,7 @@ def steer(weights, observations):
 
 
 def travelled(env, weights, steps, seed):
-    """How far each vehicle comes before it meets something or time is up [m]."""
+    """Distance that each vehicle covers before it meets something or time is up [m]."""
     observations, _ = env.reset(seed=seed)
     way, alive = np.zeros(env.num_envs), np.ones(env.num_envs, bool)
     for _ in range(steps):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""A fan, what it shows, and what the error of a ping costs: components/python/examples/look.py DEPLOYMENT PICTURE.png
+"""A fan, its objects, and the error of a ping over its time: components/python/examples/look.py DEPLOYMENT PICTURE.png
 
-The error is that against the finest of the ping's samplings, over the time that a coarser one takes."""
+The error is relative to the finest sampling of the ping."""
 import sys
 import time
 
@@ -14,12 +14,13 @@ import numpy as np
 
 deployment, file = sys.argv[1:]
 pose = insonify.Pose([2, 0, -5.5])
-# Noise would hide the error; the sonar's own pings have none.
+# Noise would hide the error; the sonar's own pings have no noise.
 rows = [16, 32, 64, 128, 256, 1024]
 
 
 def noiseless(count):
-    """Of the ping at the pose, with so many rows: its bins and the time of the better of two steps [ms]."""
+    """Bins of the ping at the pose with this number of rows, and the time of the better of two steps
+    [ms]."""
     quality = {"rows": count, "columns_per_beam": 4}
     simulation = insonify.Simulation(deployment, overrides={"sonar.quality": quality, "noise.speckle": None})
     simulation.step(pose)

@@ -31,11 +31,11 @@ class Pose:
     """A body in the world."""
 
     position: np.ndarray
-    """Of its origin [m]: north, west, up."""
+    """Its origin in the world [m]: north, west, up."""
     orientation_wxyz: np.ndarray = field(default_factory=lambda: np.array([1.0, 0.0, 0.0, 0.0]))
     """The quaternion w, x, y, z that turns vectors of the body into the world."""
     time: float | None = None
-    """When it was true [s]; None: unknown."""
+    """Time of validity [s]; None: unknown."""
 
     def __post_init__(self) -> None:
         self.position = np.asarray(self.position, float).reshape(3)
@@ -52,7 +52,8 @@ class Pose:
 
     @classmethod
     def from_matrix(cls, world_from_body: np.ndarray) -> Pose:
-        """Of a 4 x 4 transform: ValueError for one that is not made of a rotation and a place."""
+        """From a 4 x 4 transform. ValueError if it does not consist of a rotation and a
+        translation."""
         matrix = np.asarray(world_from_body, float)
         rotation = matrix[:3, :3]
         if matrix.shape != (4, 4) or not np.allclose(matrix[3], [0, 0, 0, 1]):
@@ -63,7 +64,8 @@ class Pose:
 
     @classmethod
     def from_euler(cls, position: np.ndarray, roll: float = 0, pitch: float = 0, yaw: float = 0) -> Pose:
-        """Turned by Rz(yaw) Ry(pitch) Rx(roll) [rad]: a positive pitch looks down, a positive yaw turns to port."""
+        """From angles: rotation Rz(yaw) Ry(pitch) Rx(roll) [rad]. A positive pitch looks down, a positive yaw
+        turns to port."""
         (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
         return cls(
             position,
@@ -89,7 +91,7 @@ class Pose:
 
 
 def _quaternion(rotation: np.ndarray) -> np.ndarray:
-    """w, x, y, z of a rotation: the largest of the four is taken first, so that none is divided by next to nothing."""
+    """w, x, y, z of a rotation. The largest component is computed first, to avoid dividing by a small number."""
     r = rotation
     squares = np.array(
         [
@@ -112,7 +114,7 @@ def _quaternion(rotation: np.ndarray) -> np.ndarray:
 
 
 class Truth(Mapping):
-    """What the bins of a ping show: arrays [beams, bins] by name, as attributes as well.
+    """The truth of a ping's bins: arrays [beams, bins] by name, as attributes as well.
 
     `object` is an index into `objects` (names), -1 where there is none; `share` of that object in the bin's energy;
     `elevation` and `grazing` [rad]; `hits`; `path` (0 direct, 1 and 2 by the surface, 3 by a second bounce); `shadow`.
@@ -150,12 +152,12 @@ class Ping:
 
     @property
     def time(self) -> float:
-        """When it was true in the world [s]."""
+        """Time of validity in the world [s]."""
         return self._number("time")
 
     @property
     def bins(self) -> NDArray[np.float32]:
-        """[beams, bins]: the simulator's own memory, which stays as long as the array does. Not to be written to."""
+        """[beams, bins]: the simulator's own memory, valid as long as the array. Read-only."""
         return self._arrays["bins"]
 
     @property
@@ -190,7 +192,7 @@ class Ping:
 
     @property
     def truth(self) -> Truth | None:
-        """What the bins show; None where the simulation was not asked for it."""
+        """The truth of the bins; None unless the simulation was made with truth=True."""
         return _truth(self._facts, self._arrays) if "objects" in self._facts else None
 
     def fan(
@@ -203,7 +205,7 @@ class Ping:
         code_bits: int = 8,
     ) -> NDArray[np.uint8]:
         """The ping as a picture [height, width, 3], red first; the arguments are the properties of
-        output::FanImageTask. Ahead is up, port is left. ConfigError for what no picture can be."""
+        output::FanImageTask. Ahead is up, port is left. ConfigError for an impossible picture."""
         return native.fan(self._handle, width, dynamic_range_db, reference_db, colour_map, scale, code_bits)
 
 
@@ -213,18 +215,18 @@ def _truth(facts: dict, arrays: dict) -> Truth:
 
 
 class Simulation:
-    """A deployment that goes on by one pose at a time.
+    """A deployment that is stepped by one pose at a time.
 
-    It runs the tasks of the deployment that lead to pings, in lockstep. The caller replaces the task that gives the
-    vehicle's poses; loggers, pictures and tasks that talk to others are omitted. The same seed and the same poses give the same pings,
-    as `insonify run` does with the same poses. Several simulations may live in one process, each used by one thread at
-    a time: other threads run while one renders.
+    Runs the tasks of the deployment that lead to pings, in lockstep. The caller replaces the task that gives the
+    vehicle's poses; loggers, pictures and tasks that communicate with other programs are omitted. The same seed and
+    the same poses give the same pings, as `insonify run` does. Several simulations may live in one process, each used by one
+    thread at a time: other threads run while one renders.
 
     :param deployment: a file, or a folder with one.
-    :param seed: of the run; 0: the deployment's own seeds.
-    :param overrides: values of "task.property", as of `--set`: what JSON can hold.
-    :param truth: whether pings come with what they show, which takes time.
-    :param period: between two steps [s]; None: that of the poses of the deployment.
+    :param seed: seed of the run; 0: the deployment's own seeds.
+    :param overrides: values of "task.property", as for `--set`: anything that JSON can represent.
+    :param truth: whether pings have their truth, which takes time.
+    :param period: time between two steps [s]; None: the period of the poses in the deployment.
     :raises ConfigError: with `file`, `line`, `column` of the first diagnostic, and all of them in `diagnostics`.
     """
 
@@ -248,24 +250,24 @@ class Simulation:
 
     @property
     def pings(self) -> list[str]:
-        """Ports whose pings step() gives."""
+        """Ports whose pings step() returns."""
         return self._pings
 
     @property
     def period(self) -> float:
-        """Between two steps [s]."""
+        """Time between two steps [s]."""
         return self._period
 
     @property
     def time(self) -> float:
-        """Of the next step, where it is told no other [s]."""
+        """Default time of the next step [s]."""
         return self._simulation.facts()["time"]
 
     def step(self, pose, time: float | None = None):
         """The ping at a pose: a Pose, or a 4 x 4 transform from the body to the world.
 
         With several vehicles, a dictionary of poses by port; with several sonars, the pings come as one. A ping that
-        was not made is None. RuntimeError tells what a task says that is in error.
+        was not made is None. RuntimeError has the message of a task in error.
         """
         given = pose if isinstance(pose, Mapping) else {self._only(self.poses, "poses"): pose}
         handles = native.step(self._simulation, {port: _numbers(each) for port, each in given.items()}, time, len(self.pings))
@@ -273,7 +275,8 @@ class Simulation:
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
     def reset(self, seed: int | None = None) -> None:
-        """Back to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays loaded."""
+        """Resets to the start, as if made anew with this seed, not 0; None: the same seed. The scene stays
+        loaded."""
         native.reset(self._simulation, seed)
 
     @staticmethod
@@ -284,7 +287,7 @@ class Simulation:
 
 
 class Pings:
-    """The pings of one step of a batch, in arrays that belong to the step and are not to be written to."""
+    """The pings of one step of a batch, in read-only arrays that the step owns."""
 
     def __init__(self, handle: native.Handle) -> None:
         self._facts, self._arrays = handle.facts(), dict(handle.arrays())
@@ -299,7 +302,7 @@ class Pings:
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """[simulations], when each ping was [s]."""
+        """[simulations], time of each ping [s]."""
         return self._arrays["times"]
 
     @property
@@ -314,19 +317,20 @@ class Pings:
 
     @property
     def truth(self) -> Truth | None:
-        """What the bins show, arrays of the shape of `bins`; None unless the batch was made with truth=True."""
+        """The truth of the bins, arrays of the shape of `bins`; None unless the batch was made with
+        truth=True."""
         return _truth(self._facts, self._arrays) if "objects" in self._facts else None
 
 
 class SimulationBatch:
-    """Several simulations of one deployment on one scene, stepped side by side: each on one core, as many at a time as
-    there are cores. Simulation `i` pings as a Simulation with seed `batch.seeds[i]`, bit for bit.
+    """Several simulations of one deployment on one scene, stepped in parallel: each on one core, one per core at a
+    time. Simulation `i` gives the pings of a Simulation with seed `batch.seeds[i]`, bit for bit.
 
         batch = insonify.SimulationBatch("deploy/harbour_fls.yml", 32, seed=1)
         bins = batch.step(poses).bins                # [32, beams, bins], of poses [32, 7] or [32, 4, 4]
 
-    :param count: how many, 1 to 65535; each takes the memory of its own sonar, and none of the scene.
-    Others as of Simulation; the deployment has one vehicle and one sonar.
+    :param count: number of simulations, 1 to 65535; each takes the memory of its own sonar, and none of the scene.
+    Other parameters as for Simulation; the deployment has one vehicle and one sonar.
     """
 
     def __init__(
@@ -347,22 +351,22 @@ class SimulationBatch:
 
     @property
     def period(self) -> float:
-        """Between two steps [s]."""
+        """Time between two steps [s]."""
         return self._period
 
     @property
     def seeds(self) -> list[int]:
-        """Of each simulation; 0: the deployment's own."""
+        """Seed of each simulation; 0: the deployment's own."""
         return self._batch.facts()["seeds"]
 
     def step(self, poses) -> Pings:
-        """The ping of each simulation at its pose: an array [simulations, 7] of x, y, z [m] and a quaternion w, x, y, z,
-        one [simulations, 4, 4] of transforms from the body to the world, or a list of Pose. RuntimeError names the first
-        simulation that failed."""
+        """Returns the ping of each simulation at its pose. Poses are an array [simulations, 7] of x, y, z [m] and a
+        quaternion w, x, y, z, an array [simulations, 4, 4] of transforms from the body to the world, or a list of
+        Pose. RuntimeError names the first simulation that failed."""
         return Pings(native.batch_step(self._batch, self._numbers(poses)))
 
     def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
-        """Begins simulations anew, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
+        """Resets simulations, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
         native.batch_reset(self._batch, range(len(self)) if which is None else which, seeds)
 
     def _numbers(self, poses) -> NDArray[np.float64]:
@@ -378,7 +382,7 @@ def _assignments(overrides: Mapping[str, object] | None) -> list[str]:
 
 
 def _plain(value: object) -> object:
-    """What JSON can hold of a number of numpy, an array, or a path."""
+    """Converts a number of numpy, an array, or a path to a value of JSON."""
     return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else str(value)
 
 
@@ -407,7 +411,7 @@ class Log(Mapping):
 
 
 class _Samples:
-    """One stream: samples are read when they are asked for. Pings are Ping, poses Pose, pictures arrays."""
+    """One stream; samples are read on access. Pings are Ping, poses Pose, pictures arrays."""
 
     def __init__(self, log: native.Handle, index: int, stream: dict, times: NDArray[np.float64]) -> None:
         self._log, self._index = log, index
@@ -438,5 +442,6 @@ class _Samples:
 
 
 def read_log(path: str) -> Log:
-    """The streams of a log of Rock's format or an MCAP file. ConfigError for what is no log."""
+    """Returns the streams of a log of Rock's format or an MCAP file. ConfigError for other
+    files."""
     return Log(path)

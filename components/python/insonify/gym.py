@@ -1,10 +1,10 @@
-"""A deployment as an environment of gymnasium: an agent that steers a vehicle by what its sonar hears.
+"""A deployment as an environment of gymnasium: an agent steers a vehicle by its sonar's pings.
 
     env = insonify.gym.SonarEnv("deploy/harbour_fls.yml", start=insonify.Pose([0, 0, -5]))
     observation, info = env.reset(seed=1)
     observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
 
-Many go side by side in one process, on one scene, by SonarVectorEnv.
+SonarVectorEnv runs many in one process, on one scene.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from . import Ping, Pings, Pose, Simulation, SimulationBatch
 
 
 def distance_ahead(ping: Ping, half_sector: float = np.radians(15), below_loudest_db: float = 20) -> float:
-    """Slant range of the nearest echo within a sector ahead that is so far below the loudest there at most [m]; infinite
-    where there is none."""
+    """Slant range of the nearest echo in a sector ahead that is at most this far below the loudest echo there [m];
+    infinite if there is none."""
     return float(_distances_ahead(ping.bins[None], ping.bearings, ping.ranges, half_sector, below_loudest_db)[0])
 
 
 def _distances_ahead(bins, bearings, ranges, half_sector: float = np.radians(15), below_loudest_db: float = 20) -> np.ndarray:
-    """The same of pings [pings, beams, bins]."""
+    """The same for pings [pings, beams, bins]."""
     loudest = np.nan_to_num(bins[:, np.abs(bearings) <= half_sector]).max(axis=1, initial=0)
     least = np.maximum(loudest.max(axis=1, keepdims=True, initial=0) * 10 ** (-below_loudest_db / 10), 0)
     heard = loudest > least
@@ -45,7 +45,7 @@ def _turned(quaternions: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 
 def _rotated(quaternions: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Vectors [..., 3] of the body in the world."""
+    """Vectors [..., 3] of the body, in the world's axes."""
     w, u = quaternions[..., :1], quaternions[..., 1:]
     return vectors + 2 * np.cross(u, np.cross(u, vectors) + w * vectors)
 
@@ -60,11 +60,11 @@ class SonarEnv(gymnasium.Env):
 
     An action is the velocity of the vehicle in its own axes and its rate of turn, (ahead, port, up, turn to port), each
     from -1 to 1 of `max_speed` [m/s] and `max_turn` [rad/s]; it stays level. An observation is the ping as levels,
-    uint8 [beams, bins]: 0 at `floor_db`, 255 at 0 dB of the loudest bin a first ping had. The episode ends where
-    something is nearer ahead than `collision_range` [m], and is cut off after `max_steps`.
+    uint8 [beams, bins]: 0 at `floor_db`, 255 at 0 dB of the loudest bin a first ping had. The episode ends when
+    something ahead is nearer than `collision_range` [m], and is cut off after `max_steps`.
 
     :param start: where episodes begin; `scatter` [m] moves it at random in x and y.
-    :param reward: of a ping, the pose before and the pose now; None: metres made good along x.
+    :param reward: function of a ping, the pose before and the pose now; None: metres made good along x.
     """
 
     metadata = {"render_modes": ["rgb_array"]}
@@ -135,12 +135,12 @@ class SonarEnv(gymnasium.Env):
 
 
 class SonarVectorEnv(gymnasium.vector.VectorEnv):
-    """`num_envs` of SonarEnv in one process: vehicles that do not see each other, on one scene, each rendered on one core, as
-    many at a time as there are cores. An environment whose episode has ended begins anew at its next step, whose action is
-    not used (gymnasium.vector.AutoresetMode.NEXT_STEP).
+    """`num_envs` of SonarEnv in one process: vehicles that do not see each other, on one scene, each rendered on one
+    core, one per core at a time. An environment whose episode has ended is reset at its next step, whose action is not
+    used (gymnasium.vector.AutoresetMode.NEXT_STEP).
 
-    :param reward: of the pings, the positions [num_envs, 3] before and those now, [num_envs]; None: metres made good along
-        x. Others as of SonarEnv.
+    :param reward: function of the pings, the positions [num_envs, 3] before and now, returns [num_envs]; None: metres
+        made good along x. Other parameters as for SonarEnv.
     """
 
     metadata = {"autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}

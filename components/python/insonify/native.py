@@ -1,4 +1,4 @@
-"""The part that is C++, by its C interface: components/python/Interface.hpp."""
+"""The part in C++, by its C interface: components/python/Interface.hpp."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ConfigError(ValueError):
     def __init__(self, message: str, diagnostics: Sequence[dict] = ()) -> None:
         super().__init__(message)
         self.diagnostics = list(diagnostics)
-        """All of them, each with `file`, `line`, `column`, `path` and `message`."""
+        """All diagnostics, each with `file`, `line`, `column`, `path` and `message`."""
         first = self.diagnostics[0] if self.diagnostics else {}
         self.file: str | None = first.get("file")
         self.line: int | None = first.get("line")
@@ -71,7 +71,8 @@ def _raise() -> None:
 
 
 class Handle:
-    """What C++ holds of a thing: facts, and arrays, which stay as long as somebody has them."""
+    """A handle of an object in C++: facts, and arrays, which stay valid as long as they are
+    referenced."""
 
     def __init__(self, pointer: int | None) -> None:
         if pointer is None:
@@ -86,7 +87,7 @@ class Handle:
         return json.loads(facts)
 
     def arrays(self) -> list[tuple[str, NDArray]]:
-        """By name, not to be written to."""
+        """Read-only arrays by name."""
         room = 16
         while True:
             found = (_Array * room)()
@@ -108,7 +109,7 @@ class Handle:
 
 
 def _whole(name: str, number: int, end: int) -> int:
-    """A number from 0 to below `end`; numpy's as well."""
+    """A number from 0 to below `end`; numbers of numpy too."""
     whole = operator.index(number)
     if not 0 <= whole < end:
         raise ValueError(f"{name}: is {whole}; may be 0 to {end - 1}")
@@ -116,7 +117,7 @@ def _whole(name: str, number: int, end: int) -> int:
 
 
 def _optional(name: str, number: float | None):
-    """A pointer to it; None: null."""
+    """A pointer to the value; None: null."""
     if number is not None and not math.isfinite(number):
         raise ValueError(f"{name}: is {number}; must be finite")
     return None if number is None else ctypes.byref(ctypes.c_double(number))
@@ -129,7 +130,8 @@ def simulation(deployment: str, seed: int, overrides: Sequence[str], truth: bool
 
 
 def step(simulation: Handle, poses: dict[str, NDArray], time: float | None, count: int) -> list[Handle | None]:
-    """`count` pings, of poses of seven numbers each: x, y, z [m] and a quaternion w, x, y, z."""
+    """Steps with poses of seven numbers each: x, y, z [m] and a quaternion w, x, y, z. Returns
+    `count` pings."""
     ports = (_text * len(poses))(*(port.encode() for port in poses))
     numbers = np.array([*poses.values()], float).reshape(len(poses), 7)
     made = (_handle * count)()
@@ -154,7 +156,8 @@ def batch(
 
 
 def batch_step(batch: Handle, poses: NDArray[np.float64]) -> Handle:
-    """All pings as one sample, of poses [simulations, 7]: x, y, z [m] and a quaternion w, x, y, z."""
+    """Steps with poses [simulations, 7]: x, y, z [m] and a quaternion w, x, y, z. Returns all
+    pings as one sample."""
     return Handle(_library.insonify_batch_step(batch.pointer, poses.ctypes.data))
 
 

@@ -9,8 +9,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** Mean of a beam's pattern over a cell, by Simpson's rule; of fields the root of the mean power, of the middle's sign.
- */
+/** Returns the mean of a beam's pattern over a cell, by Simpson's rule; for fields the root of the mean power, with the
+ *  sign of the middle. */
 double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing) {
     const double low = rules.pattern(cell.low, bearing), middle = rules.pattern(cell.centre, bearing),
                  high = rules.pattern(cell.high, bearing);
@@ -20,7 +20,7 @@ double meanOver(const Beamformer::Rules& rules, const Beam& cell, double bearing
 
 double widthOf(const Beam& cell) { return cell.high - cell.low; }
 
-/** The first cell of each group, and the number of all. */
+/** Returns the first cell of each group, and the number of cells. */
 std::vector<size_t> groupsOf(const Fan& cells) {
     const double narrow = 1.5 * widthOf(*std::ranges::min_element(cells, {}, widthOf));
     std::vector<size_t> starts{0};
@@ -32,7 +32,7 @@ std::vector<size_t> groupsOf(const Fan& cells) {
     return starts;
 }
 
-/** Takes weights below the floor off both ends. */
+/** Removes weights below the floor from both ends. */
 template <class Run>
 void trim(Run& run, double floor) {
     const auto heard = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
@@ -92,7 +92,7 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Ru
     constexpr double turn = 2 * std::numbers::pi;
     const double low = beam.centre - rules.near, high = beam.centre + rules.near;
     const size_t from = groupAt(low), to = groupAt(high) + 1;
-    // Groups [0, start) and [end, groupCount()) are near as well, by way of the seam.
+    // Groups [0, start) and [end, groupCount()) are near as well, across the seam.
     const size_t start = cells.isRound() && high > cells.high() ? std::min(groupAt(high - turn) + 1, from) : 0;
     const size_t end = cells.isRound() && low < cells.low() ? std::max(groupAt(low + turn), to) : groupCount();
     Band band;

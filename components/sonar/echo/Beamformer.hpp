@@ -9,17 +9,17 @@
 
 namespace insonify::sonar {
 
-/** Forms beams from azimuth cells: beam k hears the sum over the cells of its two-way pattern there times what comes
- *  from the cell (ACOUSTICS.md 5.11). Near its bearing a beam weighs each cell; farther off, where the pattern is all
- *  sidelobes, so many cells together, by the pattern's mean. */
+/** Forms beams from azimuth cells: beam k is the sum over the cells of its two-way pattern there times the cell's
+ *  echoes (ACOUSTICS.md 5.11). Near its bearing a beam weights each cell. Farther away, where the pattern has only
+ *  sidelobes, it weights groups of cells, by the pattern's mean. */
 class Beamformer {
 public:
-    /** Two-way power at an azimuth, of a beam of a bearing [rad], or what its field is multiplied by; 1 on its axis. */
+    /** Two-way power at an azimuth, of a beam at a bearing [rad], or the factor of its field; 1 on its axis. */
     using Pattern = std::function<double(double azimuth, double bearing)>;
 
     static constexpr size_t group_cells = 8;
 
-    /** Bins before `end` in which beams have another pattern: those of an array that is not focused there. */
+    /** Bins before `end` in which beams have another pattern: the pattern of an array that is not focused there. */
     struct Zone {
         size_t end;
         Pattern pattern;
@@ -27,23 +27,23 @@ public:
     };
     struct Rules {
         Pattern pattern;
-        double near;             ///< How far from its bearing a beam weighs each cell [rad].
-        double floor;            ///< What is below it, to either side of 0, is not heard [1].
-        bool of_fields = false;  ///< Fields are summed; of groups, whose fields have any phase, the mean is of powers.
+        double near;             ///< Distance from its bearing within which a beam weights each cell [rad].
+        double floor;            ///< Weights below it, positive or negative, are ignored [1].
+        bool of_fields = false;  ///< Fields are summed. Groups, whose fields have any phase, use the mean of powers.
         std::vector<Zone> nearer = {};  ///< Zones of nearer bins, in order; `pattern` is that of the bins behind them.
     };
 
-    /** `cells` are side by side and equal. Cells that are wider count as a group each; they must be far from all beams.
-     *  Where the cells form a circle, what is near a beam continues across its seam. */
+    /** `cells` are adjacent and of equal width. A wider cell counts as a group of its own and must be far from all
+     *  beams. Where the cells form a circle, the cells near a beam continue across its seam. */
     Beamformer(const Fan& beams, const Fan& cells, size_t bin_count, const Rules& rules);
 
     size_t groupCount() const { return groups_.size() - 1; }
-    /** Sums one group of cells: each once a ping, before beams are formed. `echoes`: [cell][bin]. */
+    /** Sums one group of cells: each once per ping, before beams are formed. `echoes`: [cell][bin]. */
     void sumGroup(size_t group, std::span<const float> echoes);
-    /** Fills the bins of one beam. Allocates nothing, and any threads may form beams at once. */
+    /** Fills the bins of one beam. Allocates nothing. Thread-safe. */
     void form(size_t beam, std::span<const float> echoes, std::span<float> bins) const;
 
-    /** Of beam k: its weight of each cell as it is applied, in the farthest bins [1]. */
+    /** Returns the weight of each cell in beam k, as it is applied in the farthest bins [1]. */
     std::vector<double> weights(size_t beam) const;
 
 private:
@@ -56,16 +56,16 @@ private:
         std::array<Run, 2> cells, groups;
     };
     Band bandOf(const Beam& beam, const Fan& cells, const Rules& rules) const;
-    /** Bins, from the first to before `end`, and the bands of all beams there. */
+    /** Bins before `end`, and the bands of all beams there. */
     struct BandsTo {
         size_t end;
         std::vector<Band> of_beams;
     };
     size_t cellsIn(size_t group) const { return groups_[group + 1] - groups_[group]; }
 
-    std::vector<size_t> groups_;  ///< The first cell of each, and the number of all.
+    std::vector<size_t> groups_;  ///< First cell of each group, and the number of cells.
     size_t bin_count_;
-    std::vector<BandsTo> bands_;  ///< From the nearest bins on.
+    std::vector<BandsTo> bands_;  ///< From the nearest bins.
     std::vector<float> grouped_;  ///< [group][bin].
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 #include "shaders/plane.glsl"
 
-/** Cells of a body that are farther from its limb than their half length times this are planes [1]. */
+/** Cells of a body are planes if their distance from its limb exceeds this number of their half lengths [1]. */
 constexpr double limb_reach = 16;
 
 INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells, double near_edge, double far_edge,
@@ -42,7 +42,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void coverAll(const Cells& cells
     }
 }
 
-/** The estimator that has the features of a plan. */
+/** Returns the estimator with the features of a plan. */
 const EstimatorEntry& estimatorOf(const Features& features) {
     Features known;
     for (const auto& all : {physicalEstimators(), nearestEstimators(), meanEstimators()})
@@ -132,7 +132,7 @@ void CellDeposit::bendCell(int i, double curvature, double near_edge, double far
     covered.strength_range[i] = cells.strength[i] * length;
 }
 
-/** The strength of what does not follow Lambert's law. */
+/** Sets the strength of cells that do not follow Lambert's law. */
 void CellDeposit::applyLaws() {
     for (int i = 0; i < cells.count; ++i) {
         if (rules_.laws.followsLambert(cells.material[i]) || !(covered.pixel[i] > 0)) continue;

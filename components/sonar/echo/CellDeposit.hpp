@@ -7,22 +7,22 @@
 
 namespace insonify::sonar {
 
-/** Where the echoes of cells go. */
+/** Destination of the echoes of cells. */
 struct EchoSums {
-    int first_beam;  ///< Of the sums [1].
-    uint64_t* sums;  ///< EchoRules::sumCount() for each beam from the first on: [bin][channel] in quanta.
-    const TruthSink* truth = nullptr;  ///< Where the truth of the sums is reported; null: nowhere.
-    bool behind_walls = false;         ///< The cells are behind walls; effects have added the water before these.
+    int first_beam;  ///< First beam of the sums [1].
+    uint64_t* sums;  ///< EchoRules::sumCount() for each beam from the first: [bin][channel] in quanta.
+    const TruthSink* truth = nullptr;  ///< Receives the truth of the sums; null: no truth.
+    bool behind_walls = false;  ///< The cells are behind walls; effects have added the water in front of the walls.
 };
 
-/** Adds the echoes of a batch to sums; one function for each estimator of what a bin holds. */
+/** Adds the echoes of a batch to sums; one function for each estimator of a bin's contents. */
 struct EstimatorEntry {
     Features features;
     void (*sum)(const EchoRules& rules, const Cells& cells, const Covered& covered, const EchoSums& to);
 };
 
-/** The one way from samples to bins on the processor. A source, rays (TileCells.hpp) or pictures (PictureCells.hpp),
- *  fills a batch of cells; their echoes, and what effects make of them, are added to the sums. */
+/** The only path from samples to bins on the processor. Rays (TileCells.hpp) or pictures (PictureCells.hpp) fill a
+ *  batch of cells. The echoes of the cells, and what effects add to them, are added to the sums. */
 class CellDeposit {
 public:
     /** `water` is for effects; `bent`: cells have a focus. */
@@ -33,7 +33,7 @@ public:
 
     /** Adds the echoes of all cells of the batch, and empties it. */
     void flush();
-    /** The two ends of flush(), for an estimator of its own in between: covers the cells, and empties the batch. */
+    /** The two parts of flush(), for a custom estimator in between: covers the cells, and empties the batch. */
     void cover();
     void finish();
 
@@ -41,13 +41,13 @@ public:
     Covered covered;
 
 private:
-    /** Covers the cells near the limb of a smooth body, which are covered as planes, as what bends away there. */
+    /** Covers the cells near the limb of a smooth body as a curved surface; they have been covered as planes. */
     void bendCells(double near_edge, double far_edge);
-    /** The curvature of the body along the ray of a cell that meets it at a cosine [1/m]. */
+    /** Returns the curvature of the body along the ray of a cell, which hits it at a cosine [1/m]. */
     double curvature(const Cells::OfBody& of_body, double cosine) const;
     void bendCell(int i, double curvature, double near_edge, double far_edge);
     void applyLaws();
-    /** How the lobe of cell i is seen; zeros where its material has none. */
+    /** Returns the slopes of the lobe in cell i; zeros where its material has none. */
     LobeSlopes lobeSlopes(int i) const;
 
     const EchoRules& rules_;

@@ -13,7 +13,7 @@ std::span<const float> binsOf(const types::Sonar& ping, uint32_t beam) {
     return std::span(ping.bins).subspan(size_t{beam} * ping.bin_count, ping.bin_count);
 }
 
-/** Unknown bins are silent ones. */
+/** Returns the strongest bin; unknown bins count as silent. */
 double strongestOf(const std::vector<float>& bins) {
     double strongest = 0;
     for (const float bin : bins) strongest = std::max(strongest, bin > 0 ? static_cast<double>(bin) : 0);

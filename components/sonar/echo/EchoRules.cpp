@@ -20,22 +20,23 @@ void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
     }
 }
 
-/** How wide a sample is at least [rad]: a quarter of the narrower of what a row and a column cover, for images are
- *  finer at their edges. */
+/** Returns the min width of a sample [rad]: a quarter of the narrower of a row and a column, because images are finer
+ *  at their edges. */
 double smallestSample(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const double row = config.beam_height_deg / config.rows(), column = config.beamWidthDeg() / config.columnsPerBeam();
     return types::radians(std::min(row, column)) / 4;
 }
 
-/** Of the azimuth cells, over the middle one [1]. */
+/** Returns the max width of the azimuth cells relative to the middle cell [1]. */
 double widestCell(const RenderPlan& plan) {
     const auto widthOf = [](const Beam& cell) { return cell.high - cell.low; };
     const double middle = widthOf(plan.cells[plan.cells.size() / 2]);
     return plan.has(Pass::Beamform) ? widthOf(*std::ranges::max_element(plan.cells, {}, widthOf)) / middle : 1;
 }
 
-/** How many of a beam's samples a lobe can fill: those in a circle of its slope, at eight places at once. */
+/** Returns the number of a beam's samples that a lobe can fill: those in a circle of its slope, at eight places at
+ *  once. */
 double samplesOfLobe(const RenderPlan& plan, double samples) {
     double widest = 0;
     for (const MaterialRecord& record : plan.laws.records)
@@ -78,7 +79,7 @@ EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects) {
 double strengthScale(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const BinGrid& bins = plan.grid;
-    constexpr double most = 1048576, max_sum = 8 * most;  // of one deposit, and of a bin: half of 64 bits
+    constexpr double most = 1048576, max_sum = 8 * most;  // max of one deposit, and of a bin: half of 64 bits
     if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges

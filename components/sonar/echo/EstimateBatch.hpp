@@ -1,5 +1,5 @@
 #pragma once
-// How a batch of cells goes through an estimator, with or without the truth. Include it only in files of estimators.
+// Processing of a batch of cells by an estimator, with or without truth. Include it only in files of estimators.
 #include <cmath>
 
 #include "components/sonar/echo/CellDeposit.hpp"
@@ -9,14 +9,14 @@
 namespace insonify::sonar {
 namespace {
 
-/** What a cell shows. */
+/** Truth of a cell. */
 struct CellTruth {
     int64_t object = -1;  ///< Index into Geometry::objects; -1: nothing [1].
-    uint32_t hits = 0;    ///< Samples that the cell is made of [1].
+    uint32_t hits = 0;    ///< Samples of the cell [1].
     double sine_elevation = 0, sine_grazing = 0;
 };
 
-/** An estimator whose deposits go to one beam of their own first, and from there to the sums and to the truth: the same
+/** An estimator that deposits into a beam of its own first, and from there into the sums and the truth: the same
  *  numbers in both. */
 template <class Estimator>
 class Told : public Estimator {
@@ -28,7 +28,7 @@ public:
           beam_numbers_(rules.sumCount()),
           all_(all_sums) {}
 
-    /** What the next deposit is of. */
+    /** Sets the truth of the next deposit. */
     void regard(const CellTruth& cell) { shown_ = cell; }
 
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
@@ -36,7 +36,7 @@ public:
         uint64_t* const to = all_ + static_cast<size_t>(beam) * beam_numbers_;
         const int32_t row = shown_.object < 0 ? -1 : truth_.rowOf(beam);
         const auto [first, last] = touched(cell);
-        if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // what is out of range
+        if (first > 0 && Estimator::features.has(Feature::Published)) move(0, to, -1);  // echoes out of range
         for (uint bin = first; bin < last; ++bin) move(bin, to, row);
     }
 
@@ -44,7 +44,7 @@ private:
     struct Stretch {
         uint first, last;
     };
-    /** From, to: bins in which a deposit of the cell may be. */
+    /** Returns the first and end bins in which a deposit of the cell may be. */
     Stretch touched(const Footprint& cell) const {
         constexpr bool one_bin =
             Estimator::features.has(Feature::Nearest) || Estimator::features.has(Feature::Published);
@@ -56,7 +56,7 @@ private:
         while (bin<this->bin_count&& this->edges[bin]> cell.far_end) ++bin;
         return {first, bin};
     }
-    /** One that counts as a whole where its centre lies, give or take a rounding. */
+    /** Returns the bins of a cell that is deposited as a whole at its centre, with a tolerance of one bin. */
     Stretch touchedByCentre(const Footprint& cell) const {
         const uint bin = cell.pixel > 0 ? nearBin(cell.pixel) : 0;
         return {bin > 0 ? bin - 1 : 0, std::min(bin + 2, this->bin_count)};
@@ -83,7 +83,7 @@ private:
     CellTruth shown_;
 };
 
-/** Adds the echoes of a batch to the sums, and to the truth where it is wanted. */
+/** Adds the echoes of a batch to the sums, and to the truth where it is recorded. */
 template <class Estimator>
 void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered, const EchoSums& to) {
     const auto beamOf = [&](int i) { return static_cast<uint>(cells.beam[i] - to.first_beam); };

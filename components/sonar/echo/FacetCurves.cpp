@@ -14,10 +14,10 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double straight = 1e-3;  ///< Edges that are turned by less are neither hollow nor bent [rad].
-constexpr double coarse = 0.3;     ///< Between facets of a body with 20 round [rad].
+constexpr double straight = 1e-3;  ///< Edges with a smaller turn are neither concave nor bent [rad].
+constexpr double coarse = 0.3;     ///< Turn between facets of a body with 20 around it [rad].
 
-/** Finds the facets that stand for a smooth convex surface. */
+/** Finds the facets that represent a smooth convex surface. */
 class SmoothFacets {
 public:
     SmoothFacets(const types::Mesh& mesh, const glm::dmat3& world_from_mesh)
@@ -36,7 +36,7 @@ public:
             if (rough_[edge.low] || rough_[edge.high]) smooth_[edge.triangle] = false;
     }
 
-    /** Empty: none is. */
+    /** Returns whether each facet is smooth; empty: none is. */
     const std::vector<bool>& smooth() const { return smooth_; }
 
 private:
@@ -59,7 +59,7 @@ private:
                 act(edges_[k - 1], edges_[k]);
     }
 
-    /** Numbers what hangs together, and marks what has an edge of one triangle, or of more than two. */
+    /** Joins connected triangles into bodies, and marks bodies with an edge of one triangle, or of more than two. */
     void joinBodies() {
         std::vector<bool> no_area(body_.size());
         for (const Edge& edge : edges_)
@@ -75,7 +75,7 @@ private:
         }
     }
 
-    /** The sign of a body's volume says on which side of its facets it is. */
+    /** Computes the volumes of bodies, whose sign shows on which side of its facets the body is. */
     void findVolumes() {
         volumes_.resize(body_.size());
         for (uint32_t t = 0; t < body_.size(); ++t) {
@@ -84,7 +84,7 @@ private:
         }
     }
 
-    /** Marks the ends of an edge that no smooth convex surface has. */
+    /** Marks the ends of an edge that is not possible on a smooth convex surface. */
     void markRough(const Edge& one, const Edge& other) {
         const auto a = cornersOf(one.triangle), b = cornersOf(other.triangle);
         const glm::dvec3 n = glm::cross(a[1] - a[0], a[2] - a[0]), m = glm::cross(b[1] - b[0], b[2] - b[0]);
@@ -97,14 +97,14 @@ private:
     const types::Mesh& mesh_;
     glm::dmat3 world_from_mesh_;
     std::vector<Edge> edges_;
-    std::vector<uint32_t> body_;   ///< For each triangle another one of its body, or itself.
-    std::vector<bool> open_;       ///< By body.
-    std::vector<double> volumes_;  ///< By body, six times, with the sign of their winding [m^3].
-    std::vector<bool> rough_;      ///< By vertex.
+    std::vector<uint32_t> body_;   ///< For each triangle another triangle of its body, or itself.
+    std::vector<bool> open_;       ///< For each body.
+    std::vector<double> volumes_;  ///< For each body, six times the volume, with the sign of its winding [m^3].
+    std::vector<bool> rough_;      ///< For each vertex.
     std::vector<bool> smooth_;
 };
 
-/** The lobe's record has the curvatures along its axis and across it. */
+/** Returns the curvature of a facet: its lobe's record has the curvatures along its axis and across it. */
 CurveRecord curveOf(const FacetRecord& facet, const glm::dvec3& normal, const glm::dmat3& world_from_mesh) {
     const glm::dmat3 mesh_from_world = glm::transpose(world_from_mesh);
     glm::dvec3 axis = glm::inverse(mesh_from_world) * glm::dvec3(facet.axis);
@@ -141,7 +141,7 @@ std::vector<CurveRecord> facetCurves(const types::Mesh& mesh, const glm::dmat3& 
     const std::vector<size_t> firsts = firstsOf(mesh);
     types::Mesh once;
     once.positions = mesh.positions;
-    std::vector<size_t> number(firsts.size());  // of each facet in `once`
+    std::vector<size_t> number(firsts.size());  // index of each facet in `once`
     for (size_t i = 0; i < firsts.size(); ++i) {
         number[i] = firsts[i] == i ? once.indices.size() / 3 : number[firsts[i]];
         if (firsts[i] == i)

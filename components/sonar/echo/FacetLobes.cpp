@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double flat = 1e-3;  ///< Normals that differ by less are one [rad].
+constexpr double flat = 1e-3;  ///< Normals that differ by less are equal [rad].
 constexpr double similar = 4;  ///< Facets share the turn at their edge up to this ratio of areas [1].
 constexpr uint32_t nobody = 0xffffffff;
 
@@ -31,7 +31,7 @@ struct Plane {
         u = glm::normalize(glm::cross(normal, least));
         v = glm::cross(normal, u);
     }
-    /** The direction in the plane in which a tensor is largest. */
+    /** Returns the direction in the plane in which a tensor is largest. */
     glm::dvec3 largest(const glm::dmat3& tensor) const {
         const glm::dvec3 tu = tensor * u;
         const double uu = glm::dot(u, tu), uv = glm::dot(v, tu), vv = glm::dot(v, tensor * v);
@@ -55,26 +55,26 @@ struct Moments {
         second += triangle_area / 12 * glm::outerProduct(sum, sum);
         for (const glm::dvec3& corner : corners) second += triangle_area / 12 * glm::outerProduct(corner, corner);
     }
-    /** Mean square distances from the middle, as a tensor [m^2]. */
+    /** Returns the mean square distances from the middle, as a tensor [m^2]. */
     glm::dmat3 spread() const {
         const glm::dvec3 middle = first / area;
         return second / area - glm::outerProduct(middle, middle);
     }
 };
 
-/** A flat part of a mesh: facets whose normals are that of the first of them. */
+/** A flat part of a mesh: facets whose normals equal that of the first facet. */
 struct FlatPart {
     glm::dvec3 normal;
     Moments moments;
-    glm::dmat3 steps{0};                  ///< Of its facets, by their areas [m^2].
-    glm::dmat3 curvature{0};              ///< The same [m].
-    glm::dvec3 lean{0};                   ///< Slopes at its edges, by the squares of the turns there [rad^3].
-    double turns = 0, fourths = 0;        ///< Of squares of these turns, and of these by those of half of them.
-    glm::dvec3 outward{0};                ///< Turns at its edges by their lengths, as vectors across the edges [m].
+    glm::dmat3 steps{0};                  ///< Steps of its facets, weighted by their areas [m^2].
+    glm::dmat3 curvature{0};              ///< Curvatures of its facets, likewise [m].
+    glm::dvec3 lean{0};                   ///< Slopes at its edges, weighted by the squares of the turns there [rad^3].
+    double turns = 0, fourths = 0;        ///< Sums of squares of these turns, and of these times squares of half turns.
+    glm::dvec3 outward{0};                ///< Turns at its edges times their lengths, as vectors across the edges [m].
     glm::dmat3 bend{0};                   ///< The same as a tensor [m].
-    std::array<glm::dvec3, 2> axes{};     ///< Of its longest and of its shortest extent.
-    std::array<double, 2> low{}, high{};  ///< Where it ends along these [m].
-    std::array<double, 2> lengths{};      ///< Coherent lengths along these [m].
+    std::array<glm::dvec3, 2> axes{};     ///< Directions of its longest and of its shortest extent.
+    std::array<double, 2> low{}, high{};  ///< Its ends along `axes` [m].
+    std::array<double, 2> lengths{};      ///< Coherent lengths along `axes` [m].
 
     void turnAxes() {
         axes[0] = Plane(normal).largest(moments.spread());
@@ -82,7 +82,8 @@ struct FlatPart {
         low.fill(INFINITY);
         high.fill(-INFINITY);
     }
-    /** Whether it is part of a curve in a direction: both sides turn away alike. What turns on one side ends there. */
+    /** Returns whether it is part of a curve in a direction: both sides turn away equally. A part that turns on one
+     *  side only ends there. */
     bool bendsAlong(const glm::dvec3& axis) const {
         constexpr double one_sided = 0.7;
         return std::abs(glm::dot(outward, axis)) < one_sided * along(bend, axis);
@@ -94,14 +95,14 @@ struct FlatPart {
             high[k] = std::max(high[k], at);
         }
     }
-    /** The mean of the extent and of that of a rectangle with the same second moment: exact for rectangles, and for
-     *  slivers that end in a point, whose coherent length is 8/9 of the extent, 2 % more. */
+    /** Sets the lengths to the mean of the extent and that of a rectangle with the same second moment. This is exact
+     *  for rectangles, and 2 % too long for slivers that end in a point, whose coherent length is 8/9 of the extent. */
     void measure() {
         const glm::dmat3 spread = moments.spread();
         for (size_t k = 0; k < 2; ++k)
             lengths[k] = (high[k] - low[k] + std::sqrt(12 * std::max(along(spread, axes[k]), 0.0))) / 2;
     }
-    /** Inverse squares of the lengths [1/m^2]. */
+    /** Returns the inverse squares of the lengths [1/m^2]. */
     glm::dmat3 perSquare() const {
         glm::dmat3 sum(0);
         for (size_t k = 0; k < 2; ++k)
@@ -134,8 +135,8 @@ private:
     struct Facet {
         glm::dvec3 normal{0};                                        ///< Unit; 0 where it has no area.
         double area = 0;                                             ///< [m^2]
-        std::array<uint32_t, 3> neighbours{nobody, nobody, nobody};  ///< Across edges that are no creases.
-        uint32_t smooth = nobody, part = nobody;                     ///< Which smooth part, which flat one it is of.
+        std::array<uint32_t, 3> neighbours{nobody, nobody, nobody};  ///< Across edges that are not creases.
+        uint32_t smooth = nobody, part = nobody;                     ///< Its smooth part and its flat part.
         glm::mat3 steps{0};                                          ///< Mean square slopes [1].
         glm::mat3 curvature{0};                                      ///< [1/m]
     };
@@ -154,7 +155,7 @@ private:
         if (length > 0) facets_[t].normal = across / length, facets_[t].area = length / 2;
     }
 
-    /** Calls act(one facet, the other, angle between their normals, edge) for edges that are no creases. */
+    /** Calls act(one facet, the other, angle between their normals, edge) for edges that are not creases. */
     template <class Act>
     void eachBend(const Act& act) {
         for (size_t k = 1; k < edges_.size(); ++k) {
@@ -172,8 +173,8 @@ private:
             turnAt(other, one, turn, edge);
         });
     }
-    /** A facet's part in the turn at an edge: half of it, but hardly any beside a facet that is much smaller, which is
-     *  the curve where a flat part ends. `ratio`: of its area to the other's. */
+    /** Returns a facet's share of the turn at an edge. It is half, but almost none next to a much smaller facet, which
+     *  is the curve where a flat part ends. `ratio`: its area relative to the other's. */
     static double shareOf(double ratio) {
         if (ratio < 1) return 1 - shareOf(1 / ratio);
         return ratio > similar ? similar * similar / (2 * ratio * ratio) : 0.5;
@@ -189,7 +190,7 @@ private:
         facet.steps += glm::mat3(2 * own * own * square);
         facet.curvature += glm::mat3(own * length / facet.area * square);
     }
-    /** Half of the way to the neighbour's normal is the slope of a smooth surface at the edge. */
+    /** Adds the slope at an edge: on a smooth surface, halfway to the neighbour's normal. */
     void leanAt(uint32_t t, uint32_t neighbour, double turn, const glm::dvec3& edge) {
         FlatPart& part = parts_[facets_[t].part];
         const glm::dvec3 way = facets_[neighbour].normal - facets_[t].normal;
@@ -203,7 +204,7 @@ private:
         part.fourths += std::pow(turn * std::tan(turn / 2), 2);
     }
 
-    /** Gives a number to all facets that can be reached from one another, where `joined` allows the step. */
+    /** Numbers all facets that are connected, where `joined` allows the step. */
     template <class Begin, class Joined>
     void flood(uint32_t Facet::*number, const Begin& begin, const Joined& joined) {
         std::vector<uint32_t> open;
@@ -289,8 +290,8 @@ private:
         if (!curved[0] && !curved[1])  // a plate of any shape returns A^2 / lambda^2
             for (double& wave : waves) wave *= part.lengths[0] * part.lengths[1] / part.moments.area;
         const auto direction = [&](size_t k, double shape) { return vec4(steps[k], waves[k], curvatures[k], shape); };
-        // A cone's normals lie on a circle, that of a facet within it: along the facet they lean by (1 + x^2) / 2 of
-        // what they do at its edges, where its slope across, x in units of half the turn there, is 1.
+        // The normals of a cone are on a circle, a facet's inside it: along the facet they lean by (1 + x^2) / 2 of
+        // their lean at its edges. The slope across, x in units of half the turn there, is 1 at the edges.
         const bool leans = curved[0] && !curved[1] && part.turns > 0;
         const double lean = leans ? glm::dot(part.lean, axes[1]) / part.turns / 2 : 0;
         return {vec4(glm::vec3(glm::transpose(world_from_mesh_) * axes[0]), 0), direction(0, lean),

@@ -5,20 +5,20 @@
 namespace insonify::sonar {
 namespace {
 
-/** A cell that the body bends away from (ACOUSTICS.md 4.7). */
+/** A cell on a curved body (ACOUSTICS.md 4.7). */
 struct BentCell {
-    double curvature;              ///< The body's along the ray, above 0 [1/m].
-    double perpendicular;          ///< Distance of the plane that the body touches in the cell's middle [m].
-    double width, height, cos_el;  ///< The cell's angles [rad], and that of its middle.
-    double sag;                    ///< How far the mean of 1/r over the plane is below its middle [1/m].
+    double curvature;              ///< Curvature of the body along the ray, above 0 [1/m].
+    double perpendicular;          ///< Distance of the body's tangent plane in the cell's middle [m].
+    double width, height, cos_el;  ///< Width and height of the cell [rad], and cosine of its middle's elevation [1].
+    double sag;                    ///< Difference of 1/r in the middle and its mean over the plane [1/m].
     double near_limit, far_limit;  ///< Inverse ranges of the object [1/m].
     double near_edge, far_edge;    ///< Inverse ranges of the bins [1/m].
 };
 
-/** Puts the sphere that touches the cell's plane in its middle in the place of the plane.
+/** Replaces the cell's plane by the sphere that touches it in the cell's middle.
  *  @param cell  of the plane, with an echo
- *  @returns the length L by which the sphere's echo goes with inverse range g as L g (g^2 - limb^2), the plane's
- *           perpendicular distance before [m] */
+ *  @returns the length L of the sphere's echo, which varies with inverse range g as L g (g^2 - limb^2); it replaces the
+ *          plane's perpendicular distance [m] */
 inline double bend(Footprint& cell, const BentCell& at) {
     const double range = 1 / cell.pixel, length = at.perpendicular + 0.5 * at.curvature * range * range;
     const double per_length = 1 / length, flatness = at.perpendicular * per_length;

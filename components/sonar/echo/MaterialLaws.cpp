@@ -17,9 +17,9 @@ namespace {
 static_assert(acoustics::BackscatterTable::entries == BACKSCATTER_ENTRIES);
 
 constexpr double water_density = 1025;   ///< [kg/m^3]
-constexpr double min_lobe_share = 1e-4;  ///< A rough solid whose lobe keeps less energy has none [1].
+constexpr double min_lobe_share = 1e-4;  ///< A rough solid whose lobe has less energy has no lobe [1].
 
-/** What shaders/backscatter.glsl reads and computes. */
+/** Input and code of shaders/backscatter.glsl. */
 struct Shared {
     const double* entries;
     double backscatterEntry(uint i) const { return entries[i]; }
@@ -39,12 +39,12 @@ std::optional<acoustics::RoughSurface> roughSurface(const types::Material& mater
                                      config.speedOfSound());
 }
 
-/** Adds tables, that of a seabed or a matter once. */
+/** Adds tables; that of a seabed or a matter only once. */
 class TableList {
 public:
     TableList(const SonarConfig& config, MaterialLaws& laws) : config_(config), laws_(laws) {}
 
-    /** Number of the table that a material follows; -1: it follows Lambert's law. */
+    /** Returns the number of the table that a material follows; -1: it follows Lambert's law. */
     int of(const types::Material& material) {
         if (!material.measured.empty()) return addMeasured(material);
         if (!material.matter.empty()) return ofMatter(material);
@@ -155,7 +155,7 @@ MaterialLaws::Bistatic MaterialLaws::bistatic(size_t material, double in, double
                                               const LobeSlopes& slopes) const {
     Shared shared{tables.data()};
     const MaterialRecord& record = records[material];
-    const auto diffuse = [&](double cosine) {  // over the cosine
+    const auto diffuse = [&](double cosine) {  // relative to the cosine
         return record.law.x < 0 ? double{record.values.x} * cosine
                                 : shared.tabulatedBackscatter(static_cast<uint>(record.law.x), cosine);
     };

@@ -9,9 +9,9 @@
 
 namespace insonify::sonar {
 
-constexpr double crease = std::numbers::pi / 3;  ///< Between neighbours of one smooth part there is less [rad].
+constexpr double crease = std::numbers::pi / 3;  ///< Neighbours in one smooth part have a smaller angle [rad].
 
-/** An edge of a triangle by the places of its ends, the lesser first: meshes have a vertex several times. */
+/** An edge of a triangle by the vertices at its ends, the lower first. Vertices at one place are welded. */
 struct Edge {
     uint32_t low, high, triangle;
     auto operator<=>(const Edge&) const = default;
@@ -20,7 +20,7 @@ struct Edge {
 /** Returns for each vertex the first vertex at the same place. */
 std::vector<uint32_t> weld(const std::vector<glm::vec3>& positions);
 
-/** The edges of all triangles of a mesh, ascending: those of neighbours follow each other. */
+/** Returns the edges of all triangles of a mesh, ascending: common edges of neighbours are adjacent. */
 std::vector<Edge> edgesOf(const types::Mesh& mesh);
 
 }  // namespace insonify::sonar

@@ -18,7 +18,7 @@ INSONIFY_ESTIMATE(sumNearest, NearestBins)
 
 constexpr EstimatorEntry entries[] = {
     {NearestBins::features, sumNearest},
-    {Features{Feature::Physical, Feature::Nearest, Feature::Jitter}, sumNearest},  // the source draws the point
+    {Features{Feature::Physical, Feature::Nearest, Feature::Jitter}, sumNearest},  // at a random point
 };
 
 }  // namespace

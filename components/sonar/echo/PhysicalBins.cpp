@@ -3,7 +3,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Several numbers at a time. */
+/** Several numbers that are processed together. */
 using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
 
 /** The same in whole quanta. */
@@ -18,7 +18,7 @@ inline Lanes load(const double* from) {
     return lanes;
 }
 
-/** Energies of footprints: what deposit.glsl does with HAVE_PHYSICAL, several bins at once. */
+/** Energies of footprints: as deposit.glsl with HAVE_PHYSICAL, several bins at once. */
 struct PhysicalBins : Bins {
     static constexpr Features features{Feature::Physical};
     using Bins::Bins;
@@ -60,7 +60,7 @@ private:
     static void add(Lanes amounts, uint64_t* to) {
         Counts counts;
         std::memcpy(&counts, to, sizeof counts);
-        // Signed, for which there is an instruction.
+        // Signed, because there is an instruction for it.
         counts += __builtin_convertvector(min(amounts, 1048576.0) * quanta_per_unit + 0.5, Counts);
         std::memcpy(to, &counts, sizeof counts);
     }

@@ -7,29 +7,30 @@
 
 namespace insonify::sonar {
 
-/** What the pulse makes of a beam: each bin's echo spreads over its neighbours as h does (ACOUSTICS.md 5.12), the echo
- *  being spread evenly over its own bin and h taken in the middle of the others. */
+/** The pulse's effect on a beam: each bin's echo spreads over its neighbours by h (ACOUSTICS.md 5.12). The echo is
+ *  assumed uniform over its own bin, and h is evaluated in the middle of the others. */
 class RangeResponse {
 public:
-    static constexpr double floor_db = -50;  ///< Sidelobes below it are left out.
+    static constexpr double floor_db = -50;  ///< Sidelobes below it are omitted [dB].
 
     RangeResponse(const acoustics::Pulse& pulse, const BinGrid& grid);
 
-    /** Room that `echoes` needs before its first and after its last bin, of zeros [bins]. */
+    /** Returns the number of zero bins that `echoes` needs before its first and after its last bin [bins]. */
     size_t margin() const { return taps_.size() / 2; }
-    /** `echoes`: margin() zeros, one intensity for each of `bins`, margin() zeros. Allocates nothing. */
+    /** Spreads echoes into `bins`. `echoes`: margin() zeros, one intensity for each of `bins`, margin() zeros.
+     *  Allocates nothing. */
     void spread(std::span<const float> echoes, std::span<float> bins) const;
 
-    const std::vector<float>& taps() const { return taps_; }  ///< Of bins from -margin() to margin() away [1].
+    const std::vector<float>& taps() const { return taps_; }  ///< Weights of bins from -margin() to margin() away [1].
 
 private:
     std::vector<float> taps_;
 };
 
-/** Whether the pulse is so short that the bins, not it, are what range resolution there is. */
+/** Returns whether the pulse is so short that the bins determine the range resolution. */
 bool isShort(const acoustics::Pulse& pulse, const BinGrid& grid);
 
-/** Slant range that a sonar resolves: a bin, or that of its pulse where that is longer [m]. */
+/** Returns the range resolution of a sonar: a bin, or that of its pulse where it is longer [m]. */
 double rangeCellOf(const SonarConfig& config);
 
 }  // namespace insonify::sonar

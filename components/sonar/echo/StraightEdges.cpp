@@ -14,14 +14,14 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double same_direction = 1e-3;  ///< Lines and planes that differ by less are one [rad].
+constexpr double same_direction = 1e-3;  ///< Lines and planes that differ by less are equal [rad].
 constexpr uint32_t no_group = 0xffffffff;
 
 double between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/** Sets that are joined. */
+/** Disjoint sets that can be joined. */
 class Unions {
 public:
     explicit Unions(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -40,8 +40,8 @@ struct Side {
     Edge edge;
     glm::dvec3 inward;  ///< Unit, across the side into the triangle, in the world's axes.
     uint32_t line = no_group;
-    double low = 0, high = 0;  ///< Where it begins and ends along its line [m].
-    bool is_smooth = false;    ///< The surface goes on behind it with a small turn.
+    double low = 0, high = 0;  ///< Ends along its line [m].
+    bool is_smooth = false;    ///< The surface continues behind it with a small turn.
     bool echoes = false;
 };
 
@@ -81,7 +81,7 @@ private:
         return world_from_mesh_ * (glm::dvec3(mesh_.positions[vertex]) - glm::dvec3(mesh_.positions[0]));
     }
     glm::dvec3 wayOf(const Edge& edge) const { return place(edge.high) - place(edge.low); }
-    /** Zero where the triangle has no area. */
+    /** Returns the unit vector across an edge into the triangle; zero where the triangle has no area. */
     glm::dvec3 inwardOf(const Edge& edge) const {
         const uint32_t* index = mesh_.indices.data() + 3 * size_t{edge.triangle};
         const glm::dvec3 way = wayOf(edge), from = place(edge.low);
@@ -113,7 +113,7 @@ private:
             first = last;
         }
     }
-    /** Whether faces go on behind an edge in their own planes; joins these. */
+    /** Returns whether faces continue behind an edge in their own planes; joins these. */
     bool isFlat(std::span<const Side> sides) {
         size_t going_on = 0;
         for (size_t i = 0; i < sides.size(); ++i) {
@@ -147,7 +147,7 @@ private:
         }
         std::ranges::stable_sort(order_, {}, [&](uint32_t i) { return sides_[i].line; });
     }
-    /** By how much a surface turns from one face to the other [rad]. */
+    /** Returns the turn of a surface from one face to the other [rad]. */
     static double turnOf(const Side& one, const Side& other) {
         return std::numbers::pi - between(one.inward, other.inward);
     }
@@ -157,7 +157,7 @@ private:
         const Side& longest = sides_[*std::ranges::max_element(
             items, {}, [&](uint32_t i) { return glm::length(wayOf(sides_[i].edge)); })];
         const glm::dvec3 origin = place(longest.edge.low), along = glm::normalize(wayOf(longest.edge));
-        std::map<double, uint32_t> stops;  // corners by where they are
+        std::map<double, uint32_t> stops;  // corners by their places
         for (const uint32_t i : items) {
             Side& side = sides_[i];
             side.low = glm::dot(place(side.edge.low) - origin, along);
@@ -181,8 +181,8 @@ private:
             }
         }
     }
-    /** The faces of a line at a place, in the order of their parts; none where they turn by too little or are too many.
-     */
+    /** Returns the faces of a line at a place, in the order of their parts; none where the turn is too small or there
+     *  are too many. */
     std::optional<std::array<const Side*, 2>> facesAt(std::span<const uint32_t> items, double at) {
         std::vector<const Side*> faces;
         for (const uint32_t i : items) {
@@ -203,7 +203,7 @@ private:
         return partOf(*a[0]) == partOf(*b[0]) && partOf(*a[1]) == partOf(*b[1]);
     }
 
-    /** Removes stretches that at both ends go on as the facets of a curve do. */
+    /** Removes stretches that continue at both ends like the facets of a curve. */
     void omitCurves() {
         std::multimap<uint32_t, size_t> at;
         for (size_t i = 0; i < stretches_.size(); ++i) {
@@ -233,7 +233,7 @@ private:
         });
     }
 
-    /** Sides whose middle is on a stretch echo with it. */
+    /** Marks the sides whose middle is on a stretch: they echo with it. */
     void markSides(const Stretch& stretch) {
         const uint32_t line = stretch.faces[0]->line;
         const auto [first, last] =
@@ -284,7 +284,7 @@ private:
     double min_turn_;
     Unions parts_;  ///< Triangles of one plane.
     std::vector<Side> sides_;
-    std::vector<uint32_t> order_;  ///< Sides by their lines.
+    std::vector<uint32_t> order_;  ///< Sides, sorted by line.
     std::vector<Stretch> stretches_;
     std::vector<int> materials_;                           ///< Material of each triangle.
     std::map<uint32_t, std::vector<uint32_t>> triangles_;  ///< Triangles of each flat part.

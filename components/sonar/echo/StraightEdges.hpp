@@ -19,21 +19,21 @@ struct EdgeFace {
 /** A straight edge, of which a mesh may have many pieces. */
 struct StraightEdge {
     glm::dvec3 from, to;             ///< Ends, in the axes of the mesh [m].
-    std::array<EdgeFace, 2> faces;   ///< Both the same where the edge is that of a thin sheet.
+    std::array<EdgeFace, 2> faces;   ///< Both are equal at the edge of a thin sheet.
     std::array<uint32_t, 2> corner;  ///< First vertices at the places of both ends.
 };
 
 /** The straight, sharp edges of a mesh. */
 struct StraightEdges {
     std::vector<StraightEdge> edges;
-    std::vector<uint8_t> encloses;  ///< For each triangle, 1 where its flat part ends at these edges alone, else 0.
+    std::vector<uint8_t> encloses;  ///< For each triangle, 1 where its flat part ends only at these edges, else 0.
 };
 
 /** Returns the edges at which the surface turns by at least an angle, and those with one face only (ACOUSTICS.md 3.12).
- *  Pieces on one line between the same two flat parts are one edge, whatever the triangles are. Omits edges of three
- *  or more faces, and edges that stand for a curve: at both ends they go on in the same flat part with a bend of less
- *  than 60 deg.
- *  @param world_from_mesh  turns and scales the mesh; angles and lengths are those of the world
+ *  Pieces on one line between the same two flat parts are one edge, independent of the triangles. Omits edges of three
+ *  or more faces. Omits edges that represent a curve: at both ends they continue in the same flat part with a bend of
+ *  less than 60 deg.
+ *  @param world_from_mesh  rotates and scales the mesh; angles and lengths are those of the world
  *  @param min_turn  [rad], above 0 */
 StraightEdges straightEdges(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, double min_turn);
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 
-/** The azimuth, or the same one a whole turn on or back where that alone lies between two others [rad]. */
+/** Returns the azimuth, or the azimuth plus or minus a whole turn where only that is between two others [rad]. */
 double turnedBetween(double low, double high, double azimuth) {
     if (azimuth < low && azimuth + whole_turn < high) return azimuth + whole_turn;
     return azimuth >= high && azimuth - whole_turn >= low ? azimuth - whole_turn : azimuth;

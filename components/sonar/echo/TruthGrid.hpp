@@ -14,59 +14,60 @@
 
 namespace insonify::sonar {
 
-/** Of each azimuth cell of a plan, the beam that shows it: one within half whose spacing to its neighbour it lies; -1
- *  for a cell that is heard in sidelobes only. Empty where cells are beams. */
+/** Returns for each azimuth cell of a plan the beam that shows it. A beam shows the cells up to halfway to its
+ *  neighbours. -1 for a cell in sidelobes only. Empty where cells are beams. */
 std::vector<int32_t> beamsOfCells(const RenderPlan& plan);
 
-/** The way of what azimuth cells show to the truth of a ping's beams: that of the cells next to its bearing. */
+/** Transfers the truth of azimuth cells to the truth of a ping's beams: each beam gets that of the cells next to its
+ *  bearing. */
 class TruthGrid {
 public:
-    /** `whole`: each cell comes once a ping. */
+    /** `whole`: each cell is taken once per ping. */
     TruthGrid(const RenderPlan& plan, bool whole);
 
     void begin();
-    /** All or a part of what a cell shows. Several threads may give cells at once. */
+    /** Takes all or a part of the truth of a cell. Thread-safe. */
     void take(size_t cell, const TruthTable& echoes, size_t of, types::SonarTruth& truth);
-    /** Once all cells are taken. */
+    /** Completes the truth once all cells are taken. */
     void finish(types::SonarTruth& truth, ThreadPool& threads) const;
 
 private:
     std::vector<int32_t> beams_of_cells_;
     size_t beam_count_;
-    std::optional<TruthTable> gathered_;  ///< Where a beam comes in several parts.
-    std::deque<std::mutex> alone_;        ///< Of each beam that does.
+    std::optional<TruthTable> gathered_;  ///< Used where the truth of a beam has several parts.
+    std::deque<std::mutex> alone_;        ///< One for each such beam.
 };
 
-/** By which way most of what a bin holds has come, and of which object that is: energies of the cells by each, added up
- *  for the beams that show them. */
+/** The kind of path that contributes most to a bin, and the object of its echo. Sums the cells' energies by kind of
+ *  path, for the beams that show the cells. */
 class PathTruth {
 public:
-    /** As types::SonarTruth::path tells them, from 1. */
+    /** Values of types::SonarTruth::path, from 1. */
     enum Path { SurfaceOnce = 1, SurfaceTwice, Bounced };
 
-    /** `bin_count`: of the sums, a multiple of the plan's. */
+    /** `bin_count`: bins of the sums, a multiple of the plan's. */
     PathTruth(const RenderPlan& plan, size_t bin_count);
 
     void begin();
-    /** Where the energies by a way are summed: [cell][bin], in quanta. */
+    /** Returns the sums of energies via a path: [cell][bin], in quanta. */
     uint64_t* sums(Path path) { return sums_[path - 1].data(); }
-    /** Adds an echo by any of the ways, which is in bin `bin` of the sums of a cell. Several threads may do so at once.
-     */
+    /** Adds an echo via any of the paths, in bin `bin` of the sums of a cell. Thread-safe. */
     void show(size_t cell, size_t bin, const ObjectEcho& echo);
-    /** Once all are summed, and before they are added to the cells: what a cell has heard directly, none where its
-     *  energies are not known. `quantum`: of the sums [sr]. */
+    /** Takes the energies of a cell once all are summed, before they are added to the cell. `direct`: the cell's direct
+     *  echoes, empty where their energies are unknown. `quantum`: of the sums [sr]. */
     void take(size_t cell, std::span<const float> direct, const BinLevels& levels, double quantum);
-    /** Once all cells are taken, and the rest of the truth is told. What a bin shows is that of the loudest way. */
+    /** Completes the truth once all cells are taken and the rest of the truth is recorded. A bin shows the truth of its
+     *  strongest path. */
     void report(types::SonarTruth& truth);
 
 private:
-    std::vector<int32_t> beams_of_cells_;  ///< Empty: they are the beams.
-    size_t sum_count_, bin_count_;         ///< Of a cell; of a beam.
+    std::vector<int32_t> beams_of_cells_;  ///< Empty: cells are beams.
+    size_t sum_count_, bin_count_;         ///< Bins of a cell; of a beam.
     bool knows_direct_ = false;
     std::array<std::vector<uint64_t>, 3> sums_;
-    std::array<std::vector<double>, 4> energies_;  ///< Direct, and by each way: [beam][bin].
-    TruthTable shown_;                             ///< By all ways but the direct one.
-    std::deque<std::mutex> alone_;                 ///< Of each beam.
+    std::array<std::vector<double>, 4> energies_;  ///< Direct, and via each path: [beam][bin].
+    TruthTable shown_;                             ///< Echoes via all paths except the direct one.
+    std::deque<std::mutex> alone_;                 ///< One for each beam.
     types::SonarTruth shown_truth_;
 };
 

@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Turns sines into angles, within 3e-7 rad: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46. */
+/** Converts sines into angles, within 3e-7 rad: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46. */
 INSONIFY_VECTOR_CLONES void toAngles(float* sines, size_t count) {
     constexpr float quarter = std::numbers::pi_v<float> / 2;
     for (size_t i = 0; i < count; ++i) {

@@ -9,22 +9,22 @@
 
 namespace insonify::sonar {
 
-/** Set in the index of an object whose echo has come through a wall. */
+/** Set in the index of an object whose echo has passed a wall. */
 constexpr uint32_t behind_walls = 0x80000000;
-/** The same where its echo has rung in its own wall. */
+/** Set in the index of an object whose echo has rung in its own wall. */
 constexpr uint32_t rung_in_wall = 0x40000000;
 
-/** What one object has sent back to one bin. Weighted by energy, sines are counted in half quanta. */
+/** The echo of one object in one bin. Sines are weighted by energy and counted in half quanta. */
 struct ObjectEcho {
-    uint64_t energy = 0;    ///< In quanta, as the bin's own sum.
+    uint64_t energy = 0;    ///< In quanta, as the sum of the bin.
     int64_t elevation = 0;  ///< Sine of the elevation, weighted.
     int64_t grazing = 0;    ///< Sine of the grazing angle, weighted.
     uint32_t object = 0;    ///< Index into Geometry::objects; with behind_walls or rung_in_wall [1].
     uint32_t hits = 0;      ///< Samples [1].
 
-    /** Of one cell: `energy` above 0. */
+    /** Returns the echo of one cell: `energy` above 0. */
     static ObjectEcho of(uint64_t energy, double sine_elevation, double sine_grazing, uint32_t object, uint32_t hits) {
-        // Half, so that a sum holds what the bin's own holds; signed, for there is an instruction for that.
+        // Half, so that a sum has the range of the bin's sum; signed, because there is an instruction for it.
         const double half = 0.5 * static_cast<double>(static_cast<int64_t>(energy));
         return {energy, static_cast<int64_t>(half * sine_elevation), static_cast<int64_t>(half * sine_grazing), object,
                 hits};
@@ -37,11 +37,11 @@ struct ObjectEcho {
     }
 };
 
-/** Of which objects the echoes in the bins of some beams are. All sums are of whole numbers, so that the order in which
- *  echoes come is free: the same table on any number of threads.
+/** The objects of the echoes in the bins of some beams. All sums are of whole numbers, so that the order of the echoes
+ *  is free: the table is the same for any number of threads.
  *
- *  Up to `told_apart` objects of a bin are told apart, and all energies exact. Of more than that, those of the lowest
- *  index are; what the others send back counts in the bin's energy and hits. */
+ *  Up to `told_apart` objects of a bin are distinguished, with exact energies. If there are more, the objects with the
+ *  lowest indices are distinguished; the others count in the bin's energy and hits. */
 class TruthTable {
 public:
     static constexpr size_t told_apart = 4;
@@ -61,37 +61,37 @@ public:
             addToOthers(at, echo);
         }
     }
-    /** Adds a beam of another table with as many bins. */
+    /** Adds a beam of another table with the same number of bins. */
     void merge(size_t beam, const TruthTable& other, size_t of);
-    /** Fills beam `to` of a truth that has these bins, direct path and shadow included. */
+    /** Fills beam `to` of a truth that has these bins, including direct path and shadow. */
     void report(size_t beam, size_t to, types::SonarTruth& truth) const;
 
 private:
     static constexpr uint8_t more = told_apart + 1;  ///< In used_: there is a rest.
 
     size_t objectsAt(size_t at) const { return std::min<size_t>(used_[at], told_apart); }
-    /** Of one bin, one of its objects. */
+    /** Returns one of the objects of a bin. */
     const ObjectEcho& echo(size_t at, size_t i) const {
         return i == 0 ? first_[at] : others_[at * (told_apart - 1) + i - 1];
     }
     ObjectEcho& echo(size_t at, size_t i) { return const_cast<ObjectEcho&>(std::as_const(*this).echo(at, i)); }
     void addToOthers(size_t at, const ObjectEcho& echo);
     void addRest(size_t at, const ObjectEcho& echo);
-    /** Sines for angles. */
+    /** Reports a bin, with sines instead of angles. */
     void reportBin(size_t at, size_t to, types::SonarTruth& truth) const;
 
     size_t bins_;
     std::vector<uint8_t> used_;       ///< Objects of each bin; or `more`.
-    std::vector<ObjectEcho> first_;   ///< Of each bin, the object that came first: most bins have one.
-    std::vector<ObjectEcho> others_;  ///< Of each bin, the others.
-    std::vector<ObjectEcho> rest_;    ///< Of objects that are not told apart, where there is one.
+    std::vector<ObjectEcho> first_;   ///< First object of each bin: most bins have one.
+    std::vector<ObjectEcho> others_;  ///< Other objects of each bin.
+    std::vector<ObjectEcho> rest_;    ///< Sum of the objects that are not distinguished, where there are any.
 };
 
-/** Where one thread's deposit tells the truth of what it deposits. */
+/** Destination of the truth of one thread's deposit. */
 struct TruthSink {
     TruthTable& table;
     std::span<const int32_t> rows;  ///< Beam of the table for each beam of the sums, -1: none; empty: the same.
-    std::span<uint64_t> one_beam;   ///< The thread's own, EchoRules::sumCount() zeros, which it leaves behind.
+    std::span<uint64_t> one_beam;   ///< Buffer of the thread: EchoRules::sumCount() zeros, zeroed again after use.
 
     int32_t rowOf(uint32_t beam) const { return rows.empty() ? static_cast<int32_t>(beam) : rows[beam]; }
 };

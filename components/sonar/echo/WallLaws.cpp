@@ -13,11 +13,11 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double water_density = 1025;      ///< [kg/m^3]
-constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which no wall notices.
+constexpr acoustics::Fluid air{1.23, 340};  ///< Compressed air is denser, which has no effect on a wall.
 constexpr int entries = 1024;
-constexpr double min_first = 1e-4;  ///< Share of the first return, to which the others are relative [1].
+constexpr double min_first = 1e-4;  ///< Min share of the first return, to which the others are relative [1].
 
-/** A wall between the sonar's water and what is behind it. */
+/** A wall between the sonar's water and the fluid behind it. */
 class Wall {
 public:
     Wall(const types::Shell& shell, const SonarConfig& config)
@@ -30,8 +30,8 @@ public:
           has_fluid_(shell.fill_density > 0) {}
 
     double reflected() const { return std::norm(at(frequency_, 1).reflected); }
-    /** Means over steps of the cosine, so that no resonance falls between two entries; of `bands` frequencies over the
-     *  width of a resonance. */
+    /** Returns means over steps of the cosine, so that no resonance falls between two entries, and over `bands`
+     *  frequencies within the width of a resonance. */
     std::vector<float> passed(int bands) const {
         std::vector<float> table;
         const double width = plate_.sound_speed / (2 * plate_.thickness);
@@ -50,7 +50,7 @@ public:
     double reflectedWithin() const {
         return std::norm(acoustics::plateResponse(plate_, behind_, water_, frequency_, 1).reflected);
     }
-    /** Whether returns are so far apart that a sonar shows them, and each has half a period at least. */
+    /** Returns whether returns are far enough apart to be separate in a ping, and each has at least half a period. */
     bool rings(const SonarConfig& config) const {
         const double spacing = plate_.thickness * water_.sound_speed / plate_.sound_speed;
         return spacing > rangeCellOf(config) / 2 && frequency_ * plate_.thickness > plate_.sound_speed / 4;
@@ -65,8 +65,8 @@ private:
         return acoustics::plateResponse(plate_, water_, behind_, frequency, cosine);
     }
 
-    /** Impedance of the water over that of the fluid behind, both along the normal: |T|^2 times it is a share of
-     * energy; 0 where all is reflected [1]. */
+    /** Returns the impedance of the water relative to that of the fluid behind, both along the normal: |T|^2 times this
+     *  ratio is a share of energy; 0 where all is reflected [1]. */
     double fluids(double cosine) const {
         if (!has_fluid_) return 1;
         const double sine_squared = (1 - cosine * cosine) * std::pow(behind_.sound_speed / water_.sound_speed, 2);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* inside_a_bin = "absorption inside a bin";
 
-/** An absorption that changes by `residual` to either side of a bin's middle, in decibels. */
+/** Returns an absorption that changes by `residual` to either side of a bin's middle, in decibels. */
 double decibels(double residual) { return 10 * residual / std::numbers::ln10; }
 
 std::string residualWords(const LeftOut& what, const BinGrid& /*grid*/) {
@@ -17,7 +17,7 @@ std::string residualWords(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("beta dR/2 = {:.1e}, {:.2g} dB to either side", what.value, decibels(what.value));
 }
 
-/** What the water takes from sound on its way (ACOUSTICS.md 2.4): in the middle of each bin, of `cerqueira2017` at each
+/** Absorption of sound in the water (ACOUSTICS.md 2.4): evaluated in the middle of each bin, in `cerqueira2017` at each
  *  sample. */
 class Absorption final : public Effect {
 public:

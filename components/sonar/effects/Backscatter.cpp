@@ -27,7 +27,7 @@ std::string listed(const std::vector<std::string>& names) {
     return names.size() > 5 ? text + ", ..." : text;
 }
 
-/** What materials give back other than by Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
+/** Backscatter of materials that do not follow Lambert's law: lobes, seabeds, tables (ACOUSTICS.md 3). */
 class Backscatter final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
@@ -60,8 +60,8 @@ public:
                 fmt::format("{} of {} materials have no acoustic values and are medium sand, -16.7 dB: {}",
                             plain.size(), geometry.materials.size(), listed(plain)));
         if (!loud.empty())
-            notices.push_back(
-                fmt::format("Warning: a lambert_db above -4.97 dB gives back more than it gets: {}", listed(loud)));
+            notices.push_back(fmt::format(
+                "Warning: a lambert_db above -4.97 dB returns more energy than it receives: {}", listed(loud)));
         if (!plan.laws.outside_validity.empty())
             notices.push_back(
                 fmt::format("Warning: backscatter of seabeds is extrapolated outside its law's validity: {}",

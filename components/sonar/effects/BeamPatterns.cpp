@@ -31,7 +31,7 @@ size_t receivingElements(const SonarConfig& config) {
     return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
 }
 
-/** Diagnostics of a receiving array whose law can be evaluated. */
+/** Checks a receiving array whose law can be evaluated. */
 void checkAlive(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const acoustics::BeamLaw& law = *config.beam_pattern->receive.azimuth;
     if (law.aperture_m ? !config.frequency_khz : !law.width_deg) return;
@@ -41,7 +41,7 @@ void checkAlive(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"imperfections", fmt::format("leaves none of {} elements alive", count)});
 }
 
-/** Diagnostics of what concerns the receiving array. */
+/** Checks the properties of the receiving array. */
 void checkReceivingArray(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const ImperfectionsConfig& own = *config.imperfections;
     if (!own.hasElementErrors() && !own.focus_m) return;
@@ -68,7 +68,7 @@ void checkReceivingArray(const SonarConfig& config, types::Diagnostics& diagnost
     if (diagnostics.empty() && own.hasElementErrors()) checkAlive(config, diagnostics);
 }
 
-/** Directivity (ACOUSTICS.md 5.9): in elevation as cells are summed, in azimuth as beams are formed of them. */
+/** Directivity (ACOUSTICS.md 5.9): in elevation when cells are summed, in azimuth when beams are formed of them. */
 class BeamPatterns final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {

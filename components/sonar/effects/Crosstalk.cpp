@@ -11,7 +11,7 @@ std::string unheardPings(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "no ping of another sonar arrives at the first ping";
 }
 
-/** The pulses of other sonars that a snapshot names, which a plan does not know. */
+/** The pulses of other sonars in a snapshot, which a plan does not know. */
 class CrosstalkInPings final : public PingEffect {
 public:
     CrosstalkInPings(const RenderPlan& plan, const types::Geometry& geometry)
@@ -46,17 +46,17 @@ public:
 
 private:
     DirectSound direct_;
-    std::unique_ptr<ForeignEchoes> echoes_;      ///< Null where surfaces scatter nothing to the sonar.
-    const types::Snapshot* snapshot_ = nullptr;  ///< The ping's; none before the first.
-    size_t heard_ = 0;                           ///< Transmissions of the last ping that came directly [1].
-    bool had_any_ = false;                       ///< The ping has transmissions.
+    std::unique_ptr<ForeignEchoes> echoes_;      ///< Null where echoes of surfaces are not simulated.
+    const types::Snapshot* snapshot_ = nullptr;  ///< Snapshot of the ping; null before the first.
+    size_t heard_ = 0;                           ///< Transmissions that arrived directly in the last ping [1].
+    bool had_any_ = false;                       ///< Whether the ping has transmissions.
 };
 
 /** The pulses of other sonars (ACOUSTICS.md 5.29). */
 class Crosstalk final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
-        const bool needs_rays = config.crosstalk && config.crosstalk->echoes;  // which is refused as such
+        const bool needs_rays = config.crosstalk && config.crosstalk->echoes;  // refused elsewhere
         if (config.crosstalk && !needs_rays && config.model == Model::Cerqueira2017)
             diagnostics.push_back({"crosstalk", "is given with model: cerqueira2017; it belongs to physical"});
     }

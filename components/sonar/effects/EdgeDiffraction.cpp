@@ -51,7 +51,7 @@ class EdgeDiffraction final : public Effect {
 public:
     std::string key() const override { return own_key; }
     std::vector<types::Field> numbers() const override {
-        return {{"min_turn_deg", "deg", "turn of a surface from which on an edge is sharp; absent: 60", 1, 180}};
+        return {{"min_turn_deg", "deg", "min turn of a surface at a sharp edge; absent: 60", 1, 180}};
     }
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {
         if (!config.effects.contains(own_key)) return;
@@ -59,10 +59,10 @@ public:
         if (config.model == Model::Cerqueira2017)
             diagnostics.push_back({path, "is given with model: cerqueira2017; it belongs to physical"});
         else if (!config.frequency_khz)
-            diagnostics.push_back({path, "needs frequency_khz, which has the wavelength"});
+            diagnostics.push_back({path, "needs frequency_khz, for the wavelength"});
         if ((config.water && config.water->profile) || followsMotion(config))
             diagnostics.push_back(
-                {path, "takes straight ways: no profile of the speed of sound and no motion within a ping"});
+                {path, "needs straight sound paths: no profile of the speed of sound and no motion within a ping"});
     }
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         const auto own = plan.config.effects.find(own_key);

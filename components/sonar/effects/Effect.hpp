@@ -44,7 +44,7 @@ struct PingInMaking {
     const types::Snapshot& snapshot;
     types::Sonar& ping;    ///< Its bins hold intensities of the sorted beams, unless `field` is given.
     EchoField* field;      ///< The field that is squared into the bins; null where energies are summed.
-    const RayPaths* bent;  ///< The ways of sound; null where they are straight.
+    const RayPaths* bent;  ///< The sound paths; null where they are straight.
 };
 
 /** An effect in the pings of one renderer, with the state that it keeps from ping to ping. No call for a ping
@@ -67,8 +67,8 @@ public:
     virtual void giveRules(EchoRules& /*rules*/) const {}
     /** Returns whether addCells() and addToCell() are called, with one sum for each bin of a beam. */
     virtual bool hasSums() const { return false; }
-    /** Returns whether the compute shader makes the same sums. It can do so for one effect. With two or more, pictures
-     *  are summed on the processor. A notice says so where the device was to sum them. */
+    /** Returns whether the compute shader makes the same sums. It can do so for one effect. With two or more, images
+     *  are summed on the processor. A notice reports it where the device was to sum them. */
     virtual bool isOnDevice() const { return false; }
     /** Adds a batch of cells to the effect's sums. Several threads call it. */
     virtual void addCells(const CellBatch& /*batch*/) const {}
@@ -79,8 +79,8 @@ public:
 
     /** Returns whether followRays(), addEnergies() and addToTruth() are called in pings that are ray-traced. */
     virtual bool followsRays() const { return false; }
-    /** Follows rays on from what they have met, before their tiles are summed. May change what they have met. Several
-     *  threads call it, each with tiles of its own. */
+    /** Follows rays beyond their hits, before their tiles are summed. May change the hits. Several threads call it,
+     *  each with its own tiles. */
     virtual void followRays(const CastPing& /*ping*/, std::span<const CastTile> /*tiles*/) {}
     /** Adds to the intensities of a cell's bins once the rays of all cells are followed. Where fields are summed, the
      *  bins are 0 before. Returns whether it has added any. Called once for each cell, by several threads. */
@@ -117,20 +117,20 @@ public:
     virtual bool plan(const types::Geometry& geometry, RenderPlan& plan) const = 0;
     /** Returns all names that it may add to RenderPlan::effect_features. Each is HAVE_<NAME> in the shaders. */
     virtual std::vector<std::string> features() const { return {}; }
-    /** Adds what a user should know of the effect in this plan. */
+    /** Adds the notices about the effect in this plan. */
     virtual void note(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/,
                       std::vector<std::string>& /*notices*/) const {}
-    /** Makes the effect's part in the pings of a plan that it takes part in. Plan and geometry outlive what is made.
-     *  Null where the effect does nothing in a ping. */
+    /** Makes the effect's part in the pings of a plan that includes it. Plan and geometry outlive the result. Null
+     *  where the effect does nothing in a ping. */
     virtual std::unique_ptr<PingEffect> make(const RenderPlan& /*plan*/, const types::Geometry& /*geometry*/) const {
         return nullptr;
     }
-    /** Removes the effect from a configuration, to measure what it does. Returns its name; empty where the
+    /** Removes the effect from a configuration, to measure its influence. Returns its name; empty where the
      *  configuration does not have it. */
     virtual std::string takeOut(SonarConfig& /*config*/) const { return {}; }
 };
 
-/** Whether sonar and objects move while sound is under way. */
+/** Returns whether sonar and objects move while sound travels. */
 bool followsMotion(const SonarConfig& config);
 
 /** Omits an effect, for Effect::plan(). */

@@ -8,11 +8,11 @@
 
 namespace insonify::sonar {
 
-/** All effects, in the order in which they are planned, reported and run. */
+/** Returns all effects, in the order in which they are planned, reported and run. */
 std::span<const Effect* const> effects();
 
-/** Adds an effect of a library to the end of the list, until the process ends. To be called before any sonar is
- *  configured, from `insonify_register` or from main. Does nothing where the list has an effect of the same key. */
+/** Adds an effect of a library to the end of the list, until the process ends. Call it before any sonar is configured,
+ *  from `insonify_register` or from main. Does nothing where the list has an effect with the same key. */
 void addEffect(std::unique_ptr<const Effect> effect);
 
 /** Adds diagnostics of SonarConfig::effects: unknown keys and numbers, numbers out of bounds. Adds those of each
@@ -30,7 +30,7 @@ public:
     void takeShapes(const types::Snapshot& snapshot);
     void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
-    /** Why a compute shader cannot sum what they sum, a clause. Empty: it can. */
+    /** Returns why a compute shader cannot make the sums of the effects, as a clause. Empty: it can. */
     std::string whyNotOnDevice() const;
     bool followsRays() const;
     void followRays(const CastPing& ping, std::span<const CastTile> tiles);
@@ -46,7 +46,7 @@ private:
     std::vector<std::string> keys_;  ///< Effect::key() of each.
 };
 
-/** Adds to a cell's bins the intensities of the effects that have sums of their own. `sums` are all of the cell. */
+/** Adds to a cell's bins the intensities of effects with their own sums. `sums` contains all sums of the cell. */
 void addOwnSums(const EchoRules& rules, const uint64_t* sums, size_t cell, double unit, std::span<float> bins);
 
 }  // namespace insonify::sonar

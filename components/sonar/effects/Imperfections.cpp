@@ -19,7 +19,7 @@ void checkBeams(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back({"imperfections", fmt::format("leaves none of {} beams alive", beams)});
 }
 
-/** What the channels of the beams, and the clock that samples them, do to complete bins. */
+/** Errors of the beams' channels and of the sampling clock, applied to complete bins. */
 class ImperfectBeams final : public PingEffect {
 public:
     explicit ImperfectBeams(const RenderPlan& plan)
@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    /** Samples all beams at times that are off, with straight lines between bins. */
+    /** Samples all beams at erroneous times, interpolating linearly between bins. */
     void jitter(types::Sonar& ping) {
         kept_.assign(ping.bins.begin(), ping.bins.end());
         const auto count = static_cast<double>(ping.bin_count);
@@ -69,7 +69,7 @@ private:
 
     const RenderPlan& plan_;
     ImperfectionsConfig own_;
-    std::vector<float> factors_;  ///< Of beams as the ping counts them.
+    std::vector<float> factors_;  ///< Factor of each beam, in the ping's order.
     float share_;
     std::vector<float> kept_;
 };

@@ -11,10 +11,10 @@ namespace insonify::sonar {
 namespace {
 
 std::string speedWords(const LeftOut& what, const BinGrid& /*grid*/) {
-    return fmt::format("below {:.2g} m/s it is under half a bin", what.value);
+    return fmt::format("below {:.2g} m/s it is less than half a bin", what.value);
 }
 
-/** Sonar and objects that move while sound is under way (ACOUSTICS.md 5.20). RayPaths computes their ways. */
+/** Sonar and objects that move while sound travels (ACOUSTICS.md 5.20). RayPaths computes the sound paths. */
 class MotionInPing final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
@@ -32,9 +32,8 @@ public:
         if (!plan.config.motion_in_ping) return;
         const MotionBound bound = motionBound(plan.config, plan.grid);
         notices.push_back(
-            fmt::format("motion within a ping is followed from {:.2g} m/s or {:.2g} deg/s on; below that it is under "
-                        "half a bin and "
-                        "half a beam",
+            fmt::format("motion within a ping is simulated from {:.2g} m/s or {:.2g} deg/s; below that it is less than "
+                        "half a bin and half a beam",
                         bound.speed, types::degrees(bound.turn)));
     }
 };

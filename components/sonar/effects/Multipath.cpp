@@ -7,17 +7,17 @@ namespace {
 
 std::string noBounces(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "bounces is 0"; }
 std::string noMirror(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "no surface is asked for, and no material is `mirror: true` or smooth enough";
+    return "no surface is configured, and no material is `mirror: true` or smooth enough";
 }
 
-/** What there is to reflect sound; `bounces` says which of it does. */
+/** Returns whether there are mirrors; `bounces` determines which materials reflect. */
 bool hasMirrors(const MultipathConfig& multipath, const types::Geometry& geometry) {
     return multipath.surface || std::ranges::any_of(geometry.materials, [&](const types::Material& material) {
                return reflectedPower(material, multipath.bounces) > 0;
            });
 }
 
-/** Echoes by way of mirrors (ACOUSTICS.md 5.23), in pings that are ray-traced. */
+/** Echoes via mirrors (ACOUSTICS.md 5.23), in ray-traced pings. */
 class Multipath final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

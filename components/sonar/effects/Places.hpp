@@ -8,7 +8,7 @@
 
 namespace insonify::sonar {
 
-/** Adds a diagnostic for each entry of a list that is no place among `count` things. */
+/** Adds a diagnostic for each entry of a list that is not an index of one of `count` things. */
 inline void checkPlaces(const char* path, const std::vector<uint32_t>& list, size_t count, const char* things,
                         types::Diagnostics& diagnostics) {
     for (size_t i = 0; i < list.size(); ++i)

@@ -11,14 +11,15 @@ std::string scaledMeans(const LeftOut& what, const BinGrid& grid) {
 }
 std::string oneBin(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "published: one bin per pixel"; }
 std::string imageEdge(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "published: the image's edge, nearer than the aperture away from ahead";
+    return "published: the image's edge, which is inside the aperture except straight ahead";
 }
 std::string oneBeam(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "published: every column belongs to one beam";
 }
 std::string fromZero(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "published: bins begin at range 0"; }
 
-/** Model `cerqueira2017`: what bins of means know nothing of, and with `published: true` the published simulator. */
+/** Model `cerqueira2017`: the effects that bins of means do not have, and with `published: true` the published
+ *  simulator. */
 class PublishedMeans final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

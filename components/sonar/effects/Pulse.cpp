@@ -10,7 +10,7 @@ std::string lengthWords(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
 }
 
-/** What an echo leaves in range (ACOUSTICS.md 5.10). */
+/** Spread of an echo in range (ACOUSTICS.md 5.10). */
 class PulseInRange final : public Effect {
 public:
     void check(const SonarConfig& config, types::Diagnostics& diagnostics) const override {

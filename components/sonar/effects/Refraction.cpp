@@ -13,7 +13,7 @@ namespace {
 
 bool hasProfile(const SonarConfig& config) { return config.water && config.water->profile; }
 
-/** Whether a profile puts any echo elsewhere: by bending its ray, or by another speed of sound than the sonar's. */
+/** Returns whether a profile moves any echo: by bending its ray, or by another speed of sound than the sonar's. */
 bool matters(const acoustics::SoundProfile& profile, const SonarConfig& config, const BinGrid& grid) {
     const double c = grid.speed_of_sound, slow = profile.slowest();
     const Bending bent = bending(config, grid, profile.steepest() * c / slow);
@@ -34,7 +34,7 @@ std::string bendWords(const LeftOut& what, const BinGrid& grid) {
                        grid.range_max, what.bound);
 }
 
-/** Rays that a profile of the speed of sound bends (ACOUSTICS.md 5.19). RayPaths computes them. */
+/** Rays that a sound speed profile bends (ACOUSTICS.md 5.19). RayPaths computes them. */
 class Refraction final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
@@ -68,7 +68,8 @@ Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient)
 std::string whyStraight(const SonarConfig& config) {
     const bool drawn = hasProfile(config) && !config.castsRays();
     if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
-    return "bends what a sonar hears of this range, which rays alone show; visibility may be auto or cpu, without "
+    return "bends the rays of a sonar of this range, which only ray tracing shows; visibility may be auto or cpu, "
+           "without "
            "published: true and deposit: gpu, in a build with rays";
 }
 

@@ -8,16 +8,16 @@ namespace insonify::sonar {
  *  [1/s]. */
 constexpr double speed_gradient = 0.1;
 
-/** Offset of a ray at the far edge that a gradient [1/s] bends, and the offset that can be ignored [m]
- *  (ACOUSTICS.md 12). */
+/** Offset of a ray that a gradient [1/s] bends, at the far edge, and the offset that can be ignored [m] (ACOUSTICS.md
+ *  12). */
 struct Bending {
     double offset, tolerated;
 };
 Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient = speed_gradient);
 
-/** Returns why a sonar cannot bend its rays by its profile of the speed of sound; empty where it can, or where the bend
- *  is too small to matter.
- *  @throws types::ConfigError with all that is wrong with the profile's file */
+/** Returns why a sonar cannot bend its rays by its sound speed profile; empty where it can, or where the bend is
+ *  negligible.
+ *  @throws types::ConfigError with all errors of the profile's file */
 std::string whyStraight(const SonarConfig& config);
 
 }  // namespace insonify::sonar

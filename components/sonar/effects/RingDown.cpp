@@ -3,7 +3,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** The transmitter, as every beam hears it in its first bins. */
+/** The transmitter's ring-down in the first bins of every beam. */
 class RingDownInPings final : public PingEffect {
 public:
     explicit RingDownInPings(const RenderPlan& plan) {

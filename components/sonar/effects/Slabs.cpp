@@ -9,7 +9,7 @@ std::string oneImage(const LeftOut& what, const BinGrid& /*grid*/) {
     return fmt::format("one image shows all {:g} deg", what.value);
 }
 
-/** Pictures of a fan that is too wide for one. */
+/** Several images of a fan that is too wide for one. */
 class Slabs final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {

@@ -5,13 +5,13 @@ namespace {
 
 std::string withoutMaps(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
 std::string byReflectivity(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "cerqueira2017 takes the reflectivity of the material alone";
+    return "cerqueira2017 uses the reflectivity of the material only";
 }
 std::string mapsNeedRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "the scene is drawn; surface maps are heard with `visibility: cpu`";
+    return "the scene is rasterised; surface maps need `visibility: cpu`";
 }
 
-/** Strengths and materials by maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
+/** Strengths and materials from maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
 class SurfaceMaps final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

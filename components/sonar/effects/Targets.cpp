@@ -13,7 +13,7 @@ std::string unheard(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "hidden, or out of the pattern or the range, at the first ping";
 }
 
-/** Targets of the snapshots, which a plan does not know. */
+/** Targets in the snapshots, which a plan does not know. */
 class TargetsInPings final : public PingEffect {
 public:
     TargetsInPings(const RenderPlan& plan, const types::Geometry& geometry) : plan_(plan), geometry_(&geometry) {}

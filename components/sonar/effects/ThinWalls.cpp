@@ -8,14 +8,14 @@ std::string withoutFrequency(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; shells let nothing through";
 }
 std::string withoutRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "the scene is drawn; sound goes through shells with `visibility: cpu`";
+    return "the scene is rasterised; sound passes through shells with `visibility: cpu`";
 }
 std::string onBentWays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
-    return "shells are gone through on straight ways; leave out water.profile and motion_in_ping";
+    return "sound passes through shells on straight paths only; remove water.profile and motion_in_ping";
 }
 std::string withoutWalls(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
 
-/** Sound that goes through thin walls (ACOUSTICS.md 5.26). CastEchoes follows it. */
+/** Sound that passes through thin walls (ACOUSTICS.md 5.26). CastEchoes traces it. */
 class ThinWalls final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

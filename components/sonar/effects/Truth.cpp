@@ -7,7 +7,7 @@ std::string nobody(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
     return "nobody is connected to truth or returns at the first ping";
 }
 
-/** Whether pings record it, which a plan does not know. */
+/** Whether pings record the truth, which a plan does not know. */
 class TruthInPings final : public PingEffect {
 public:
     void begin(const PingStart& start) override { omitted_ = !start.truth; }
@@ -20,7 +20,7 @@ private:
     bool omitted_ = false;
 };
 
-/** What the bins of a ping show (types::SonarTruth). The deposit of cells records it, because it counts the same
+/** The truth of a ping's bins (types::SonarTruth). The deposit of cells records it, because it counts the same
  *  energies. */
 class Truth final : public Effect {
 public:

@@ -58,7 +58,7 @@ struct VolumeChanges {
     double sonar_height;
 };
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-parameter"  // layers alone ask how steep a ray is
+#pragma GCC diagnostic ignored "-Wunused-parameter"  // only layers use the slope of a ray
 struct OpenVolume : VolumeChanges {
     static constexpr bool hears_misses = false;
     using VolumeChanges::VolumeChanges;
@@ -73,7 +73,7 @@ struct LayeredVolume : VolumeChanges {
 };
 #undef HAVE_VOLUME_LAYERS
 
-/** Metres up in the world for each metre along the middle of cell i. */
+/** Returns the metres up in the world per metre along the middle of cell i. */
 double riseOf(const WaterView& water, const Cells& cells, int i) {
     return cells.cos_el[i] * (water.up.x * cells.cos_az[i] + water.up.y * cells.sin_az[i]) +
            water.up.z * cells.sin_el[i];
@@ -92,7 +92,7 @@ void hideVolumeBy(const CellBatch& batch) {
     }
 }
 
-/** The layers of a configuration as EchoRules::layers has them; none where there is one without bounds. */
+/** Returns the layers of a configuration as in EchoRules::layers; empty where a layer has no bounds. */
 std::vector<double> layersOf(const SonarConfig& config) {
     if (!config.hasLayers()) return {};
     const double most = strongest(config);
@@ -120,7 +120,7 @@ std::vector<double> openSolidAngles(const RenderPlan& plan) {
     return all;
 }
 
-/** Intensity of the water itself, by the solid angle that receives its echo. */
+/** Intensity of the water itself, from the solid angle that receives its echo. */
 class VolumeInPings final : public PingEffect {
 public:
     explicit VolumeInPings(const RenderPlan& plan) : plan_(plan), layers_(layersOf(plan.config)) { takeQuality(); }

@@ -14,7 +14,7 @@ constexpr double widest_slab = types::radians(60);
 
 double halfElevation(const SonarConfig& config) { return types::radians(config.beam_height_deg) / 2; }
 
-/** u at which the bearing `bearing` crosses the image row v: a vertical line for planes, a hyperbola for cones. */
+/** Returns u where the bearing crosses the image row v: a vertical line for planes, a hyperbola for cones. */
 double boundary(const SonarConfig& config, const ViewFrustum& frustum, double bearing, double v) {
     double azimuth = bearing;
     if (config.beam_geometry == BeamGeometry::Conical) {
@@ -34,7 +34,7 @@ ShareRecord share(double from, double to, double u, double limit, uint32_t beam,
     return {middle, to - from, limit * std::sqrt(1 + middle * middle), u / (1 + u * u), beam, column};
 }
 
-/** Beams that touch the frustum, with their edges in u, for one image row. */
+/** Adds the beams that touch the frustum, with their edges in u, for one image row. */
 void addRow(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum, double v, ColumnShares& result) {
     struct Edges {
         double low, high;
@@ -70,7 +70,7 @@ ViewFrustum publishedFrustum(const SonarConfig& config) {
             std::tan(halfElevation(config))};
 }
 
-/** Whole columns: beam k has [round(w/2 + tan(a_k) K), round(w/2 + tan(a_k+1) K)), K = (w/2) / tan(fov/2). */
+/** Returns whole columns: beam k has [round(w/2 + tan(a_k) K), round(w/2 + tan(a_k+1) K)), K = (w/2) / tan(fov/2). */
 ColumnShares roundedShares(const Fan& beams, const ViewFrustum& frustum) {
     const auto column = [&](double bearing) {
         return static_cast<int>(std::lround(frustum.columns / 2.0 * (1 + std::tan(bearing) / frustum.extent_u)));

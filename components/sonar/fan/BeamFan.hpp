@@ -12,15 +12,15 @@
 
 namespace insonify::sonar {
 
-/** The beams of a configuration: a regular fan, or the explicit table. */
+/** Returns the beams of a configuration: a regular fan, or the explicit table. */
 Fan makeBeams(const SonarConfig& config);
 
-/** Azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
+/** Returns the azimuth at which a cone of bearing `bearing` meets elevation `elevation`; clamped to +-90 deg [rad]. */
 double coneAzimuth(double bearing, double elevation);
 
 /** One perspective image of the fan. u = tan(azimuth - centre), growing to port; v = tan(elevation) / cos(...). */
 struct ViewFrustum {
-    double azimuth = 0;     ///< Of the image's centre in the sonar frame [rad].
+    double azimuth = 0;     ///< Azimuth of the image's centre in the sonar frame [rad].
     double half_width = 0;  ///< [rad]
     int columns = 0, rows = 0;
     double extent_u = 0;  ///< u at the left edge: tan(half_width) [1].
@@ -33,21 +33,21 @@ struct ViewFrustum {
     double v(double row) const { return row * dv() - extent_v; }
 };
 
-/** Rows or columns that an image may have: what every OpenGL 4.5 device can draw [1]. */
+/** Max rows or columns of an image: what every OpenGL 4.5 device can rasterise [1]. */
 constexpr int max_image_size = 16384;
 
-/** Elevation that an image may show [deg]. */
+/** Max elevation angle of an image [deg]. */
 constexpr double tallest_image_deg = 150;
 
-/** As few frusta of at most 60 deg as cover the beams (ACOUSTICS.md 5.3); cones reach wider than their bearing. One
- *  with `published`. */
+/** Returns the smallest number of frusta, of at most 60 deg, that cover the beams (ACOUSTICS.md 5.3); cones reach wider
+ *  than their bearing. Returns one frustum with `published`. */
 std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams, const RenderOptions& options = {});
 
 /** The part of an image column that belongs to one beam; u = tan(azimuth in the frustum). */
 struct ShareRecord {
-    double middle, width;  ///< The part's, in u [1].
-    double limit;          ///< The aperture ends at v = +-limit there [1].
-    double shear;  ///< u / (1 + u u) at the column's middle: curves of constant elevation lean by v * shear [1].
+    double middle, width;  ///< In u [1].
+    double limit;          ///< The aperture ends at v = +-limit in this part [1].
+    double shear;  ///< u / (1 + u u) at the column's middle: slope of curves of constant elevation is v * shear [1].
     uint32_t beam, column;
 };
 
@@ -66,18 +66,18 @@ struct ColumnShares {
 ColumnShares makeShares(const SonarConfig& config, const Fan& beams, const ViewFrustum& frustum,
                         const RenderOptions& options = {});
 
-/** Where a point lies from a sonar, as its beams see it [rad]. */
+/** Direction of a point from a sonar, in the angles of its beams [rad]. */
 struct BeamAngles {
-    double azimuth;    ///< Positive to port: about the z-axis; of a conical fan above the plane square to the y-axis.
+    double azimuth;    ///< Positive to port: about the z-axis; conical: above the plane normal to the y-axis.
     double elevation;  ///< Above the sonar's plane.
 };
 
-/** The azimuth of a direction, unit, in the sonar's axes: of a conical fan its cone's bearing [rad]. */
+/** Returns the azimuth of a unit direction in the sonar's axes; for a conical fan the bearing of its cone [rad]. */
 inline double beamAzimuthOf(const glm::dvec3& direction, bool conical) {
     return conical ? std::asin(std::clamp(direction.y, -1.0, 1.0)) : std::atan2(direction.y, direction.x);
 }
 
-/** Of a point in the sonar's axes [m]; of the sonar's own place it is 0, 0. */
+/** Returns the angles of a point in the sonar's axes [m]; 0, 0 for the sonar's own place. */
 inline BeamAngles beamAnglesOf(const glm::dvec3& at, bool conical) {
     const glm::dvec3 direction = at / std::max(glm::length(at), 1e-12);
     return {beamAzimuthOf(direction, conical), std::asin(std::clamp(direction.z, -1.0, 1.0))};

@@ -6,19 +6,19 @@
 
 namespace insonify::sonar {
 
-/** Bins of all beams of a ping, at most: sums of 16 bytes take 256 MiB [1]. */
+/** Max bins of all beams of a ping: sums of 16 bytes take 256 MiB [1]. */
 constexpr int64_t max_bins = int64_t{1} << 24;
 
-/** Number of the bin of a width that holds a slant range, a whole number [m, m]. A range that lies on an edge but for
- *  rounding, within 1e-9 bins, belongs to the bin behind the edge. */
+/** Returns the number of the bin that contains a slant range, a whole number [m, m]. A range on an edge, within a
+ *  rounding error of 1e-9 bins, belongs to the bin behind the edge. */
 inline double binAt(double range, double bin_width) { return std::floor(range / bin_width + 1e-9); }
 
 /** The range bins of a ping: bin k holds slant ranges [edge(k), edge(k + 1)). */
 struct BinGrid {
     int bin_count = 0;            ///< [1]
-    int64_t bin_duration_us = 0;  ///< One-way travel time through a bin, as the sample carries it [us].
+    int64_t bin_duration_us = 0;  ///< One-way travel time through a bin, as in the sample [us].
     double bin_width = 0;         ///< Exact [m].
-    double range_min = 0;         ///< Nearer echoes are blanked; what is there casts its shadow [m].
+    double range_min = 0;         ///< Nearer echoes are blanked; objects there still cast shadows [m].
     double range_max = 0;         ///< Far edge of the last bin that can receive an echo [m].
     double speed_of_sound = 0;    ///< Exactly representable in the sample's float [m/s].
 
@@ -26,9 +26,10 @@ struct BinGrid {
     double centre(int k) const { return (k + 0.5) * bin_width; }  ///< [m]
 };
 
-/** `sample`: the bin lasts the asked time rounded up to whole microseconds (within 1e-6 of a whole number is that
- *  number; at least 1), and the edges follow. `exact`: the edges are as asked, and the duration is the nearest.
- *  `published`: bins are range/(bin_count - 1) wide, so that the last one only receives r = range_max. */
+/** Returns the bins of a configuration. `sample`: the bin lasts the configured time rounded up to whole microseconds
+ *  (within 1e-6 of a whole number is that number; at least 1), and the edges follow. `exact`: the edges are as
+ *  configured, and the duration is the nearest. `published`: bins are range/(bin_count - 1) wide, so that the last one
+ *  only receives r = range_max. */
 BinGrid makeBinGrid(const SonarConfig& config);
 
 }  // namespace insonify::sonar

@@ -15,10 +15,10 @@ namespace {
 
 using std::numbers::pi;
 
-/** Cells across a beam, or across the distance between two, at least [1]. */
+/** Min cells across a beam, or across the spacing of two beams [1]. */
 constexpr int min_cells = 2;
-constexpr size_t far_cells = 16;  ///< That are one where sidelobes alone hear them.
-/** Azimuth cells of a fan, at most [1]. */
+constexpr size_t far_cells = 16;  ///< Cells that are merged where only sidelobes receive them.
+/** Max azimuth cells of a fan [1]. */
 constexpr int max_cells = 16384;
 constexpr double reach_step = types::radians(0.05);
 
@@ -53,9 +53,9 @@ struct FocusZone {
     double phase;  ///< [rad]
 };
 
-/** Zones in which the phase at the ends, pi L^2 / (4 lambda) (1 / R - 1 / F), differs from that of the zone's middle by
- *  a sixteenth of pi at most, or by 7 % of itself. A zone whose phase is less than that is in focus. Nearer than the
- *  array is long it is taken as of that range: Fresnel's approximation ends there. */
+/** Returns zones of range. In a zone the phase at the array's ends, pi L^2 / (4 lambda) (1 / R - 1 / F), differs from
+ *  that of the zone's middle by at most a sixteenth of pi, or 7 % of itself. A zone with a smaller phase is in focus.
+ *  Ranges below the array's length count as that length: Fresnel's approximation ends there. */
 std::vector<FocusZone> focusZones(double length, double wavelength, double focus, double range) {
     const double scale = pi * length * length / (4 * wavelength);
     const auto phaseAt = [&](double r) { return scale * (1 / std::max(r, length) - 1 / focus); };
@@ -82,10 +82,10 @@ std::vector<FocusZone> focusZones(double length, double wavelength, double focus
     return zones;
 }
 
-/** The angle to either side of 0, turned by whole turns. */
+/** Returns the angle modulo a whole turn, within half a turn of 0. */
 double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
-/** The angle farthest from `inner` towards `outer` at which `power` is not below the floor, and a step beyond. */
+/** Returns the angle farthest from `inner` towards `outer` at which `power` is not below the floor, plus a step. */
 template <class Power>
 double farthest(double outer, double inner, double floor, const Power& power) {
     const double step = std::copysign(reach_step, inner - outer);
@@ -174,7 +174,7 @@ std::complex<double> Directivity::heardField(double azimuth, double bearing, siz
     const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
     const double ideal = amplitudeOf(receive_azimuth_, angle, axis);
     if (zones_.empty() || std::abs(angle) > pi / 2) return ideal;
-    // A straight array that is steered is foreshortened, and so is the way to its ends.
+    // A steered straight array is foreshortened, and so is the path to its ends.
     const double foreshortened = std::cos(axis) * std::cos(axis);
     const Zone& own = conical_ ? zoneOfPhase(zones_[zone].phase * foreshortened) : zones_[zone];
     return ideal + own.added.at(receive_azimuth_->aperture() * (std::sin(angle) - std::sin(axis)));
@@ -229,7 +229,7 @@ Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity
     const Fan all = makeBeams(sampled);
     if (!casts_rays || !directivity.hasAzimuth()) return all;
     const bool each = sampled.elements || (sampled.isCoherent() && directivity.isComplex());
-    const double near = each ? 2 * pi : directivity.nearAzimuth(0);  // cells of fields with phases are heard one by one
+    const double near = each ? 2 * pi : directivity.nearAzimuth(0);  // fields with phases: all cells
     const double from = beams.front().centre - near, to = beams.back().centre + near;
     const auto side = [&](const Beam& cell) {
         if (cell.high + 2 * pi >= from && cell.low + 2 * pi <= to) return 0;  // across the seam

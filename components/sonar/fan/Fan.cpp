@@ -35,7 +35,7 @@ ArcOrder alongArc(std::span<const double> directions, double turn) {
     std::ranges::stable_sort(arc.order, {}, [&](size_t i) { return directions[i]; });
     if (directions.empty()) return arc;
     const auto at = [&](size_t k) { return directions[arc.order[k]]; };
-    // Gaps that are equal but for rounding leave the seam where it is.
+    // Gaps that differ only by rounding do not move the seam.
     double widest = (at(0) + turn - at(directions.size() - 1)) * (1 + 1e-6) + 1e-9 * turn;
     size_t first = 0;
     for (size_t k = 1; k < directions.size(); ++k)

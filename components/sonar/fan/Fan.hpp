@@ -16,11 +16,11 @@ struct Beam {
 /** The order of directions along the smallest arc that holds them all. */
 struct ArcOrder {
     std::vector<size_t> order;  ///< Indices of the directions, from one end of the arc to the other.
-    size_t turned = 0;          ///< The last of `order` that lie beyond the seam: a whole turn is added to them [1].
+    size_t turned = 0;  ///< Number of the last in `order` that are beyond the seam; they have a whole turn added [1].
 };
 
-/** Sorts directions that lie within one whole `turn` (360, or 2 pi). The arc crosses the seam at half a turn only where
- *  the widest gap between neighbours lies elsewhere. Equal directions keep their order. */
+/** Sorts directions within one whole `turn` (360, or 2 pi). The arc crosses the seam at half a turn only where the
+ *  widest gap between neighbours is elsewhere. Equal directions keep their order. */
 ArcOrder alongArc(std::span<const double> directions, double turn);
 
 /** The beams of a sonar, or the azimuth cells from which beams are formed, sorted along the arc that they cover.
@@ -32,8 +32,8 @@ ArcOrder alongArc(std::span<const double> directions, double turn);
 class Fan {
 public:
     Fan() = default;
-    /** Beams as a table has them. @throws std::invalid_argument for a beam without extent or with a bearing that is not
-     *  finite. */
+    /** Sorts the beams of a table. @throws std::invalid_argument for a beam without extent or with a bearing that is
+     *  not finite. */
     explicit Fan(const std::vector<Beam>& table);
     /** Beams that are sorted already, such as the cells of a pattern that reaches all round. */
     static Fan sorted(std::vector<Beam> beams);
@@ -48,29 +48,29 @@ public:
 
     double low() const { return low_; }    ///< Starboard end of the arc, beam widths included [rad].
     double high() const { return high_; }  ///< Port end of the arc [rad].
-    /** Direction at which the circle is cut, above all bearings and at most a turn above the lowest: pi, or the middle
-     * of the widest gap of a fan that crosses pi [rad]. */
+    /** Returns the direction at which the circle is cut: pi, or the middle of the widest gap of a fan that crosses pi
+     *  [rad]. It is above all bearings, and at most a turn above the lowest. */
     double seam() const { return seam_; }
-    /** Whether the arc closes to a circle. */
+    /** Returns whether the arc closes to a circle. */
     bool isRound() const { return high_ - low_ >= 2 * std::numbers::pi - 1e-9; }
-    /** Whether an azimuth lies between the ends of the arc, gaps between beams included [rad]. */
+    /** Returns whether an azimuth is between the ends of the arc, gaps between beams included [rad]. */
     bool spans(double azimuth) const;
-    /** Largest azimuth to either side of straight ahead that the arc reaches [rad]. */
+    /** Returns the largest azimuth to either side of straight ahead that the arc reaches [rad]. */
     double farthestAside() const { return std::max(std::abs(low_), std::abs(high_)); }
-    /** Whether each beam begins where the one before it ends. */
+    /** Returns whether each beam begins where the beam before it ends. */
     bool joins() const { return joins_; }
-    /** Smallest distance between the centres of two beams that differ; 2 pi where there are no two [rad]. */
+    /** Returns the smallest distance between the centres of two different beams; 2 pi where there are none [rad]. */
     double smallestSpacing() const;
-    /** Bearings halfway between neighbours, size() + 1 of them. The outermost lie as far beyond the outermost beams, or
-     *  halfway across the seam of a round fan; a single beam has its own limits [rad]. */
+    /** Returns the bearings halfway between neighbours, size() + 1 values. The outermost are equally far beyond the
+     *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */
     std::vector<double> halfways() const;
     /** Calls use(k) for each beam that holds an azimuth: low <= azimuth < high, turned by whole turns [rad]. */
     template <class Use>
     void eachAt(double azimuth, const Use& use) const;
 
-    /** Place of beam k in the table [1]. */
+    /** Returns the place of beam k in the table [1]. */
     size_t row(size_t k) const { return rows_[k]; }
-    /** Centre of the beam in a row, as the table has it [rad]. */
+    /** Returns the centre of the beam in a row of the table [rad]. */
     double tableBearing(size_t row) const { return bearings_[row]; }
     bool isTableOrder() const { return swaps_.empty(); }
     /** Puts `per_beam` values of each beam from the arc's order into that of the table. Allocates nothing. */
@@ -81,9 +81,9 @@ private:
     void measure();
 
     std::vector<Beam> beams_;
-    std::vector<double> bearings_;  ///< As the table has them [rad].
+    std::vector<double> bearings_;  ///< In the table's order [rad].
     std::vector<size_t> rows_;
-    std::vector<std::pair<size_t, size_t>> swaps_;  ///< Of rows, one after the other.
+    std::vector<std::pair<size_t, size_t>> swaps_;  ///< Swaps of rows, in order.
     double low_ = 0, high_ = 0, seam_ = std::numbers::pi, widest_ = 0;
     bool joins_ = true;
 };

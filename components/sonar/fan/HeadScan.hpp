@@ -6,7 +6,7 @@
 
 namespace insonify::sonar {
 
-/** How a mechanically scanning head turns; bearings are positive to port. */
+/** Motion of a mechanically scanning head; bearings are positive to port. */
 struct HeadConfig {
     double left_deg = 180;
     double right_deg = -180;
@@ -16,7 +16,7 @@ struct HeadConfig {
     bool sweeps = false;
 
     double sectorDeg() const { return left_deg - right_deg; }
-    /** Whether the head turns on and on, rather than back at its limits. */
+    /** Returns whether the head turns on and on, rather than back at its limits. */
     bool turnsOn() const { return continuous.value_or(sectorDeg() == 360); }
 
     template <class Self, class V>
@@ -26,11 +26,10 @@ struct HeadConfig {
         visit(Field{"right_deg", "deg", "where a sector scan turns back", -360, 360}, self.right_deg);
         visit(Field{"step_deg", "deg", "turn between two pings", 0.001, 360}, self.step_deg);
         visit(Field{"continuous", "",
-                    "turns on and on from left_deg, whatever right_deg is; absent: when they are 360 deg apart"},
+                    "turns on and on from left_deg, ignoring right_deg; absent: if the two are 360 deg apart"},
               self.continuous);
-        visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: every step is reached", 0.001, 1e6},
-              self.speed_deg_per_s);
-        visit(Field{"sweeps", "", "turns evenly while it listens, with motion_in_ping; false: stands at each step"},
+        visit(Field{"speed_deg_per_s", "deg/s", "of the head; absent: unlimited", 0.001, 1e6}, self.speed_deg_per_s);
+        visit(Field{"sweeps", "", "turns evenly during each ping, needs motion_in_ping; false: stops at each step"},
               self.sweeps);
     }
     void check(types::Diagnostics& diagnostics) const;
@@ -46,7 +45,7 @@ struct ScanningSonarConfig {
         sonar.beam_width_deg = 3;
         sonar.beam_height_deg = 35;
     }
-    /** The sonar of one beam, straight ahead of the head. */
+    /** Returns the sonar with its one beam straight ahead of the head. */
     SonarConfig beam() const;
 
     template <class Self, class V>
@@ -57,27 +56,27 @@ struct ScanningSonarConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Where the head of a scanning sonar looks, ping by ping. A sector scan goes from left to right and back, without
- *  a doubled ping where it turns; a continuous one goes on to starboard. Bearings are computed from the number of
- *  steps, so they do not drift. */
+/** Look directions of a scanning sonar's head, ping by ping. A sector scan turns from left to right and back, without a
+ *  repeated ping at its ends; a continuous scan turns on to starboard. Bearings are computed from the number of steps,
+ *  so they do not drift. */
 class HeadScan {
 public:
     explicit HeadScan(const HeadConfig& config);
-    /** Bearing of the ping at hand [deg], positive to port; in [left - 360, left] when continuous. */
+    /** Returns the bearing of the current ping [deg], positive to port; in [left - 360, left] when continuous. */
     double bearingDeg() const;
     void advance();
-    /** Until it looks where it looked before, in the same direction of turn [1]. */
+    /** Returns the pings until the look direction and the direction of turn repeat [1]. */
     int pingsPerTurn() const;
     const HeadConfig& config() const { return config_; }
     void restart() { ping_ = 0; }
 
 private:
     HeadConfig config_;
-    int64_t steps_;     ///< From the left limit to the last position before the right one [1].
-    int64_t ping_ = 0;  ///< Since the start.
+    int64_t steps_;     ///< From the left limit to the last position before the right limit [1].
+    int64_t ping_ = 0;  ///< Pings since the start.
 };
 
-/** Shortest time in which the head makes a step [s]; 0 when its speed is not limited. */
+/** Returns the shortest time in which the head makes a step [s]; 0 when its speed is not limited. */
 double stepDuration(const HeadConfig& config);
 
 }  // namespace insonify::sonar

@@ -7,7 +7,7 @@
 
 namespace insonify::sonar {
 
-/** Where the transmitter of a configured sonar radiates: by its `beam_pattern.transmit`, else evenly over fan and
+/** Directions in which a sonar's transmitter radiates: by its `beam_pattern.transmit`, else evenly over fan and
  *  aperture. */
 class SentPower final : public types::Radiation {
 public:

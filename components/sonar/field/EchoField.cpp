@@ -28,7 +28,7 @@ INSONIFY_VECTOR_CLONES void addFour(const std::array<const float*, 4>& from, con
         fields[j] += (weights[0] * a[j] + weights[1] * b[j]) + (weights[2] * c[j] + weights[3] * d[j]);
 }
 
-/** Fields of every `stride`-th range cell, from their sums. */
+/** Computes the fields of every `stride`-th range cell from their sums. */
 INSONIFY_VECTOR_CLONES void scaleSums(const uint64_t* sums, const double* amplitudes, size_t stride, double quantum,
                                       float* __restrict fields, size_t count) {
     for (size_t j = 0; j < count; ++j) {
@@ -70,15 +70,15 @@ INSONIFY_VECTOR_CLONES void addTurned(const float* turned, float* __restrict fie
     }
 }
 
-/** Range cells in which the water's scatterers are as fine, and where a beam's are, in their cubes. */
+/** Range cells with equally fine scatterers of the water, and the places of a beam's cells in their cubes. */
 struct Cubes {
     size_t first, last;       ///< Range cells.
-    float start[3], step[3];  ///< Of the first range cell, and to the next one [cubes].
-    uint32_t base[3];         ///< The cube that these are counted from.
-    uint32_t seed;            ///< Other than that of another field in the same cubes.
+    float start[3], step[3];  ///< Place of the first range cell, and step to the next [cubes].
+    uint32_t base[3];         ///< Cube that places are relative to.
+    uint32_t seed;            ///< Distinguishes fields in the same cubes.
 };
 
-/** A complex Gaussian field of given intensities, which belongs to the cubes that the middles of range cells are in. */
+/** Fills a complex Gaussian field of given intensities, which belongs to the cubes of the middles of range cells. */
 INSONIFY_VECTOR_CLONES void scatterInCubes(const Cubes& cubes, const float* intensities, float* __restrict real,
                                            float* __restrict imaginary) {
     const Cubes c = cubes;
@@ -203,7 +203,7 @@ void EchoField::scatter(size_t cell, std::span<const float> intensities, uint32_
     const double width = plan_.grid.bin_width * plan_.grid.bin_count / static_cast<double>(response_.cells());
     const double spread = azimuth.high - azimuth.low;
     for (size_t first = 0; first < response_.cells();) {
-        // Cubes as long as a range cell, nearer by as the azimuth cell is wide; powers of 2, so that they stay.
+        // Cubes as long as a range cell, or at short range as the azimuth cell's width; powers of 2 keep them fixed.
         const double near = (static_cast<double>(first) + 0.5) * width;
         const double side = std::exp2(std::floor(std::log2(std::min(width, near * spread))));
         const double finer_to = 2 * side <= width ? 2 * side / spread : std::numeric_limits<double>::infinity();

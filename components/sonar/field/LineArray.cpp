@@ -16,14 +16,14 @@ using Complex = std::complex<double>;
 
 constexpr size_t oversampling = 16;
 
-/** Mean of exp(2 pi i place sine) over the sines of a cell. */
+/** Returns the mean of exp(2 pi i place sine) over the sines of a cell. */
 Complex meanTurn(double place, const Cone& cell) {
     const double half = pi * place * (cell.high - cell.low);
     const double size = std::abs(half) < 1e-6 ? 1 : std::sin(half) / half;
     return std::polar(1.0, 2 * pi * place * cell.middle()) * size;
 }
 
-/** sum over m of values[m] exp(-2 pi i m q / size) in place of values[q]; a power of two of them. */
+/** Replaces values[q] by the sum over m of values[m] exp(-2 pi i m q / size); their number is a power of two. */
 void transform(std::vector<Complex>& values) {
     const size_t size = values.size();
     for (size_t i = 1, j = 0; i < size; ++i) {
@@ -43,15 +43,15 @@ void transform(std::vector<Complex>& values) {
         }
 }
 
-/** Where a direction lies on the circle of a transform: between two of its values, and how it is turned back to the
+/** Place of a direction on the circle of a transform: between two of its values, and the phases that refer it to the
  *  array's middle. */
 struct Direction {
     size_t low, high;
-    float share;  ///< Of `high` [1].
+    float share;  ///< Weight of `high` [1].
     Complex turn_low, turn_high;
 };
 
-/** Of the azimuth cells, as loud as they are sent at. */
+/** Returns the fields of the azimuth cells, times their transmit amplitudes. */
 ComplexRows sentField(const RenderPlan& plan, const EchoField& field) {
     ComplexRows rows(plan.cells.size(), field.response().samples());
     for (size_t cell = 0; cell < plan.cells.size(); ++cell) {
@@ -88,7 +88,7 @@ ComplexRows LineArray::hear(const ComplexRows& field, std::span<const Cone> cell
         for (size_t cell = 0; cell < cells.size(); ++cell) {
             const std::complex<float> turn(meanTurn(position(m) / wavelength_, cells[cell]));
             const auto echoes = field.row(cell);
-            for (size_t i = 0; i < sum.size(); ++i) {  // by parts, for that of std::complex looks for infinities
+            for (size_t i = 0; i < sum.size(); ++i) {  // by parts: the product of std::complex checks for infinities
                 const float re = echoes[i].real(), im = echoes[i].imag();
                 sum[i] += std::complex<float>(re * turn.real() - im * turn.imag(), re * turn.imag() + im * turn.real());
             }

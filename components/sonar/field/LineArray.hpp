@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-/** Rows of complex samples of equal length: of azimuth cells, of elements, or of beams. */
+/** Rows of complex samples of equal length: one per azimuth cell, element or beam. */
 struct ComplexRows {
     ComplexRows() = default;
     ComplexRows(size_t rows, size_t samples) : sample_count(samples), values(rows * samples) {}
@@ -25,37 +25,38 @@ struct ComplexRows {
     std::vector<std::complex<float>> values;
 };
 
-/** Directions about an array between two sines, positive to port. */
+/** Directions about an array, between two sines, positive to port. */
 struct Cone {
     double low, high;
     double middle() const { return 0.5 * (low + high); }
 };
 
-/** A straight array of elements side by side across the sonar, and the weights by which its beams are formed
- *  (ACOUSTICS.md 5.22). Directions are cones about the array: their sines, positive to port. */
+/** A straight array of elements across the sonar, and the weights by which its beams are formed (ACOUSTICS.md 5.22).
+ *  Directions are cones about the array: their sines, positive to port. */
 class LineArray {
 public:
-    /** `spacing` of neighbouring elements and `wavelength` [m]; `taper` is the far field of the aperture, count *
-     *  spacing long, that the weights make; a Gaussian is that of no finite aperture, and is made wider than it is. */
+    /** `spacing` of neighbouring elements and `wavelength` [m]. `taper` is the far field that the weights make; its
+     *  aperture is count * spacing long. A Gaussian has no finite aperture and is made wider than given. */
     LineArray(size_t count, double spacing, double wavelength, const acoustics::Taper& taper);
 
     size_t count() const { return weights_.size(); }
     double spacing() const { return spacing_; }
     double wavelength() const { return wavelength_; }
-    /** Of an element from the array's middle, positive to port [m]. */
+    /** Returns the place of an element from the array's middle, positive to port [m]. */
     double position(size_t element) const;
-    /** Of each element, which sum up to 1. */
+    /** Returns the weight of each element; their sum is 1. */
     const std::vector<double>& weights() const { return weights_; }
 
-    /** What the elements hear of echoes from cones: sum over the cells of field times the mean of exp(i k position
-     *  sine) over the cell's sines, k the wavenumber. The field's phase is that of the way to the array's middle and
-     *  back. One row per cell. @throws std::invalid_argument when there are other numbers of rows and cells */
+    /** Returns the signals of the elements for echoes from cones. A signal is the sum over the cells of field times the
+     *  mean of exp(i k position sine) over the cell's sines, k the wavenumber. The field's phase is that of the path to
+     *  the array's middle and back. One row per cell. @throws std::invalid_argument when the numbers of rows and cells
+     *  differ */
     ComplexRows hear(const ComplexRows& field, std::span<const Cone> cells) const;
 
-    /** Beams that look to cones, formed by a Fourier transform over the elements, 16 times as long as the array at
-     *  least, and straight lines between its directions: sum over the elements of weight * heard * exp(-i k position
-     *  sine), within 0.5 %. Elements more than half a wavelength apart cannot tell all directions from each other.
-     *  @throws std::invalid_argument when there are other numbers of rows and elements */
+    /** Returns beams that look along cones: the sum over the elements of weight * heard * exp(-i k position sine),
+     *  within 0.5 %. Uses a Fourier transform over the elements, padded to at least 16 times the array's length, and
+     *  linear interpolation between its directions. Elements more than half a wavelength apart make some directions
+     *  ambiguous. @throws std::invalid_argument when the numbers of rows and elements differ */
     ComplexRows form(const ComplexRows& heard, std::span<const double> sines) const;
 
 private:
@@ -63,13 +64,13 @@ private:
     std::vector<double> weights_;
 };
 
-/** The array of a sonar with `elements`, whose aperture is that of its receiver's law in azimuth. */
+/** Returns the array of a sonar with `elements`, with the aperture of its receiver's law in azimuth. */
 LineArray lineArrayOf(const SonarConfig& config);
 
-/** The beams of a plan as cones about the array. */
+/** Returns the beams of a plan as cones about the array. */
 std::vector<Cone> conesOf(const Fan& beams);
 
-/** What the elements hear of a field whose cells are filled, into all of `signals` but its time. Allocates. */
+/** Fills `signals`, except its time, with the elements' signals for a field whose cells are filled. Allocates. */
 void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array, types::SonarElements& signals);
 
 }  // namespace insonify::sonar

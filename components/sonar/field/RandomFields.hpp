@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers that belong to a place, and the phases of fields: for loops that become vector code, so without calls.
-// To be included by files that are compiled without contraction.
+// Random numbers of a place, and phases of fields, for vectorised loops: without function calls. To be included only by
+// files that are compiled without contraction.
 #include <cmath>
 #include <cstdint>
 
@@ -15,15 +15,15 @@ inline uint32_t mixed(uint32_t x) {
     return x ^ x >> 16;
 }
 
-/** The number of a square of a lattice, or of a cube, that may lie anywhere: it comes round after 2^32. */
+/** Returns the number of a square or cube of a lattice at any place; it wraps round after 2^32. */
 inline uint32_t squareOf(double whole) {
     return static_cast<uint32_t>(static_cast<int64_t>(std::fmod(whole, 4294967296.0)));
 }
 
-/** To the nearest whole number, for less than 2^22, without a call. */
+/** Rounds to the nearest whole number, for less than 2^22, without a call. */
 inline float nearest(float x) { return (x + 12582912.0f) - 12582912.0f; }
 
-/** A uniform number in (0, 1) of 16 bits. */
+/** Returns a uniform number in (0, 1) of 16 bits. */
 inline float uniform(uint32_t bits) {
     return (static_cast<float>(static_cast<int32_t>(bits & 0xffffu)) + 0.5f) * 0x1p-16f;
 }
@@ -33,7 +33,7 @@ inline float logarithm(float x) {
     return types::log1pSmall(parts.rest) + 0.693147181f * static_cast<float>(parts.powers);
 }
 
-/** Sine and cosine of turns within [-1/2, 1/2]; polynomials at Chebyshev's points, within 1e-6. */
+/** Return sine and cosine of turns within [-1/2, 1/2]; polynomials at Chebyshev's points, within 1e-6. */
 inline float sineOf(float turns) {
     const float s = turns * turns;
     float sum = 3.19933885f;

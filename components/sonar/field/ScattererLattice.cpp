@@ -10,9 +10,9 @@
 namespace insonify::sonar {
 namespace {
 
-/** Range cells within the resolution, at least [1]. */
+/** Min range cells within the resolution [1]. */
 constexpr double parts_of_resolution = 4;
-/** Scatterers of the scene for each of the lattice, at least: of rarer ones too much depends on single squares [1]. */
+/** Min scatterers of the scene per lattice scatterer: with fewer, too much depends on single squares [1]. */
 constexpr double min_shape = 0.01;
 constexpr int lowest_level = -60, highest_level = 40;
 
@@ -52,7 +52,7 @@ std::vector<LatticeLevel> scattererLattice(const RenderPlan& plan) {
     if (!plan.features.has(Feature::Speckle)) return {};
     const SpeckleConfig& speckle = *plan.config.speckle;
     const double density = speckle.scatterers_per_m2.value_or(0);
-    // A side-scan is a fan across its track: along it, its beam is narrower than the fan's.
+    // A side-scan is a fan across its track: along the track, its beam is narrower than the fan's.
     const double width = std::min(beamWidthOf(plan), types::radians(plan.config.beam_height_deg));
     const double area_per_metre = width * rangeResolutionOf(plan) / speckle.scatterers_per_cell;
     std::vector<LatticeLevel> levels;

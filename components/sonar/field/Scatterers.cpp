@@ -21,25 +21,25 @@
 
 namespace insonify::sonar {
 
-/** What is the same for all scatterers of a patch on one lattice. They lie u and v spacings from its middle. */
+/** Common values of all scatterers of a patch on one lattice. They are u and v spacings from its middle. */
 struct LatticePatch {
     /** A linear function of u and v: constant + u * along_u + v * along_v. */
     struct Plane {
         float constant, along_u, along_v;
     };
     uint32_t key, base_u, base_v;  ///< The square of the middle.
-    float middle_u, middle_v;      ///< Where it lies in that [spacings].
+    float middle_u, middle_v;      ///< Place of the middle in its square [spacings].
     float range;                   ///< Slant range of the middle [m].
     float square_u, square_v, square_uu, square_uv,
-        square_vv;               ///< Change of the squared slant range from the middle on.
+        square_vv;               ///< Change of the squared slant range from the middle.
     Plane height, aside, ahead;  ///< In the direction of the middle's bearing [m].
     float ahead_per_range;
     float columns[Patch::max_columns + 1], rows[Patch::max_rows + 1];
     uint32_t seen;
-    int32_t sum, next_sums[Patch::max_columns - 1];  ///< The beam's first sum; on to that of the next column.
-    float near_end, far_end;                         ///< Slant ranges, from the middle's [m].
-    float amplitude;                                 ///< Times the square root of a power over the square of the range.
-    float turns, turns_per_metre;                    ///< Phase of the middle, two way.
+    int32_t sum, next_sums[Patch::max_columns - 1];  ///< First sum of the beam; steps to that of the next column.
+    float near_end, far_end;                         ///< Slant ranges, relative to the middle's [m].
+    float amplitude;               ///< Factor of the square root of a power over the square of the range.
+    float turns, turns_per_metre;  ///< Phase of the middle, two way.
     float cells_per_metre;
     uint32_t cell_count;
 };
@@ -48,23 +48,23 @@ struct LatticePatch {
 struct PatchLattice {
     PatchLattice(const Patch& patch, const LatticeFrame& frame);
 
-    /** From the middle to a point: along the two axes [m]. */
+    /** Returns the components of a vector from the middle along the two axes [m]. */
     glm::dvec2 across(const glm::dvec3& from_middle) const {
         return {glm::dot(*inverse[0], from_middle), glm::dot(*inverse[1], from_middle)};
     }
     const glm::dvec3* inverse[2];
-    glm::dvec3 along[2];  ///< On the plane, a metre further along each [m].
-    glm::dvec2 middle;    ///< Where the patch's middle is [m].
+    glm::dvec3 along[2];  ///< Step on the plane per metre along each axis [m].
+    glm::dvec2 middle;    ///< Place of the patch's middle [m].
     double range;         ///< Slant range of the middle [m].
     uint32_t side;        ///< The axis that the patch faces most, and whether from behind: 0 to 5.
-    double area_height;   ///< Of the plane over a square metre of the lattice, times its distance from the sonar [m].
+    double area_height;   ///< Area of the plane per square metre of the lattice, times its distance from the sonar [m].
 };
 
 namespace {
 
-/** Strength of what one scatterer of the lattice stands for, over its mean: Gamma(shape), as the total of so many
- *  scatterers of exponentially distributed strength is, by Wilson and Hilferty's cube for shape + 1 (1931) and the
- *  power of a uniform number that leads from there to `shape`. */
+/** Returns the strength that one scatterer of the lattice represents, relative to its mean: Gamma(shape), the
+ *  distribution of the total of several scatterers of exponentially distributed strength. Uses Wilson and Hilferty's
+ *  cube for shape + 1 (1931), and a power of a uniform number to get from there to `shape`. */
 float gammaStrength(float shape, uint32_t bits) {
     const float next = shape + 1;
     const float normal = std::sqrt(-2 * logarithm(uniform(bits >> 16))) * cosineOf(uniform(bits) - 0.5f);
@@ -86,7 +86,7 @@ INSONIFY_VECTOR_CLONES void place(const LatticePatch& patch, const LatticeSquare
     }
 }
 
-/** Finds which sum a scatterer adds to, how strongly and with the phase of which way. */
+/** Computes the sum that each scatterer adds to, its strength, and the phase of its sound path. */
 INSONIFY_VECTOR_CLONES void locate(const LatticePatch& patch, int count, LatticeScatterers& __restrict scatterers) {
     const LatticePatch p = patch;
     for (int i = 0; i < count; ++i) {
@@ -117,7 +117,7 @@ INSONIFY_VECTOR_CLONES void locate(const LatticePatch& patch, int count, Lattice
     }
 }
 
-/** Makes the fields of scatterers: complex Gaussian. */
+/** Computes the fields of scatterers: complex Gaussian. */
 INSONIFY_VECTOR_CLONES void radiate(int count, LatticeScatterers& __restrict scatterers) {
     for (int i = 0; i < count; ++i) {
         const uint32_t power = mixed(scatterers.bits[i] + 0x632be5abu);
@@ -138,7 +138,7 @@ INSONIFY_VECTOR_CLONES void countQuanta(const float* fields, int count, int64_t*
     }
 }
 
-/** Keeps the scatterers that the patch holds, in their order. Returns their number. */
+/** Keeps the scatterers inside the patch, in their order. Returns their number. */
 INSONIFY_DEFAULT_CLONE int keepHeld(int count, LatticeScatterers& scatterers) {
     int held = 0;
     for (int i = 0; i < count; ++i) {
@@ -153,7 +153,7 @@ INSONIFY_DEFAULT_CLONE int keepHeld(int count, LatticeScatterers& scatterers) {
 }
 
 #ifdef INSONIFY_HAS_CLONES
-/** The same, 16 at a time: no loop becomes this instruction by itself. */
+/** Does the same 16 at a time: compilers do not generate this instruction for loops. */
 __attribute__((target("arch=x86-64-v4"))) int keepHeld(int count, LatticeScatterers& scatterers) {
     void* const arrays[] = {scatterers.bits, scatterers.size, scatterers.turns, scatterers.sum};
     int held = 0;
@@ -171,21 +171,21 @@ __attribute__((target("arch=x86-64-v4"))) int keepHeld(int count, LatticeScatter
 }
 #endif
 
-/** From, to. */
+/** An interval. */
 struct Span {
     double low, high;
 };
 
-/** The whole number below, of what is far from the ends of int32_t. */
+/** Returns the whole number below, for numbers far from the ends of int32_t. */
 int32_t below(double x) {
     const auto whole = static_cast<int32_t>(x);
     return whole - (x < static_cast<double>(whole) ? 1 : 0);
 }
 
-/** The outline of a patch on its lattice, from the square that holds its middle [spacings]. */
+/** The outline of a patch on its lattice, relative to the square that contains its middle [spacings]. */
 struct PatchOutline {
     std::array<glm::dvec2, 4> corners;
-    glm::dvec2 margin;  ///< It may be so much larger, for its sides are bent.
+    glm::dvec2 margin;  ///< Max excess of its curved sides.
 
     Span extent(int axis) const {
         const double a = corners[0][axis], b = corners[1][axis], c = corners[2][axis], d = corners[3][axis];
@@ -194,7 +194,7 @@ struct PatchOutline {
     }
 };
 
-/** The squares of a lattice that an outline meets, row by row. */
+/** The squares of a lattice that an outline intersects, row by row. */
 class OutlineRows {
 public:
     /** Rows are counted along the axis in which the outline is shorter. */
@@ -209,12 +209,12 @@ public:
         if ((last - first + 1.0) * (last_across_ - first_across_ + 1.0) > LatticeSquares::at_once) setSides(outline);
     }
     bool isAlong(int axis) const { return axis == axis_; }
-    /** Rows whose ends are found at once. */
+    /** Rows whose ends are computed together. */
     static constexpr int at_once = 8;
     struct Ends {
         alignas(64) int32_t first[at_once], last[at_once];
     };
-    /** The first and the last square of rows from `row` on, along the other axis. */
+    /** Sets the first and the last square of rows from `row`, along the other axis. */
     void setEnds(int32_t row, Ends& ends) const {
         const Side low_a = lows_[0], low_b = lows_[1], high_a = highs_[0], high_b = highs_[1];
         const double from = first_across_, to = last_across_;
@@ -236,12 +236,12 @@ public:
     int32_t first, last;
 
 private:
-    /** Where a square of a row touches it. */
+    /** Line of a side: the square of a row that touches it. */
     struct Side {
         double at_zero, slope = 0;
     };
 
-    /** Half planes: what lies within those of all sides is the outline, or more where it is not convex. */
+    /** Sets half planes: their intersection is the outline, or more where it is not convex. */
     void setSides(const PatchOutline& outline) {
         const auto& corners = outline.corners;
         const glm::dvec2 a = corners[2] - corners[0], b = corners[3] - corners[1];
@@ -289,20 +289,20 @@ PatchOutline outlineOf(const Patch& patch, const PatchLattice& lattice, const gl
         outline.corners[i] = at + lattice.across(range * patch.corners[i] - middle) * per_spacing;
     }
     if (!is_cut) return outline;
-    // A corner that is cut off is off the plane, by less than the patch is high.
+    // A corner that is cut off is outside the plane, by less than the patch's height.
     const glm::dvec3 up = glm::normalize(glm::dvec3(0, 0, 1) - patch.middle.z * patch.middle);
     outline.margin += glm::abs(lattice.across(up)) * (far * patch.height * per_spacing);
     return outline;
 }
 
-/** Returns the part in a direction of a point at `at`, and of u and v along their axes. */
+/** Returns the component in a direction of a point at `at`, and of u and v along their axes. */
 LatticePatch::Plane planeOf(const glm::dvec3& direction, const glm::dvec3& at, const glm::dvec3& along_u,
                             const glm::dvec3& along_v) {
     const auto part = [&](const glm::dvec3& of) { return static_cast<float>(glm::dot(direction, of)); };
     return {part(at), part(along_u), part(along_v)};
 }
 
-/** Sets where scatterers are seen: edges of samples, and the sums of their beams. */
+/** Sets the edges of samples, and the sums of their beams. */
 void setSamples(const EchoRules& rules, const Patch& patch, LatticePatch& part) {
     std::ranges::transform(patch.columns, part.columns, [](double edge) { return static_cast<float>(edge); });
     std::ranges::transform(patch.rows, part.rows, [](double edge) { return static_cast<float>(edge); });
@@ -375,7 +375,7 @@ PatchLattice::PatchLattice(const Patch& patch, const LatticeFrame& frame) {
     area_height = frame.volume * std::abs(patch.distance / facing[main]);
 }
 
-/** Those that a patch may reach: 1/r on a plane is a linear function of the direction. */
+/** Returns the slant ranges that a patch may reach: 1/r on a plane is a linear function of the direction. */
 Scatterers::Ranges Scatterers::rangesOf(const Patch& patch) const {
     const double nearest_inverse = glm::length(patch.normal) / std::abs(patch.distance);
     const double bulge = nearest_inverse * (patch.width * patch.width + patch.height * patch.height) / 8;

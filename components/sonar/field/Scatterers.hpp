@@ -11,59 +11,60 @@ namespace insonify::sonar {
 
 /** The part of a triangle's plane that samples of one rectangle see; sonar axes. */
 struct Patch {
-    static constexpr int max_columns = 4, max_rows = 4;  ///< Bounds of a rectangle that is not seen whole.
+    static constexpr int max_columns = 4, max_rows = 4;  ///< Max size of a rectangle that is seen in part.
 
-    glm::dvec3 normal;                  ///< Of any length [1].
-    double distance;                    ///< normal.p of its points [m].
-    glm::dvec3 middle;                  ///< Unit, to the rectangle's middle [1].
-    std::array<glm::dvec3, 4> corners;  ///< Unit, to its corners, one side after the other [1].
+    glm::dvec3 normal;                  ///< Any length [1].
+    double distance;                    ///< normal.p of the patch's points [m].
+    glm::dvec3 middle;                  ///< Unit vector to the rectangle's middle [1].
+    std::array<glm::dvec3, 4> corners;  ///< Unit vectors to its corners, side by side [1].
     double width, height;               ///< [rad]
     AngularView::Direction bearing;     ///< Bearing of the middle.
     std::array<double, max_columns + 1>
-        columns;                              ///< Edges: tangents about `bearing`, or sines of cones; the last again.
-    std::array<double, max_rows + 1> rows;    ///< Edges: sines of elevation; the last again.
+        columns;  ///< Edges: tangents about `bearing`, or sines of cones; the last is repeated.
+    std::array<double, max_rows + 1> rows;    ///< Edges: sines of elevation; the last is repeated.
     uint32_t seen;                            ///< Bit max_columns * row + column of each sample that sees the plane.
-    std::array<uint32_t, max_columns> beams;  ///< Beam of each column, from the first beam of the sums on [1].
+    std::array<uint32_t, max_columns> beams;  ///< Beam of each column, counted from the first beam of the sums [1].
     double strength_range;                    ///< Strength times slant range [m].
     double per_solid_angle;                   ///< Two-way pattern in elevation, over the solid angle of a cell [1/sr].
     const ObjectRecord& object;
-    uint32_t number;  ///< Of the object [1].
-    bool conical;     ///< Bearings are those of cones.
+    uint32_t number;  ///< Number of the object [1].
+    bool conical;     ///< Bearings are bearings of cones.
 };
 
-/** The axes of an object, along which its scatterers lie. */
+/** The axes of an object, with which its scatterers are aligned. */
 struct LatticeFrame {
     LatticeFrame() = default;
     explicit LatticeFrame(const ObjectRecord& object);
 
-    glm::dmat3 axes{1};                   ///< Unit, of the object in sonar axes [1].
-    std::array<glm::dvec3, 3> inverse{};  ///< A vector's parts along them, in metres of the world [1].
-    glm::dvec3 place{0};                  ///< The sonar's along them [m].
-    double volume = 1;                    ///< That three of a metre span [1].
+    glm::dmat3 axes{1};  ///< Unit axes of the object, in sonar axes [1].
+    std::array<glm::dvec3, 3>
+        inverse{};        ///< Rows that give a vector's components along them, in metres of the world [1].
+    glm::dvec3 place{0};  ///< Place of the sonar along them [m].
+    double volume = 1;    ///< Volume spanned by the three axes, each a metre long [1].
 };
 
 struct PatchLattice;
 struct LatticePatch;
 
-/** Squares of a lattice in which scatterers of a patch may be, from the square that holds its middle. */
+/** Squares of a lattice in which scatterers of a patch may be, counted from the square of its middle. */
 struct LatticeSquares {
     static constexpr int most = 256, at_once = 16;
     alignas(64) int32_t u[most + at_once] = {}, v[most + at_once] = {};
 };
 
-/** Scatterers of squares, and of those that the patch holds. */
+/** Scatterers of squares, and the fields of those inside the patch. */
 struct LatticeScatterers {
     alignas(64) float u[LatticeSquares::most], v[LatticeSquares::most];  ///< From the patch's middle [spacings].
-    alignas(64) uint32_t bits[LatticeSquares::most];                     ///< Random; of the square alone.
-    alignas(64) float size[LatticeSquares::most];   ///< The field's, in units of the square root of a whole cell.
-    alignas(64) float turns[LatticeSquares::most];  ///< Phase of the way there and back.
-    alignas(64) int32_t sum[LatticeSquares::most];  ///< Number of the real part's; -1: the patch does not hold it.
+    alignas(64) uint32_t bits[LatticeSquares::most];                     ///< Random bits of the square.
+    alignas(64) float size[LatticeSquares::most];   ///< Size of the field, in units of the square root of a whole cell.
+    alignas(64) float turns[LatticeSquares::most];  ///< Phase of the two-way path.
+    alignas(64) int32_t sum[LatticeSquares::most];  ///< Index of the sum of the real part; -1: outside the patch.
     alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];  ///< Fields.
     alignas(64) int64_t real_quanta[LatticeSquares::most], imaginary_quanta[LatticeSquares::most];
 };
 
-/** The estimator of fields: which scatterers lie on what samples see, and what they add to the field of each range cell
- *  of a beam (ACOUSTICS.md 5.21). */
+/** The estimator of fields. Finds the scatterers on the surfaces that samples see, and adds their fields to each range
+ *  cell of a beam (ACOUSTICS.md 5.21). */
 class Scatterers {
 public:
     static constexpr bool tells_truth = false;
@@ -87,7 +88,7 @@ private:
     const EchoRules& rules_;
     uint64_t* sums_;
     LatticeFrame frame_;
-    uint32_t frame_of_ = 0xffffffff;  ///< An object's number.
+    uint32_t frame_of_ = 0xffffffff;  ///< Number of the object of `frame_`.
     LatticeSquares squares_;
     LatticeScatterers scatterers_;
 };

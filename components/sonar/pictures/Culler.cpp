@@ -16,7 +16,7 @@ using glm::max;
 using glm::vec3;
 #include "shaders/cull.glsl"
 
-/** Distance that a box has at least [m]; infinite when it is out of view. */
+/** Returns a lower bound of a box's distance [m]; infinite when it is out of view. */
 float nearest(const Culler::View& view, const ObjectRecord& object, vec3 centre, vec3 half) {
     const vec3 at = boxCentre(object, centre);
     for (const vec3& outward : view)
@@ -58,7 +58,7 @@ uint32_t Culler::inView(const View& view, size_t object) const {
     const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
     const float distance = nearest(view, records()[object], centre, half);
     if (!(distance <= range_max_)) return NOT_IN_VIEW;
-    return distance > rules_.range_min ? FRONT_IN_VIEW : IN_VIEW;  // of a front that is not drawn the back may be seen
+    return distance > rules_.range_min ? FRONT_IN_VIEW : IN_VIEW;  // behind an omitted front the back may be seen
 }
 
 void Culler::addObject(const Query& query, std::vector<DrawRange>& ranges) const {

@@ -9,16 +9,16 @@
 
 namespace insonify::sonar {
 
-/** What may be left out of a picture. */
+/** Rules for omitting triangles from a picture. */
 struct CullRules {
-    double range_min;       ///< Slant range from which on is drawn [m].
-    Reach reach;            ///< Beyond it nothing is.
+    double range_min;       ///< Nearest slant range that is rasterised [m].
+    Reach reach;            ///< Nothing beyond it is rasterised.
     bool draw_all = false;  ///< Nothing is culled.
 };
 
-/** Chooses what of a scene is drawn: objects, and clusters of triangles in them, whose boxes reach a frustum's view
- *  within the range; of the clusters of a closed, single-sided mesh not those that turn their backs. They are drawn
- *  with all their triangles: of a rough floor no fewer keep the echo within 0.005 (rel_l2_tvg). */
+/** Chooses the parts of a scene that are rasterised: objects, and clusters of their triangles, whose boxes intersect a
+ *  frustum's view within the range. Omits the back-facing clusters of a closed, single-sided mesh. Clusters keep all
+ *  their triangles: on a rough floor, fewer triangles do not keep the echo within 0.005 (rel_l2_tvg). */
 class Culler {
 public:
     /** One draw: a run of triangles of one object and material; first_index counts within the indices of the object's
@@ -31,24 +31,24 @@ public:
     /** `geometry` must outlive the culler. */
     Culler(const types::Geometry& geometry, const CullRules& rules);
 
-    /** Places all objects relative to the sonar; once a ping, before `visible`. */
+    /** Places all objects relative to the sonar; call it once per ping, before `visible`. */
     void place(const types::Snapshot& snapshot) { places_.place(snapshot); }
-    /** Runs that a frustum may see, neighbours joined. */
+    /** Lists the runs that a frustum may see, neighbours joined. */
     void visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges) const;
     const std::vector<ObjectRecord>& records() const { return places_.records(); }
-    size_t drawRangeLimit() const { return draw_range_limit_; }  ///< Of what `visible` gives.
+    size_t drawRangeLimit() const { return draw_range_limit_; }  ///< Max runs from `visible`.
 
     /** Outward normals of the planes that bound a frustum's view, all through the sonar; sonar axes, of any length. */
     using View = std::array<glm::vec3, 5>;
     static View viewOf(const ViewFrustum& frustum);
-    /** What a frustum may see of an object: NOT_IN_VIEW, IN_VIEW, FRONT_IN_VIEW or DRAWN_WHOLE. */
+    /** Returns what a frustum may see of an object: NOT_IN_VIEW, IN_VIEW, FRONT_IN_VIEW or DRAWN_WHOLE. */
     uint32_t inView(const View& view, size_t object) const;
     float rangeMax() const { return range_max_; }
-    /** Whether of a cluster the back is never seen. */
+    /** Returns whether the back of a cluster is never seen. */
     bool isSingleSided(const types::Cluster& cluster) const;
 
 private:
-    /** What is asked of the parts of an object. */
+    /** A query about the parts of an object. */
     struct Query {
         size_t object;
         const View& view;
@@ -58,7 +58,7 @@ private:
     void addClusters(const Query& query, std::span<const types::Cluster> clusters,
                      std::vector<DrawRange>& ranges) const;
     bool turnsItsBack(const Query& query, const types::Cluster& cluster) const;
-    /** Whether a box along an object's axes may be in view and range. */
+    /** Returns whether a box along an object's axes may be in view and range. */
     bool mayShow(const Query& query, glm::vec3 centre, glm::vec3 half) const;
 
     const types::Geometry& geometry_;

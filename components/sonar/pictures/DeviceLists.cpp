@@ -7,8 +7,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** The processor chooses objects, a compute shader clusters in them. Every cluster of the scene has its draw, whose
- *  place never changes; it is empty where the cluster is not seen. */
+/** Lists whose objects the processor chooses, and whose clusters a compute shader chooses. Every cluster of the scene
+ *  has its draw, at a fixed place; it is empty where the cluster is not seen. */
 class DeviceLists final : public DrawLists {
 public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);
@@ -21,12 +21,12 @@ public:
     Shown shown() const override;
 
 private:
-    /** How one frustum sees all objects in one ping. */
+    /** View of all objects by one frustum in one ping. */
     struct View {
         gpu::UploadList<ViewedObject> objects;
-        bool any = false;  ///< At least one is in view.
+        bool any = false;  ///< Whether at least one is in view.
     };
-    /** What a frustum is drawn from, written by the shader: one of each for each cluster. */
+    /** Input for rasterising a frustum, written by the shader: one entry for each cluster. */
     struct Found {
         gpu::Buffer draws, clips, normal_transforms;
     };
@@ -37,16 +37,16 @@ private:
     ViewedObject viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const;
     void cull(size_t frustum, const ViewFrustum& view) const;
     void setUniforms(size_t frustum, const ViewFrustum& view) const;
-    /** Triangles that each frustum showed, then whether each object was; waits for the device. */
+    /** Returns the triangles that each frustum showed, then whether each object was shown; waits for the device. */
     std::span<const uint32_t> counts() const;
 
     gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    std::vector<CommandRecord> commands_;  ///< Of each cluster, the same for all pings.
+    std::vector<CommandRecord> commands_;  ///< One for each cluster, the same for all pings.
     std::vector<DrawGroup> groups_;
-    std::vector<View> views_;   ///< Of each frustum.
-    std::vector<Found> found_;  ///< Of each frustum: the device culls, draws and culls again in order.
+    std::vector<View> views_;   ///< One for each frustum.
+    std::vector<Found> found_;  ///< One for each frustum: the device culls and rasterises in order.
     gpu::Buffer clusters_, device_commands_, shown_;
     mutable gpu::ReadBack asked_;
 };
@@ -148,7 +148,7 @@ void DeviceLists::cull(size_t frustum, const ViewFrustum& view) const {
 }
 
 void DeviceLists::prepare(std::span<const ViewFrustum> views) {
-    // Before: the last ping is drawn from what is written anew. After: it is drawn from.
+    // Before: the last ping's draws read the buffers that are rewritten. After: this ping's draws read them.
     const auto order = [] {
         glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     };

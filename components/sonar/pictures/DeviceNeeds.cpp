@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Columns or rows of the largest picture. */
+/** Returns the columns or rows of the largest picture. */
 int64_t largestSide(const std::vector<ViewFrustum>& frusta) {
     int largest = 0;
     for (const ViewFrustum& frustum : frusta) largest = std::max({largest, frustum.columns, frustum.rows});
@@ -24,7 +24,7 @@ int64_t clusterCount(const types::Geometry& geometry) {
     return static_cast<int64_t>(count);
 }
 
-/** The largest storage buffer [bytes]. */
+/** Returns the size of the largest storage buffer [bytes]. */
 int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry) {
     size_t triangles = 0, shares = 0, starts = 0;
     for (const types::Mesh& mesh : geometry.meshes) triangles += mesh.indices.size() / 3;
@@ -69,7 +69,7 @@ gpu::Limits depositNeeds(const DepositSetup& setup, const types::Geometry& geome
 void requireDrawing(const gpu::Limits& limits, const gpu::Limits& needs, const std::string& renderer) {
     if (const std::string shortfall = limits.shortfall(needs); !shortfall.empty())
         throw gpu::GlError(fmt::format(
-            "{} cannot draw this sonar's pictures: {}; set visibility: cpu, or another device", renderer, shortfall));
+            "{} cannot render this sonar's images: {}; set visibility: cpu, or another device", renderer, shortfall));
 }
 
 std::string whyOnProcessor(Deposit deposit, const gpu::Limits& limits, const gpu::Limits& needs,
@@ -78,10 +78,9 @@ std::string whyOnProcessor(Deposit deposit, const gpu::Limits& limits, const gpu
     if (shortfall.empty()) return {};
     if (deposit == Deposit::Gpu)
         throw gpu::GlError(
-            fmt::format("deposit: gpu is too much for {}: {}; set deposit: cpu, or take fewer triangles "
-                        "or bins",
+            fmt::format("deposit: gpu is too much for {}: {}; set deposit: cpu, or use fewer triangles or bins",
                         renderer, shortfall));
-    return fmt::format("pictures are summed on the processor, for {} cannot: {}", renderer, shortfall);
+    return fmt::format("images are summed on the processor, because {} cannot: {}", renderer, shortfall);
 }
 
 }  // namespace insonify::sonar

@@ -16,7 +16,7 @@ public:
     Shown shown() const override;
 
 private:
-    /** Of one frustum in one ping: one of each for each draw. */
+    /** Draws of one frustum in one ping: one entry for each draw. */
     struct Listed {
         Listed(size_t limit, bool with_normal_maps);
 
@@ -31,7 +31,7 @@ private:
     };
     void add(Listed& listed, const Culler::DrawRange& range, const ViewFrustum& view) const;
 
-    std::vector<Listed> listed_;  ///< Of each frustum.
+    std::vector<Listed> listed_;  ///< One for each frustum.
 };
 
 ProcessorLists::Listed::Listed(size_t limit, bool with_normal_maps)

@@ -19,39 +19,39 @@ struct Clip {
 };
 Clip clipOf(const ObjectRecord& object, const ViewFrustum& frustum);
 
-/** What a normal map needs: rows of the matrices from object axes to the frustum's (x into the picture, y to port, z
- *  up) for normals, the first row's w the scale of the map, and for tangents. */
+/** Transform for a normal map, for normals and for tangents: rows of the matrices from object axes to the frustum's (x
+ *  into the picture, y to port, z up). The first row's w is the scale of the map. */
 struct NormalTransform {
     vec4 normal[3], tangent[3];
 };
 NormalTransform normalTransformOf(const ObjectRecord& object, const ViewFrustum& frustum, float normal_scale);
 
-/** One indirect draw, as OpenGL lays it out. */
+/** One indirect draw, in OpenGL's layout. */
 struct DrawCommand {
     uint32_t count, instances, first_index, base_vertex, base_instance;
 };
 
-/** Draws that follow one another and have the same normal map. */
+/** Consecutive draws with the same normal map. */
 struct DrawGroup {
     size_t first, last;
     int normal_map;
 };
 
-/** What is drawn of a frustum. */
+/** The draws of a frustum. */
 struct Draws {
-    const gpu::Buffer *clips, *normal_transforms, *commands, *indirect;  ///< On the device, one of each for each draw.
+    const gpu::Buffer *clips, *normal_transforms, *commands, *indirect;  ///< On the device, one entry per draw.
     std::span<const DrawGroup> groups;
-    std::span<const DrawCommand> known;  ///< `indirect` on the processor; empty where the device alone knows.
+    std::span<const DrawCommand> known;  ///< `indirect` on the processor; empty where only the device has it.
 };
 
-/** What of a scene was drawn in a ping. */
+/** The parts of a scene that were rasterised in a ping. */
 struct Shown {
     std::vector<bool> objects;
-    size_t triangles = 0;  ///< Of two frusta twice.
+    size_t triangles = 0;  ///< A triangle in two frusta counts twice.
     size_t empty_frusta = 0;
 };
 
-/** What is drawn of each frustum in a ping. */
+/** The draws of each frustum in a ping. */
 class DrawLists {
 public:
     struct Setup {
@@ -63,22 +63,22 @@ public:
     explicit DrawLists(const Setup& setup);
     virtual ~DrawLists() = default;
 
-    /** Tells the device where the culler has placed the objects. */
+    /** Uploads the culler's places of the objects. */
     void place();
     const gpu::Buffer& objects() const { return objects_.buffer(); }
 
-    /** Finds what a frustum may see of what is placed. Frusta may be listed side by side. */
+    /** Lists the placed parts that a frustum may see. Several threads may list different frusta. */
     virtual void list(size_t frustum, const ViewFrustum& view) = 0;
-    /** Whether there may be anything to draw. */
+    /** Returns whether there may be anything to rasterise. */
     virtual bool mayShow(size_t frustum) const = 0;
-    /** Asks the device for what comes before the drawing of all frusta. */
+    /** Queues the device's work that precedes the rasterising of all frusta. */
     virtual void prepare(std::span<const ViewFrustum>) {}
-    /** Most draws of a frustum that there can be. */
+    /** Returns the max draws of a frustum. */
     size_t drawLimit() const { return setup_.culler.drawRangeLimit(); }
     virtual Draws draws(size_t frustum) const = 0;
-    /** What the draws of a frustum are of. */
+    /** Returns the commands of a frustum's draws. */
     virtual std::span<const CommandRecord> commands(size_t frustum) const = 0;
-    /** Once all frusta are drawn, until the next ping is listed. */
+    /** Returns whether nothing was rasterised. Valid once all frusta are rasterised, until the next ping is listed. */
     virtual bool empty() const = 0;
     virtual Shown shown() const = 0;
 
@@ -89,9 +89,9 @@ private:
     gpu::UploadList<ObjectRecord> objects_;
 };
 
-/** Listed by the processor. */
+/** Makes lists on the processor. */
 std::unique_ptr<DrawLists> makeProcessorLists(const DrawLists::Setup& setup);
-/** Clusters of the objects in view are culled by a compute shader: the same triangles. The context outlives it. */
+/** Makes lists whose clusters are culled by a compute shader: the same triangles. The context outlives them. */
 std::unique_ptr<DrawLists> makeDeviceLists(const DrawLists::Setup& setup, gpu::EglContext& context);
 
 }  // namespace insonify::sonar

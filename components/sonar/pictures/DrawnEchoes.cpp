@@ -18,10 +18,10 @@
 namespace insonify::sonar {
 namespace {
 
-/** Slant range before which nothing is drawn [m]. What is nearer than the blanking is: it casts its shadow. */
+/** Min slant range that is rasterised [m]. Surfaces nearer than the blanking are rasterised: they cast shadows. */
 constexpr double nearest_drawn = 1e-3;
 
-/** Distance of the image plane that is nowhere farther than `nearest_drawn`, even in the picture's corners. */
+/** Returns the distance of an image plane that is nowhere beyond `nearest_drawn`, even in the picture's corners. */
 double nearPlane(const ViewFrustum& frustum) {
     const double corner = std::sqrt(1 + frustum.extent_u * frustum.extent_u + frustum.extent_v * frustum.extent_v);
     return nearest_drawn / corner;
@@ -57,21 +57,21 @@ public:
 
 private:
     bool wantsProcessor() const;
-    /** Throws GlError where the device cannot draw the plan's pictures. Returns why pictures that it was to sum are
-     *  summed on the processor, for its limits or an effect; empty where neither is so. */
+    /** Throws GlError where the device cannot rasterise the plan's pictures. Returns why the processor sums pictures
+     *  instead of the device, because of limits or an effect; empty where it does not. */
     std::string checkDevice() const;
     bool depositsOnProcessor() const { return wantsProcessor() || !why_on_processor_.empty(); }
     SurfacePass::Setup surfaceSetup() const;
     void makeDeposit();
     void makeTruth();
     void prepareTruth();
-    /** Fills it, once the sums are there. */
+    /** Fills the truth, once the sums are available. */
     void fillTruth();
-    /** Gives what is drawn to the deposits. */
+    /** Passes the rasterised pictures to the deposits. */
     void take(const WaterView& water);
     void fillBins(types::Sonar& ping);
     void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
-    /** Seconds since the last call, put down for a stage. */
+    /** Adds the seconds since the last call to a stage. */
     void lap(Stage& stage);
 
     const RenderPlan& plan_;
@@ -85,13 +85,13 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
-    types::SonarTruth* truth_ = nullptr;      ///< To be filled; null: none is.
-    std::optional<TruthTable> shown_;         ///< Once it was wanted.
-    std::unique_ptr<PictureDeposit> beside_;  ///< The same, where the device deposits.
-    PictureDeposit* telling_ = nullptr;       ///< Which of the two deposits on the processor tells what is shown.
+    types::SonarTruth* truth_ = nullptr;      ///< Truth to be filled; null: none.
+    std::optional<TruthTable> shown_;         ///< Made at the first ping with truth.
+    std::unique_ptr<PictureDeposit> beside_;  ///< Made for truth, where the device deposits.
+    PictureDeposit* telling_ = nullptr;       ///< The deposit on the processor that records the truth.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
-    std::span<const uint64_t> sums_;  ///< Of the last ping, until the quality changes.
+    std::span<const uint64_t> sums_;  ///< Sums of the last ping, until the quality changes.
     bool rendered_ = false;           ///< Whether there is a last ping.
     std::chrono::steady_clock::time_point last_;
 };
@@ -121,7 +121,7 @@ std::string DrawnEchoes::checkDevice() const {
     requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
     if (wantsProcessor()) return {};
     if (const std::string why = effects_.whyNotOnDevice(); !why.empty())
-        return fmt::format("pictures are summed on the processor: {}", why);
+        return fmt::format("images are summed on the processor: {}", why);
     return whyOnProcessor(plan_.config.deposit, context_.limits(),
                           depositNeeds(depositSetup(plan_, effects_), *geometry_), context_.renderer());
 }
@@ -235,7 +235,7 @@ void DrawnEchoes::takeQuality() {
 }
 
 bool DrawnEchoes::hasEchoes() const {
-    const bool drawn = rendered_ && !surface_.lists().empty();  // published counts what is not there
+    const bool drawn = rendered_ && !surface_.lists().empty();  // `published` also counts misses
     return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 

@@ -11,7 +11,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A number as the sum of two floats: what float holds, and the rest. */
+/** Returns a number as the sum of two floats: its float, and the rest. */
 vec2 pairOf(double number) {
     constexpr double most = std::numeric_limits<float>::max();
     const double held = std::clamp(number, -most, most);
@@ -19,7 +19,7 @@ vec2 pairOf(double number) {
     return {high, static_cast<float>(held - static_cast<double>(high))};
 }
 
-/** Inverse ranges of the edges of bins: of edge 0 the near blanking's, of the others that at which they are [1/m]. */
+/** Returns the inverse ranges of the bins' edges: for edge 0 that of the near blanking [1/m]. */
 std::vector<float> deviceEdges(const EchoRules& rules) {
     std::vector<float> numbers;
     for (int k = 0; k <= rules.bins.bin_count; ++k) {
@@ -44,7 +44,7 @@ void setPair(GLint place, double number) {
 
 void setFloat(GLint place, double number) { glUniform1f(place, static_cast<float>(number)); }
 
-/** The deposit as a compute shader: pictures stay on the device, only the sums come back. */
+/** The deposit as a compute shader: pictures stay on the device, only the sums are read back. */
 class GpuDeposit final : public BinDeposit {
 public:
     GpuDeposit(const DepositSetup& setup, gpu::EglContext& context);
@@ -70,8 +70,8 @@ private:
     const gpu::EglContext& context_;
     const gpu::Program& program_;
     Uniforms uniforms_;
-    GLuint first_elevation_ = 0, first_backscatter_ = 0, first_layer_ = 0;  ///< Among the numbers [1].
-    WaterView water_;                                                       ///< Of the ping that is taken.
+    GLuint first_elevation_ = 0, first_backscatter_ = 0, first_layer_ = 0;  ///< Indices in `numbers_` [1].
+    WaterView water_;                                                       ///< View of the current ping.
     gpu::Buffer numbers_, device_sums_;
     std::vector<FrustumShares> shares_;
     gpu::ReadBack sums_;

@@ -27,19 +27,19 @@ struct ElevationTable {
 
 /** The shares of a batch of cells. */
 struct Shares {
-    double u[Cells::capacity], v[Cells::capacity];  ///< Of the pixel's ray [1].
+    double u[Cells::capacity], v[Cells::capacity];  ///< Place of the pixel's ray [1].
     double middle[Cells::capacity], width[Cells::capacity], limit[Cells::capacity], shear[Cells::capacity];
 };
 
-/** What is the same for all cells of a picture. */
+/** Common values of all cells of a picture. */
 struct Frame {
-    double cosine, sine;  ///< Of the azimuth of the frustum's axis.
+    double cosine, sine;  ///< Cosine and sine of the azimuth of the frustum's axis.
     double dv, per_pixel;
     bool by_rays;  ///< Cells are seen along the rays of their pixels, not in their own middles.
 };
 
-/** Sets direction, extent and solid angle of all cells. `by_rays`: as in Frame, for compilers vectorise no loop that
- *  chooses by it. */
+/** Sets direction, extent and solid angle of all cells. `by_rays`: as in Frame; a template parameter, because compilers
+ *  do not vectorise a loop with this choice. */
 template <bool by_rays>
 inline __attribute__((always_inline)) void aimEach(const Shares& shares, const Frame& frame, Cells& __restrict cells) {
     const int count = cells.count;
@@ -128,7 +128,8 @@ private:
         if (++cells_.count == Cells::capacity) flush();
     }
 
-    /** The mapped cosine is that of the pixel's ray; on a plane a cosine is in proportion to the inverse range. */
+    /** Corrects mapped cosines, which are those of the pixels' rays; on a plane a cosine is in proportion to the
+     *  inverse range. */
     void moveMappedCosines() {
         for (int i = 0; i < cells_.count; ++i) {
             if (!(cells_.mapped[i] > 0)) continue;

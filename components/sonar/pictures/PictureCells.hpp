@@ -8,15 +8,15 @@
 
 namespace insonify::sonar {
 
-/** A frustum's picture in memory, and what its numbers mean. */
+/** A frustum's picture in memory, and the meaning of its numbers. */
 struct PictureView {
-    const uint32_t* pixels = nullptr;  ///< `channels` words each, row by row from below.
+    const uint32_t* pixels = nullptr;  ///< `channels` words per pixel, row by row from below.
     size_t channels = 2;               ///< Words of a pixel [1].
-    std::vector<PlacedRun> ranges;     ///< Of each draw, its triangles turned into sonar axes.
-    std::vector<uint32_t> objects;     ///< Of each draw.
+    std::vector<PlacedRun> ranges;     ///< Run of each draw, its triangles rotated into sonar axes.
+    std::vector<uint32_t> objects;     ///< Object of each draw.
 };
 
-/** What one thread deposits of one frustum: the beams [first, last). */
+/** The part of one frustum that one thread deposits: the beams [first, last). */
 struct PicturePart {
     const EchoRules& rules;
     const ViewFrustum& frustum;
@@ -24,10 +24,10 @@ struct PicturePart {
     const PictureView& picture;
     WaterView water;
     uint32_t first, last;        ///< Beams [1].
-    std::array<int, 2> columns;  ///< From, to: those that these beams touch [1].
+    std::array<int, 2> columns;  ///< First and end of the columns that these beams touch [1].
 };
 
-/** Adds the echoes of a part of a picture to sums: each share that a beam has of a pixel is a cell. */
+/** Adds the echoes of a part of a picture to sums: each beam's share of a pixel is a cell. */
 void depositPicture(const PicturePart& part, const EchoSums& to);
 
 }  // namespace insonify::sonar

@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Columns of the frustum that any beam of [first, last) touches: from, to. */
+/** Returns the first and end column of the frustum that any beam of [first, last) touches. */
 std::array<int, 2> touched(const ColumnShares& shares, uint first, uint last) {
     std::array<int, 2> range{std::numeric_limits<int>::max(), 0};
     for (const ShareRecord& share : shares.shares)
@@ -101,7 +101,7 @@ void PictureDeposit::depositPart(size_t part) {
 
 uint32_t PictureDeposit::firstBeam(size_t part) const {
     auto first = static_cast<uint32_t>(setup_.beam_count * part / static_cast<size_t>(threads_.size()));
-    // Those of one beam of the truth stay with one thread.
+    // The beams of one beam of the truth stay with one thread.
     while (!truth_beams_.empty() && first > 0 && first < setup_.beam_count &&
            truth_beams_[first] == truth_beams_[first - 1])
         ++first;

@@ -6,20 +6,19 @@
 
 namespace insonify::sonar {
 
-/** The deposit of pictures on the processor: reads them back; each thread owns a run of beams, so none waits for
- * another.
- */
+/** Deposits pictures on the processor, after reading them back. Each thread owns a run of beams, so that threads do not
+ *  wait for each other. */
 class PictureDeposit final : public BinDeposit {
 public:
-    /** All outlive it. */
+    /** All arguments outlive it. */
     PictureDeposit(DepositSetup setup, const SurfacePass& surface, const gpu::EglContext& context, ThreadPool& threads);
     void begin(const WaterView& water) override;
     void take(size_t frustum, const SurfacePass& surface) override;
     std::span<const uint64_t> finish() override;
 
-    /** Prepares for the truth of the sums, in those beams of a table (as beamsOfCells). */
+    /** Prepares the truth of the sums, in the beams of a table (as beamsOfCells). */
     void prepareTruth(std::vector<int32_t> beams);
-    /** Pings begun from now on report their truth to a table; null: no more. */
+    /** Makes later pings report their truth to a table; null: no more. */
     void setTruth(TruthTable* truth) { truth_ = truth; }
 
 private:
@@ -30,7 +29,7 @@ private:
     };
     void depositPart(size_t part);
     void touchColumns();
-    /** First beam of a thread's run. */
+    /** Returns the first beam of a thread's run. */
     uint32_t firstBeam(size_t part) const;
 
     DepositSetup setup_;
@@ -38,13 +37,13 @@ private:
     ThreadPool& threads_;
     const std::vector<PlaneRecord>& planes_;
     const std::vector<FacetRecord>& facets_;
-    std::vector<std::vector<std::array<int, 2>>> columns_;  ///< Of each thread and frustum: from, to.
-    std::vector<Taken> pictures_;                           ///< Of each frustum.
-    WaterView water_;                                       ///< Of the ping that is taken.
+    std::vector<std::vector<std::array<int, 2>>> columns_;  ///< First and end column of each thread and frustum.
+    std::vector<Taken> pictures_;                           ///< Picture of each frustum.
+    WaterView water_;                                       ///< View of the current ping.
     std::vector<uint64_t> sums_;
     TruthTable* truth_ = nullptr;
     std::vector<int32_t> truth_beams_;
-    std::vector<std::vector<uint64_t>> one_beam_;  ///< Of each thread, for TruthSink.
+    std::vector<std::vector<uint64_t>> one_beam_;  ///< One per thread, for TruthSink.
 };
 
 }  // namespace insonify::sonar

@@ -9,7 +9,7 @@ namespace {
 
 bool hasNormalMaps(const SurfacePass::Setup& setup) { return std::ranges::count(setup.defines, "HAVE_NORMAL_MAP") > 0; }
 
-/** How many contexts are worth their memory; the device culls for one. */
+/** Returns the number of contexts that are worth their memory; the device culls for one. */
 size_t partCount(const gpu::EglContext& context, const SurfacePass::Setup& setup, const ThreadPool& threads) {
     return context.isSoftware() && !setup.cull_on_device
                ? std::min(setup.frusta.size(), static_cast<size_t>(threads.size()))
@@ -58,8 +58,8 @@ void SurfacePainter::setUniforms(const ViewFrustum& frustum) const {
     glUniform1f(uniforms_.near_plane, static_cast<float>(near_plane_));
 }
 
-/** Mesa's software renderer would take indirect commands one by one all the same, but look for each through what all
- *  contexts draw: see EglContext::drawing(). */
+/** Issues single draws on Mesa's software renderer. It would process indirect commands one by one as well, and search
+ *  each in the draws of all contexts: see EglContext::drawing(). */
 void SurfacePainter::drawGroup(const Draws& draws, const DrawGroup& group) const {
     const auto offset = [](size_t bytes) { return reinterpret_cast<const void*>(bytes); };
     scene_.bindNormalMap(group.normal_map);
@@ -139,12 +139,12 @@ void SurfacePass::cull() {
 
 void SurfacePass::draw() {
     onEachPart([&](size_t part) {
-        // A device that culls is asked for more than draws.
+        // A device that culls does more than rasterising.
         const auto alone = setup_.cull_on_device ? context_.transferring() : std::unique_lock<std::shared_mutex>();
         const auto together = setup_.cull_on_device ? std::shared_lock<std::shared_mutex>() : context_.drawing();
         lists_->prepare(setup_.frusta);
         drawPart(part);
-        if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card's own takes its turn
+        if (context_.isSoftware()) gpu::Fence::here().wait();  // for other contexts; a card has one queue
         if (parts_[part].own) parts_[part].own->check();
     });
 }

@@ -11,15 +11,15 @@
 
 namespace insonify::sonar {
 
-/** Draws frusta in the context in which it was made. */
+/** Rasterises frusta in the context in which it was made. */
 class SurfacePainter {
 public:
-    /** `defines` as the plan's features; nothing nearer than `near_plane` [m] along a frustum's axis is drawn.
-     *  `scene` and `context`, which is current, must outlive the painter; the scene may be another context's. */
+    /** `defines` as the plan's features. Nothing nearer than `near_plane` [m] along a frustum's axis is rasterised.
+     *  `scene` and `context`, which is current, must outlive the painter; the scene may belong to another context. */
     SurfacePainter(const SurfaceScene& scene, const std::vector<std::string>& defines, double near_plane,
                    gpu::EglContext& context);
 
-    /** Draws what is listed; everything else in the picture is a miss. */
+    /** Rasterises the listed draws; all other pixels of the picture are misses. */
     void draw(const VisibilityBuffer& picture, const Draws& draws) const;
 
 private:
@@ -36,9 +36,9 @@ private:
     } uniforms_;
 };
 
-/** Draws what all frusta see, ping after ping into the same pictures. On a graphics card one context does it; Mesa's
- *  software renderer prepares triangles on the calling thread alone, so there each thread of the pool has a context and
- *  a share of the frusta. */
+/** Rasterises what all frusta see, ping after ping into the same pictures. On a graphics card it uses one context.
+ *  Mesa's software renderer prepares triangles on the calling thread only, so there each thread of the pool has a
+ *  context and a share of the frusta. */
 class SurfacePass {
 public:
     struct Setup {
@@ -47,29 +47,29 @@ public:
         std::vector<ViewFrustum> frusta;
         std::vector<std::string> defines;  ///< As the plan's features.
         double near_plane;                 ///< [m]
-        bool empty_too;                    ///< Frusta that see nothing are drawn as well: misses count.
-        bool cull_on_device = false;       ///< Clusters; objects are culled by the processor.
+        bool empty_too;                    ///< Frusta that see nothing are rasterised as well: misses count.
+        bool cull_on_device = false;       ///< For clusters; objects are culled by the processor.
     };
     /** `context` is current on this thread; context, geometry, laws, culler and threads must outlive the pass. */
     SurfacePass(gpu::EglContext& context, Setup setup, Culler& culler, ThreadPool& threads);
     ~SurfacePass();
 
-    /** Other pictures of the same frusta: as many, in more or fewer pixels. */
+    /** Switches to pictures of the same frusta with other numbers of pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
-    /** Lists what each frustum sees of what the culler has placed. */
+    /** Lists the placed parts that each frustum sees. */
     void cull();
-    /** Whether a frustum's picture is drawn. */
+    /** Returns whether a frustum's picture is rasterised. */
     bool draws(size_t frustum) const { return setup_.empty_too || lists_->mayShow(frustum); }
-    /** Draws the frusta as they are listed. A graphics card may still be at it when this returns; what its context
-     *  is asked for then comes after. Throws GlError. All other functions but cull(), draws() and what reads lists want
-     *  EglContext::transferring(); this one does that itself. */
+    /** Rasterises the listed frusta. A graphics card may still be working when this returns; later requests to its
+     *  context are executed after that. Throws GlError. All other functions except cull(), draws() and readers of the
+     *  lists require EglContext::transferring(); this one enters it itself. */
     void draw();
 
     const VisibilityBuffer& picture(size_t frustum) const { return *pictures_[frustum]; }
     const SurfaceScene& scene() const { return scene_; }
     const DrawLists& lists() const { return *lists_; }
-    /** Where the culler has placed the objects. */
+    /** Returns the culler's places of the objects. */
     const std::vector<ObjectRecord>& objects() const { return culler_.records(); }
     /** Binds a picture (unit 0), its commands, objects, planes and materials, for a compute shader. */
     void bindResults(size_t frustum) const;
@@ -77,7 +77,7 @@ public:
 private:
     /** One thread's part; made, used and destroyed there. */
     struct Part {
-        std::optional<gpu::EglContext> own;  ///< Of all threads but the first, which has the renderer's.
+        std::optional<gpu::EglContext> own;  ///< Context of a thread; the first thread uses the renderer's.
         std::optional<SurfacePainter> painter;
     };
     gpu::EglContext& contextOf(size_t part) { return parts_[part].own ? *parts_[part].own : context_; }

@@ -6,8 +6,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** A mesh as it is drawn: triangle t ends in vertex t, which no other triangle ends in. So the last vertex of a
- *  triangle, the provoking one, tells which triangle it is, and gl_PrimitiveID, for which llvmpipe takes meshes apart,
+/** A mesh in the form that is rasterised: triangle t ends in vertex t, and no other triangle ends there. So the last
+ *  vertex of a triangle, the provoking one, identifies the triangle. gl_PrimitiveID, for which llvmpipe splits meshes,
  *  is not needed. */
 class Drawn {
 public:
@@ -18,7 +18,7 @@ public:
             indices[i] = i % 3 == 2 ? static_cast<uint32_t>(i / 3) : at(indices[i]);
     }
 
-    std::vector<uint32_t> sources;  ///< Of each drawn vertex, in the mesh.
+    std::vector<uint32_t> sources;  ///< Vertex of the mesh for each rasterised vertex.
     std::vector<uint32_t> indices;
 
 private:
@@ -40,10 +40,10 @@ private:
         return place_[vertex];
     }
 
-    std::vector<uint32_t> place_;  ///< Where each vertex of the mesh is drawn.
+    std::vector<uint32_t> place_;  ///< Rasterised place of each vertex of the mesh.
 };
 
-/** One attribute of all drawn vertices; `neutral` where a mesh has none. */
+/** Returns one attribute of all rasterised vertices; `neutral` where a mesh has none. */
 template <class T>
 std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes,
                       std::vector<T> types::Mesh::*attribute, T neutral) {
@@ -60,8 +60,9 @@ gpu::Buffer uploaded(const std::vector<T>& items) {
     return gpu::Buffer::of(std::span(items));
 }
 
-/** Of what has no area: no normal, which is no echo. The point is that of the plane which is nearest to the origin
- *  within the triangle's reach: even of a huge triangle it is close to what is seen, if that is close to the origin. */
+/** Returns the plane of a triangle. A triangle without area has no normal, and thus no echo. The point is that of the
+ *  plane nearest to the origin within the triangle's reach. Even on a huge triangle it is close to the visible part, if
+ *  that is close to the origin. */
 PlaneRecord planeOf(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const glm::dvec3 across = glm::cross(b - a, c - a), middle = (a + b + c) / 3.0;
     if (!(glm::length(across) > 0)) return {vec4(0), vec4(0)};
@@ -137,7 +138,7 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
 void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     for (const types::NormalMap& map : geometry.normal_maps)
         normal_maps_.push_back(uploadedMap(map.width, map.height, map.rgb.data(), map.repeat_u, map.repeat_v));
-    // No map is one texel that bends nothing: (0.5, 0.5, 1) up to the quantisation of 8 bits.
+    // The flat map is one neutral texel: (0.5, 0.5, 1) up to the quantisation of 8 bits.
     gpu::Texture flat(GL_RGB32F, 1, 1);
     const float up[] = {0.5f, 0.5f, 1.0f};
     glTextureSubImage2D(flat.id(), 0, 0, 0, 1, 1, GL_RGB, GL_FLOAT, up);

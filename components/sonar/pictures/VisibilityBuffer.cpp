@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Which sample lies in which quarter of a pixel, of the framebuffer that is bound: left below, right below, above. */
+/** Returns the sample in each quarter of a pixel, in the bound framebuffer: left below, right below, above. */
 std::array<GLint, 4> samplesOfQuarters() {
     std::array<GLint, 4> samples = {-1, -1, -1, -1};
     for (GLuint i = 0; i < 4; ++i) {
@@ -14,7 +14,7 @@ std::array<GLint, 4> samplesOfQuarters() {
         glGetMultisamplefv(GL_SAMPLE_POSITION, i, at);
         samples[(at[0] > 0.5f ? 1u : 0u) + (at[1] > 0.5f ? 2u : 0u)] = static_cast<GLint>(i);
     }
-    if (std::ranges::count(samples, -1) > 0) throw gpu::GlError("this device has no sample in some quarter of a pixel");
+    if (std::ranges::count(samples, -1) > 0) throw gpu::GlError("this device has no sample in one quarter of a pixel");
     return samples;
 }
 
@@ -60,7 +60,7 @@ size_t VisibilityBuffer::bytes() const {
 }
 
 void VisibilityBuffer::read(gpu::ReadBack& words) const {
-    ids_.bind(0);  // so that what another context drew is seen here
+    ids_.bind(0);  // makes another context's writes visible here
     words.ask(ids_, channels_ == 4 ? GL_RGBA_INTEGER : GL_RG_INTEGER);
 }
 

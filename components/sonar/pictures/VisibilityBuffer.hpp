@@ -8,8 +8,8 @@
 
 namespace insonify::sonar {
 
-/** What one frustum sees: for each pixel its triangle, and with normal maps the mapped cosine (surface.frag.glsl).
- *  Make, draw and destroy it in one context; other contexts of the same device may read it once it is finished. */
+/** The picture of one frustum: for each pixel its triangle, and with normal maps the mapped cosine (surface.frag.glsl).
+ *  Make, rasterise and destroy it in one context; other contexts of the same device may read it once it is finished. */
 class VisibilityBuffer {
 public:
     /** `context` is current and outlives the picture. */
@@ -18,14 +18,14 @@ public:
 
     const ViewFrustum& frustum() const { return frustum_; }
     int channels() const { return channels_; }
-    /** How much `read` gives. */
+    /** Returns the number of bytes that `read` transfers. */
     size_t bytes() const;
-    /** Asks for the picture: channels() words of 32 bits a pixel, row by row from below. */
+    /** Requests the picture: channels() words of 32 bits per pixel, row by row from below. */
     void read(gpu::ReadBack& words) const;
     void bindTexture(GLuint unit) const { ids_.bind(unit); }
-    /** Makes the picture the target and all of it a miss. */
+    /** Makes the picture the render target and sets all pixels to miss. */
     void clear() const;
-    /** Ends the drawing: several samples a pixel become pixels. */
+    /** Finishes rasterising: resolves several samples per pixel into pixels. */
     void resolve() const;
 
 private:
@@ -34,7 +34,7 @@ private:
     gpu::Texture ids_, depth_;
     gpu::Framebuffer target_;
     struct Multisampled;
-    std::unique_ptr<Multisampled> multisampled_;  ///< What is drawn into when a pixel has several samples.
+    std::unique_ptr<Multisampled> multisampled_;  ///< Render target when a pixel has several samples.
 };
 
 }  // namespace insonify::sonar

@@ -18,7 +18,7 @@ std::vector<Box> leavesOf(const types::Mesh& mesh) {
     constexpr size_t leaf = 3 * MeshFacts::leaf_triangles;
     std::vector<Box> boxes((mesh.indices.size() + leaf - 1) / leaf);
     for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / leaf].add(mesh.positions[mesh.indices[i]]);
-    for (Box& box : boxes) {  // meetTriangle accepts a little beyond the edges
+    for (Box& box : boxes) {  // meetTriangle accepts hits slightly beyond the edges
         const glm::dvec3 slack = 1e-9 * (glm::max(glm::abs(box.low), glm::abs(box.high)) + box.half());
         box.low -= slack, box.high += slack;
     }

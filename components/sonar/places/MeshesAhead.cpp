@@ -36,7 +36,7 @@ MeshesAhead::Made MeshesAhead::make(const types::MeshPtr& mesh, const MaterialLa
     made.curves = made.facts->curves(glm::dmat3(1));
     return made;
 } catch (const std::exception&) {
-    return {};  // the ping that needs it meets the same, and reports it
+    return {};  // the ping that needs it meets the same error, and reports it
 }
 
 void MeshesAhead::work() {
@@ -48,7 +48,7 @@ void MeshesAhead::work() {
         lock.unlock();
         std::vector<Made> made;
         for (const types::MeshPtr& mesh : *meshes) made.push_back(make(mesh, laws));
-        made_ = std::move(made);  // only now, so that what was made before and is still needed was not made twice
+        made_ = std::move(made);  // only now, so that data that is still needed is not made twice
         lock.lock();
     }
 }

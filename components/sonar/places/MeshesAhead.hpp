@@ -11,8 +11,8 @@
 
 namespace insonify::sonar {
 
-/** Makes what takes long of meshes that a ping will need later, next to the pings, on a thread of its own from the
- * first mesh on. A ping that needs such a mesh earlier waits for it, so pings are the same whatever is made in time. */
+/** Prepares the expensive data of meshes that a later ping will need, on its own thread, which starts with the first
+ *  mesh. A ping that needs a mesh earlier waits for it, so the pings do not depend on the progress of the thread. */
 class MeshesAhead {
 public:
     using Meshes = std::shared_ptr<const std::vector<types::MeshPtr>>;
@@ -22,11 +22,11 @@ public:
     MeshesAhead(const MeshesAhead&) = delete;
     MeshesAhead& operator=(const MeshesAhead&) = delete;
 
-    /** From now on these meshes are needed later, with these laws; null: none. Waits for nothing. */
+    /** Sets the meshes that will be needed, with these laws; null: none. Does not wait. */
     void take(const Meshes& meshes, const MaterialLaws& laws);
 
 private:
-    /** What is kept of a mesh until a geometry has it. */
+    /** Data of a mesh that is kept until a geometry has the mesh. */
     struct Made {
         std::shared_ptr<MeshTree> tree;
         std::shared_ptr<MeshFacts> facts;
@@ -40,10 +40,10 @@ private:
     std::thread worker_;
     std::mutex mutex_;
     std::condition_variable asked_;
-    Meshes taken_, next_;  ///< Of the last take(); those that the worker does not have yet.
+    Meshes taken_, next_;  ///< Argument of the last take(); meshes that the worker has not received yet.
     MaterialLaws laws_;
     bool quit_ = false;
-    std::vector<Made> made_;  ///< By the worker, which alone uses it.
+    std::vector<Made> made_;  ///< Used by the worker thread only.
 };
 
 }  // namespace insonify::sonar

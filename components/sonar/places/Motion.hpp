@@ -10,43 +10,43 @@
 
 namespace insonify::sonar {
 
-/** How a body moves, turns and is deformed: the velocity of each of its places. */
+/** Motion, rotation and deformation of a body: the velocity of each of its points. */
 struct Drift {
     glm::dmat3 linear{0};    ///< [1/s]
     glm::dvec3 constant{0};  ///< [m/s]
-    double fastest = 0;      ///< Of any of its places [m/s].
+    double fastest = 0;      ///< Max speed of its points [m/s].
 
     glm::dvec3 at(const glm::dvec3& place) const { return linear * place + constant; }
 };
 
-/** Tells from one ping to the next how sonar, objects and point targets move: by the velocities of the sonar's pose
- *  where it has them, else by where they were in the snapshot before. Nothing moves in the first ping that has no
- *  velocities. */
+/** Derives the motion of sonar, objects and point targets from ping to ping. It uses the velocities in the sonar's pose
+ *  where it has them, else the snapshot before. Without velocities nothing moves in the first ping. */
 class Motion {
 public:
-    /** What seems to move faster than `fastest` [m/s] has been put elsewhere, and is taken to be at rest. */
+    /** Anything that seems to move faster than `fastest` [m/s] counts as repositioned and at rest. */
     Motion(const types::Geometry& geometry, double fastest);
 
-    /** Another geometry from the next ping on. Objects are the same ones where they have the same numbers, meshes and
-     *  names; the others are at rest at first. */
+    /** Switches to another geometry from the next ping on. Objects with the same number, mesh and name are the same
+     *  object. Other objects are at rest at first. */
     void takeScene(const types::Geometry& geometry);
-    /** Once a ping; several of one time are one. Allocates nothing after the second. */
+    /** Updates the motion once per ping; several calls for one time count as one. Allocates nothing after the second
+     *  ping. */
     void follow(const types::Snapshot& snapshot);
 
-    const glm::dvec3& velocity() const { return velocity_; }  ///< Of the sonar, in the world [m/s].
+    const glm::dvec3& velocity() const { return velocity_; }  ///< Velocity of the sonar, in the world [m/s].
     const glm::dvec3& turn() const { return turn_; }          ///< Its angular velocity, in the world [rad/s].
-    /** Of an object about the sonar, sonar axes; null where it is at rest. Of one that deforms, the mean of its places.
-     */
+    /** Returns the motion of an object in the world, about the sonar, in sonar axes; null where it is at rest.
+     *  If the object deforms: the mean motion of its vertices. */
     const Drift* drift(uint32_t object) const { return drifts_[object] ? &*drifts_[object] : nullptr; }
-    /** The same of one triangle of an object; `own` is filled where the object deforms. */
+    /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
     const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const;
-    /** Of a point target, in the world [m/s]. */
+    /** Returns the velocity of a point target, in the world [m/s]. */
     glm::dvec3 targetVelocity(size_t target) const;
-    /** The greatest of the velocities of objects and targets [m/s]. */
+    /** Returns the max speed of objects and targets [m/s]. */
     double fastest() const { return fastest_; }
 
 private:
-    /** What counts of a snapshot. */
+    /** The part of a snapshot that matters for motion. */
     struct Mark {
         types::Pose sonar;
         std::vector<types::MovedObject> moved;
@@ -59,7 +59,7 @@ private:
         types::MeshPtr mesh;
         bool moves = false;  ///< In this ping.
     };
-    /** What counts of an object. */
+    /** Identity of an object. */
     struct Thing {
         std::string name;
         types::MeshPtr shape;
@@ -76,7 +76,7 @@ private:
     std::vector<glm::dmat4> places_;  ///< Of each object in the geometry.
     std::optional<Mark> before_, now_;
     double fastest_allowed_;  ///< [m/s]
-    double seconds_ = 0;      ///< Between the two.
+    double seconds_ = 0;      ///< Between `before_` and `now_` [s].
     glm::dvec3 velocity_{0}, turn_{0};
     std::vector<std::optional<Drift>> drifts_;
     std::vector<std::shared_ptr<Deforming>> deforming_;  ///< Of each object; null: it keeps its shape.
@@ -84,8 +84,8 @@ private:
     double fastest_ = 0;
 };
 
-/** The angular velocity that turns one orientation into another in so many seconds, the shorter way, in the frame that
- *  both turn into [rad/s]. */
+/** Returns the angular velocity that turns one orientation into another in `seconds`, the shorter way, in the frame
+ *  that both turn into [rad/s]. */
 glm::dvec3 turnBetween(const glm::dquat& from, const glm::dquat& to, double seconds);
 
 }  // namespace insonify::sonar

@@ -13,19 +13,19 @@
 namespace insonify::sonar {
 namespace {
 
-/** Corners up to which a mesh is not searched by its clusters [1]. */
+/** Max corners of a mesh that is searched without its clusters [1]. */
 constexpr size_t max_corners = 4096;
-/** Triangles that are looked at one by one; of what is left the box is taken [1]. */
+/** Max triangles that are evaluated individually; the rest is approximated by a box [1]. */
 constexpr uint32_t max_triangles = 4096;
 
-constexpr uint32_t at_once = 16;  ///< Triangles whose numbers stay in the nearest cache.
+constexpr uint32_t at_once = 16;  ///< Triangles whose data fit the nearest cache.
 
 /** Corners of triangles from the sonar [m]. */
 struct Corners {
     float x[3][at_once], y[3][at_once], z[3][at_once];
 };
 
-/** Square of the distance to the part of a line from `p` to `p + d`. */
+/** Returns the square of the distance to the line segment from `p` to `p + d`. */
 inline float toEdge(float px, float py, float pz, float dx, float dy, float dz) {
     const float length2 = dx * dx + dy * dy + dz * dz, along = -(px * dx + py * dy + pz * dz);
     const float t = length2 > 0 ? std::min(std::max(along / length2, 0.0f), 1.0f) : 0.0f;
@@ -33,8 +33,8 @@ inline float toEdge(float px, float py, float pz, float dx, float dy, float dz) 
     return x * x + y * y + z * z;
 }
 
-/** Square of the distance to each triangle: to its plane where the foot of the perpendicular lies within it, else to
- *  the nearest of its edges. */
+/** Computes the square of the distance to each triangle: to its plane where the foot of the perpendicular is inside it,
+ *  else to the nearest of its edges. */
 INSONIFY_VECTOR_CLONES void nearest2(const Corners& c, float (&distance2)[at_once]) {
     for (uint32_t i = 0; i < at_once; ++i) {
         const float ax = c.x[0][i], ay = c.y[0][i], az = c.z[0][i], bx = c.x[1][i], by = c.y[1][i], bz = c.z[1][i],
@@ -55,7 +55,7 @@ INSONIFY_VECTOR_CLONES void nearest2(const Corners& c, float (&distance2)[at_onc
     }
 }
 
-/** Looks for the nearest point in the boxes that may hold it. */
+/** Finds the nearest point in the boxes that may contain it. */
 class Search {
 public:
     Search(const types::Mesh& mesh, const glm::dmat4& sonar_from_mesh)
@@ -63,7 +63,7 @@ public:
           linear_(glm::dmat3(sonar_from_mesh)),
           eye_(-(glm::inverse(glm::dmat3(sonar_from_mesh)) * glm::dvec3(sonar_from_mesh[3]))) {}
 
-    /** Of a mesh of few corners: the triangles none of whose corners is about as near as the nearest are left out. No
+    /** For a mesh of few corners. Omits triangles whose corners are all clearly farther than the nearest corner. No
      *  point of a triangle is farther from all its corners than its longest edge over the root of 3. */
     double nearestByCorners(double longest_edge, std::vector<float>& corners2) {
         corners2.clear();
@@ -106,7 +106,7 @@ public:
     }
 
 private:
-    /** Calls nearer = use(cluster, distance that it has at least), but for those in patches that are no nearer. */
+    /** Calls nearer = use(cluster, lower bound of its distance), except for clusters in patches that are no nearer. */
     template <class Use>
     void forEachCluster(const Use& use) const {
         float nearer = std::numeric_limits<float>::infinity();
@@ -125,7 +125,7 @@ private:
 
     glm::vec3 fromSonar(const glm::vec3& p) const { return linear_ * glm::vec3(glm::dvec3(p) - eye_); }
 
-    /** Distance that everything in a box along the mesh's axes has at least. */
+    /** Returns a lower bound of the distance to a box along the mesh's axes. */
     float atLeast(const glm::vec3& centre, const glm::vec3& half) const {
         const glm::vec3 at = fromSonar(centre);
         const float distance = glm::length(at);
@@ -138,7 +138,7 @@ private:
         lookAtWaiting();
     }
 
-    /** At a triangle, when as many wait as are looked at together. */
+    /** Queues a triangle; evaluates the queue when it is full. */
     void look(uint32_t first_index) {
         for (uint32_t k = 0; k < 3; ++k) {
             const glm::vec3 p = fromSonar(mesh_.positions[mesh_.indices[first_index + k]]);

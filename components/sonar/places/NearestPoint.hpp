@@ -6,12 +6,12 @@
 
 namespace insonify::sonar {
 
-/** Of all triangles of a mesh, in its own coordinates [m]. */
+/** Returns the longest edge of all triangles of a mesh, in its own coordinates [m]. */
 double longestEdge(const types::Mesh& mesh);
 
-/** Distance from the sonar to the nearest point of a mesh that stands where `sonar_from_mesh` says [m]; of a mesh that
- *  has very many triangles about as near as each other, that of the nearest box of triangles. 0 where it has no
- *  triangles. Allocates in `scratch` alone. */
+/** Returns the distance from the sonar to the nearest point of a mesh that is placed by `sonar_from_mesh` [m]. If very
+ *  many triangles of the mesh are about equally near, returns a lower bound: the distance to the nearest box of
+ *  triangles. Returns 0 for a mesh without triangles. Allocates in `scratch` only. */
 double nearestDistance(const types::Mesh& mesh, double longest_edge, const glm::dmat4& sonar_from_mesh,
                        std::vector<float>& scratch);
 

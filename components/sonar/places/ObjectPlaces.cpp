@@ -16,7 +16,7 @@ namespace {
 
 vec4 row(const glm::dmat4& m, int i) { return vec4(glm::dvec4(m[0][i], m[1][i], m[2][i], m[3][i])); }
 
-/** Rotation and place of the sonar undone in double, so that world coordinates may be large. */
+/** Returns the inverse of the sonar's rotation and place, in double, so that world coordinates may be large. */
 glm::dmat4 sonarFromWorld(const types::Pose& sonar) {
     glm::dmat4 inverse = glm::transpose(glm::mat4_cast(sonar.orientation));
     inverse[3] = glm::dvec4(-(glm::dmat3(inverse) * sonar.position), 1);
@@ -32,9 +32,9 @@ glm::dmat4 relative(const glm::dmat3& rotation, const glm::dvec3& sonar, const g
 
 double dot2(const glm::dvec3& v) { return glm::dot(v, v); }
 
-constexpr double same_place = 1e-4;  ///< Corners closer than this are one [m].
+constexpr double same_place = 1e-4;  ///< Corners closer than this coincide [m].
 
-/** The box along the world's axes around a placed box; an empty one for that of a mesh without corners [m]. */
+/** Returns the box along the world's axes around a placed box; an empty box for a mesh without corners [m]. */
 Box placedBox(const Box& box, const glm::dmat4& place) {
     if (!(box.low.x <= box.high.x)) return {};
     const glm::dvec3 centre(place * glm::dvec4((box.low + box.high) / 2.0, 1)), half = (box.high - box.low) / 2.0;
@@ -48,7 +48,7 @@ std::array<int64_t, 3> cellOf(const glm::dvec3& p) {
     return {std::llround(p.x / same_place), std::llround(p.y / same_place), std::llround(p.z / same_place)};
 }
 
-/** The different places of a mesh's corners within a box of the world, ascending. */
+/** Returns the distinct places of a mesh's corners within a box of the world, ascending. */
 std::vector<std::array<int64_t, 3>> cornersWithin(const types::Mesh& mesh, const glm::dmat4& place, const Box& box) {
     std::vector<std::array<int64_t, 3>> all;
     for (const glm::vec3& corner : mesh.positions) {
@@ -157,16 +157,16 @@ vec4 ObjectPlaces::extent(size_t index, const glm::dmat4& m, bool in_view) {
         farthest = std::max(farthest, glm::length(glm::dvec3(m * p)));
     }
     const size_t mesh = meshOf(index);
-    const double rounding = 1e-6 * farthest;  // of the floats that the nearest point is found in, at most
+    const double rounding = 1e-6 * farthest;  // upper bound for the floats of the search
     const double nearest =
         in_view ? nearestDistance(geometry_.meshes[mesh], meshes_[mesh]->longestEdge(), m, scratch_) - rounding : 0;
-    const double slack = 1e-5;  // of the float that carries it
+    const double slack = 1e-5;  // rounding of the float that stores it
     return vec4(nearest > 1e-6 ? (1 + slack) / nearest : 1e6, farthest > 0 ? (1 - slack) / farthest : 0, 0, 0);
 }
 
 void ObjectPlaces::placeObject(size_t index, const glm::dmat4& sonar_from_object) {
     const glm::dmat3 linear(sonar_from_object);
-    const double scale = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));  // at most
+    const double scale = std::sqrt(dot2(linear[0]) + dot2(linear[1]) + dot2(linear[2]));  // upper bound
     const Box& box = this->box(index);
     const glm::dvec3 centre(sonar_from_object * glm::dvec4((box.low + box.high) / 2.0, 1));
     const double radius = scale * glm::length(box.high - box.low) / 2;

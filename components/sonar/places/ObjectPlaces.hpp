@@ -10,7 +10,7 @@
 
 namespace insonify::sonar {
 
-/** What of space a sonar hears, ahead of it and to as much on either side. */
+/** The part of space that a sonar covers, symmetric about its look direction. */
 struct Reach {
     double range_max = std::numeric_limits<double>::infinity();  ///< [m]
     double half_azimuth = std::numbers::pi;                      ///< [rad]
@@ -18,18 +18,18 @@ struct Reach {
 };
 Reach reachOf(const RenderPlan& plan);
 
-/** Where the objects of a scene stand about the sonar in this ping. */
+/** The places of a scene's objects relative to the sonar in this ping. */
 class ObjectPlaces {
 public:
-    /** `geometry` must outlive it. `all`: what is out of range is placed as well. */
+    /** `geometry` must outlive it. `all`: objects out of range are placed as well. */
     ObjectPlaces(const types::Geometry& geometry, const Reach& reach, bool all);
 
-    /** Once a ping. */
+    /** Places the objects; call it once per ping. */
     void place(const types::Snapshot& snapshot);
     const std::vector<ObjectRecord>& records() const { return records_; }
-    /** Out of range and not placed: its record is not of this ping. */
+    /** Returns whether an object is out of range and was not placed: its record is not of this ping. */
     bool isFar(size_t object) const { return far_[object]; }
-    /** Of an object's mesh, in its coordinates. */
+    /** Returns the box of an object's mesh, in the mesh's coordinates. */
     const Box& box(size_t object) const { return meshes_[meshOf(object)]->box(); }
 
 private:
@@ -38,9 +38,9 @@ private:
     vec4 extent(size_t index, const glm::dmat4& sonar_from_object, bool in_view);
     /** Finds the objects that continue each other's surface. */
     void findSurfaces();
-    /** Gives the objects of one surface the inverse ranges of the whole surface. */
+    /** Sets the inverse ranges of all objects of one surface to those of the whole surface. */
     void joinExtents();
-    /** Whether any of a ball may be heard. */
+    /** Returns whether part of a ball may be in the sonar's reach. */
     bool reaches(const glm::dvec3& centre, double radius) const;
 
     const types::Geometry& geometry_;
@@ -50,7 +50,7 @@ private:
     std::vector<glm::dmat4> world_from_object_;
     std::vector<ObjectRecord> records_;
     std::vector<bool> far_, in_view_;
-    std::vector<std::vector<size_t>> surfaces_;  ///< Each of two objects or more.
+    std::vector<std::vector<size_t>> surfaces_;  ///< Each has two objects or more.
     std::vector<float> scratch_;
 };
 

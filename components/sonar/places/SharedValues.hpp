@@ -5,12 +5,12 @@
 
 namespace insonify::sonar {
 
-/** Values that all who ask for the same key share. A value lives as long as somebody holds it. */
+/** Values shared by all callers with the same key. A value lives as long as a caller holds it. */
 template <class Key, class Value>
 class SharedValues {
 public:
-    /** Returns the value of a key, by `make()` where nobody holds one. Several threads may ask at a time; all wait
-     * while a value is made. */
+    /** Returns the value of a key; calls `make()` where no caller holds it. Thread-safe; all threads wait while a value
+     *  is made. */
     template <class Make>
     std::shared_ptr<Value> of(const Key& key, const Make& make) {
         const std::lock_guard alone(mutex_);
@@ -28,7 +28,7 @@ private:
     std::map<Key, std::weak_ptr<Value>> values_;
 };
 
-/** Something that is made when it is first asked for. Several threads may ask at a time; they wait for the first. */
+/** A value that is made at the first request. Thread-safe; other threads wait for the first. */
 template <class Value>
 class Lazy {
 public:

@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Ways out that no axis or face of a usual scene lies along [1]. */
+/** Directions out of an object that are not along an axis or face of a usual scene [1]. */
 constexpr glm::dvec3 ways_out[] = {
     {0.61, 0.57, 0.55}, {-0.53, 0.67, -0.52}, {0.49, -0.71, -0.51}, {-0.66, -0.44, 0.61}, {0.07, 0.11, -0.99}};
 
@@ -22,7 +22,7 @@ glm::dvec3 absoluteProduct(const glm::dmat3& matrix, const glm::dvec3& v) {
     return glm::abs(matrix[0]) * v.x + glm::abs(matrix[1]) * v.y + glm::abs(matrix[2]) * v.z;
 }
 
-/** A line in the axes of an object, against boxes there. */
+/** A line in the axes of an object, for intersection with boxes. */
 class LineInObject {
 public:
     LineInObject(const glm::dmat3& object_from_world, const glm::dvec3& origin, const glm::dvec3& from,
@@ -34,7 +34,7 @@ public:
     bool meets(const Box& box) const {
         const glm::dvec3 a = (box.low - rounding_ - from_) * inverse_, b = (box.high + rounding_ - from_) * inverse_;
         double enters = 0, leaves = 1;
-        for (int axis = 0; axis < 3; ++axis) {  // max and min pass over what is not a number
+        for (int axis = 0; axis < 3; ++axis) {  // max and min ignore NaN
             enters = std::max(enters, std::min(a[axis], b[axis]));
             leaves = std::min(leaves, std::max(a[axis], b[axis]));
         }
@@ -121,7 +121,7 @@ std::optional<uint32_t> Sightlines::enclosing() const {
         const Placed& placed = placed_[object];
         if (glm::any(glm::greaterThan(glm::abs(sonar_ - placed.centre), placed.half))) return false;
         return std::ranges::all_of(ways_out, [&](const glm::dvec3& way) {
-            int backs = 0;  // more than fronts: as often it is left as entered, and once more
+            int backs = 0;  // number in excess of fronts: inside, the line leaves once more than it enters
             anyMet(object, sonar_, way * (4 * glm::length(placed.half)), [&](double, bool is_back) {
                 backs += is_back ? 1 : -1;
                 return false;

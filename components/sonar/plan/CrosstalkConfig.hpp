@@ -5,7 +5,7 @@
 
 namespace insonify::sonar {
 
-/** How a sonar hears the pulses of others (ACOUSTICS.md 5.29). */
+/** Reception of the pulses of other sonars (ACOUSTICS.md 5.29). */
 struct CrosstalkConfig {
     bool echoes = true;
     std::optional<double> source_level_db;
@@ -14,14 +14,14 @@ struct CrosstalkConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"echoes", "", "surfaces scatter the pings of others to this sonar too; false: direct paths alone"},
+        visit(Field{"echoes", "", "surfaces scatter the pings of others to this sonar too; false: direct paths only"},
               self.echoes);
         visit(Field{"source_level_db", "dB re 1 uPa m",
-                    "of this sonar, for those that hear it and for what it hears; absent: all are equally loud", -300,
-                    400},
+                    "of this sonar, both as a source and as the reference for what it receives; absent: all sonars "
+                    "have equal levels",
+                    -300, 400},
               self.source_level_db);
-        visit(Field{"rejection_db", "dB", "by which the receiver weakens what is outside its band", 0, 300},
-              self.rejection_db);
+        visit(Field{"rejection_db", "dB", "attenuation of the receiver outside its band", 0, 300}, self.rejection_db);
     }
 };
 

@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** Independent numbers of one device. */
+/** Streams of independent random numbers of one device. */
 enum ErrorStream : uint64_t { element_errors = 1, element_failures, beam_errors, beam_failures };
 
 uint64_t errorSeed(uint32_t seed, ErrorStream stream) { return types::hashed(seed, 0x6d706572, stream); }
@@ -22,7 +22,7 @@ std::complex<double> normalPair(uint64_t seed, size_t place) {
                       2 * std::numbers::pi * types::unit(word & 0xffffffff));
 }
 
-/** Whether a thing of a place has failed: by a probability, or because a list has it. */
+/** Returns whether the element or beam `place` has failed: at random, or because the list contains it. */
 bool hasFailed(uint64_t seed, size_t place, double share, const std::vector<uint32_t>& list) {
     return types::unit(types::hashed(seed, place, 1) >> 32) < share ||
            std::ranges::find(list, static_cast<uint32_t>(place)) != list.end();

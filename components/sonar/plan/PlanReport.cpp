@@ -85,8 +85,8 @@ std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot)
     const double depth = -waterViewOf(snapshot).height, top = plan.profile->top(), bottom = plan.profile->bottom();
     if (depth >= top && depth <= bottom) return {};
     return fmt::format(
-        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound goes from {:g} to "
-        "{:g} m; beyond them the speed is that of the nearer end",
+        "Warning: at the first ping the sonar is {:.4g} m deep, its profile of the speed of sound covers {:g} to {:g} "
+        "m; outside, the speed is that of the nearer end",
         depth, top, bottom);
 }
 

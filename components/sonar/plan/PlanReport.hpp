@@ -8,16 +8,16 @@
 
 namespace insonify::sonar {
 
-/** A plan in words, as `insonify plan` tells it; device and predicted error are not known to it. */
+/** Returns a plan in words, as `insonify plan` prints it, without the device and the predicted error. */
 types::Plan report(const RenderPlan& plan, const types::Geometry& geometry);
 
-/** What is left out and why, in words. */
+/** Returns in words what is omitted and why. */
 types::Omission describe(const LeftOut& what, const BinGrid& grid);
 
-/** That a sonar is deeper or less deep than its profile of the speed of sound tells; empty where it is not. */
+/** Returns a notice if the sonar is outside the depths of its sound speed profile; empty otherwise. */
 std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot);
 
-/** What a user should know of the configuration alone: range reached, water outside a law's validity... */
+/** Returns notices about the configuration alone: range reached, water outside a law's validity... */
 std::vector<std::string> configNotices(const SonarConfig& config);
 
 }  // namespace insonify::sonar

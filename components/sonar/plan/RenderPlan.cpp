@@ -8,7 +8,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** What the configuration compiles into the estimators; effects add the rest. */
+/** Returns the features that the configuration requires; effects add the rest. */
 Features featuresOf(const SonarConfig& config, const RenderOptions& options) {
     Features features{config.model == Model::Physical ? Feature::Physical : Feature::Cerqueira2017};
     if (config.beam_geometry == BeamGeometry::Conical) features.add(Feature::Conical);

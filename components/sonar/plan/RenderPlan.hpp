@@ -18,8 +18,8 @@
 
 namespace insonify::sonar {
 
-/** What is compiled into the estimators where it is wanted: `#ifdef HAVE_<NAME>` in the shaders and in what the
- *  processor compiles of them. Effects add names of their own (RenderPlan::effect_features). */
+/** Parts of the estimators that are compiled in only where needed: `#ifdef HAVE_<NAME>` in the shaders and in the
+ *  shader code that is compiled for the processor. Effects add names of their own (RenderPlan::effect_features). */
 enum class Feature {
     Physical,
     Cerqueira2017,
@@ -30,7 +30,7 @@ enum class Feature {
     Nearest,
     Jitter,
     ElevationPattern,
-    BackscatterLaws,  ///< Of any material: a table, or a lobe.
+    BackscatterLaws,  ///< At least one material has a table or a lobe.
     Speckle           ///< Fields of scatterers are summed, not energies.
 };
 constexpr int feature_count = 11;
@@ -62,72 +62,72 @@ private:
 /** Work for each ping, in this order. */
 enum class Pass { Cull, Surface, Rays, SurfaceMaps, Deposit, Walls, Paths, Beams, Beamform, Pulse, RingDown };
 
-/** Why something is left out; LeftOut::words have the rest. */
+/** Reason for an omission; LeftOut::words adds the details. */
 enum class Reason {
     NotConfigured,
     NoneInScene,
-    Lacking,       ///< It is asked for, and the scene lacks what it needs: a warning.
+    Lacking,       ///< It is configured, and the scene lacks what it needs: a warning.
     BelowBound,    ///< `value` is below `bound`.
-    Approximated,  ///< `value` is what it amounts to.
-    OutOfView,     ///< `value` of `bound` at the first ping.
+    Approximated,  ///< `value` is its effect, which is approximated.
+    OutOfView,     ///< `value` out of `bound` at the first ping.
     Other
 };
 
-/** Something that is left out, with the numbers that allow it. */
+/** An omission, with the numbers that justify it. */
 struct LeftOut {
     /** The reason in words. */
     using Words = std::string (*)(const LeftOut& what, const BinGrid& grid);
 
-    std::string_view effect;  ///< Its name in words, a constant.
+    std::string_view effect;  ///< Name in words, a constant.
     Reason reason;
-    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the words give.
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< In the effect's unit, which the words state.
     double bound = std::numeric_limits<double>::quiet_NaN();
-    Words words = nullptr;  ///< Null: those of the reason.
+    Words words = nullptr;  ///< Null: the words of the reason.
 };
 
 class Effect;
 
-/** What is compiled and run for a sonar and a scene, decided once, without OpenGL: the renderer, both deposits, the
- *  studies and what a user is told all read it. */
+/** What is compiled and run for a sonar and a scene, decided once, without OpenGL. The renderer, both deposits, the
+ *  studies and the report to the user all read it. */
 struct RenderPlan {
-    SonarConfig config;  ///< With the quality that is in force.
+    SonarConfig config;  ///< With the current quality.
     RenderOptions options;
     bool casts_rays = false;
     Features features;
-    std::vector<std::string> effect_features;  ///< Of the effects' own: "motion_in_ping".
-    std::vector<const Effect*> effects;        ///< Those that take part, in order.
+    std::vector<std::string> effect_features;  ///< Names that effects add: "motion_in_ping".
+    std::vector<const Effect*> effects;        ///< Active effects, in order.
     std::vector<Pass> passes;                  ///< In order.
     BinGrid grid;
     MaterialLaws laws;
-    std::shared_ptr<const acoustics::SoundProfile> profile;  ///< That bends the rays; null: they are straight.
+    std::shared_ptr<const acoustics::SoundProfile> profile;  ///< Bends the rays; null: they are straight.
     Fan beams;
     std::optional<Directivity> directivity;  ///< None without a beam pattern.
-    SonarConfig sampled;                     ///< What is sampled: sampledConfig(), or `config`.
-    Fan cells;                               ///< Its azimuth cells; the beams themselves without a pattern in azimuth.
-    std::vector<ViewFrustum> frusta;         ///< Images of the cells; none with rays.
-    double max_map_strength = 1;             ///< Largest factor by surface maps, at least 1 [1].
-    bool fills_water = false;                ///< Whether there are echoes where no surface is.
-    bool hears_misses = false;               ///< Whether effects hear samples that meet nothing.
+    SonarConfig sampled;                     ///< Configuration of the samples: sampledConfig(), or `config`.
+    Fan cells;  ///< Azimuth cells of `sampled`; the beams themselves without a pattern in azimuth.
+    std::vector<ViewFrustum> frusta;  ///< Frusta of the images of the cells; empty with rays.
+    double max_map_strength = 1;      ///< Max factor by surface maps, at least 1 [1].
+    bool fills_water = false;         ///< Whether there are echoes where there is no surface.
+    bool hears_misses = false;        ///< Whether effects process samples that hit nothing.
     std::vector<LeftOut> left_out;
 
-    /** Other rows and columns per beam [1], and the images that go with them. */
+    /** Sets other rows and columns per beam [1], and the matching images. */
     void setQuality(int rows, int columns_per_beam);
     bool has(Pass pass) const { return std::ranges::count(passes, pass) > 0; }
-    /** Adds a pass at its place in the order. */
+    /** Inserts a pass at its place in the order. */
     void add(Pass pass) { passes.insert(std::ranges::upper_bound(passes, pass), pass); }
     bool hasFeature(std::string_view name) const;
-    /** "physical", "normal_map"..., then those of effects. */
+    /** Returns "physical", "normal_map"..., then the names that effects add. */
     std::vector<std::string> featureNames() const;
     /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
     std::vector<std::string> defines() const;
-    /** What is left out of an effect, by its name in words; null where it is not. */
+    /** Returns the omission of an effect, by its name in words; null where it is not omitted. */
     const LeftOut* leftOut(std::string_view effect) const;
 };
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,
                           const RenderOptions& options = {});
 
-/** The configured absorption; none when the block is absent. A law needs `water`. */
+/** Returns the configured absorption; none when the block is absent. A law needs `water`. */
 acoustics::Absorption makeAbsorption(const SonarConfig& config);
 
 }  // namespace insonify::sonar

@@ -28,7 +28,7 @@ void checkPublished(const SonarConfig& config, types::Diagnostics& diagnostics) 
         diagnostics.push_back({"beam_geometry", "is conical; must be planar with published: true"});
 }
 
-/** Four digits of a range, rounded down: bins of as many whole microseconds reach what is left. */
+/** Returns four digits of a range, rounded down, so that bins of the same number of whole microseconds reach it. */
 std::string roundedDown(double range) {
     const double unit = std::pow(10, std::floor(std::log10(range)) - 3);
     return fmt::format("{:.4g} m", std::floor(range / unit + 1e-9) * unit);
@@ -46,7 +46,7 @@ void checkRangeReached(const SonarConfig& config, types::Diagnostics& diagnostic
                      grid.bin_duration_us > 1 ? roundedDown(shorter) + " or " : "", roundedDown(grid.range_max))});
 }
 
-/** Of a property that only rays can follow. */
+/** Checks a property that only rays support. */
 void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const std::string name = config.needsRays();
     if (name.empty()) return;
@@ -59,7 +59,7 @@ void checkNeedOfRays(const SonarConfig& config, types::Diagnostics& diagnostics)
         diagnostics.push_back({name, "is given with model: cerqueira2017, whose bins are means of S(n.d)"});
 }
 
-/** Of ways that are bent, what follows straight ones alone. */
+/** Checks that properties that need straight sound paths are not combined with bent paths. */
 void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostics) {
     const bool bends = config.water && config.water->profile;
     const std::string name = config.isCoherent()    ? "speckle"
@@ -67,17 +67,17 @@ void checkStraightWays(const SonarConfig& config, types::Diagnostics& diagnostic
                              : config.crosstalk     ? "crosstalk"
                                                     : "";
     if (!name.empty() && (bends || config.motion_in_ping))
-        diagnostics.push_back({name, std::string("follows straight ways; leave it out, or ") +
+        diagnostics.push_back({name, std::string("needs straight sound paths; remove it, or ") +
                                          (bends ? "water.profile" : "motion_in_ping")});
 }
 
-/** Why the receiver's law in azimuth is of no array of elements; empty where it is. */
+/** Returns why the receiver's law in azimuth does not belong to an array of elements; empty where it does. */
 std::string whyNoArray(const SonarConfig& config) {
     const auto& law = config.beam_pattern ? config.beam_pattern->receive.azimuth : std::optional<acoustics::BeamLaw>();
     if (!law) return "need beam_pattern.receive.azimuth, whose aperture they fill";
     const acoustics::Weighting weighting = law->weighting.value_or(acoustics::Weighting::Uniform);
     if (!law->file.empty() || weighting == acoustics::Weighting::Gaussian || weighting == acoustics::Weighting::Piston)
-        return "need a weighted line in beam_pattern.receive.azimuth; they make no measured table, gaussian or piston";
+        return "need a weighted line in beam_pattern.receive.azimuth; a measured table, gaussian or piston has none";
     return {};
 }
 
@@ -107,7 +107,7 @@ void checkElements(const SonarConfig& config, types::Diagnostics& diagnostics) {
         diagnostics.push_back(
             {"elements", "need speckle: {coherent: true}; without it energies are summed, not fields"});
     else if (config.beam_geometry != BeamGeometry::Conical)
-        diagnostics.push_back({"elements", "need beam_geometry: conical, for a straight array hears cones"});
+        diagnostics.push_back({"elements", "need beam_geometry: conical, because a straight array receives cones"});
     else if (!why.empty())
         diagnostics.push_back({"elements", why});
     else if (config.frequency_khz)
@@ -148,7 +148,7 @@ void checkAbsorption(const SonarConfig& config, types::Diagnostics& diagnostics)
                                "is given without water; a law needs the water block"});
 }
 
-/** A straight array hears nothing behind abeam that it does not hear ahead. */
+/** Checks the beams of a straight array: it cannot distinguish echoes from behind abeam from those ahead. */
 void checkCones(const SonarConfig& config, types::Diagnostics& diagnostics) {
     for (int k = 0; k < config.beams(); ++k)
         if (std::abs(config.bearingDeg(k)) + config.beamWidthDeg() / 2 > 90 * (1 + 1e-9))
@@ -177,7 +177,7 @@ void checkImages(const SonarConfig& config, types::Diagnostics& diagnostics) {
 
 void AbsorptionConfig::check(types::Diagnostics& diagnostics) const {
     if (db_per_m && frequency_khz)
-        diagnostics.push_back({"db_per_m", "stands beside frequency_khz; give one of the two"});
+        diagnostics.push_back({"db_per_m", "is given with frequency_khz; give one of the two"});
 }
 
 ElementsConfig::Array ElementsConfig::arrayOf(double aperture_m, double wavelength) const {
@@ -289,9 +289,9 @@ SonarConfig SonarConfig::fan() const {
 
 void SonarConfig::checkFan(types::Diagnostics& diagnostics) const {
     if (field_of_view_deg && beam_width_convention == BeamWidthConvention::TotalFov)
-        return diagnostics.push_back({"field_of_view_deg",
-                                      "is given with beam_width_deg and beam_width_convention: total_fov; one of "
-                                      "the two tells the fan"});
+        return diagnostics.push_back(
+            {"field_of_view_deg",
+             "is given with beam_width_deg and beam_width_convention: total_fov; give one of the two"});
     if (field_of_view_deg && published)
         return diagnostics.push_back(
             {"beam_width_deg", "is given with field_of_view_deg; published: true has beams as wide as their spacing"});

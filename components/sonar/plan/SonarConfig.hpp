@@ -37,19 +37,19 @@ struct AbsorptionConfig {
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** What an array does across the fan and up and down; a law that is absent is 1 in all directions. */
+/** Directivity of an array in azimuth and elevation; an absent law is 1 in all directions. */
 struct ArrayConfig {
     std::optional<acoustics::BeamLaw> azimuth, elevation;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(types::Field{"azimuth", "", "of a sent pulse about the axis; of a beam about its own bearing"},
+        visit(types::Field{"azimuth", "", "transmit: about the sonar's axis; receive: about each beam's bearing"},
               self.azimuth);
         visit(types::Field{"elevation", "", "about the horizontal plane of the sonar"}, self.elevation);
     }
 };
 
-/** Directivity, two way: what is sent times what is heard (ACOUSTICS.md 5.9). */
+/** Two-way directivity: the product of transmitter and receiver (ACOUSTICS.md 5.9). */
 struct BeamPatternConfig {
     ArrayConfig transmit, receive;
     double floor_db = -60;
@@ -60,16 +60,17 @@ struct BeamPatternConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"transmit", "", "of what is sent"}, self.transmit);
-        visit(Field{"receive", "", "of what is heard"}, self.receive);
-        visit(Field{"floor_db", "dB", "two-way level down to which sidelobes are heard, beyond fan and aperture too",
-                    -200, -3},
+        visit(Field{"transmit", "", "directivity of the transmitter"}, self.transmit);
+        visit(Field{"receive", "", "directivity of the receiver"}, self.receive);
+        visit(Field{"floor_db", "dB",
+                    "two-way level down to which sidelobes receive echoes, also outside the fan and the aperture", -200,
+                    -3},
               self.floor_db);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** Water that scatters sound back, between two depths or all of it. */
+/** Water that scatters sound back, in a layer between two depths or everywhere. */
 struct VolumeLayer {
     std::optional<double> top_m, bottom_m, strength_db;
 
@@ -78,7 +79,7 @@ struct VolumeLayer {
         using types::Field;
         visit(Field{"top_m", "m", "depth below the water surface, or the world's z = 0; absent: no bound", -1e5, 1e5},
               self.top_m);
-        visit(Field{"bottom_m", "m", "depth to which it reaches; absent: no bound", -1e5, 1e5}, self.bottom_m);
+        visit(Field{"bottom_m", "m", "depth of the layer's lower bound; absent: no bound", -1e5, 1e5}, self.bottom_m);
         visit(Field{"strength_db", "dB re 1/m", "volume backscattering strength; -200: none", -200, 0},
               self.strength_db);
     }
@@ -91,12 +92,12 @@ struct SurfaceMirrorConfig {
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
-        visit(types::Field{"wind_m_s", "m/s", "wind that makes it rough; 0: as flat as a mirror", 0, 50},
+        visit(types::Field{"wind_m_s", "m/s", "wind speed, which makes the surface rough; 0: perfectly flat", 0, 50},
               self.wind_m_s);
     }
 };
 
-/** Echoes that come by way of mirrors (ACOUSTICS.md 5.23). */
+/** Echoes that arrive via mirrors (ACOUSTICS.md 5.23). */
 struct MultipathConfig {
     static constexpr int max_bounces = 2;
 
@@ -109,15 +110,15 @@ struct MultipathConfig {
         visit(Field{"surface", "", "the scene's water_surface reflects; absent: it lets all sound through"},
               self.surface);
         visit(Field{"bounces", "1",
-                    "reflections of one way, at most: 1 in the water surface and materials with `mirror: true`, 2 in "
+                    "max reflections of one path: 1 in the water surface and materials with `mirror: true`, 2 in "
                     "smooth materials as well; 0: none",
                     0, max_bounces},
               self.bounces);
     }
 };
 
-/** Echoes that interfere: each surface is a lattice of scatterers that belong to its object, and what a bin holds is
- *  the square of the sum of their fields (ACOUSTICS.md 5.21). */
+/** Echoes that interfere. Each surface is a lattice of scatterers that belong to its object, and a bin is the square of
+ *  the sum of their fields (ACOUSTICS.md 5.21). */
 struct SpeckleConfig {
     bool coherent = false;
     int scatterers_per_cell = 10;
@@ -126,47 +127,48 @@ struct SpeckleConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"coherent", "", "fields are summed, not energies; needs frequency_khz; false: energies are"},
+        visit(Field{"coherent", "", "true: fields are summed, needs frequency_khz; false: energies are summed"},
               self.coherent);
         visit(Field{"scatterers_per_cell", "1",
-                    "scatterers in a resolution cell, beam width by range resolution, at least", 1, 200},
+                    "min number of scatterers in a resolution cell (beam width by range resolution)", 1, 200},
               self.scatterers_per_cell);
         visit(Field{"scatterers_per_m2", "1/m2",
-                    "scatterers of surfaces, of exponentially distributed strengths: intensities are K-distributed, "
-                    "of the shape of their number in a cell (Abraham and Lyons 2002); absent: so many that none stands "
-                    "out",
+                    "density of scatterers on surfaces, with exponentially distributed strengths: intensities are "
+                    "K-distributed, with the number of scatterers in a cell as shape (Abraham and Lyons 2002); absent: "
+                    "dense enough that none dominates",
                     1e-6, 1e9},
               self.scatterers_per_m2);
     }
 };
 
-/** A straight array of equal elements, as long as the aperture of `beam_pattern.receive.azimuth`, whose signals are
- *  told. */
+/** A straight array of equal elements whose signals are written. It is as long as the aperture of
+ *  `beam_pattern.receive.azimuth`. */
 struct ElementsConfig {
     std::optional<int> count;
     std::optional<double> spacing_m;
 
-    /** How many elements there are, and how far apart [m]. */
+    /** Number of elements, and their spacing [m]. */
     struct Array {
         size_t count;
         double spacing;
     };
-    /** As given, the rest from the length of the aperture [m]; half a wavelength apart where nothing is given. */
+    /** Returns the given values, the rest from the length of the aperture [m]; half a wavelength apart where none is
+     *  given. */
     Array arrayOf(double aperture_m, double wavelength) const;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"count", "1", "elements; absent: as many as the receiver's aperture has room for", 2, 4096},
+        visit(Field{"count", "1", "number of elements; absent: the number that fits the receiver's aperture", 2, 4096},
               self.count);
-        visit(Field{"spacing_m", "m", "of their middles; absent: the aperture over count, or half a wavelength", 1e-5,
-                    10},
+        visit(Field{"spacing_m", "m", "spacing of their centres; absent: the aperture over count, or half a wavelength",
+                    1e-5, 10},
               self.spacing_m);
     }
 };
 
-/** Samples per beam: given, or found for an error or a time from the pings. Found for an error of 0.05 with at most
- *  400,000 samples a ping when nothing is given. */
+/** Samples per beam: given, or chosen from the pings for an error or a time. The default is an error of 0.05 with at
+ *  most 400,000 samples per ping. */
 struct QualityConfig {
     std::optional<int> rows, columns_per_beam;
     std::optional<double> target_error, budget_ms;
@@ -177,21 +179,24 @@ struct QualityConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         using types::Field;
-        visit(Field{"rows", "1", "rows of samples over beam_height_deg, else 256", 1, 16384}, self.rows);
-        visit(Field{"columns_per_beam", "1", "columns of samples per beam, else 2", 1, 4096}, self.columns_per_beam);
-        visit(Field{"target_error", "1", "instead: relative L2 error of energies times r^5; else 0.05", 1e-4, 1},
+        visit(Field{"rows", "1", "rows of samples over beam_height_deg; default 256", 1, 16384}, self.rows);
+        visit(Field{"columns_per_beam", "1", "columns of samples per beam; default 2", 1, 4096}, self.columns_per_beam);
+        visit(Field{"target_error", "1",
+                    "instead of rows and columns: relative L2 error of energies times r^5; default 0.05", 1e-4, 1},
               self.target_error);
-        visit(Field{"max_samples", "1",
-                    "of a ping, for a target_error; absent: 400000, with a target_error as many as it takes", 1, 1e9},
+        visit(Field{"max_samples", "1", "max samples of a ping; absent: 400000, or unlimited if target_error is given",
+                    1, 1e9},
               self.max_samples);
-        visit(Field{"budget_ms", "ms", "instead: time of a ping, used and kept", 0.1, 1e5}, self.budget_ms);
+        visit(Field{"budget_ms", "ms", "instead of rows and columns: render time of a ping, used fully and kept to",
+                    0.1, 1e5},
+              self.budget_ms);
     }
     void check(types::Diagnostics& diagnostics) const;
 };
 
-/** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port;
- *  `bearings_deg` takes the place of `field_of_view_deg` and `beam_count`; `beam_width_deg` alone that of
- *  `field_of_view_deg`; with both, each beam is as wide as it says, and beams may overlap. */
+/** An imaging sonar. Beam k of a fan covers bearings [-fov/2 + k fov/N, -fov/2 + (k + 1) fov/N], positive to port.
+ *  `bearings_deg` replaces `field_of_view_deg` and `beam_count`. `beam_width_deg` alone replaces `field_of_view_deg`.
+ *  With both, `beam_width_deg` is the width of each beam, and beams may overlap. */
 struct SonarConfig {
     Model model = Model::Physical;
     double range = 50;
@@ -219,7 +224,7 @@ struct SonarConfig {
     std::optional<acoustics::PulseConfig> pulse;
     std::vector<VolumeLayer> volume;
     bool motion_in_ping = false;
-    bool across_track = false;  ///< The fan stands upright and looks down, as a side-scan's: no key of its own.
+    bool across_track = false;  ///< The fan is upright and looks down, as a side-scan's; not a property.
     std::optional<SpeckleConfig> speckle;
     std::optional<ElementsConfig> elements;
     std::optional<MultipathConfig> multipath;
@@ -229,47 +234,47 @@ struct SonarConfig {
     std::map<std::string, std::map<std::string, double>> effects;
     std::optional<types::MovedTo> tvg, gain, output, source_level_db;
 
-    /** Whether there is more than one water that scatters, or one with bounds. */
+    /** Returns whether there is more than one layer of scattering water, or one with bounds. */
     bool hasLayers() const { return volume.size() > 1 || (!volume.empty() && (volume[0].top_m || volume[0].bottom_m)); }
-    /** Rows of samples and columns per beam, until others are chosen for an error or a time [1]. */
+    /** Return the rows of samples and the columns per beam, until others are chosen for an error or a time [1]. */
     int rows() const { return quality.rows.value_or(256); }
     int columnsPerBeam() const { return quality.columns_per_beam.value_or(2); }
-    /** Error to choose the quality for, none when it is given or there is a budget. `published` has no use for one. */
+    /** Returns the error to choose the quality for. None when the quality or a budget is given, or with `published`. */
     std::optional<double> targetError() const;
-    /** Samples that a ping may have for its target, none when it may have as many as it takes [1]. */
+    /** Returns the max number of samples of a ping for its target; none when it is unlimited [1]. */
     std::optional<double> mostSamples() const;
-    /** Whether the quality is found from the pings, rather than given. */
+    /** Returns whether the quality is chosen from the pings, rather than given. */
     bool choosesQuality() const { return targetError() || quality.budget_ms; }
-    /** Beams per ping: of the table, else beam_count [1]. */
+    /** Returns the beams per ping: of `bearings_deg`, else beam_count [1]. */
     int beams() const { return bearings_deg.empty() ? beam_count : static_cast<int>(bearings_deg.size()); }
-    /** Azimuth of a regular fan, from edge to edge: as given, else 120 [deg]. */
+    /** Returns the azimuth of a regular fan, from edge to edge: as given, else 120 [deg]. */
     double fieldOfViewDeg() const { return field_of_view_deg.value_or(120); }
-    /** Centre of beam k [deg], 0 ahead, positive to port. */
+    /** Returns the centre of beam k [deg], 0 ahead, positive to port. */
     double bearingDeg(int k) const;
-    /** Opening of one beam across the fan [deg]. */
+    /** Returns the opening of one beam across the fan [deg]. */
     double beamWidthDeg() const { return bearings_deg.empty() ? fieldOfViewDeg() / beam_count : *beam_width_deg; }
-    /** Azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
+    /** Returns the azimuth from the outer edge of the first beam to that of the last [deg], at most 360. */
     double coverageDeg() const;
-    /** The same with a fan that is given by `beam_width_deg` given by `field_of_view_deg`, or by `bearings_deg` where
-     *  both are. */
+    /** Returns this configuration with the fan of `beam_width_deg` expressed by `field_of_view_deg`, or by
+     *  `bearings_deg` where both are given. */
     SonarConfig fan() const;
-    /** Whether echoes may come by way of mirrors, which takes rays. */
+    /** Returns whether echoes may arrive via mirrors, which requires rays. */
     bool tracesPaths() const { return multipath && multipath->bounces > 0; }
-    /** Whether fields are summed rather than energies. */
+    /** Returns whether fields are summed rather than energies. */
     bool isCoherent() const { return speckle && speckle->coherent; }
-    /** The property that only rays can follow; empty where there is none. */
+    /** Returns the property that only rays support; empty where there is none. */
     std::string needsRays() const;
-    /** Whether triangles are found by rays on the processor, else by drawing, as far as the configuration and the
-     *  environment decide; none: it depends on whether there is a graphics card. */
+    /** Returns whether visible surfaces are found by rays on the processor, else by rasterising, as far as the
+     *  configuration and the environment decide. None: it depends on whether there is a graphics card. */
     std::optional<bool> choosesRays() const;
-    /** The same; looks for a graphics card where nothing else decides. */
+    /** Returns the same; looks for a graphics card where nothing else decides. */
     bool castsRays() const;
     /** Throws types::ConfigError where the configuration needs a graphics device that EGL does not list. */
     void requireDevice(const std::string& task) const;
-    /** Frequency that a law of absorption is for: its own, or the sonar's [kHz]; none where absorption follows no law.
-     */
+    /** Returns the frequency for the law of absorption: its own, or the sonar's [kHz]; none where absorption has no
+     *  law. */
     std::optional<double> absorbedKhz() const;
-    /** Configured, or that of `water`, or 1500 [m/s]. */
+    /** Returns the speed of sound: configured, or that of `water`, or 1500 [m/s]. */
     double speedOfSound() const;
 
     template <class Self, class V>
@@ -287,16 +292,16 @@ struct SonarConfig {
               self.beam_width_convention);
         describeBeam(self, visit);
     }
-    /** The properties that a scanning sonar has as well. */
+    /** Describes the properties that a scanning sonar has as well. */
     template <class Self, class V>
     static void describeBeam(Self& self, V& visit);
-    /** The keys that a receiver has now. */
+    /** Describes the keys that have moved to the receiver. */
     template <class Self, class V>
     static void describeMoved(Self& self, V& visit);
     void check(types::Diagnostics& diagnostics) const;
-    /** The diagnostics of a fan that is given by `beam_width_deg`. */
+    /** Appends the diagnostics of a fan that is given by `beam_width_deg`. */
     void checkFan(types::Diagnostics& diagnostics) const;
-    /** The diagnostics that a scanning sonar can have as well. */
+    /** Appends the diagnostics that a scanning sonar can have as well. */
     void checkBeam(types::Diagnostics& diagnostics) const;
 };
 
@@ -305,53 +310,54 @@ void SonarConfig::describeBeam(Self& self, V& visit) {
     using types::Field;
     visit(Field{"model", "", "active sonar equation, or the published mean of S(n.d)"}, self.model);
     visit(Field{"range", "m", "far edge of the last bin", 0.001, 1e5}, self.range);
-    visit(Field{"range_min", "m", "nearer echoes are blanked; what is there casts its shadow", 0, 1e5}, self.range_min);
+    visit(Field{"range_min", "m", "nearer echoes are blanked; objects there cast shadows", 0, 1e5}, self.range_min);
     visit(Field{"bin_count", "1", "range bins per beam", 1, 65536}, self.bin_count);
     visit(Field{"beam_width_deg", "deg", "opening of one beam", 0.001, 360}, self.beam_width_deg);
-    visit(Field{"beam_height_deg", "deg", "total elevation aperture; drawn, at most 150", 0.001, 180},
+    visit(Field{"beam_height_deg", "deg", "total elevation aperture; at most 150 if rasterised", 0.001, 180},
           self.beam_height_deg);
     visit(Field{"beam_geometry", "", "planar: az = a_k; conical: sin(az) cos(el) = sin(a_k)"}, self.beam_geometry);
     visit(Field{"speed_of_sound", "m/s", "absent: computed from water, else 1500", 1, 20000}, self.speed_of_sound);
     visit(Field{"water", "", "state of the water"}, self.water);
-    visit(Field{"frequency_khz", "kHz", "of the sonar; absorption takes it where it names none", 0.001, 1e5},
+    visit(Field{"frequency_khz", "kHz", "of the sonar; absorption uses it unless it has its own", 0.001, 1e5},
           self.frequency_khz);
     visit(Field{"absorption", "", "absent: none"}, self.absorption);
-    visit(Field{"quality", "", "samples per beam, or what they are chosen for"}, self.quality);
-    visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as asked"},
+    visit(Field{"quality", "", "samples per beam, or the target that they are chosen for"}, self.quality);
+    visit(Field{"range_rounding", "", "sample: bins of whole microseconds; exact: edges as configured"},
           self.range_rounding);
     visit(Field{"published", "", "cerqueira2017 to the letter, for comparison"}, self.published);
     visit(Field{"visibility", "",
-                "cpu: rays on the processor; gl: drawn; auto: gl where a card is or device, deposit or published ask "
-                "for it"},
+                "cpu: rays on the processor; gl: rasterised; auto: gl with a graphics card, or if device, deposit or "
+                "published requires it"},
           self.visibility);
-    visit(Field{"device", "", "EGL device to draw on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
+    visit(Field{"device", "", "EGL device to render on; absent: INSONIFY_EGL_DEVICE, else the first"}, self.device);
     visit(Field{"deposit", "", "where samples are summed into bins"}, self.deposit);
-    visit(Field{"draw_all", "", "draws what is outside the fan and the range as well, to compare; rays meet it anyway"},
+    visit(Field{"draw_all", "",
+                "rasterises what is outside the fan and the range too, for comparison; no effect on rays"},
           self.draw_all);
     visit(Field{"beam_pattern", "", "directivity of transmitter and receiver; absent: beams are boxes side by side"},
           self.beam_pattern);
-    visit(Field{"pulse", "", "what an echo leaves in range; absent: it is in its own bin alone"}, self.pulse);
+    visit(Field{"pulse", "", "spread of an echo in range; absent: each echo is in its own bin alone"}, self.pulse);
     visit(Field{"volume", "", "water that scatters sound back, or a list of its layers; absent: none"}, self.volume);
     visit(Field{"motion_in_ping", "",
-                "sonar and objects move, and the receiver turns, while sound is under way; false: all stand still"},
+                "sonar and objects move, and the receiver turns, while sound travels; false: all are at rest"},
           self.motion_in_ping);
     visit(Field{"speckle", "", "echoes that interfere, by scatterers of the scene; absent: energies are summed"},
           self.speckle);
     visit(Field{"elements", "",
-                "straight array whose signals port `elements` tells; needs speckle: {coherent: true}, beam_geometry: "
-                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: they are not told"},
+                "straight array whose signals are on port `elements`; needs speckle: {coherent: true}, beam_geometry: "
+                "conical and a weighted aperture in beam_pattern.receive.azimuth; absent: no signals"},
           self.elements);
-    visit(Field{"multipath", "", "echoes by way of mirrors; absent: none"}, self.multipath);
-    visit(Field{"max_walls", "1", "walls (`shell` of a material) that sound goes through", 0, 16}, self.max_walls);
+    visit(Field{"multipath", "", "echoes via mirrors; absent: none"}, self.multipath);
+    visit(Field{"max_walls", "1", "max walls (`shell` of a material) on a sound path", 0, 16}, self.max_walls);
     visit(Field{"imperfections", "",
                 "errors of this device: elements, beams, focus, clock (components/sonar/README.md); absent: none"},
           self.imperfections);
     visit(Field{"crosstalk", "",
-                "pings of the sonars that are connected to port `others` are heard; absent: nothing may be connected"},
+                "pings of the sonars connected to port `others` are received; absent: nothing may be connected"},
           self.crosstalk);
     visit(Field{"effects", "",
-                "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}`, echoes of straight edges, and "
-                "those of other libraries (components/sonar/README.md)"},
+                "numbers of effects, by name: `edge_diffraction: {min_turn_deg: 60}` for echoes of straight edges, and "
+                "effects of other libraries (components/sonar/README.md)"},
           self.effects);
     describeMoved(self, visit);
 }

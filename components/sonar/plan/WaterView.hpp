@@ -6,14 +6,14 @@
 
 namespace insonify::sonar {
 
-/** How the sonar of one ping lies in the water. */
+/** Orientation and height of the sonar of one ping in the water. */
 struct WaterView {
     glm::dvec3 up{0, 0, 1};  ///< The world's z in sonar axes, unit [1].
-    double height = 0;       ///< Of the sonar above the water surface, or above the world's z = 0 [m].
+    double height = 0;       ///< Height of the sonar above the water surface, or above the world's z = 0 [m].
 };
 WaterView waterViewOf(const types::Snapshot& snapshot);
 
-/** The same up in the axes of a frustum. */
+/** Returns the world's up in the axes of a frustum. */
 glm::dvec3 upwardIn(const ViewFrustum& frustum, const WaterView& water);
 
 }  // namespace insonify::sonar

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double floor_ratio = 1e-6;      ///< -60 dB of the maximum.
 constexpr double return_ratio = 0.01;     ///< -20 dB.
-constexpr int shadow_neighbourhood = 50;  ///< Bins to either side whose mean is what a shadow is dark against.
+constexpr int shadow_neighbourhood = 50;  ///< Bins to either side whose mean a shadow is compared with.
 
 double percentile(std::vector<double> values, double share) {
     if (values.empty()) return 0;

@@ -4,19 +4,19 @@
 
 namespace insonify::sonar {
 
-/** Shape of what is compared: [beam][bin], bins of equal width from range 0 on. */
+/** Shape of the compared energies: [beam][bin], bins of equal width from range 0. */
 struct Layout {
     int beams, bins;    ///< [1]
     double bin_width;   ///< [m]
-    double range_from;  ///< Bins that begin nearer are not compared [m].
+    double range_from;  ///< Bins that begin nearer are ignored [m].
 };
 
-/** How far energies are from their reference: ACOUSTICS.md 10, M1 to M6, without noise. Levels of M7 are taken above
- *  1e-6 of the reference's maximum, what is below counts as that. Relative errors to a silent reference are 0 for
- *  silence and infinite for anything else. */
+/** Differences of energies from their reference: ACOUSTICS.md 10, M1 to M6, without noise. M7 clamps levels below 1e-6
+ *  of the reference's maximum to that level. Relative errors against a silent reference are 0 for silence and infinite
+ *  for anything else. */
 struct Metrics {
     double rel_l2 = 0;       ///< M1: |E - reference| / |reference| over all bins [1].
-    double rel_l2_tvg = 0;   ///< M2: the same after a gain of 50 log10(r), so that far bins count as near ones [1].
+    double rel_l2_tvg = 0;   ///< M2: the same after a gain of 50 log10(r), so that far bins count as near bins do [1].
     double mean_rel_l2 = 0;  ///< M1 of each beam, and the mean over beams [1].
     double db_rmse = 0;      ///< M3, over bins above 1e-6 of the reference's maximum that both have [dB].
     double db_p95 = 0;       ///< M3: 95th percentile of |dB| over the same bins [dB].
@@ -28,7 +28,7 @@ struct Metrics {
     double ripple = 0;             ///< M6: rms over beams of energy / reference - 1 [1].
     double correlation = 0;        ///< Pearson's, over all bins; 1 where both are the same, 0 where one is flat [1].
     double level_distance = 0;     ///< M7: mean difference of the sorted levels (earth mover's distance) [dB].
-    uint64_t hash = 0;             ///< M9: of the bits of E, all bins.
+    uint64_t hash = 0;             ///< M9: hash of the bits of E, all bins.
 };
 
 /** Compares `got` with `reference`, both [beam][bin]. */

@@ -11,14 +11,15 @@ namespace {
 constexpr int max_rows = 2048, max_columns = 256, rungs_per_doubling = 8;
 constexpr double step_of_samples = 4, worth_a_trade = 0.85;
 
-/** Whether a device can draw so many columns per beam. */
+/** Returns whether a device can rasterise this number of columns per beam. */
 bool fits(SonarConfig config, int columns) {
     config.quality.columns_per_beam = columns;
     if (config.castsRays()) return true;
     return makeFrusta(config, makeBeams(config)).front().columns <= max_image_size;
 }
 
-/** Error of the finer of two pings whose samples differ in spacing by `ratio` < 1, from how much they differ. */
+/** Returns the error of the finer of two pings relative to their difference; the spacing of the samples differs by
+ *  `ratio` < 1. */
 double shareOfFiner(double ratio) { return 1 / std::sqrt(1 + 1 / (ratio * ratio)); }
 
 int fewerRows(int rows) { return std::max(1, static_cast<int>(std::lround(0.6 * rows))); }

@@ -14,11 +14,11 @@ constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400
 constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double watched_share = 0.2618034;  ///< Of all pings; irrational, so that a head is watched at all bearings.
-constexpr double first_turn_share = 0.5;     ///< The same while a head sees what it has not seen before.
-constexpr int rarely = 16;                   ///< Of the pings to watch, where the time is up without it.
+constexpr double watched_share = 0.2618034;  ///< Of the pings; irrational, to cover all bearings of a head.
+constexpr double first_turn_share = 0.5;     ///< The same in the first turn of a head.
+constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
-constexpr double overhead = 0.15, pings_to_choose = 10;  ///< What estimates may cost in all [1 of the pings, pings].
+constexpr double overhead = 0.15, pings_to_choose = 10;  ///< Max total cost of estimates [share of the pings, pings].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
 constexpr double worth_telling = 1.2, too_far_from_model = 4;
 
@@ -167,27 +167,26 @@ bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
 
 void QualityKeeper::tell(const std::string& notice) {
     if (notices_told_ < max_notices) notices_.push_back(notice);
-    if (++notices_told_ == max_notices) notices_.push_back("further changes of the quality are not told");
+    if (++notices_told_ == max_notices) notices_.push_back("further changes of the quality are not reported");
 }
 
 std::string QualityKeeper::text() const {
     const Quality& quality = model_.at;
-    return fmt::format("quality: {} rows, {} columns per beam, {:.0f} samples a ping, predicted error {:.2g}",
+    return fmt::format("quality: {} rows, {} columns per beam, {:.0f} samples per ping, predicted error {:.2g}",
                        quality.rows, quality.columns_per_beam, quality.samples() * beams_, quality.error);
 }
 
 std::string QualityKeeper::limitText() const {
     if (budget_ && budget_->limit() < config_.mostSamples().value_or(infinity))
-        return fmt::format("{:.4g} ms allow no more", budget_->budget());
+        return fmt::format("the budget of {:.4g} ms allows no more", budget_->budget());
     return config_.mostSamples() ? fmt::format("max_samples {:.0f} allows no more", *config_.mostSamples())
-                                 : "there is nothing finer to choose";
+                                 : "there is no finer quality";
 }
 
 void QualityKeeper::tellChoice(const types::Snapshot& scene) {
     const std::string when = notices_told_ ? fmt::format("from {:.3f} s on ", scene.time.seconds()) : "";
     told_ = model_.at;
-    if (target_ == 0)
-        return tell(fmt::format("{}{}; {:g} ms are used and kept", when, text(), *config_.quality.budget_ms));
+    if (target_ == 0) return tell(fmt::format("{}{}; budget {:g} ms", when, text(), *config_.quality.budget_ms));
     if (model_.at.error <= target_ || std::exchange(missed_, true))
         return tell(fmt::format("{}{}, target {:g}", when, text(), target_));
     tell(fmt::format("Warning: {}{}, misses the target of {:g}: {}", when, text(), target_, limitText()));
@@ -196,7 +195,7 @@ void QualityKeeper::tellChoice(const types::Snapshot& scene) {
 void QualityKeeper::tellBudget(const types::Snapshot& scene, double ms) {
     if (!budget_) return;
     if (model_.at == Quality() && budget_->limit() < model_.at.samples() * beams_ && !std::exchange(late_told_, true))
-        tell(fmt::format("Warning: the coarsest quality that is chosen takes {:.3g} ms; the budget is {:.4g} ms", ms,
+        tell(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:.4g} ms", ms,
                          budget_->budget()));
     const double ratio = model_.at.samples() / told_.samples();
     if (since_change_ == settled && std::max(ratio, 1 / ratio) > worth_telling) tellChoice(scene);

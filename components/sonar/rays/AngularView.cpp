@@ -8,8 +8,8 @@
 namespace insonify::sonar {
 namespace {
 
-/** Lower edges of rows as those of an image, equal in tan(elevation), which has more of them where a floor is far;
- *  equal in elevation where that would leave too few to the middle [rad]. */
+/** Returns the edges of rows as in an image, equal in tan(elevation), which has more rows where a floor is far. They
+ *  are equal in elevation where an image would have too few rows near the middle [rad]. */
 std::vector<double> evenEdges(double half, int rows) {
     constexpr double tallest_image = types::radians(120);
     std::vector<double> edges;
@@ -20,8 +20,8 @@ std::vector<double> evenEdges(double half, int rows) {
     return edges;
 }
 
-/** The same as dense as the cube root of the pattern, which makes the most of rows whose error falls as the square of
- *  their height: most are in the main lobe, and sidelobes have some [rad]. */
+/** Returns the edges of rows with a density proportional to the cube root of the pattern. This is optimal for rows
+ *  whose error falls as the square of their height: most are in the main lobe, and some in sidelobes [rad]. */
 std::vector<double> patternEdges(double half, int rows, const Directivity& directivity) {
     constexpr int steps = 8192;
     std::vector<double> sum{0};
@@ -40,7 +40,7 @@ std::vector<double> patternEdges(double half, int rows, const Directivity& direc
     return edges;
 }
 
-/** Integral of cosine times pattern over elevations, by Simpson's rule in parts [1]. */
+/** Returns the integral of cosine times pattern over elevations, by Simpson's rule in parts [1]. */
 double weightedBetween(const Directivity& directivity, double low, double high) {
     constexpr int parts = 8;
     const double step = (high - low) / parts;
@@ -68,12 +68,12 @@ std::vector<AngularView::Elevation> elevationsOf(const RenderPlan& plan) {
     return all;
 }
 
-/** Samples of one triangle that may become one cell: so that its ranges stay within a fiftieth of a bin of the
+/** Returns the max samples of one triangle in one cell, so that its ranges stay within a fiftieth of a bin of the
  *  plane's. */
 int mostMerged(const AngularView& view, const BinGrid& bins) {
-    // Over an angle d, 1/r of a plane n.p = D leaves the straight line between its ends by d d / (8 D) at most: so much
-    // is a fiftieth of a bin at the far edge, on planes that graze at 15 deg. Energies are off by d d / 24 of
-    // themselves, however long the bins are.
+    // Over an angle d, 1/r of a plane n.p = D deviates from the straight line between its ends by at most d d / (8 D).
+    // That is a fiftieth of a bin at the far edge, on planes with a grazing angle of 15 deg. The relative error of
+    // energies is d d / 24, for any length of the bins.
     constexpr double widest = 0.0085;  // [rad]
     const double angle = std::min(widest, std::sqrt(8 * 0.02 * bins.bin_width / bins.range_max / 4));
     const double cell = std::max(view.column_width, view.row_height);
@@ -121,7 +121,7 @@ TileShape::TileShape(const AngularView& view, const BinGrid& bins, int beams) {
     const int wide = columns >= 4 ? 4 : columns >= 2 ? 2 : 1;
     const int together = std::min(wide, beam_columns % 4 == 0 ? 4 : beam_columns % 2 == 0 ? 2 : 1);
     for (int count = 1; count < tile_samples; count *= 2) {
-        // First the columns of one beam and rows by turns, then the other rows, then the other columns.
+        // First the columns of one beam and rows alternately, then the other rows, then the other columns.
         const int across = size[count].columns, up = size[count].rows;
         const bool widens = across < together ? across <= up : up * wide >= tile_samples;
         size[2 * count] = {widens ? 2 * across : across, widens ? up : 2 * up};

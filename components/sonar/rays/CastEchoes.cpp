@@ -33,16 +33,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/** Samples of a part: few enough to stay in a thread's cache, and to share out one beam of very many [1]. */
+/** Max samples of a part: they fit a thread's cache, and divide one beam with very many samples [1]. */
 constexpr int part_samples = 8192;
 
-/** Share of the energy below which a ray ends that has gone through walls: 60 dB [1]. */
+/** Share of the energy below which a ray behind walls ends: 60 dB [1]. */
 constexpr auto min_passed = static_cast<float>(WallRays::min_passed);
 
-/** Triangles of meshes that deform, up to which those that stand for smooth bodies are found anew in each ping [1]. */
+/** Max triangles of deforming meshes up to which facets of smooth bodies are computed anew in each ping [1]. */
 constexpr size_t max_bent = 10'000;
 
-/** What one thread takes at a time: some rows of neighbouring beams, enough of these to fill a tile's columns. */
+/** Work that one thread takes at a time: some rows of neighbouring beams, enough to fill a tile's columns. */
 struct Part {
     int first_beam, beams, first_row, rows;
     size_t strip;
@@ -51,8 +51,8 @@ struct Part {
 /** All parts of the same beams. */
 struct Strip {
     int parts = 0;
-    int left = 0;                ///< Parts that are not gathered yet in this ping.
-    std::vector<uint64_t> sums;  ///< Of several parts.
+    int left = 0;                ///< Parts that are still to be gathered in this ping.
+    std::vector<uint64_t> sums;  ///< Sums of several parts.
     std::mutex mutex;
 };
 
@@ -72,16 +72,16 @@ public:
     const std::string& device() const override { return device_; }
 
 private:
-    /** What one thread works with. */
+    /** Buffers of one thread. */
     struct Worker {
         std::vector<CastTile> tiles;
         std::vector<TileHits> hits;                           ///< Hits of each tile.
-        std::vector<std::array<float, tile_samples>> passed;  ///< Shares of its samples, where there are walls.
+        std::vector<std::array<float, tile_samples>> passed;  ///< Shares of each tile's samples, where there are walls.
         MappedTiles mapped;
         std::vector<uint64_t> sums;
-        std::optional<TruthTable> shown;  ///< What they are of, where it is told.
+        std::optional<TruthTable> shown;  ///< Truth of the sums, where it is recorded.
         std::vector<uint64_t> one_beam;   ///< For TruthSink.
-        std::vector<uint64_t> told_sums;  ///< Of energies, where the truth is told of fields.
+        std::vector<uint64_t> told_sums;  ///< Sums of energies, where the truth of fields is recorded.
         size_t number = 0;
         Stages stages{};
         Clock::time_point last;
@@ -113,35 +113,35 @@ private:
     CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
     void addEnergies(types::Sonar& ping);
     void depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker);
-    /** `behind_walls`: without the water before what the tiles have met. */
+    /** Deposits tiles. `behind_walls`: without the water in front of the hits. */
     void deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
-    /** The same, but for surface maps, which have been looked up. */
+    /** Deposits tiles whose surface maps have been looked up. */
     void depositAsMet(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
-    /** Follows rays on through the walls that they have met; whether there are any. */
+    /** Follows rays through the walls that they have hit. Returns whether there are any. */
     bool castThrough(std::span<CastTile> tiles, Worker& worker) const;
     bool castThrough(CastTile& tile) const;
-    /** The same where walls ring or have a fill; deposits their echoes. */
+    /** Follows rays through walls that ring or have a fill; deposits their echoes. */
     void followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const;
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
     std::span<CastTile> cast(const Part& part, Worker& worker) const;
-    /** Fills the bins of a cell from its sums; whether it has any echo. */
+    /** Fills the bins of a cell from its sums. Returns whether it has any echo. */
     bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
-    /** Adds a part's sums to its strip's; whether they are complete now, and in the worker. */
+    /** Adds a part's sums to its strip's. Returns whether these are now complete, and in the worker. */
     bool gather(const Part& part, Worker& worker);
 
     const RenderPlan& plan_;
     types::GeometryPtr geometry_;
     PingEffects& effects_;
     EchoRules rules_;
-    std::optional<EchoRules> truth_rules_;  ///< Of energies, where fields are summed.
+    std::optional<EchoRules> truth_rules_;  ///< Rules for energies, where fields are summed.
     CastView view_;
     TileDirections directions_;
     BinLevels levels_;
-    WaterView water_;                 ///< In this ping.
-    WaterMirror surface_;             ///< Where rays that go through walls end.
-    std::optional<EchoGrid> grid_;    ///< Of energies,
-    std::optional<EchoField> field_;  ///< or of fields.
+    WaterView water_;                 ///< Water view of this ping.
+    WaterMirror surface_;             ///< Ends rays that have passed walls.
+    std::optional<EchoGrid> grid_;    ///< For energies,
+    std::optional<EchoField> field_;  ///< or for fields.
     std::unique_ptr<ObjectPlaces> places_;
     RayVisibility visibility_;
     std::optional<RayPaths> ray_paths_;      ///< None where rays are straight.
@@ -149,11 +149,11 @@ private:
     std::vector<MeshFacts::Facets> facets_;  ///< One for each mesh.
     std::vector<MeshFacts::Curves> curves_;  ///< One for each mesh.
     std::unique_ptr<NormalMapping> normal_maps_;
-    std::optional<SurfaceMapping> surface_maps_;  ///< Where the plan has them.
+    std::optional<SurfaceMapping> surface_maps_;  ///< None if the plan has none.
     DeformedMeshes* deformed_ = nullptr;          ///< Null: no mesh deforms.
-    bool bends_ = true;                           ///< Whether the facets of meshes that deform are taken to be bent.
+    bool bends_ = true;                           ///< Whether facets of deforming meshes have curvature.
     MeshesAhead ahead_;
-    std::vector<PlacedRun> runs_;  ///< The visibility's commands as they are placed in this ping.
+    std::vector<PlacedRun> runs_;  ///< Runs of the visibility's commands, placed in this ping.
     ThreadPool threads_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
@@ -161,8 +161,8 @@ private:
     std::atomic<size_t> next_ = 0;
     std::string device_ = "rays on the processor";
     bool heard_ = false;
-    types::SonarTruth* truth_ = nullptr;   ///< To be filled; null: none is.
-    std::optional<TruthGrid> truth_grid_;  ///< Once it was wanted.
+    types::SonarTruth* truth_ = nullptr;   ///< Truth to be filled; null: none.
+    std::optional<TruthGrid> truth_grid_;  ///< Made at the first ping with truth.
 };
 
 CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects)
@@ -209,11 +209,11 @@ void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
 }
 
 bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
-    const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // until nothing refers to it
+    const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // kept until unused
     if (before != geometry_)
         visibility_.takeScene(
             *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
-    // What these share with their predecessors is kept, for the predecessors go after they are made.
+    // Data shared with the predecessors is kept, because these are destroyed after the new objects are made.
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
@@ -368,7 +368,7 @@ bool CastEchoes::castThrough(CastTile& tile) const {
     on.towards = straight;
     on.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
-        on.nearest[i] = 1;  // of rays that end
+        on.nearest[i] = 1;  // ray that ends
         if (!(straight.active >> i & 1) || tile.hits->command[i] == TileHits::nothing) continue;
         const PlacedRun& run = runs_[tile.hits->command[i]];
         const glm::dvec3 way(straight.x[i], straight.y[i], straight.z[i]),

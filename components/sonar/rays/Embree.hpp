@@ -1,5 +1,5 @@
 #pragma once
-// Embree 3 and 4, which differ in how rays are cast.
+// Ray queries of Embree 3 and 4, which have different interfaces.
 #include <cstddef>
 #include <span>
 
@@ -13,7 +13,7 @@ namespace insonify::sonar {
 
 #if RTC_VERSION_MAJOR >= 4
 
-/** What 16 rays meet first. `valid`: -1 for those that are looked at, aligned to 64 bytes. */
+/** Finds the first hits of 16 rays. `valid`: -1 for active rays, aligned to 64 bytes. */
 inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
@@ -21,13 +21,13 @@ inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     rtcIntersect16(valid, scene, &rays, &arguments);
 }
 
-/** The same for packets of rays that are all looked at; one whose tfar is below its tnear meets nothing. */
+/** Finds the first hits of packets whose rays are all active; a ray whose tfar is below its tnear hits nothing. */
 inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
     alignas(64) static constexpr int all[16] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     for (RTCRayHit16& rays : packets) intersect(scene, all, rays);
 }
 
-/** Sets tfar of each ray that meets anything to -infinity. */
+/** Sets tfar of each ray that hits anything to -infinity. */
 inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay16& rays) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
@@ -44,20 +44,20 @@ inline RTCIntersectContext contextOf(bool are_coherent) {
     return context;
 }
 
-/** What 16 rays meet first. `valid`: -1 for those that are looked at, aligned to 64 bytes. */
+/** Finds the first hits of 16 rays. `valid`: -1 for active rays, aligned to 64 bytes. */
 inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
     RTCIntersectContext context = contextOf(true);
     rtcIntersect16(valid, scene, &context, &rays);
 }
 
-/** The same for packets of rays that are all looked at; one whose tfar is below its tnear meets nothing. */
+/** Finds the first hits of packets whose rays are all active; a ray whose tfar is below its tnear hits nothing. */
 inline void intersect(RTCScene scene, std::span<RTCRayHit16> packets) {
     RTCIntersectContext context = contextOf(true);
     rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets.data()), 16,
                    static_cast<unsigned>(packets.size()), sizeof(RTCRayHit16));
 }
 
-/** Sets tfar of each ray that meets anything to -infinity. */
+/** Sets tfar of each ray that hits anything to -infinity. */
 inline void occlude(RTCScene scene, const int* valid, bool are_coherent, RTCRay16& rays) {
     RTCIntersectContext context = contextOf(are_coherent);
     rtcOccluded16(valid, scene, &context, &rays);

@@ -1,4 +1,4 @@
-// In place of CastEchoes.cpp, PathEchoes.cpp and ForeignEchoes.cpp where the build is without Embree.
+// Replaces CastEchoes.cpp, PathEchoes.cpp and ForeignEchoes.cpp in a build without Embree.
 #include <stdexcept>
 
 #include "components/sonar/EchoRenderer.hpp"

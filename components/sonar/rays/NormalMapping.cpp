@@ -13,7 +13,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A texel, its lean scaled, as a unit normal again. */
+/** Appends a texel with scaled lean, as a unit normal. */
 void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels) {
     if (scale == 1) return void(texels.insert(texels.end(), {rgb[0], rgb[1], rgb[2], 0}));
     const glm::vec3 normal = glm::vec3(rgb[0], rgb[1], rgb[2]) * (2 / 255.0f) - 1.0f;
@@ -22,19 +22,19 @@ void appendScaled(const uint8_t* rgb, float scale, std::vector<uint8_t>& texels)
     texels.push_back(0);
 }
 
-/** The halving of a map that is nearest to log2 of the texels that a sample covers. */
+/** Returns the level of a map that is nearest to log2 of the texels that a sample covers. */
 int levelOf(float covered) {
     const float root_2 = 1.41421356f, bounded = covered > 1 ? (covered < 1e30f ? covered : 1e30f) : 1.0f;
     return (std::bit_cast<int32_t>(bounded * root_2) >> 23) - 127;
 }
 
-/** The two texels about a coordinate of a map, and the share of the second. */
+/** The two texels next to a coordinate of a map, and the weight of the second. */
 struct Neighbours {
     int first, second;
     float share;
 };
 Neighbours neighbours(float coordinate, float texels, bool repeats) {
-    const float known = std::abs(coordinate) < 1e6f ? coordinate : 0.0f;  // not NaN, nor as good as lost
+    const float known = std::abs(coordinate) < 1e6f ? coordinate : 0.0f;  // excludes NaN and lost fractions
     const float wrapped = repeats ? known - std::floor(known) : known;
     const float at = wrapped * texels - 0.5f, low = std::floor(at);
     const float held = low < -1.0f ? -1.0f : low > texels ? texels : low;
@@ -60,7 +60,7 @@ NormalMapping::NormalMapping(const types::Geometry& geometry) : geometry_(geomet
     facts_ = MeshFacts::ofAll(geometry);
     for (size_t i = 0; i < geometry.meshes.size(); ++i)
         if (std::ranges::any_of(geometry.meshes[i].clusters, [this](const auto& c) { return isMapped(c.material); }))
-            facts_[i]->mapDensity();  // before the first ping needs it
+            facts_[i]->mapDensity();  // computed before the first ping
 }
 
 std::shared_ptr<const NormalMapping::Map> NormalMapping::sharedMap(
@@ -95,7 +95,7 @@ NormalMapping::Map NormalMapping::mapOf(std::shared_ptr<const types::NormalMap> 
 }
 
 struct NormalMapping::Frames {
-    alignas(64) float normal_x[max_samples], normal_y[max_samples], normal_z[max_samples];  // of the mesh, then unit
+    alignas(64) float normal_x[max_samples], normal_y[max_samples], normal_z[max_samples];      // mesh axes, then unit
     float along_x[max_samples], along_y[max_samples], along_z[max_samples], hand[max_samples];  // tangents
     float u[max_samples], v[max_samples], density[max_samples];
     float covered[max_samples];  // texels of the finest level
@@ -145,7 +145,7 @@ void NormalMapping::place(const ObjectRecord& placed, float texels, const Sample
         frames.normal_x[i] = x, frames.normal_y[i] = y, frames.normal_z[i] = z;
         frames.along_x[i] = tx * per_along, frames.along_y[i] = ty * per_along, frames.along_z[i] = tz * per_along;
         const float facing = std::abs(x * samples.x[i] + y * samples.y[i] + z * samples.z[i]);
-        // Areas grow by the volume times the turned normal's length.
+        // Areas scale with the volume times the rotated normal's length.
         frames.covered[i] = samples.extent[i] / (facing > 0.01f ? facing : 0.01f) * texels * frames.density[i] /
                             std::sqrt(volume * samples.normal[i]);
     }
@@ -203,7 +203,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void NormalMapping::cosines(cons
         const float z = tz * bent.x[i] + (nx * ty - ny * tx) * across + nz * bent.z[i];
         const float facing = nx * samples.x[i] + ny * samples.y[i] + nz * samples.z[i];
         const float along = x * samples.x[i] + y * samples.y[i] + z * samples.z[i];
-        // A mean of several unit normals is shorter than 1: what it gives is the mean of their cosines.
+        // A mean of several unit normals is shorter than 1: its product is the mean of their cosines.
         const float length = levelOf(frames.covered[i]) == 0 ? std::sqrt(x * x + y * y + z * z) : 1.0f;
         const float towards = (facing < 0 ? -along : along) / length;
         cosine[i] = towards > 1e-6f ? static_cast<double>(towards) : 1e-6;  // also where there is no frame

@@ -9,33 +9,33 @@
 
 namespace insonify::sonar {
 
-/** How normal maps bend what rays meet: looked up for what is seen, once for each sample. */
+/** Normal maps at the hits of rays, looked up once for each sample. */
 class NormalMapping {
 public:
-    static constexpr int max_samples = 64;  ///< At most so many for one call of cosines() [1].
+    static constexpr int max_samples = 64;  ///< Max samples of one call of cosines() [1].
 
-    /** Where rays have met triangles of one material of one object: arrays of `count` entries. */
+    /** Hits of rays on triangles of one material of one object: arrays of `count` entries. */
     struct Samples {
         int count;
         const uint32_t* triangle;  ///< Within the object's mesh [1].
         const float *u, *v;        ///< Barycentric coordinates of the triangle's second and third corner [1].
         const float *x, *y, *z;    ///< Directions of the rays, unit, sonar axes [1].
         const float* extent;       ///< Extent of the sample across the ray [m].
-        const float* normal;  ///< Length of the triangle's unit normal once it is turned by ObjectRecord::normal_x to
-                              ///< normal_z [1].
+        const float*
+            normal;  ///< Length of the triangle's unit normal after rotation by ObjectRecord::normal_x to normal_z [1].
     };
 
     /** The geometry must outlive it. */
     explicit NormalMapping(const types::Geometry& geometry);
     bool isMapped(int material) const { return maps_[static_cast<size_t>(material)] != nullptr; }
-    /** Fills `cosine` with the cosines of the angles between rays and bent normals, on the side that the ray meets; at
-     *  least 1e-6. Cosines are averaged over as much of the map as the sample covers. `placed`: the object relative to
-     *  the sonar. */
+    /** Fills `cosine` with the cosines of the angles between rays and mapped normals, on the side that the ray hits; at
+     *  least 1e-6. Cosines are averaged over the part of the map that the sample covers. `placed`: the object relative
+     *  to the sonar. */
     void cosines(const ObjectRecord& placed, uint32_t object, int material, const Samples& samples,
                  double* cosine) const;
 
 private:
-    /** A map and its halvings, four bytes a texel. */
+    /** A level of a map, each half as large as the one before; four bytes per texel. */
     struct Level {
         int width, height;
         std::vector<uint8_t> texels;
@@ -46,20 +46,21 @@ private:
         std::vector<Level> levels;
     };
     static Map mapOf(std::shared_ptr<const types::NormalMap> source, float scale);
-    /** The same; all who ask for the same map and scale share it. */
+    /** Returns the map; all callers with the same map and scale share it. */
     static std::shared_ptr<const Map> sharedMap(const std::shared_ptr<const types::NormalMap>& source, float scale);
-    /** Frames and coordinates of the map where samples are. */
+    /** Frames and map coordinates of samples. */
     struct Frames;
-    /** Normals of the map, bilinear, each in a halving of its own. */
+    /** Normals of the map, interpolated bilinearly, each in its own level. */
     struct Leanings;
     void interpolate(uint32_t object, const Samples& samples, Frames& frames) const;
-    /** Turns normals and tangents into unit frames of sonar axes, and finds how many texels samples cover. `texels` is
-     *  the geometric mean of the map's sides. */
+    /** Rotates normals and tangents into unit frames of sonar axes, and computes the number of texels that samples
+     *  cover. `texels` is the geometric mean of the map's sides. */
     static void place(const ObjectRecord& placed, float texels, const Samples& samples, Frames& frames);
     static void lookUp(const Map& map, int count, const Frames& frames, Leanings& bent);
 
     const types::Geometry& geometry_;
-    std::vector<std::shared_ptr<const Map>> maps_;   ///< Of each material, with its scale; null for one without.
+    std::vector<std::shared_ptr<const Map>>
+        maps_;  ///< Map of each material, with its scale; null for materials without a map.
     std::vector<std::shared_ptr<MeshFacts>> facts_;  ///< Facts of each mesh, for MeshFacts::mapDensity().
 };
 

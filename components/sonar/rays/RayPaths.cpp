@@ -12,7 +12,7 @@
 namespace insonify::sonar {
 namespace {
 
-/** A unit vector at right angles to a direction. */
+/** Returns a unit vector normal to a direction. */
 glm::dvec3 besideOf(const glm::dvec3& direction) {
     const glm::dvec3 up = std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     return glm::normalize(glm::cross(up, direction));
@@ -50,7 +50,7 @@ void RayPaths::placeMotion(const types::Snapshot& snapshot) {
 
 void RayPaths::placeCorners() {
     const double farthest = RayTable::beyond * plan_.grid.range_max, turn = moves_ ? share_ * glm::length(turn_) : 0;
-    // A ray that turns has the curvature 4 turn / c; its arc leaves the chord by a tenth of a bin at most.
+    // A turning ray has the curvature 4 turn / c; its arc deviates from the chord by at most a tenth of a bin.
     const double spacing =
         std::sqrt(8 * 0.1 * plan_.grid.bin_width * plan_.grid.speed_of_sound / std::max(4 * turn, 1e-30));
     const double wanted = std::max(table_ ? static_cast<double>(table_->corners()) : 1, std::ceil(farthest / spacing));
@@ -64,7 +64,7 @@ std::optional<HeardPoint> RayPaths::heard(const glm::dvec3& place, size_t target
     constexpr int steps = 100;
     Drift drift;
     if (motion_) drift.constant = motion_->targetVelocity(target) * world_from_sonar_;
-    glm::dvec3 point = place, missed(0);  // what is heard as from `point` is `missed` away from the target
+    glm::dvec3 point = place, missed(0);  // the echo from `point` is `missed` away from the target
     for (int i = 0; i < steps; ++i) {
         missed = place - at(glm::normalize(point), glm::length(point), &drift);
         if (glm::length(missed) < 1e-6 * glm::length(place)) break;
@@ -81,7 +81,7 @@ glm::dvec3 RayPaths::movedBy(const glm::dvec3& direction, double range, const Dr
     const glm::dvec3 swept = turn_ * (back * share_);
     const double angle = glm::length(swept);
     const glm::dvec3 ray = angle > 0 ? glm::angleAxis(angle, swept / angle) * direction : direction;
-    // Sent from the origin, heard after `range` / c from `there` in the direction `ray`: an ellipsoid about both.
+    // Sent from the origin and received at `there`, 2 `range` / c later, from direction `ray`: an ellipsoid about both.
     const glm::dvec3 there = velocity_ * back;
     const double leg = (4 * range * range - glm::dot(there, there)) / (4 * range + 2 * glm::dot(ray, there));
     const glm::dvec3 met = there + leg * ray;
@@ -137,10 +137,10 @@ ApparentPlane RayPaths::apparent(const glm::dvec3& normal, double distance, cons
     const glm::dvec3 onward =
         (at(direction, range + length, drift) - at(direction, range - length, drift)) / (2 * length);
     const double facing = glm::dot(normal, onward), pace = glm::length(onward);
-    // On the plane normal . at(direction, range) = distance, range changes with the direction by these [m].
+    // Derivatives of range with the direction, on the plane normal . at(direction, range) = distance [m].
     const double slope_beside = -glm::dot(normal, by_beside) / facing;
     const double slope_upward = -glm::dot(normal, by_upward) / facing;
-    const double area = std::abs(glm::dot(glm::cross(by_beside, by_upward), onward)) / pace;  // of a steradian [m^2]
+    const double area = std::abs(glm::dot(glm::cross(by_beside, by_upward), onward)) / pace;  // per steradian [m^2]
     ApparentPlane plane;
     plane.normal = direction / range - (slope_beside * beside + slope_upward * upward) / (range * range);
     plane.cosine = std::abs(facing) / (glm::length(normal) * pace);

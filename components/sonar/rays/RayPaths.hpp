@@ -12,63 +12,63 @@
 
 namespace insonify::sonar {
 
-/** A plane where it seems to be by the directions and the times of its echoes. All in sonar axes. */
+/** The apparent place of a plane, from the directions and the times of its echoes. All in sonar axes. */
 struct ApparentPlane {
-    glm::dvec3 normal{0};  ///< The plane is normal . place = 1 about the direction at hand [1/m].
+    glm::dvec3 normal{0};  ///< The plane is normal . place = 1 near the current direction [1/m].
     double cosine = 0;     ///< Cosine of the angle at which sound meets the true plane [1].
-    double focus = 0;      ///< Intensity there, over that of straight rays of the same range [1].
+    double focus = 0;      ///< Intensity relative to straight rays of the same range [1].
 };
 
-/** A point whose echo comes from another place. */
+/** A point whose echo arrives from an apparent place. */
 struct HeardPoint {
-    glm::dvec3 place;  ///< Where it seems to be, sonar axes [m].
-    double focus;      ///< Intensity there, over that of straight rays of the same range [1].
+    glm::dvec3 place;  ///< Apparent place, sonar axes [m].
+    double focus;      ///< Intensity relative to straight rays of the same range [1].
 };
 
-/** The ways that sound takes where it does not come straight from where an object is: bent by a profile of the speed
- *  of sound, or because sonar and objects move and turn while it is under way. What is heard from a direction at a
- *  slant range is at a place that depends on both (ACOUSTICS.md 5.19, 5.20).
+/** Sound paths that are not straight to the places of objects: bent by a sound speed profile, or because sonar and
+ *  objects move and turn while sound travels. The place that returns an echo depends on the echo's direction and slant
+ *  range (ACOUSTICS.md 5.19, 5.20).
  *
- *  The ray-tracer owns them instead of a PingEffect: two effects, refraction and motion, share one object, and it
- * replaces how rays are cast and how planes become cells, which a call per tile could not. */
+ *  The ray-tracer owns them instead of a PingEffect. Two effects, refraction and motion, share one object. It replaces
+ *  how rays are traced and how planes become cells, which a call per tile could not do. */
 class RayPaths {
 public:
-    static constexpr double max_focus = 4;  ///< At a caustic rays would give infinitely much [1].
+    static constexpr double max_focus = 4;  ///< Bound at caustics, where ray theory gives infinity [1].
 
-    /** The plan has refraction or motion within a ping. Plan and geometry outlive the paths. */
+    /** Needs a plan with refraction or motion within a ping. Plan and geometry outlive the paths. */
     RayPaths(const RenderPlan& plan, const types::Geometry& geometry);
 
     /** Switches to another geometry from the next ping on. */
     void takeScene(const types::Geometry& geometry);
-    /** Once a ping. Allocates nothing after the second. */
+    /** Computes the paths of a ping; call it once per ping. Allocates nothing after the second. */
     void place(const types::Snapshot& snapshot);
-    /** Whether all ways of this ping are as good as straight: nothing is bent, and nothing moves enough. */
+    /** Returns whether all paths of this ping are effectively straight: nothing is bent, and nothing moves enough. */
     bool areStraight() const { return !table_ && !moves_; }
-    /** How an object moves in this ping; null where it does not. */
+    /** Returns the motion of an object in this ping; null where it is at rest. */
     const Drift* drift(uint32_t object) const { return moves_ ? motion_->drift(object) : nullptr; }
-    /** The same of one of its triangles; `own` is filled where the object deforms. */
+    /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
     const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
         return moves_ ? motion_->driftOf(object, triangle, own) : nullptr;
     }
-    /** What is heard from a direction, unit, at a slant range [m], was there about the sonar when the pulse was sent
-     *  [m]; of an object that moves by `drift`. */
+    /** Returns where an echo from a unit direction at a slant range [m] was returned: its place about the sonar when
+     *  the pulse was sent [m]. `drift`: motion of its object. */
     glm::dvec3 at(const glm::dvec3& direction, double range, const Drift* drift = nullptr) const;
-    /** Ranges between which all ways are nearly straight, from 0 on [m]. */
+    /** Returns ranges between which all paths are nearly straight, from 0 [m]. */
     std::span<const double> corners() const { return corners_; }
-    /** Returns the apparent plane of normal . place = distance, as it is met in a direction near a range [m]. */
+    /** Returns the apparent plane of normal . place = distance, for a direction near a range [m]. */
     ApparentPlane apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                            const Drift* drift) const;
-    /** From where a point target of this ping is heard that was there about the sonar, sonar axes, when the pulse was
-     *  sent [m]: the place that is nearest to the straight one, as if it were heard along a straight ray; none where
-     *  there is none, as in a shadow. */
+    /** Returns the apparent place of a point target of this ping, as if its echo arrived along a straight ray: the
+     *  place nearest to the straight one. `place`: of the target when the pulse was sent, sonar axes [m]. None where no
+     *  path reaches it, as in a shadow. */
     std::optional<HeardPoint> heard(const glm::dvec3& place, size_t target) const;
-    /** The greatest inverse range at which something is heard that is within an inverse distance [1/m]. */
+    /** Returns the max inverse range of echoes from places at an inverse distance or farther [1/m]. */
     double nearLimit(double inverse_distance) const;
 
 private:
     void placeMotion(const types::Snapshot& snapshot);
     void placeCorners();
-    /** Returns where a place that moves by `drift` was when the pulse was sent, over straight rays [m]. */
+    /** Returns where a point that moves by `drift` was when the pulse was sent, over straight rays [m]. */
     glm::dvec3 movedBy(const glm::dvec3& direction, double range, const Drift* drift) const;
     double rangeOf(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                    const Drift* drift) const;
@@ -78,11 +78,11 @@ private:
     std::optional<Motion> motion_;
     double coupling_;  ///< dopplerCoupling() [s].
     double share_;     ///< Share of a turn during the flight by which echoes are turned [1].
-    double stretch_;   ///< No place is further away than its slant range times this, but for the coupling [1].
+    double stretch_;   ///< No point is further away than its slant range times this, apart from the coupling [1].
     glm::dmat3 world_from_sonar_{1};  ///< [1]
     bool moves_ = false;
-    glm::dvec3 velocity_{0}, turn_{0};  ///< The sonar's, in sonar axes [m/s], [rad/s].
-    double fastest_ = 0;                ///< At which any place comes nearer or goes away, at most [m/s].
+    glm::dvec3 velocity_{0}, turn_{0};  ///< Motion of the sonar, in sonar axes [m/s], [rad/s].
+    double fastest_ = 0;                ///< Max speed at which any point approaches or recedes [m/s].
     std::vector<double> corners_;
 };
 

@@ -9,12 +9,12 @@
 namespace insonify::sonar {
 namespace {
 
-/** Nothing is bent on the vertical; rays nearer to it are taken for this one [rad]. */
+/** Vertical rays are not bent; steeper rays are replaced by this one [rad]. */
 constexpr double steepest_ray = types::radians(89.99);
-constexpr double widest_step = 0.001;  ///< Between rays [rad].
+constexpr double widest_step = 0.001;  ///< Max angle between rays [rad].
 
-/** So far that an arc of the greatest curvature leaves its chord by a tenth of a bin at most [m]; no more than
- *  `max_corners` of them. */
+/** Returns the spacing of corners at which an arc of max curvature deviates from its chord by at most a tenth of a bin
+ *  [m]; at most `max_corners` of them. */
 double cornerSpacing(const acoustics::SoundProfile& profile, const BinGrid& grid) {
     const double radius = profile.slowest() / std::max(profile.steepest(), 1e-9);
     return std::max(std::sqrt(8 * 0.1 * grid.bin_width * radius),
@@ -32,7 +32,7 @@ RayTable::RayTable(const acoustics::SoundProfile& profile, const BinGrid& grid)
         ranges_.push_back(k * range_step_);
         times_.push_back(ranges_.back() / nominal_);
     }
-    // Between two rays that are so far apart, a straight line misses the arc by a fiftieth of a bin.
+    // Between two rays at this angle, a straight line deviates from the arc by a fiftieth of a bin.
     const double wanted = std::min(widest_step, std::sqrt(8 * 0.02 * grid.bin_width / grid.range_max));
     rays_ = 1 + static_cast<size_t>(std::ceil(std::numbers::pi / wanted));
     elevation_step_ = std::numbers::pi / static_cast<double>(rays_ - 1);
@@ -50,7 +50,7 @@ bool RayTable::place(double depth) {
 }
 
 void RayTable::findTears() {
-    constexpr double widest = 6;  // times as far apart as straight rays
+    constexpr double widest = 6;  // relative to the distance of straight rays
     const size_t corners = ranges_.size();
     torn_.assign(places_.size(), 0);
     for (size_t i = 0; i + corners < places_.size(); ++i) {

@@ -17,19 +17,20 @@
 namespace insonify::sonar {
 namespace {
 
-/** On each axis, between places where a tree may have its origin: at most 444 m from the sonar, where float has 0.03
- * mm. */
+/** Spacing of the possible origins of trees on each axis: at most 444 m from the sonar, where float resolves 0.03 mm
+ *  [m]. */
 constexpr double origin_spacing = 512;
 
-/** Follows from where the sonar is alone, so that no ping depends on those before it [m]. */
+/** Returns the origin for a place of the sonar; it depends on nothing else, so that pings are independent of pings
+ *  before [m]. */
 glm::dvec3 originNear(const glm::dvec3& sonar) { return origin_spacing * glm::round(sonar / origin_spacing); }
 
-/** Triangles that are copied to where they stand, once for each object; of larger scenes, meshes that stand in several
- *  places are instances of one tree, through which rays take longer [1]. */
+/** Max triangles that are copied to their places, once for each object. In larger scenes, meshes with several places
+ *  are instances of one tree, which are slower to trace [1]. */
 constexpr size_t max_copied = 4'000'000;
 
-/** The object whose lattice of scatterers an object has: its own; of the tiles of a survey that of the first, whatever
- *  tiles there are. */
+/** Returns the object whose lattice of scatterers an object uses: its own; for the tiles of a survey that of the first,
+ *  for any set of tiles. */
 uint32_t latticeOf(const types::Geometry& geometry, size_t object) {
     const types::Object& own = geometry.objects[object];
     const auto is_same = [&](const types::Object& other) {
@@ -39,7 +40,7 @@ uint32_t latticeOf(const types::Geometry& geometry, size_t object) {
     return static_cast<uint32_t>(std::ranges::find_if(geometry.objects, is_same) - geometry.objects.begin());
 }
 
-/** The three rows of a matrix that takes directions and places from one frame to another. */
+/** The three rows of a matrix that transforms directions and places from one frame to another. */
 struct Rows {
     glm::vec3 x, y, z;
 
@@ -52,7 +53,7 @@ void forgetHits(RTCRayHit16& all) {
     std::fill_n(all.hit.instID[0], tile_samples, RTC_INVALID_GEOMETRY_ID);
 }
 
-/** Aims the rays that are active; what they have met before stays. */
+/** Sets origins and directions of the active rays; keeps their hits so far. */
 void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
     std::fill_n(all.ray.org_x, tile_samples, from.x);
     std::fill_n(all.ray.org_y, tile_samples, from.y);
@@ -66,7 +67,7 @@ void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& al
     forgetHits(all);
 }
 
-/** Lets rays that are active reach all that lies beyond `nearest` [m]; the others end before they begin. */
+/** Extends active rays from `nearest` [m] to infinity; the others end before they begin. */
 void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     std::fill_n(all.ray.tnear, tile_samples, nearest);
@@ -80,7 +81,7 @@ void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
     }
 }
 
-/** Aims rays that begin elsewhere, in the axes that `turn` and `place` of the sonar tell. */
+/** Sets rays with other origins, in the axes given by `turn` and `place` of the sonar. */
 template <class Rays>
 void aim(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
     const auto turned = [](glm::vec3 row, float x, float y, float z) { return row.x * x + row.y * y + row.z * z; };
@@ -94,7 +95,7 @@ void aim(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
     }
 }
 
-/** Lets rays meet what lies between their own bounds; those that are not active end before they begin. */
+/** Limits rays to their own bounds; inactive rays end before they begin. */
 template <class Rays>
 void bound(const PathRays& rays, Rays& ray) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -108,7 +109,7 @@ void bound(const PathRays& rays, Rays& ray) {
     }
 }
 
-/** Which rays Embree is to look at. */
+/** The active rays, for Embree. */
 struct Valid {
     alignas(64) int of[tile_samples];
 
@@ -117,7 +118,7 @@ struct Valid {
     }
 };
 
-/** Writes down what rays have met now; `meaning` of a geometry and an instance is a TreePart. */
+/** Records the new hits of rays; `meaning` of a geometry and an instance is a TreePart. */
 template <class Meaning>
 void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
     const unsigned* const geometry = all.hit.geomID;
@@ -146,7 +147,7 @@ void take(const RTCRayHit16& all, TileHits& hits, const Meaning& meaning) {
 
 using Places = std::array<glm::vec3, tile_samples>;
 
-/** Where a tile's rays are at one range, for an object that moves by `drift`. */
+/** Returns the places of a tile's rays at one range, for an object that moves by `drift`. */
 Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const Drift* drift = nullptr) {
     Places places;
     for (int i = 0; i < tile_samples; ++i)
@@ -155,7 +156,7 @@ Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const
     return places;
 }
 
-/** Aims the rays from one place to another; what they have met before stays. */
+/** Sets the rays from one place to another; keeps their hits so far. */
 void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to, RTCRayHit16& all) {
     for (size_t i = 0; i < tile_samples; ++i) {
         const glm::vec3 way = to[i] - from[i];
@@ -170,7 +171,7 @@ void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to
     }
 }
 
-/** About the rays of a tile. */
+/** A cone about the rays of a tile. */
 struct TileCone {
     glm::vec3 axis;      ///< Unit, sonar axes.
     float cosine, sine;  ///< Cosine and sine of half its angle.
@@ -192,12 +193,12 @@ struct RayVisibility::Mover {
     uint32_t object, first_command;
     std::shared_ptr<MeshTree> mesh;
     RTCScene tree;
-    Box box;                      ///< In its own axes [m].
-    bool placed = false;          ///< Whether rays can meet it.
-    glm::mat3 from_sonar{1};      ///< Directions in sonar axes to its own.
-    glm::vec3 place{0};           ///< Of the sonar in its axes [m].
-    glm::vec3 towards{0};         ///< Unit, from the sonar to the middle of a ball about it, sonar axes.
-    float cosine = -1, sine = 0;  ///< Of the angle under which the ball's half is seen; -1: the sonar is inside.
+    Box box;                      ///< Bounds in its own axes [m].
+    bool placed = false;          ///< Whether rays can hit it.
+    glm::mat3 from_sonar{1};      ///< Rotation of directions from sonar axes to its own.
+    glm::vec3 place{0};           ///< Place of the sonar in its axes [m].
+    glm::vec3 towards{0};         ///< Unit vector from the sonar to the middle of a ball about it, sonar axes.
+    float cosine = -1, sine = 0;  ///< Of the angular radius of the ball; -1: the sonar is inside.
 
     void placeAt(const glm::dmat4& sonar_from_object);
     bool mayMeet(const TileCone& rays) const;
@@ -227,7 +228,7 @@ void RayVisibility::Mover::placeAt(const glm::dmat4& sonar_from_object) {
     cosine = static_cast<float>(std::sqrt(1 - share * share));
 }
 
-/** Whether a cone of rays touches that about the ball. */
+/** Returns whether a cone of rays touches the cone about the ball. */
 bool RayVisibility::Mover::mayMeet(const TileCone& rays) const {
     if (!placed) return false;
     if (cosine < 0) return true;
@@ -239,7 +240,7 @@ bool RayVisibility::Mover::mayMeet(const TileCone& rays) const {
 struct RayVisibility::Tree {
     std::optional<SceneTrees> trees;
     std::vector<Mover> movers;
-    glm::dvec3 origin{0};  ///< In the world [m].
+    glm::dvec3 origin{0};  ///< Place in the world [m].
     bool is_built = false;
 };
 
@@ -362,7 +363,7 @@ void RayVisibility::build(const glm::dvec3& origin) {
             (is_apart ? apart : still).push_back({shared, place, first_command_[i]});
         }
     }
-    here_->trees.emplace(SceneTrees(still, apart));  // those before it are kept until it has found them
+    here_->trees.emplace(SceneTrees(still, apart));  // keeps the old trees until it has reused them
     here_->movers = std::move(movers);
     here_->is_built = true;
 }

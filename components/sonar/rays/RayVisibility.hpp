@@ -15,13 +15,13 @@ namespace insonify::sonar {
 
 class RayPaths;
 
-/** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set where ray i is cast. */
+/** Directions of a tile's rays in sonar axes, of any length above 0 [1]; `active`: bit i is set if ray i is traced. */
 struct TileRays {
     alignas(64) float x[tile_samples], y[tile_samples], z[tile_samples];
     uint32_t active = 0xffff;
 };
 
-/** What the rays of a tile have met first. */
+/** First hits of the rays of a tile. */
 struct TileHits {
     static constexpr uint32_t nothing = 0xffffffff;
 
@@ -29,40 +29,40 @@ struct TileHits {
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
     float distance[tile_samples];            ///< In lengths of the ray's direction [1].
-    float range[tile_samples];               ///< Slant range, of castAlong() alone [m].
+    float range[tile_samples];               ///< Slant range, set by castAlong() only [m].
 };
 
-/** Rays of a tile that begin anywhere, sonar axes; distances along them in lengths of their directions. */
+/** Rays of a tile with any origins, sonar axes; distances along them in lengths of their directions. */
 struct PathRays {
     alignas(64) float from_x[tile_samples], from_y[tile_samples], from_z[tile_samples];  ///< [m]
     TileRays towards;
-    alignas(64) float nearest[tile_samples], farthest[tile_samples];  ///< Between these something is met [1].
+    alignas(64) float nearest[tile_samples], farthest[tile_samples];  ///< Hits are between these [1].
 };
 
-/** Which triangle is seen in which direction, by rays on the processor (Embree). What does not move is one tree about
- *  an origin near the sonar, on a coarse grid, so that world coordinates may be large. Each object that moves, or is
- *  transient, has a tree of its mesh, which is placed anew and never built again. Objects that deform have trees that
- *  are fitted to their meshes in each ping. All trees are shared with whoever
- *  else renders the same meshes. Surfaces nearer than `nearest` are not seen. */
+/** Finds the visible triangles by rays on the processor (Embree).
+ *
+ *  Objects at rest form one tree about an origin near the sonar, on a coarse grid, so that world coordinates may be
+ *  large. Each object that moves, or is transient, has a tree of its mesh, which is placed anew and never rebuilt.
+ *  Objects that deform have trees that are refitted to their meshes in each ping. All trees are shared with other renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
-    static constexpr size_t tiles_at_once = 4;  ///< They go through the tree together, which takes less time [1].
+    static constexpr size_t tiles_at_once = 4;  ///< Tiles that are traced together, which is faster [1].
 
     /** @param deforming  objects whose meshes change from ping to ping, ascending.
      *  The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
     explicit RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
     ~RayVisibility();
 
-    /** Another geometry from the next ping on, which must outlive it. Trees of what has not changed are kept. */
+    /** Switches to another geometry from the next ping on, which must outlive it. Keeps trees of unchanged objects. */
     void takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
 
-    /** Forgets which objects have moved. Trees stay until the next ping has taken those that it needs. */
+    /** Forgets which objects have moved. Trees stay until the next ping has reused those that it needs. */
     void forget();
 
-    /** Places the sonar and what moves, once a ping. Builds the tree anew when an object moves that never did before,
-     *  or when the sonar has gone to another origin than the last two; allocates only then. What is seen follows from
-     * the snapshot alone, whatever came before. */
+    /** Places the sonar and the moving objects; call it once per ping. Rebuilds the tree when an object moves for the
+     *  first time, or when the sonar is near another origin than the last two; allocates only then. What is seen
+     *  depends on the snapshot alone, not on the pings before. */
     void place(const types::Snapshot& snapshot);
     /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a
      * time.
@@ -75,26 +75,26 @@ public:
     /** Whether trees of objects that deform are to be fitted in this ping. */
     bool needsFitting() const { return !deforming_.isEmpty() && !is_fitted_; }
 
-    /** Casts tiles from the place of the sonar, at most `tiles_at_once`, which should lie side by side: hits[i] is what
-     *  rays[i] meet. Several threads may do so at a time. */
+    /** Traces tiles from the sonar, at most `tiles_at_once`, which should be neighbours: hits[i] are the hits of
+     *  rays[i]. Thread-safe. */
     void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
-    /** What rays that begin elsewhere meet first. */
+    /** Finds the first hits of rays with other origins. */
     void cast(const PathRays& rays, TileHits& hits) const;
-    /** Those of the active rays, as bits, that meet anything. */
+    /** Returns the active rays, as bits, that hit anything. */
     uint32_t blocked(const PathRays& rays) const;
-    /** Casts a tile along ways that are not straight, by straight pieces between their corners. */
+    /** Traces a tile along paths that are not straight, by straight pieces between their corners. */
     void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 
-    /** What hits mean: one command for each object and run of one material. */
+    /** Returns the commands that hits refer to: one for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
 
 private:
     struct Mover;
     struct Tree;
-    /** Of a tile's rays, sonar axes about the sonar [m]. */
+    /** Places of a tile's rays, sonar axes about the sonar [m]. */
     using Places = std::array<glm::vec3, tile_samples>;
-    /** Of the ways of a tile's rays between two ranges [m]. */
+    /** Part of the paths of a tile's rays between two ranges [m]. */
     struct Piece {
         double start, end;
         Places from, to;
@@ -103,7 +103,7 @@ private:
                    TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
-    /** Enlists the objects of a snapshot as moving; every tree is to be built anew. */
+    /** Records the objects of a snapshot as moving; every tree is to be rebuilt. */
     void forgetTrees(const types::Snapshot& snapshot);
     void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
@@ -115,16 +115,16 @@ private:
 
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
-    std::vector<uint32_t> first_command_;  ///< Of each object.
+    std::vector<uint32_t> first_command_;  ///< First command of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
-    std::vector<bool> deforms_;            ///< Whether an object deforms; empty: none does.
+    std::vector<bool> deforms_;  ///< Whether each object deforms; empty if no object does.
     DeformingTrees deforming_;
-    std::vector<glm::dmat4> deforming_places_;  ///< Of each of its objects, about the origin.
-    bool is_fitted_ = false;                    ///< To these places, and to the meshes as they are.
-    /** The scene about the origin at hand, and about the one before, for a sonar that stays between the two. */
+    std::vector<glm::dmat4> deforming_places_;  ///< Places of the deforming objects about the origin.
+    bool is_fitted_ = false;                    ///< Whether the trees match these places and the present meshes.
+    /** The scene about the current origin, and about the one before, for a sonar that moves between the two. */
     std::unique_ptr<Tree> here_, before_;
     glm::mat3 world_from_sonar_;  ///< [1]
-    glm::vec3 place_{0};          ///< Of the sonar about the origin [m].
+    glm::vec3 place_{0};          ///< Place of the sonar about the origin [m].
 };
 
 }  // namespace insonify::sonar

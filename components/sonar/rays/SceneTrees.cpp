@@ -18,7 +18,7 @@ std::shared_ptr<RTCDeviceTy> sharedDevice() {
     });
 }
 
-/** Numbers that are equal for equal objects. */
+/** Returns numbers that are equal for equal objects. */
 std::vector<uint64_t> keyOf(const std::vector<TreeObject>& objects) {
     std::vector<uint64_t> key;
     key.reserve(18 * objects.size());

@@ -16,13 +16,13 @@ struct MaterialRun {
 };
 std::vector<MaterialRun> materialRuns(const types::Mesh& mesh);
 
-/** What a geometry of a tree is: a command, and the first triangle of its run. */
+/** Meaning of a geometry of a tree: a command, and the first triangle of its run. */
 struct TreePart {
     uint32_t command, first_triangle;
 };
 
-/** A scene of Embree. All scenes of a process are of one device, which builds each scene with one thread, so that of
- *  surfaces in the same place the same one is met on any machine. */
+/** A scene of Embree. All scenes of a process share one device. It builds each scene with one thread, so that rays hit
+ *  the same one of coincident surfaces on any machine. */
 class EmbreeScene {
 public:
     enum class Kind {
@@ -37,7 +37,7 @@ public:
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     RTCScene scene() const { return scene_; }
-    /** Adds a run of a mesh whose vertices are at `at`, which has one more; both must outlive the scene. */
+    /** Adds a run of a mesh whose vertices are at `at`, which has one more element. Both must outlive the scene. */
     void add(const types::Mesh& mesh, const MaterialRun& run, const std::vector<glm::vec3>& at);
     /** Adds another scene, which must outlive this one. */
     void add(const EmbreeScene& other, const glm::dmat4& place);
@@ -56,15 +56,15 @@ private:
 };
 
 /** The tree of a mesh in its own axes, with a part for each run of one material. Commands are counted from the object's
- *  first. All who ask for the tree of a mesh share it. */
+ *  first. All callers share the tree of a mesh. */
 class MeshTree {
 public:
     static std::shared_ptr<MeshTree> of(const types::MeshPtr& mesh);
     explicit MeshTree(types::MeshPtr mesh) : mesh_(std::move(mesh)) {}
 
-    /** Built when it is first asked for; several threads may ask at a time. */
+    /** Returns the tree, built at the first call. Thread-safe. */
     const EmbreeScene& tree();
-    const std::vector<TreePart>& parts() const { return parts_; }  ///< Once the tree is built.
+    const std::vector<TreePart>& parts() const { return parts_; }  ///< Valid once the tree is built.
 
 private:
     types::MeshPtr mesh_;
@@ -81,14 +81,14 @@ struct TreeObject {
     uint32_t command;
 };
 
-/** The tree of objects that stand still, their triangles copied to their places. All who ask for the same objects share
+/** The tree of objects at rest, with their triangles copied to their places. All callers with the same objects share
  *  it. */
 class StillTree {
 public:
     static std::shared_ptr<StillTree> of(const std::vector<TreeObject>& objects);
     explicit StillTree(const std::vector<TreeObject>& objects) : objects_(objects) {}
 
-    /** Built when it is first asked for; several threads may ask at a time. */
+    /** Returns the tree, built at the first call. Thread-safe. */
     const EmbreeScene& tree();
     const TreePart& part(uint32_t geometry) const { return parts_[geometry]; }
     bool isEmpty() const { return objects_.empty(); }
@@ -98,22 +98,22 @@ private:
 
     std::vector<TreeObject> objects_;
     std::once_flag built_;
-    std::vector<std::vector<glm::vec3>> positions_;  ///< Of each object.
-    std::vector<TreePart> parts_;                    ///< Of each geometry.
+    std::vector<std::vector<glm::vec3>> positions_;  ///< Positions of each object.
+    std::vector<TreePart> parts_;                    ///< Part of each geometry.
     std::unique_ptr<EmbreeScene> tree_;
 };
 
-/** Embree's trees of a scene about an origin, and what the numbers of their hits mean: the tree of what stands still,
- *  alone or as one of the instances of a tree of trees. */
+/** Embree's trees of a scene about an origin, and the meaning of their hits. The tree of the objects at rest is used
+ *  alone, or as one of the instances of a tree of trees. */
 class SceneTrees {
 public:
-    /** `apart`: objects whose meshes have trees of their own. Builds what is not there yet. Throws std::runtime_error
+    /** `apart`: objects whose meshes have their own trees. Builds the trees that are missing. Throws std::runtime_error
      *  with Embree's error. */
     SceneTrees(const std::vector<TreeObject>& still, const std::vector<TreeObject>& apart);
 
     bool hasInstances() const { return top_ != nullptr; }
     RTCScene scene() const { return (top_ ? *top_ : still_->tree()).scene(); }
-    /** The command and triangle of a hit. */
+    /** Returns the command and first triangle of a hit. */
     TreePart meaning(uint32_t geometry, uint32_t instance) const {
         if (instance == RTC_INVALID_GEOMETRY_ID || !instances_[instance].mesh) return still_->part(geometry);
         const TreePart& part = instances_[instance].mesh->parts()[geometry];
@@ -121,7 +121,7 @@ public:
     }
 
 private:
-    /** A geometry of the tree of trees; no mesh: it is what stands still. */
+    /** A geometry of the tree of trees; no mesh: the objects at rest. */
     struct Instance {
         std::shared_ptr<MeshTree> mesh;
         uint32_t command = 0;

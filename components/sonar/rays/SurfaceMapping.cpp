@@ -18,14 +18,14 @@ std::shared_ptr<const MapLevels> sharedLevels(const std::shared_ptr<const types:
     return all.of(map, [&] { return std::make_shared<const MapLevels>(*map); });
 }
 
-/** A texel of a side of the map, wherever it is asked for. */
+/** Returns the texel of a side of the map for any number. */
 int texelAt(int texel, int count, bool repeats) {
     if (!repeats) return std::clamp(texel, 0, count - 1);
     const int rest = texel % count;
     return rest < 0 ? rest + count : rest;
 }
 
-/** A coordinate that is neither NaN nor so large that nothing is left of its fraction. */
+/** Returns a coordinate, or 0 for NaN and numbers too large to have a fraction. */
 float knownAt(float coordinate) { return std::abs(coordinate) < 1e6f ? coordinate : 0.0f; }
 
 }  // namespace
@@ -47,7 +47,7 @@ MapLevels::MapLevels(const types::SurfaceMap& map)
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
 }
 
-/** Each texel the mean over its area, so that means stay what they are whatever the size. */
+/** Halves a level. Each texel is the mean over its area, so that means do not depend on the size. */
 MapLevels::Level MapLevels::halved(const Level& finer) const {
     Level level{(finer.width + 1) / 2, (finer.height + 1) / 2, {}};
     level.channels.resize(static_cast<size_t>(level.width) * static_cast<size_t>(level.height) * channels_);
@@ -83,7 +83,7 @@ void MapLevels::addTexels(const Level& level, glm::vec2 at, float* sums) const {
                   y = texelAt(static_cast<int>(low.y) + (corner >> 1), level.height, repeat_v_);
         corners[corner] = &level.channels[static_cast<size_t>(y * level.width + x) * channels_];
     }
-    for (size_t c = 0; c < channels_; ++c) {  // so that texels of one value have this value between them
+    for (size_t c = 0; c < channels_; ++c) {  // equal texels keep their value between them
         const float upper = corners[0][c] + share.x * (corners[1][c] - corners[0][c]),
                     lower = corners[2][c] + share.x * (corners[3][c] - corners[2][c]);
         sums[c] += upper + share.y * (lower - upper);
@@ -177,14 +177,14 @@ MapLevels::Look SurfaceMapping::look(const CastView& view, const PlacedScene& sc
 
 namespace {
 
-/** One of the materials that a sample sees, with the factor of its echo. */
+/** One of the materials of a sample, with the factor of its echo. */
 struct Seen {
     uint32_t command;
     float gain;
 };
 
-/** The materials of a sample, that with the largest share first, which has the shares of those that are left out as
- *  well. Returns how many they are. */
+/** Lists the materials of a sample, that with the largest share first; it gets the shares of the omitted materials.
+ *  Returns their number. */
 size_t split(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look& look, float min_share,
              std::span<Seen> seen) {
     std::array<std::pair<float, size_t>, MapLevels::max_classes + 1> shares;
@@ -201,7 +201,8 @@ size_t split(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look
     return found;
 }
 
-/** One material of sample `i` of a tile, so that of the samples of a tile as many are of each as its share. */
+/** Chooses one material for sample `i` of a tile, so that the number of a tile's samples with each material is in
+ *  proportion to its share. */
 Seen choose(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look& look, size_t i) {
     constexpr int reversed[tile_samples] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
     float left = (static_cast<float>(reversed[i]) + 0.5f) / tile_samples;

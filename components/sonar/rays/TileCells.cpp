@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    /** Returns the samples, as bits, that have met the same triangle as the sample after them. */
+    /** Returns the samples, as bits, that have hit the same triangle as the next sample. */
     static uint32_t sameAsNext(const TileHits& hits) {
         uint32_t same = 0;
         for (int i = 0; i + 1 < tile_samples; ++i)
@@ -56,7 +56,7 @@ private:
         return same;
     }
 
-    /** Samples from i on that are a rectangle of one triangle in one beam. */
+    /** Returns the number of samples from i that are a rectangle of one triangle in one beam. */
     int sameFrom(uint32_t same, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
         const int most = std::min(static_cast<int>(alignment), max_merged_);
@@ -91,7 +91,7 @@ private:
         if (++cells_.count == Cells::capacity) finish();
     }
 
-    /** Adds a sample that meets nothing: effects alone hear it. */
+    /** Adds a miss: only effects process it. */
     void addMiss(const CastTile& tile, int sample) {
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         if (column >= tile.end_column || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
@@ -102,7 +102,7 @@ private:
         if (++cells_.count == Cells::capacity) finish();
     }
 
-    /** Puts the plane that the cell seems to be of, at about a range [m], in the place of the true one. */
+    /** Replaces the true plane by the apparent plane of the cell, at about a range [m]. */
     void bend(double range, const Drift* drift) {
         const int i = cells_.count;
         const glm::dvec3 ray(cells_.cos_el[i] * cells_.cos_az[i], cells_.cos_el[i] * cells_.sin_az[i],
@@ -116,10 +116,10 @@ private:
         cells_.focus[i] = plane.focus;
         if (!mapped_ || !(cells_.mapped[i] > 0)) cells_.mapped[i] = plane.cosine;
         cells_.near_limit[i] = scene_.paths->nearLimit(cells_.near_limit[i]);
-        cells_.far_limit[i] = 0;  // bent rays may take any way round
+        cells_.far_limit[i] = 0;  // bent rays may arrive from any side
     }
 
-    /** Writes down where the samples of cell i lie in their triangle, in the mean. */
+    /** Records the mean place of the samples of cell i in their triangle. */
     void placeInMap(int i, const TileHits& hits, int sample, int merged) {
         float u = 0, v = 0;
         for (int k = sample; k < sample + merged; ++k) u += hits.u[k], v += hits.v[k];
@@ -127,7 +127,7 @@ private:
         in_map_.place(i, hits.command[sample], hits.triangle[sample], u * per_sample, v * per_sample);
     }
 
-    /** Sets where the cell at hand looks, of `merged` samples. */
+    /** Sets the look direction of the current cell, with `merged` samples. */
     void aim(const CastTile& tile, int sample, int merged) {
         const TileShape::Extent at = shape_.at[sample], size = shape_.size[merged];
         setLookDirection(view_, conical_,
@@ -136,15 +136,15 @@ private:
     }
 
     bool conical_, mapped_;
-    bool has_maps_;  ///< Surface maps, beside normal maps.
+    bool has_maps_;  ///< Surface maps, in addition to normal maps.
     bool hears_misses_;
-    bool curves_;  ///< Whether a smooth body bends within a cell: not where fields are summed, nor where rays are bent.
+    bool curves_;  ///< Whether smooth bodies curve within a cell: not with fields or bent rays.
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;
     CellDeposit deposit_;
     Cells& cells_;
-    int max_merged_;  ///< At most so many samples become one cell [1].
+    int max_merged_;  ///< Max samples of one cell [1].
     MappedCells in_map_;
 };
 

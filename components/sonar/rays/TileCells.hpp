@@ -13,7 +13,7 @@ namespace insonify::sonar {
 class BinLevels;
 class SurfaceMapping;
 
-/** What the numbers of hits mean in this ping: commands, each with its triangles turned into sonar axes. */
+/** Meaning of hits in this ping: commands, each with its triangles rotated into sonar axes. */
 struct PlacedScene {
     std::span<const CommandRecord> commands;
     std::span<const PlacedRun> ranges;
@@ -21,41 +21,40 @@ struct PlacedScene {
     const NormalMapping& normal_maps;
     WaterView water;
     const RayPaths* paths = nullptr;       ///< Null where rays are straight.
-    const SurfaceMapping* maps = nullptr;  ///< Null where surfaces have none.
+    const SurfaceMapping* maps = nullptr;  ///< Null where surfaces have no maps.
 };
 
-/** How samples lie. */
+/** Arrangement of samples. */
 struct CastView {
     AngularView cells;
     TileShape shape;
 };
 
-/** A tile that has been cast: where it is in the view and what it has met. */
+/** A traced tile: its place in the view and its hits. */
 struct CastTile {
     int first_column, first_row;
-    int end_column;  ///< Samples from this column on are not the tile's: they were not cast, and are no misses.
+    int end_column;  ///< Samples from this column on are not in the tile: they were not traced, and are not misses.
     TileHits* hits;
     float* passed = nullptr;       ///< Share of each sample's energy that walls let through both ways; null: all [1].
     const float* gains = nullptr;  ///< Factor of each sample's echo by surface maps; null: 1 [1].
     const float* late = nullptr;   ///< Slant range of each sample's echo beyond that of its surface; null: none [m].
-    const ApparentPlane* apparent = nullptr;  ///< Where refraction in fills makes a surface seem to be; of samples
-                                              ///< without, and null: where it is.
+    const ApparentPlane* apparent = nullptr;  ///< Apparent surfaces behind refracting fills; null or focus 0: none.
     uint32_t path = 0;                        ///< behind_walls, rung_in_wall (TruthTable.hpp), or 0.
 
-    /** Mean share of `count` samples from one on [1]. */
+    /** Returns the mean of `passed` of `count` samples from `first` [1]. */
     double meanPassed(int first, int count) const {
         double sum = 0;
         for (int i = first; i < first + count; ++i) sum += static_cast<double>(passed[i]);
         return sum / count;
     }
-    /** Mean factor of `count` samples by surface maps [1]. */
+    /** Returns the mean factor of `count` samples by surface maps [1]. */
     double meanGain(int first, int count) const {
         if (!gains) return 1;
         double sum = 0;
         for (int i = first; i < first + count; ++i) sum += static_cast<double>(gains[i]);
         return sum / count;
     }
-    /** The same of what is late [m]. */
+    /** Returns the mean of `late` of `count` samples [m]. */
     double meanLate(int first, int count) const {
         double sum = 0;
         for (int i = first; i < first + count; ++i) sum += static_cast<double>(late[i]);
@@ -64,7 +63,7 @@ struct CastTile {
     bool isApparent(int sample) const { return apparent && apparent[sample].focus > 0; }
 };
 
-/** A ping that is ray-traced, at the quality in force. */
+/** A ray-traced ping, at the current quality. */
 struct CastPing {
     const EchoRules& rules;
     const BinLevels& levels;  ///< Intensities of the rules' bins.
@@ -89,11 +88,11 @@ struct SampleRectangle {
           right(view.at(column + across - 1) + 2),
           low(2 * static_cast<size_t>(row)),
           high(low + 2 * static_cast<size_t>(up)) {}
-    /** Its middle in AngularView::bearings. */
+    /** Returns its middle in AngularView::bearings. */
     size_t across(const AngularView& view) const {
         return view.at(first_column + columns / 2) + static_cast<size_t>(columns % 2);
     }
-    /** Its middle in AngularView::elevations. */
+    /** Returns its middle in AngularView::elevations. */
     size_t up() const { return (low + high) / 2; }
 };
 
@@ -128,7 +127,7 @@ inline void relateSizes(const AngularView& view, Cells& cells) {
     for (int i = 0; i < cells.count; ++i) cells.size[i] /= unit;
 }
 
-/** Asks for the planes that a tile to come needs, which are wherever its triangles are in memory. */
+/** Prefetches the planes of a later tile; they are scattered in memory like its triangles. */
 inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {
     for (int i = 0; i < tile_samples; ++i) {
         if (tile.hits->command[i] == TileHits::nothing) continue;
@@ -138,7 +137,7 @@ inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {
     }
 }
 
-/** Moves the plane of cell i away by a slant range [m], seen in its direction. */
+/** Moves the plane of cell i away by a slant range [m], along its direction. */
 inline void moveAway(Cells& cells, int i, double late) {
     const double facing =
         (cells.normal_x[i] * cells.cos_az[i] + cells.normal_y[i] * cells.sin_az[i]) * cells.cos_el[i] +
@@ -150,7 +149,7 @@ inline void moveAway(Cells& cells, int i, double late) {
     cells.far_limit[i] = std::min(cells.far_limit[i], limit(cells.far_limit[i]));
 }
 
-/** Puts what refraction makes of a plane in the place of the plane of cell i. */
+/** Replaces the plane of cell i by its apparent plane after refraction. */
 inline void putApparent(Cells& cells, int i, const ApparentPlane& plane) {
     cells.normal_x[i] = plane.normal.x;
     cells.normal_y[i] = plane.normal.y;

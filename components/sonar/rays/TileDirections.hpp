@@ -5,7 +5,7 @@
 
 namespace insonify::sonar {
 
-/** The directions of the rays of tiles, by tables for the columns and the rows of tiles. */
+/** Directions of the rays of tiles, from tables for the columns and the rows of tiles. */
 class TileDirections {
 public:
     TileDirections() = default;
@@ -13,7 +13,7 @@ public:
     TileDirections(const CastView& view, int strip_columns);
 
     /** Returns the rays of the tile that begins at a column and a row; rays outside of the strip and of the view are
-     * not active. */
+     *  not active. */
     TileRays rays(const AngularView& view, int column, int row) const;
 
 private:
@@ -27,7 +27,7 @@ private:
 
     TileShape::Extent tile_{1, 1};
     int strip_columns_ = 1;
-    size_t tiles_across_ = 1;  ///< In a strip.
+    size_t tiles_across_ = 1;  ///< Tiles in a strip.
     std::vector<Angles> columns_, rows_;
 };
 

@@ -60,7 +60,7 @@ public:
         if (mapped_) in_map_.setCosines(scene_, 0, cells_.count, cells_);
         deposit_.cover();
         for (int i = 0; i < cells_.count; ++i)
-            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // beyond a cone's end there is no direction
+            if (deposit_.covered.pixel[i] > 0 && cells_.width[i] > 0)  // no direction beyond a cone's end
                 fields_.deposit(patchOf(i));
         deposit_.finish();
     }
@@ -86,9 +86,9 @@ private:
         return view_.beam_of[static_cast<size_t>(tile.first_column + columnOf(place))];
     }
 
-    /** Returns the samples that are one patch with the lowest one, of samples that meet the same triangle. Where beams
-     * do not join, a patch has one beam. Where effects have sums of their own, which need whole cells, it is a
-     * rectangle of one beam. */
+    /** Returns the samples of one patch with the lowest sample, among samples that hit the same triangle. Where beams
+     *  do not join, a patch has one beam. Where effects have their own sums, which need whole cells, it is a rectangle
+     *  of one beam. */
     uint32_t partOf(const CastTile& tile, uint32_t same) const {
         const int first = std::countr_zero(same);
         if (has_own_ || !view_.joined) {
@@ -116,7 +116,7 @@ private:
         return std::popcount(samples) == all.columns * all.rows;
     }
 
-    /** Adds a sample that meets nothing: effects alone hear it. */
+    /** Adds a miss: only effects process it. */
     void addMiss(const CastTile& tile, int place) {
         const int column = tile.first_column + columnOf(place), row = tile.first_row + rowOf(place);
         if (column >= tile.end_column || row >= view_.rows) return;
@@ -142,7 +142,7 @@ private:
         count();
     }
 
-    /** Mean share of some samples that walls let through [1]. */
+    /** Returns the mean of `passed` of some samples [1]. */
     double meanPassed(const CastTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
@@ -150,7 +150,7 @@ private:
         return sum / std::popcount(samples);
     }
 
-    /** Mean factor of some samples by surface maps [1]. */
+    /** Returns the mean factor of some samples by surface maps [1]. */
     double meanGain(const CastTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
@@ -158,7 +158,7 @@ private:
         return sum / std::popcount(samples);
     }
 
-    /** Mean slant range of some samples beyond that of their surface [m]. */
+    /** Returns the mean slant range of some samples beyond that of their surface [m]. */
     double meanLate(const CastTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
@@ -166,7 +166,7 @@ private:
         return sum / std::popcount(samples);
     }
 
-    /** As in Patch. */
+    /** Returns samples numbered as in Patch::seen. */
     uint32_t samplesIn(const SampleRectangle& all, uint32_t samples, const CastTile& tile) const {
         const uint32_t row_bits = (1u << all.columns) - 1;
         if (isRectangle(all, samples)) return row_bits;
@@ -182,7 +182,7 @@ private:
         if (++cells_.count == Cells::capacity) finish();
     }
 
-    /** Writes down where the samples of cell i lie in their triangle, in the mean. */
+    /** Records the mean place of the samples of cell i in their triangle. */
     void placeInMap(int i, const TileHits& hits, uint32_t samples) {
         float u = 0, v = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1) {
@@ -195,7 +195,8 @@ private:
         in_map_.place(i, command_[first], triangle_[first], u * per_sample, v * per_sample);
     }
 
-    /** Columns' edges: tangents about the middle of the rectangle, or sines of cones; and their beams. */
+    /** Sets the columns' edges, which are tangents about the middle of the rectangle, or sines of cones; and their
+     *  beams. */
     void setColumns(const SampleRectangle& all, Patch& patch) const {
         const AngularView::Direction& middle = patch.bearing;
         const auto first_beam = deposit_.to().first_beam;
@@ -264,11 +265,11 @@ private:
     CellDeposit deposit_;
     Cells& cells_;
     Scatterers fields_;
-    int column_bits_;           ///< Columns of a tile are a power of 2: of this [1].
-    int place_[tile_samples];   ///< The place of each sample, row by row.
-    int sample_[tile_samples];  ///< At each place.
+    int column_bits_;           ///< log2 of a tile's columns [1].
+    int place_[tile_samples];   ///< Place of each sample, row by row.
+    int sample_[tile_samples];  ///< Sample at each place.
     alignas(64) uint32_t command_[tile_samples],
-        triangle_[tile_samples];  ///< What the tile at hand has met, row by row.
+        triangle_[tile_samples];  ///< Hits of the current tile, row by row.
     Source sources_[Cells::capacity];
     MappedCells in_map_;
 };

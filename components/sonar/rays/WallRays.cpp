@@ -63,7 +63,7 @@ bool WallRays::begin(const CastTile& tile, const TileRays& rays) {
         if (rays_[static_cast<size_t>(i)].is_there) meet(i);
     countEchoes();
     for (Ray& ray : rays_)
-        if (ray.is_there) ray.echoes.take(1);  // is deposited already
+        if (ray.is_there) ray.echoes.take(1);  // deposited already
     return true;
 }
 
@@ -79,7 +79,7 @@ int WallRays::bodyOf(const Ray& ray, uint32_t object) {
     return -1;
 }
 
-/** Takes a ray to the surface that it has met. */
+/** Moves a ray to the surface that it has hit. */
 void WallRays::meet(int i) {
     Ray& ray = rays_[static_cast<size_t>(i)];
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
@@ -107,7 +107,7 @@ void WallRays::setEchoes(int i) {
     const Returns& returns = from_within ? wall.inside : wall.outside;
     ray.echoes = ray.echoes.then(returns, wall.spacing(sineInWater(ray)), rules_.bins.bin_width / 2);
     ray.echoes.scale(1 / static_cast<double>(wall.outside.front()));
-    if (from_within) {  // the wall is within the surface
+    if (from_within) {  // the wall is inside the surface
         const double chord = 0.5 * static_cast<double>(hits_.distance[i]);
         ray.echoes.moveAway(-std::min(wall.thickness / ray.cosine, chord) / ray.medium.speed);
     }
@@ -132,7 +132,7 @@ void WallRays::enter(Ray& ray, uint32_t object, const WallLaw& wall) const {
     }
 }
 
-/** Turns a ray at the surface that it has met into a medium of another speed; false: it is reflected in all. */
+/** Refracts a ray at the surface that it has hit, into another medium. Returns false if it is totally reflected. */
 bool WallRays::refract(int i, double speed) {
     Ray& ray = rays_[static_cast<size_t>(i)];
     const double ratio = speed / ray.medium.speed, square = 1 - ratio * ratio * (1 - ray.cosine * ray.cosine);
@@ -167,7 +167,7 @@ void WallRays::pass(int i, PathRays& on) {
     if (wall.rings()) {
         const double spacing = wall.spacing(sine);
         ray.train = ray.train.then(wall.behind, spacing, rules_.bins.bin_width / 2);
-        // From d c cos(theta_l) / c_l, sound takes as long as through so much water, of which d cos(theta) is there.
+        // The wall delays sound like d c cos(theta_l) / c_l of water, and replaces d cos(theta) of it.
         if (spacing > 0) ray.train.moveAway(spacing - wall.thickness * cosine);
     }
     enter(ray, objectOf(i), wall);
@@ -190,7 +190,7 @@ bool WallRays::goOn() {
     PathRays on{};
     on.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
-        on.nearest[i] = 1;  // of rays that end
+        on.nearest[i] = 1;  // ray that ends
         if (rays_[static_cast<size_t>(i)].is_there) pass(i, on);
     }
     if (!on.towards.active) return false;
@@ -211,8 +211,8 @@ ApparentPlane WallRays::apparent(const Ray& ray) const {
     for (int k = 0; k < 2; ++k)
         plane.normal -= glm::dot(ray.way, ray.per_from[k]) / (ray.medium.speed * ray.range * ray.range) * ray.beside[k];
     plane.cosine = ray.cosine;
-    const double area = std::abs(glm::dot(glm::cross(ray.per_from[0], ray.per_from[1]), ray.way));  // of a steradian
-    // Back from a fluid of another speed, the rays of one steradian there spread otherwise: reciprocity.
+    const double area = std::abs(glm::dot(glm::cross(ray.per_from[0], ray.per_from[1]), ray.way));  // per steradian
+    // On return from a fluid of another speed, the rays of a steradian spread differently: reciprocity.
     const double fluid = ray.medium.speed * ray.medium.speed;
     plane.focus = fluid * std::min(ray.range * ray.range / std::max(area, 1e-30), max_focus);
     return plane;

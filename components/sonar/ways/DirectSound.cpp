@@ -71,7 +71,7 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
 }
 
 size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
-    // A way may take as long as the pulse was sent before the ping.
+    // A path may be longer by the time that the pulse was sent before the ping.
     received_.clear();
     double earliest = 0;
     for (const auto& sent : snapshot.transmissions) {

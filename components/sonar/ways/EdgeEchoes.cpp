@@ -14,13 +14,13 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double main_lobe = 0.75 * pi;  ///< Phase at the end of a length up to which it echoes as a whole [rad].
-constexpr double min_section = 1e-10;    ///< What is fainter, -100 dB, is omitted [m^2].
-constexpr int max_pieces = 16;           ///< Points that stand for the part of a rough edge that glints [1].
+constexpr double main_lobe = 0.75 * pi;  ///< Max phase at the end of a length that echoes as a whole [rad].
+constexpr double min_section = 1e-10;    ///< Fainter echoes, below -100 dB, are omitted [m^2].
+constexpr int max_pieces = 16;           ///< Max points that represent the glinting part of a rough edge [1].
 
 double square(double x) { return x * x; }
 
-/** 1 / L^2 of the part of a length that is in phase at a range [1/m^2]. */
+/** Returns 1 / L^2 of the part of a length that is in phase at a range [1/m^2]. */
 double perSquareLength(double length, double wavelength, double range) {
     return 1 / square(length) + 2 / (wavelength * range);
 }
@@ -28,19 +28,19 @@ double perSquareLength(double length, double wavelength, double range) {
 /** An edge as one sonar sees it. */
 struct SeenEdge {
     const PlacedEdge& edge;
-    glm::dvec3 along;     ///< Unit.
-    double length, foot;  ///< The edge's, and where along its line the sonar is [m].
+    glm::dvec3 along;     ///< Unit direction.
+    double length, foot;  ///< Length of the edge, and the sonar's projection on its line [m].
     double aside;         ///< Distance of the sonar from the line [m].
     double strength;      ///< (R D / 2 pi)^2 [1].
 
     glm::dvec3 at(double place) const { return edge.from + place * along; }
     double rangeOf(double place) const { return std::hypot(aside, place - foot); }
     double cosineAt(double place) const { return std::abs(place - foot) / rangeOf(place); }
-    /** What one end of it diffracts [m^2]. */
+    /** Returns the section of diffraction at one end [m^2]. */
     double endSection(double place) const { return strength * square(edge.wavelength / (4 * pi * cosineAt(place))); }
 };
 
-/** What is in phase along the edge, `share` of it. */
+/** Appends the coherent echo along the edge, `share` of it. */
 void appendSmooth(const SeenEdge& seen, double share, double per_square, std::vector<EdgeEcho>& echoes) {
     const double nearest = std::clamp(seen.foot, 0.0, seen.length);
     const double phase = 2 * pi / seen.edge.wavelength * seen.cosineAt(nearest) / std::sqrt(per_square);
@@ -52,7 +52,7 @@ void appendSmooth(const SeenEdge& seen, double share, double per_square, std::ve
     for (const double end : {0.0, seen.length}) echoes.push_back({seen.at(end), share * seen.endSection(end)});
 }
 
-/** The glint of relief that turns the edge a little, here and there. */
+/** Appends the glint of relief that tilts the edge locally. */
 void appendRough(const SeenEdge& seen, double share, double square_slope, double spacing,
                  std::vector<EdgeEcho>& echoes) {
     const double slope = std::sqrt(square_slope), reach = 2 * slope * seen.aside;

@@ -24,14 +24,14 @@ struct PlacedEdge {
     double coefficient(const glm::dvec3& sonar) const;
 };
 
-/** A point that stands for a part of an edge. */
+/** A point that represents a part of an edge. */
 struct EdgeEcho {
     glm::dvec3 at;   ///< In the world [m].
     double section;  ///< Its backscattering cross section, TS = 10 log10 of it [m^2].
 };
 
-/** Appends the echoes of an edge, whatever hides them (ACOUSTICS.md 3.12). Appends none for a sonar within a wavelength
- *  of the edge's line.
+/** Appends the echoes of an edge, ignoring occlusion (ACOUSTICS.md 3.12). Appends none for a sonar within a
+ *  wavelength of the edge's line.
  *  @param sonar  in the world [m]
  *  @param spacing  of the sonar's beams [rad] */
 void appendEdgeEchoes(const PlacedEdge& edge, const glm::dvec3& sonar, double spacing, std::vector<EdgeEcho>& echoes);
@@ -39,12 +39,13 @@ void appendEdgeEchoes(const PlacedEdge& edge, const glm::dvec3& sonar, double sp
 /** Adds the echoes of a scene's straight edges to pings. */
 class EdgeEchoes {
 public:
-    /** @param plan one whose laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
+    /** `plan`: its laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
     EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
-    /** Finds the edges of objects anew that the snapshot deforms. */
+    /** Finds the edges of the objects that the snapshot deforms. */
     void takeShapes(const types::Snapshot& snapshot);
-    /** Once the bins are filled, or `field` is, where there is one. Returns the number of edges that any beam hears. */
+    /** Adds the echoes once the bins, or `field` if there is one, are filled. Returns the number of edges with an echo
+     *  in any beam. */
     size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
     size_t count() const { return edges_.size(); }  ///< Edges of the scene [1].
 

@@ -6,8 +6,8 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double float_noise = 0x1p-22;  ///< How far floats may move a corner off its plane, per coordinate [1].
-constexpr uint32_t few = 8;              ///< Triangles that need no tree.
+constexpr double float_noise = 0x1p-22;  ///< Rounding of a corner off its plane, relative to its coordinates [1].
+constexpr uint32_t few = 8;              ///< Max triangles without a tree.
 
 /** A triangle that reflects, in the axes of its mesh. */
 struct Reflecting {
@@ -41,7 +41,7 @@ std::vector<Box> boxesOf(const std::vector<Reflecting>& triangles) {
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-/** Sorts the triangles of an object into planes. Each plane is that of a triangle, and takes all that lie in it. */
+/** Groups the triangles of an object into planes. Each plane is that of a triangle, with all triangles in it. */
 class Planes {
 public:
     explicit Planes(const std::vector<Reflecting>& triangles)
@@ -52,7 +52,7 @@ public:
         noise_ = float_noise * std::max({far.x, far.y, far.z});
     }
 
-    /** Takes a triangle and all others in its plane that no plane has taken before. Returns them, ascending. */
+    /** Takes a triangle and all others in its plane that are not taken yet. Returns them, ascending. */
     std::vector<size_t> take(size_t first) {
         const MirrorPlane plane = planeOf(triangles_[first]);
         std::vector<size_t> found;
@@ -90,7 +90,7 @@ private:
     double noise_ = 0;  ///< [m]
 };
 
-/** Takes the two axes of the mesh along which the plane is least steep. */
+/** Chooses the two axes of the mesh along which the plane is least steep. */
 void chooseAxes(FlatMirror& mirror, const glm::dvec3& normal) {
     const glm::dvec3 size = glm::abs(normal);
     const int steepest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -98,7 +98,7 @@ void chooseAxes(FlatMirror& mirror, const glm::dvec3& normal) {
     mirror.v = (steepest + 2) % 3;
 }
 
-/** The rectangle on the axes u and v that holds all triangles, in the mirror's plane. */
+/** Returns the rectangle on the axes u and v that contains all triangles, in the mirror's plane. */
 std::array<glm::dvec3, 4> rectangleAround(const FlatMirror& mirror, const MirrorPlane& plane,
                                           std::span<const MirrorTriangle> triangles) {
     glm::dvec2 low = triangles.front().corners[0], high = low;

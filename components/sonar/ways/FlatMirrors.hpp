@@ -11,23 +11,23 @@
 
 namespace insonify::sonar {
 
-/** Triangles with `mirror: true` of one object that lie in one plane, as far as the floats of their corners can show.
- */
+/** Coplanar triangles with `mirror: true` of one object, within the precision of their corners' floats. */
 struct FlatMirror {
     /** In the ping; world axes. */
     MirrorPlane plane;
-    std::array<glm::dvec3, 4> outline{};  ///< Corners, in turn, of a part of the plane that holds all triangles [m].
-    bool is_there = false;                ///< False: it has no area in this ping.
+    std::array<glm::dvec3, 4>
+        outline{};          ///< Corners, in order, of a part of the plane that contains all triangles [m].
+    bool is_there = false;  ///< False: no area in this ping.
 
     /** In the mesh. */
     size_t object = 0;
-    std::array<glm::dvec3, 3> corners{};          ///< The largest triangle, whose plane is taken for all [m].
+    std::array<glm::dvec3, 3> corners{};          ///< The largest triangle, whose plane is used for all [m].
     std::array<glm::dvec3, 4> outline_in_mesh{};  ///< [m]
     int u = 0, v = 1;                             ///< The axes of the mesh that measure places in the plane.
     uint32_t first = 0, count = 0;                ///< Triangles, ascending.
-    BoxTree tree;                                 ///< Over the triangles; empty where these are few.
+    BoxTree tree;                                 ///< Over the triangles; empty for few triangles.
 
-    /** From the world to the axes u and v of the mesh, within the plane. */
+    /** Transform from the world to the axes u and v of the mesh, within the plane. */
     glm::dvec3 origin{0}, per_u{0}, per_v{0};
 };
 
@@ -35,7 +35,7 @@ struct FlatMirror {
 struct MirrorTriangle {
     std::array<glm::dvec2, 3> corners;
     double power = 1;    ///< Share of the sound's power that is reflected [1].
-    uint32_t place = 0;  ///< Among all mirror triangles of the scene [1].
+    uint32_t place = 0;  ///< Index among all mirror triangles of the scene [1].
 };
 
 /** The flat mirrors of a scene. One image of a point serves all triangles of a plane. */
@@ -47,8 +47,8 @@ public:
     /** Takes the places of a ping. Allocates nothing where no mirror deforms. */
     void place(const types::Snapshot& snapshot);
     std::span<const FlatMirror> all() const { return mirrors_; }
-    /** Returns the triangle at a point of the mirror's plane, null where there is none. Edges belong to triangles, with
-     *  `slack` [m] beyond. Where several triangles meet, it is the first in the order of the scene. */
+    /** Returns the triangle at a point of the mirror's plane, null where there is none. Triangles include their edges,
+     *  and `slack` [m] beyond. Where several triangles meet, it is the first in the order of the scene. */
     const MirrorTriangle* triangleAt(const FlatMirror& mirror, const glm::dvec3& point, double slack) const;
 
 private:
@@ -57,8 +57,8 @@ private:
 
     const types::Geometry& geometry_;
     int bounces_;
-    std::vector<bool> reflects_;             ///< By object: whether it has a mirror, in whatever shape.
-    std::vector<const glm::dmat4*> places_;  ///< By object.
+    std::vector<bool> reflects_;             ///< Whether each object has a mirror, in any shape.
+    std::vector<const glm::dmat4*> places_;  ///< Place of each object.
     std::vector<FlatMirror> mirrors_;
     std::vector<MirrorTriangle> triangles_;
 };

@@ -18,16 +18,16 @@ namespace insonify::sonar {
 namespace {
 
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
-constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
-constexpr double nearest_bin = 1e-3;   ///< Slant range before which nothing is summed [m].
+constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
+constexpr double nearest_bin = 1e-3;   ///< Min slant range that is summed [m].
 
 /** A transmission in one ping. */
 struct PlacedSender {
     const types::Transmission* sent;
     Reception received;
     glm::dvec3 place;              ///< Sonar axes [m].
-    glm::dquat sender_from_sonar;  ///< Turns directions.
-    size_t sums;                   ///< Place of its sums among those of all lengths [1].
+    glm::dquat sender_from_sonar;  ///< Rotation of directions.
+    size_t sums;                   ///< Index of its sums among those of all lengths [1].
 };
 
 class EchoesOfOthers final : public ForeignEchoes {
@@ -43,12 +43,12 @@ public:
     bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override;
 
 private:
-    /** The rays of one tile, as bits, from whose ends the sender is seen. */
+    /** Returns the rays of one tile, as bits, whose ends the sender sees. */
     uint32_t openTo(const PlacedSender& sender, const CastPing& ping, const CastTile& tile) const;
     void deposit(const PlacedSender& sender, const CastPing& ping, const CastTile& tile, int sample);
     LobeSlopes slopes(const CastPing& ping, const CastTile& tile, int sample, const CellAngles& at,
                       const MirrorPlane& plane, const HalfWay& way) const;
-    /** The place of the sums of pulses that become boxes of a length [m]; empties them where they are new. */
+    /** Returns the index of the sums of pulses that become boxes of a length [m]; clears new sums. */
     size_t sumsOf(double length);
 
     const RenderPlan& plan_;
@@ -76,7 +76,7 @@ void EchoesOfOthers::begin(const types::Snapshot& snapshot) {
     const glm::dquat sonar_from_world = glm::conjugate(snapshot.sonar.orientation);
     for (const auto& sent : snapshot.transmissions) {
         const Reception received = receiver_.receptionOf(*sent, snapshot.time);
-        // The shortest way is half of the straight one; what is sent too late for it is not heard.
+        // The shortest path is half of the straight one; pulses sent too late for it are not received.
         const glm::dvec3 place = sonar_from_world * (sent->sonar.position - snapshot.sonar.position);
         if (received.offset + glm::length(place) / 2 >= plan_.grid.range_max) continue;
         senders_.push_back({sent.get(), received, place,
@@ -176,11 +176,11 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, c
 bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
     const double quantum = quantumOf(ping);
     bool any = false;
-    thread_local std::vector<double> heard;  // up to each bin
+    thread_local std::vector<double> heard;  // cumulated up to each bin
     heard.resize(bins.size());
     for (size_t group = 0; group < lengths_.size(); ++group) {
         const uint64_t* sums = sums_[group].data() + cell * bins.size();
-        // A box of the pulse's length about each echo: the difference of two sums of all bins before.
+        // A box of the pulse's length about each echo: the difference of two cumulated sums.
         const auto reach = static_cast<std::ptrdiff_t>(std::llround(lengths_[group] / 2 / ping.rules.bins.bin_width));
         double before = 0;
         for (size_t j = 0; j < bins.size(); ++j)
@@ -188,7 +188,7 @@ bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<fl
         if (!(before > 0)) continue;
         any = true;
         const auto bins_in_box = static_cast<double>(2 * reach + 1);
-        // The pulse's own response comes after these sums and weighs a box by its cell.
+        // The pulse's own response is applied after these sums and weights a box by its cell.
         const double intensity = lengths_[group] > 0 ? lengths_[group] / (receiver_.summedCell() * bins_in_box) : 1;
         for (std::ptrdiff_t j = 0; j < std::ssize(bins); ++j) {
             const std::ptrdiff_t low = j - reach - 1, high = std::min(j + reach, std::ssize(bins) - 1);

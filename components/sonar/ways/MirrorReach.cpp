@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr size_t room_per_mirror = 64;  ///< For mirrors that may follow; where a ping has more, they are found anew.
+constexpr size_t room_per_mirror = 64;  ///< Mirrors that may follow; if there are more, they are searched again.
 
 }  // namespace
 

@@ -7,25 +7,25 @@
 
 namespace insonify::sonar {
 
-/** A flat mirror of the scene, or the water surface, as the sonar of a ping has it; world axes. */
+/** A flat mirror of the scene, or the water surface, in a ping; world axes. */
 struct PlacedMirror {
     MirrorPlane plane;
     const FlatMirror* flat = nullptr;  ///< Null for the water surface.
-    bool is_there = false;             ///< It reflects in this ping, and within the range.
+    bool is_there = false;             ///< Whether it reflects in this ping, within the range.
     glm::dvec3 sonar_image{0};         ///< [m]
     double sonar_side = 0;             ///< Signed distance of the sonar from the plane [m].
-    Box box;                           ///< Holds all of it. The water surface has no bounds.
+    Box box;                           ///< Bounds. The water surface has none.
 };
 
-/** Which mirrors the sonar's sound may meet after each first mirror. It is the same for all targets of a ping. No
- * mirror is missing; a few may be too many. */
+/** The mirrors that the sonar's sound may reach after each first mirror. They are the same for all targets of a ping.
+ *  None is missing; a few may be superfluous. */
 class MirrorReach {
 public:
     /** For `count` mirrors, the first of which may be the water surface. */
     explicit MirrorReach(size_t count);
 
-    /** Takes a ping's mirrors, which must stay until the next. Ways are at most `longest` [m]; `doubt` bounds the
-     *  rounding of places [m]. Allocates in the first ping alone. */
+    /** Takes a ping's mirrors, which must stay valid until the next. Paths are at most `longest` [m]; `doubt` bounds
+     *  the rounding of places [m]. Allocates in the first ping only. */
     void place(std::span<const PlacedMirror> mirrors, double longest, double doubt);
 
     /** Calls `use(second)` for the mirrors that may follow a first. */
@@ -37,23 +37,24 @@ public:
     }
 
 private:
-    /** The space that a first mirror lights: a pyramid from the sonar's image through the mirror's outline, on the
-     *  sonar's side of the mirror. */
+    /** The space that sound reaches via a first mirror: a pyramid from the sonar's image through the mirror's outline,
+     *  on the sonar's side of the mirror. */
     struct Beam {
         glm::dvec3 apex;
-        MirrorPlane front;                       ///< Its normal points to the sonar's side.
-        std::array<glm::dvec3, 4> inward{};      ///< Normals of the sides, 0 where there is no side [m^2].
-        std::array<double, 4> product{}, sum{};  ///< Of the distances of a side's two corners [m^2], [m].
-        double longest, doubt;                   ///< [m]
+        MirrorPlane front;                   ///< Its normal points to the sonar's side.
+        std::array<glm::dvec3, 4> inward{};  ///< Normals of the sides, 0 where there is no side [m^2].
+        std::array<double, 4> product{},
+            sum{};              ///< Product and sum of the distances of a side's two corners [m^2], [m].
+        double longest, doubt;  ///< [m]
 
         Beam(const PlacedMirror& mirror, double longest_way, double rounding);
         bool mayMeet(const Box& box) const;
         bool mayMeet(const std::array<glm::dvec3, 4>& outline) const;
     };
-    /** What was found for a first mirror. */
+    /** The second mirrors of a first mirror. */
     struct Found {
-        uint32_t begin = 0, count = 0;  ///< Of seconds_.
-        bool is_complete = false;       ///< False: there was no room.
+        uint32_t begin = 0, count = 0;  ///< Range in seconds_.
+        bool is_complete = false;       ///< False: they did not fit.
     };
 
     template <class Use>
@@ -71,11 +72,11 @@ private:
 
     std::span<const PlacedMirror> mirrors_;
     double longest_ = 0, doubt_ = 0;  ///< [m]
-    std::vector<Box> boxes_;          ///< Of all mirrors but the water surface.
+    std::vector<Box> boxes_;          ///< Boxes of all mirrors except the water surface.
     BoxTree tree_;
     bool has_tree_ = false;
-    std::vector<Found> found_;       ///< By first mirror.
-    std::vector<uint32_t> seconds_;  ///< Of one first mirror after the other.
+    std::vector<Found> found_;       ///< For each first mirror.
+    std::vector<uint32_t> seconds_;  ///< Second mirrors, grouped by first mirror.
 };
 
 }  // namespace insonify::sonar

@@ -21,16 +21,17 @@ struct MirrorPlane {
     }
 };
 
-/** Share of the sound that a material reflects as a mirror does, where `bounces` reflections of a way are asked for
- *  [1]: one that is declared to, or from two on one that is smooth and no shell (ACOUSTICS.md 5.23); 0: it does not. */
+/** Returns the share of the sound that a material reflects specularly, with up to `bounces` reflections per path [1].
+ *  It is above 0 for a material declared as mirror, and with two or more reflections for a smooth material without
+ *  shell (ACOUSTICS.md 5.23). */
 double reflectedPower(const types::Material& material, int bounces);
 
-/** Mean square slope of a sea surface in a wind [m/s], of both its directions together; 0 without wind [1].
+/** Returns the mean square slope of a sea surface in a wind [m/s], the sum of both directions; 0 without wind [1].
  *  ACOUSTICS.md 5.24. */
 double slopeOfSea(double wind);
 
-/** What of a pressure a sea surface reflects as a mirror does, in phase, the rest of it scattered about: by its rms
- *  height in the wind [m/s], wavelength [m] and sine of the grazing angle [1]. ACOUSTICS.md 5.24. */
+/** Returns the share of a pressure that a sea surface reflects specularly, in phase; the rest is scattered. It depends
+ *  on the rms height in the wind [m/s], the wavelength [m] and the sine of the grazing angle [1]. ACOUSTICS.md 5.24. */
 double coherentReflection(double wind, double wavelength, double sine_grazing);
 
 /** The water surface of one ping, from below. */
@@ -38,23 +39,24 @@ class WaterMirror {
 public:
     explicit WaterMirror(const SonarConfig& config);
 
-    /** Once a ping. */
+    /** Places the surface; call it once per ping. */
     void place(const types::Snapshot& snapshot, double range_max);
-    /** Whether it reflects in this ping. */
+    /** Returns whether it reflects in this ping. */
     bool reflects() const { return reflects_; }
-    /** In sonar axes; its normal is up. */
+    /** Returns its plane in sonar axes; the normal is up. */
     const MirrorPlane& plane() const { return plane_; }
-    /** How far it is along a way from a place, sonar axes, in lengths of the way; infinite where it is not ahead. */
+    /** Returns its distance along a direction from a place, sonar axes, in lengths of the direction; infinite where it
+     *  is not ahead. */
     double distance(const glm::dvec3& from, const glm::dvec3& way) const;
-    /** A part of it about `at` that the wind has tilted, which faces sound that comes along `way`; `key` tells which
-     *  one of the ping. Flat without wind. */
+    /** Returns a facet about `at` that the wind has tilted, facing sound that travels along `way`; `key` identifies the
+     *  facet in the ping. Flat without wind. */
     MirrorPlane facet(const glm::dvec3& at, const glm::dvec3& way, uint64_t key) const;
-    /** Why it does not reflect in this ping; none where it does or is not asked to. */
+    /** Returns why it does not reflect in this ping; none where it does, or is not configured to. */
     std::optional<LeftOut> leftOut() const { return left_out_; }
 
 private:
     bool wanted_;
-    double slope_;  ///< Of one direction, rms [1].
+    double slope_;  ///< Rms slope in one direction [1].
     uint64_t ping_ = 0;
     bool reflects_ = false;
     MirrorPlane plane_;

@@ -8,9 +8,9 @@ namespace insonify::sonar {
 
 /** The directions of a rectangle of samples of a tile. */
 struct CellAngles {
-    glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit, and its derivatives [1].
+    glm::dvec3 middle, per_azimuth, per_elevation;  ///< Unit direction of the middle, and its derivatives [1].
     double width, height, lean;                     ///< [rad], [rad], dazimuth / delevation of its sides [1].
-    double size, weighted;  ///< Solid angle, and the same by the pattern of both ways, in cells at elevation 0 [1].
+    double size, weighted;  ///< Solid angle, plain and weighted by the two-way pattern, in cells at elevation 0 [1].
     int cell;
 
     /** @param sample  its first sample in the tile
@@ -18,8 +18,8 @@ struct CellAngles {
     CellAngles(const CastView& view, const CastTile& tile, int sample, int merged);
 };
 
-/** Inverse ranges: of a way there and back that is half along a direction to a plane and half from there to a focus,
- *  with what it changes by with the direction. */
+/** Inverse range of a path whose half is along a direction to a plane and from there to a focus, and its derivatives
+ *  with the direction. */
 struct HalfWay {
     double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
     double back;                                          ///< Distance from the plane to the focus [m].
@@ -28,7 +28,7 @@ struct HalfWay {
 
 HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at);
 
-/** The plane of a triangle that ray `i` of a tile has met, sonar axes. */
+/** Returns the plane of the triangle that ray `i` of a tile has hit, sonar axes. */
 MirrorPlane planeMet(const PlacedScene& scene, const TileHits& hits, int i);
 
 }  // namespace insonify::sonar

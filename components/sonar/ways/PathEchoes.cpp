@@ -26,20 +26,20 @@ namespace {
 using std::numbers::pi;
 
 constexpr int max_bounces = MultipathConfig::max_bounces;
-constexpr double reaching_back = 1.1;  ///< Share of the range from which cells beyond it may reach back into it [1].
+constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
-constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Among the mirrors of a chain.
+constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Water surface in the mirrors of a chain.
 
-/** The mirrors that a ray has met, in its order. */
+/** The mirrors that a ray has hit, in order. */
 struct Chain {
     int count = 0;
-    std::array<uint64_t, max_bounces> names{};  ///< The same for all rays that meet the same one.
+    std::array<uint64_t, max_bounces> names{};  ///< Equal for all rays that hit the same mirror.
     std::array<MirrorPlane, max_bounces> planes;
-    double power = 1;           ///< What they leave of it [1].
-    double widest = 0;          ///< Most of what a facet of them adds to a mean square slope, over its cosine [1].
-    bool begins_lobed = false;  ///< The first of them has a lobe of its own.
-    int walls = 0;              ///< Thin walls that the ray has gone through [1].
-    uint64_t wall_names = 0;    ///< The same for all rays that go through the same ones.
+    double power = 1;           ///< Share of the power after the mirrors [1].
+    double widest = 0;          ///< Max contribution of a mirror's facet to a mean square slope, over its cosine [1].
+    bool begins_lobed = false;  ///< Whether the first mirror has a lobe.
+    int walls = 0;              ///< Thin walls that the ray has passed [1].
+    uint64_t wall_names = 0;    ///< Equal for all rays that pass the same walls.
 
     bool sameAs(const Chain& other) const {
         return count == other.count && wall_names == other.wall_names &&
@@ -53,7 +53,7 @@ struct Chain {
         for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
         return way;
     }
-    /** Undoes turned(). */
+    /** Inverts turned(). */
     glm::dvec3 turnedBack(glm::dvec3 way) const {
         for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
         return way;
@@ -74,19 +74,19 @@ public:
 
 private:
     class Tracer;
-    /** Takes away what the rays of a tile have met beyond the water surface. */
+    /** Removes the hits of a tile's rays beyond the water surface. */
     void endAtSurface(const CastView& view, const CastTile& tile) const;
-    /** The directly received intensities of a cell; none where fields are summed. */
+    /** Returns the directly received intensities of a cell; none where fields are summed. */
     std::span<float> direct(size_t cell);
 
     const RenderPlan& plan_;
     std::optional<WayPatterns> patterns_;
     WaterMirror water_;
-    int max_walls_;                   ///< Thin walls that a way goes through [1].
-    std::vector<double> reflected_;   ///< Share of the power that each material reflects as a mirror [1].
+    int max_walls_;                   ///< Max thin walls of a path [1].
+    std::vector<double> reflected_;   ///< Share of the power that each material reflects specularly [1].
     size_t bin_count_ = 0;            ///< Sums of a cell [1].
     std::vector<uint64_t> sums_;      ///< [cell][bin], in quanta.
-    std::optional<PathTruth> truth_;  ///< From the first ping whose truth is recorded.
+    std::optional<PathTruth> truth_;  ///< Made at the first ping whose truth is recorded.
     std::vector<float> direct_;       ///< [cell][bin], in pings whose truth is recorded; empty where fields are summed.
     bool records_truth_ = false;
 };
@@ -123,28 +123,28 @@ private:
     void drop(int i) { rays_.towards.active &= ~(1u << i); }
 
     bool begin(const CastTile& tile);
-    /** Sends a ray on from what it has met: by a mirror, or through a wall; drops one that ends there. */
+    /** Continues a ray from its hit: by a mirror, or through a wall; drops a ray that ends there. */
     void goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
-    /** Whether sound goes on straight through a wall that is no mirror, into water. */
+    /** Returns whether sound passes straight through a wall that is not a mirror, into water. */
     bool letsThrough(uint32_t command) const {
         if (paths_.max_walls_ == 0 || command == TileHits::nothing || reflected(command) > 0) return false;
         const WallLaw& wall = rules_.laws.walls[scene_.commands[command].material];
         return wall.letsThrough() && !wall.fill;
     }
-    /** Share of the energy that goes through a wall once [1]. */
+    /** Returns the one-way share of the energy that passes a wall [1]. */
     double passedOnce(const TileHits& hits, int i, const glm::dvec3& way) const {
         const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
         return std::sqrt(rules_.laws.walls[scene_.commands[hits.command[i]].material].passedAt(cosine));
     }
     void pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
     void aim(int i, const glm::dvec3& at, const glm::dvec3& on);
-    /** Sends a ray on from the mirror that it has met; drops one that has met none in reach. */
+    /** Continues a ray from the mirror that it has hit; drops a ray that has hit none in reach. */
     void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
     void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
     void castOn();
     using Shares = std::array<double, tile_samples>;
-    /** Returns the share of the energy of each ray that has met something which comes back to the sonar directly, on
-     * the side that it met [1]. */
+    /** Returns for each ray with a hit the share of the energy that returns directly to the sonar, on the side of the
+     *  hit [1]. */
     Shares openBack() const;
     Shares through(PathRays& back) const;
     void hear(const CastTile& tile);
@@ -156,7 +156,7 @@ private:
     MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
     void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
-    /** Prepares the sums for echoes of what ray i has met: heard in a direction, seen at a cosine. */
+    /** Prepares the sums for echoes of ray i's hit: received from a direction, seen at a cosine. */
     void recordWay(int i, bool twice, const glm::dvec3& heard, double cosine) {
         if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
@@ -180,8 +180,8 @@ private:
     PathRays rays_{};
     TileHits hits_{};
     std::array<Chain, tile_samples> chains_;
-    std::array<double, tile_samples> lengths_;  ///< Length of each ray's way so far [m].
-    uint64_t key_ = 0;                          ///< The tile's number.
+    std::array<double, tile_samples> lengths_;  ///< Length of each ray's path so far [m].
+    uint64_t key_ = 0;                          ///< Number of the tile.
 };
 
 bool PathEchoes::Tracer::begin(const CastTile& tile) {
@@ -209,7 +209,7 @@ void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& w
 }
 
 void PathEchoes::Tracer::pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
-    constexpr double min_passed = 1e-3;  // of one way: 60 dB of both
+    constexpr double min_passed = 1e-3;  // one way: 60 dB two-way
     Chain& chain = chains_[static_cast<size_t>(i)];
     chain.power *= passedOnce(hits, i, way);
     if (chain.walls == paths_.max_walls_ || !(chain.power >= min_passed)) return drop(i);
@@ -299,7 +299,7 @@ PathEchoes::Tracer::Shares PathEchoes::Tracer::openBack() const {
     return shares;
 }
 
-/** Follows ways back through thin walls. */
+/** Traces the paths back through thin walls. */
 PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
     Shares shares{};
     for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = back.towards.active >> i & 1;
@@ -323,7 +323,7 @@ PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
     return shares;
 }
 
-/** Samples from i on that are a rectangle which the same mirrors show of one triangle. */
+/** Returns the number of samples from i that are a rectangle of one triangle, seen via the same mirrors. */
 int PathEchoes::Tracer::sameFrom(int i) const {
     const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
     const int most = std::min(static_cast<int>(alignment), view_.shape.max_merged);
@@ -363,7 +363,7 @@ void PathEchoes::Tracer::hear(const CastTile& tile) {
 
 Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    // No way by a mirror is shorter than the direct one, nor longer than that and the way to the sonar's image.
+    // A path via a mirror is between the direct path and that plus the distance to the sonar's image.
     const double image = glm::length(chains_[static_cast<size_t>(i)].image(glm::dvec3(0)));
     return trapezoidFootprint(way.inverse, way.inverse, std::abs(way.per_azimuth) * at.width,
                               std::abs(way.per_elevation + way.per_azimuth * at.lean) * at.height, way.nearest,
@@ -387,7 +387,7 @@ void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open, doubl
     if (open > 0) depositOnce(at, i, plane, gain * open);
 }
 
-/** How the lobe of a cell is seen along a direction, in the image of space behind the mirrors. */
+/** Returns the slopes of the lobe of a cell along a direction, in the image of space behind the mirrors. */
 LobeSlopes PathEchoes::Tracer::lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane,
                                           const glm::dvec3& direction, double range) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
@@ -403,7 +403,8 @@ LobeSlopes PathEchoes::Tracer::lobeSlopes(const CellAngles& at, int i, const Mir
     return rules_.laws.lobeSlopes(run.material, sample);
 }
 
-/** What a cell gives back of sound that comes directly and goes by the mirrors, or the other way round. */
+/** Returns the scattering of a cell for sound that arrives directly and returns via the mirrors, or the other way
+ *  round. */
 MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, const MirrorPlane& plane,
                                                    const HalfWay& way) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
@@ -415,12 +416,12 @@ MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, 
     LobeSlopes slopes = lobeSlopes(at, i, plane, middle, 1 / way.inverse);
     slopes.square_1 += std::max(widest / mirrored, slopes.wave_1 / (direct * mirrored)) - slopes.wave_1;
     slopes.square_2 += std::max(widest / mirrored, slopes.wave_2 / (direct * mirrored)) - slopes.wave_2;
-    slopes.wave_1 = slopes.wave_2 = 0;  // what a chain of plates shows of a plate ends in no edge of its own
+    slopes.wave_1 = slopes.wave_2 = 0;  // the part of a plate that a chain of plates shows does not end at its edges
     return rules_.laws.bistatic(run.material, direct, mirrored, std::abs(glm::dot(plane.normal, middle)), slopes);
 }
 
-/** Out directly and back by the mirrors, and the other way round, which is the same but for where it is sent and
- *  heard. */
+/** Deposits the echoes of the path out directly and back via the mirrors, and of its reverse. They differ only in the
+ *  directions of transmission and reception. */
 void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open) {
     const Chain& chain = chains_[static_cast<size_t>(i)];
     const HalfWay way = halfWay(plane, chain.image(glm::dvec3(0)), at);
@@ -437,7 +438,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
                           scale * (given.diffuse + given.lobe));
     if (!(there > 0)) return;
     bins_.sine_elevation = chain.turnedBack(way.from_focus).z;
-    // What this surface and the first mirror both reflect and scatter comes by rays of its own from the other end.
+    // Echoes that this surface and the first mirror both reflect and scatter have their own rays from the other end.
     const bool comes_itself =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
     const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));

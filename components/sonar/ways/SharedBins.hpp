@@ -17,17 +17,17 @@ struct SharedBins : Bins {
         if (by_way) std::atomic_ref(by_way[size_t{cell} * bin_count + bin]).fetch_add(quanta(amount), relaxed);
         if (truth) truth->show(cell, bin, ObjectEcho::of(quanta(amount), sine_elevation, sine_grazing, object, 1));
     }
-    PathTruth* truth = nullptr;  ///< Where such an echo is shown, with the next three; null where no truth is recorded.
+    PathTruth* truth = nullptr;  ///< Receives each echo's truth, with the next three values; null: none.
     uint32_t object = 0;
     double sine_elevation = 0,
-           sine_grazing = 0;     ///< Of where it is heard, and at which angle it leaves the object [1].
-    uint64_t* by_way = nullptr;  ///< Further sums, of echoes by the way at hand; null where no truth is recorded.
+           sine_grazing = 0;     ///< Sines of the elevation at the sonar and of the grazing angle at the object [1].
+    uint64_t* by_way = nullptr;  ///< Additional sums, of the current kind of path; null: none.
     static constexpr std::memory_order relaxed = std::memory_order_relaxed;
 #include "shaders/deposit.glsl"
 };
 #undef HAVE_PHYSICAL
 
-/** A quantum of the sums [sr]. */
+/** Returns a quantum of the sums [sr]. */
 double quantumOf(const CastPing& ping) {
     return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
 }

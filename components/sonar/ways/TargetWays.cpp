@@ -9,14 +9,14 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr size_t max_reserved = 4096;  ///< Ways to one point, for which there is room from the start.
-constexpr double same = 1e-9;          ///< Difference of two ways that are one, over their length [1].
+constexpr size_t max_reserved = 4096;  ///< Max paths to one point with preallocated memory.
+constexpr double same = 1e-9;          ///< Max relative difference of the lengths of equal paths [1].
 
 double distanceFrom(const MirrorPlane& plane, const glm::dvec3& point) {
     return glm::dot(plane.normal, point) - plane.distance;
 }
 
-/** Places are rounded by a few units in the last digit of their coordinates; intersections add some. */
+/** Returns the rounding of places: a few units in the last digit of their coordinates; intersections add some. */
 double doubtOf(std::span<const PlacedMirror> mirrors, const glm::dvec3& sonar, double longest) {
     Box all;
     all.add(sonar);
@@ -104,8 +104,8 @@ void TargetWays::addByOne(const glm::dvec3& point) {
     }
 }
 
-/** The way by two mirrors, turned straight, is a line from the sonar's image in the first to the point's image in the
- *  second, which meets both. */
+/** Adds the paths via two mirrors. Unfolded, a path via two mirrors is a line from the sonar's image in the first to
+ *  the point's image in the second, which intersects both. */
 void TargetWays::addByTwo(const glm::dvec3& point) {
     if (!std::exchange(has_reach_, true)) reach_.place(mirrors_, longest_, doubt_);
     for (size_t i = 0; i < mirrors_.size(); ++i) {
@@ -131,7 +131,7 @@ bool TargetWays::mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, dou
 }
 
 void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
-    // What is seen behind the first k mirrors of the chain: the point's image in those that follow them.
+    // The image seen behind the first k mirrors of the chain: the point's image in the mirrors after them.
     std::array<glm::dvec3, TargetWay::max_mirrors + 1> images;
     images[chain.size()] = point;
     for (size_t k = chain.size(); k-- > 0;) images[k] = chain[k]->plane.image(images[k + 1]);
@@ -157,7 +157,7 @@ void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
 std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
                                            TargetWay& way) const {
     const double here = distanceFrom(mirror.plane, from), there = distanceFrom(mirror.plane, image);
-    // A first mirror may be left just where it meets the second, which the sonar's side then decides.
+    // A path may leave a first mirror where it joins the second; then the sonar's side decides.
     const bool in_corner = std::abs(here) <= doubt_;
     if (!((in_corner ? mirror.sonar_side : here) * there < 0)) return {};
     if (std::abs(there) <= doubt_ || (in_corner && std::abs(mirror.sonar_side) <= doubt_)) return {};
@@ -174,7 +174,7 @@ std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm
     return at;
 }
 
-/** Mirrors of several objects may share an edge or lie in each other. What they reflect is one way. */
+/** Adds a path once: mirrors of several objects may share an edge or overlap, and their reflections are one path. */
 void TargetWays::addOnce(const TargetWay& way) {
     const auto isSame = [&](const TargetWay& other) {
         return other.reflections == way.reflections && std::abs(other.length - way.length) <= same * way.length &&

@@ -9,32 +9,31 @@
 
 namespace insonify::sonar {
 
-/** One way between the sonar and a point. */
+/** One sound path between the sonar and a point. */
 struct TargetWay {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
     double length = 0;         ///< [m]
-    glm::dvec3 direction{0};   ///< From the sonar, unit, its axes [1].
-    glm::dvec3 from_point{0};  ///< From the point to where the way leads first, unit, world axes [1].
-    double power = 1;          ///< What its mirrors leave of the sound [1].
-    int reflections = 0;       ///< In mirrors [1].
-    bool by_surface = false;   ///< One of them is the water surface.
-    double sine_grazing = 0;   ///< At which it is met there [1].
-    /** Its mirrors, from the sonar on: 1 is the water surface, from 2 on mirror triangles in the order of the scene;
-     *  0: none. */
+    glm::dvec3 direction{0};   ///< Unit direction from the sonar, sonar axes [1].
+    glm::dvec3 from_point{0};  ///< Unit direction from the point along the path, world axes [1].
+    double power = 1;          ///< Share of the sound's power after its mirrors [1].
+    int reflections = 0;       ///< Number of mirrors [1].
+    bool by_surface = false;   ///< Whether one of the mirrors is the water surface.
+    double sine_grazing = 0;   ///< Sine of the grazing angle at the water surface [1].
+    /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};
 };
 
-/** All ways between the sonar and points of the world that nothing hides: the straight one, and those by way of the
- *  water surface and of triangles of mirrors (ACOUSTICS.md 5.23), by the image method, in double. */
+/** All unobstructed sound paths between the sonar and points of the world (ACOUSTICS.md 5.23): the straight path, and
+ *  those via the water surface and triangles of mirrors. Uses the image method, in double. */
 class TargetWays {
 public:
     /** `geometry` must outlive it. */
     TargetWays(const SonarConfig& config, const types::Geometry& geometry);
 
-    /** Once a ping. Ways longer than twice `range_max` [m] are not looked for. */
+    /** Places mirrors and objects; call it once per ping. Ignores paths longer than twice `range_max` [m]. */
     void place(const types::Snapshot& snapshot, double range_max);
-    /** Returns the ways in the order of `TargetWay::mirrors`, the straight one first. They are valid until the next
+    /** Returns the paths in the order of `TargetWay::mirrors`, the straight one first. They are valid until the next
      *  call. */
     const std::vector<TargetWay>& waysTo(const glm::dvec3& point);
 
@@ -42,16 +41,16 @@ private:
     using Chain = std::span<const PlacedMirror* const>;
 
     void placeMirrors(const types::Snapshot& snapshot, double range_max);
-    /** Takes the point's images as well. */
+    /** Adds the paths via one mirror, and computes the point's images. */
     void addByOne(const glm::dvec3& point);
     void addByTwo(const glm::dvec3& point);
-    /** Whether a line may meet a mirror within its box on the way to `image`. Both distances are from the mirror's
-     *  plane, that of the image with its sign turned [m]. */
+    /** Returns whether a line to `image` may hit a mirror within its box. Both distances are from the mirror's plane,
+     *  that of the image with inverted sign [m]. */
     bool mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
                  double image_distance) const;
-    /** Adds the way by the mirrors of a chain, if there is one. */
+    /** Adds the path via the mirrors of a chain, if there is one. */
     void addWay(const glm::dvec3& point, Chain chain);
-    /** Returns where the line from a stop to the image meets a mirror, and takes the mirror into the way. */
+    /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
     std::optional<glm::dvec3> meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,
                                    TargetWay& way) const;
     void addOnce(const TargetWay& way);
@@ -62,7 +61,7 @@ private:
     WaterMirror water_;
     std::vector<PlacedMirror> mirrors_;  ///< The water surface and all flat mirrors.
     MirrorReach reach_;
-    bool has_reach_ = false;  ///< In this ping.
+    bool has_reach_ = false;  ///< Whether reach_ is of this ping.
 
     std::vector<glm::dvec3> images_;  ///< The point's image in each mirror [m].
     std::vector<double> distances_;   ///< From each mirror's plane to the point [m].

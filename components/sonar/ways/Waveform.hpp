@@ -13,38 +13,39 @@ struct Waveform {
     double duration = 0;                                  ///< [s]
 };
 
-/** The waveform of a configured sonar. A sonar without `pulse` sends a tone as long as a bin; a chirp without
+/** Returns the waveform of a configured sonar. A sonar without `pulse` sends a tone as long as a bin. A chirp without
  *  `chirp_us` lasts 50 / bandwidth. */
 Waveform waveformOf(const SonarConfig& config, const BinGrid& grid);
-/** The waveform of a transmission; values that it lacks are those of `own`. */
+/** Returns the waveform of a transmission; missing values are taken from `own`. */
 Waveform waveformOf(const types::Transmission& sent, const Waveform& own);
 
-/** What a matched filter makes of a pulse that it is not made for: a box in slant range (ACOUSTICS.md 5.29). */
+/** Output of a matched filter for a foreign pulse: a box in slant range (ACOUSTICS.md 5.29). */
 struct Mismatch {
     double intensity = 1;  ///< Relative to the peak of the filter's own pulse of the same source level [1].
     double length = 0;     ///< In slant range [m]; 0: the pulse is the filter's own.
 };
 
-/** @param own  the waveform that the receiver's filter matches
+/** Returns the mismatch of a pulse.
+ *  @param own  the waveform that the receiver's filter matches
  *  @param cell  integral of the own pulse's response over slant range [m]
- *  @param rejection_db  weakens the part of the energy that is outside the receiver's band [dB] */
+ *  @param rejection_db  attenuation of the energy outside the receiver's band [dB] */
 Mismatch mismatchOf(const Waveform& own, const Waveform& sent, double cell, double rejection_db, double speed_of_sound);
 
-/** How a sonar receives a transmission of another sonar, but for where both are. */
+/** Reception of another sonar's transmission, independent of their places. */
 struct Reception {
     double level;   ///< Intensity on the axis at 1 m, relative to the sonar's own [1].
     double length;  ///< Mismatch::length [m].
     double loss;    ///< By absorption, one way, of intensity [1/m].
-    double offset;  ///< Slant range that the delay between the two pulses amounts to: c (t - t_own) / 2 [m].
+    double offset;  ///< Delay between the two pulses, in slant range: c (t - t_own) / 2 [m].
 };
 
 /** Receives the transmissions of others. */
 class Receiver {
 public:
-    /** @param plan  one whose configuration has `crosstalk`; outlives it */
+    /** @param plan  its configuration has `crosstalk`; outlives it */
     explicit Receiver(const RenderPlan& plan);
-    /** Integral over slant range of what later becomes of an echo in one bin: of the pulse's response, or the bin where
-     *  the plan leaves the pulse out [m]. */
+    /** Returns the integral over slant range of an echo in one bin after all processing: of the pulse's response, or
+     *  the bin where the plan omits the pulse [m]. */
     double summedCell() const { return summed_cell_; }
     Reception receptionOf(const types::Transmission& sent, const types::Time& own_time) const;
 

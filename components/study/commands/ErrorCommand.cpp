@@ -27,7 +27,7 @@ struct Options {
     bool effects = false, quiet = false;
 };
 
-/** Echoes of surfaces by Lambert's law alone, in boxes of beams and bins. */
+/** Removes all but echoes of surfaces by Lambert's law, in boxes of beams and bins. */
 sonar::SonarConfig plain(sonar::SonarConfig config, const std::string& file) {
     if (!config.bearings_deg.empty() || config.beam_geometry != sonar::BeamGeometry::Planar)
         throw types::ConfigError(
@@ -57,7 +57,7 @@ std::vector<std::string> sceneNames() {
     return names;
 }
 
-/** Of the scene: the file's, in letters that every report can show; never that of a scene of the study. */
+/** Returns the scene's name: the file's, in letters that every report can show; never that of a scene of the study. */
 std::string nameOf(const std::string& file) {
     std::string name = std::filesystem::path(file).stem().string();
     for (char& c : name)
@@ -106,7 +106,7 @@ Json toJson(const Measurement& m, const ErrorResult& result) {
             {"pareto", onParetoFront(m, result)}};
 }
 
-/** Each method's ladder on each scene: slope, times to the goals and how they were found. */
+/** Returns each method's results on each scene: slope, times to the goals and how they were found. */
 Json methodsOf(const ErrorResult& result) {
     Json all = Json::array();
     for (const Reference& reference : result.references)
@@ -177,7 +177,7 @@ int runStudy(Options options, const FindSonar& sonarAt) {
         fmt::print("{}  {}: {:.4g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
                    claim.at_most ? "at most" : "at least", claim.bound);
     }
-    if (open) fmt::print("open: --levels or --reference-rays are too few to tell; nothing is wrong with the scene\n");
+    if (open) fmt::print("open: --levels or --reference-rays are too few to decide; nothing is wrong with the scene\n");
     fmt::print("{} points; report in {}\n", result.measurements.size(), sheet.string());
     return all ? 0 : 1;
 }
@@ -189,24 +189,26 @@ void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& so
     CLI::App* command = study.add_subcommand("error", "Error against run time, for each way to estimate an echo");
     command->add_option(
         "DEPLOYMENT", options->deployment,
-        "a YAML file whose sonar and scene are studied, normal maps as drawn; absent: all scenes of the study");
+        "a YAML file whose sonar and scene are studied, normal maps as rendered; absent: all scenes of the study");
     command->add_option("--out", options->out, "folder of the report");
-    command->add_option("--scene", options->scenes, "only this scene of the study (more than one: say it again)");
+    command->add_option("--scene", options->scenes, "only this scene of the study (repeat for more scenes)");
     command->add_flag(
         "--effects", options->effects,
         "each scene again with beam pattern and pulse, with seabeds by TR 9407, with water that scatters, "
         "under a flat surface, and with coherent speckle");
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
-    command->add_option("--pings", options->study.pings, "timed for each point")->check(CLI::Range(1, 1000));
+    command->add_option("--pings", options->study.pings, "pings timed for each point")->check(CLI::Range(1, 1000));
     command
         ->add_option("--levels", options->study.levels,
-                     "how often rows and columns are doubled, less one; at most 4 without a closed form")
+                     "number of doublings of rows and columns, plus one; at most 4 without a closed form")
         ->check(CLI::Range(1, 6));
     command
         ->add_option("--reference-rays", options->study.reference_rays,
-                     "rays and points, at most, of a reference that has no closed form")
+                     "max number of rays and points of a reference without a closed form")
         ->check(CLI::Range(1e3, 1e12));
-    command->add_option("--poses", options->study.coherent_poses, "over which pings with coherent speckle are averaged")
+    command
+        ->add_option("--poses", options->study.coherent_poses,
+                     "number of poses over which pings with coherent speckle are averaged")
         ->check(CLI::Range(2, 100000));
     command->add_flag("--quiet", options->quiet, "no progress");
     command->callback(

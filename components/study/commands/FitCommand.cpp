@@ -23,13 +23,13 @@ struct FitOptions {
     bool quiet = false;
 };
 
-/** Refuses a name that is no file in a folder that is there, before anything is computed. */
+/** Refuses a name that is not a file in an existing folder, before anything is computed. */
 void refuseUnwritable(const std::string& out) {
     const fs::path path(out), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (fs::is_directory(path))
         throw types::ConfigError(out, "--out", "is a folder; give the name of a file, FITTED.yml");
     if (!fs::is_directory(folder))
-        throw types::ConfigError(out, "--out", "is in a folder that is not there: " + folder.string());
+        throw types::ConfigError(out, "--out", "is in a folder that does not exist: " + folder.string());
     if (const std::string end = path.extension().string(); end != ".yml" && end != ".yaml")
         throw types::ConfigError(out, "--out", "must end in .yml or .yaml");
 }
@@ -48,10 +48,11 @@ int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeplo
     const RecordingFit fit = fitRecording(recorded, std::move(at.chain), options.scene_is == "rough",
                                           [&](const std::string& doing) { progress(doing); });
     progress.end();
-    const std::vector<std::string> head{
-        "Fitted by insonify fit to " + fs::path(recorded.front().file).filename().string() +
-            fmt::format(": {} pings.", recorded.size()),
-        "Intervals are of 95 %. What is not determined by the recording holds a value with which all others agree."};
+    const std::vector<std::string> head{"Fitted by insonify fit to " +
+                                            fs::path(recorded.front().file).filename().string() +
+                                            fmt::format(": {} pings.", recorded.size()),
+                                        "Intervals are of 95 %. Properties that the recording does not determine have "
+                                        "values consistent with the others."};
     std::ofstream file(options.out, std::ios::binary);
     if (!(file << write(options.deployment, settingsOf(fit, at.tasks), fs::absolute(options.out).parent_path(), head))
              .flush())
@@ -70,16 +71,17 @@ void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, co
     CLI::App* command = app.add_subcommand("fit", "Finds the properties of a real sonar from its recordings");
     command
         ->add_option("DEPLOYMENT", options->deployment,
-                     "a YAML file with scene, sonar, noise and a receiver that gives out codes")
+                     "a YAML file with scene, sonar, noise and a receiver that outputs codes")
         ->required();
     command->add_option("--real", options->real, "recordings: files, or folders of them")->required();
     command
-        ->add_option("--scene-is", options->scene_is,
-                     "known: levels follow from the scene; rough: it is a floor or a tank of about the right kind")
+        ->add_option(
+            "--scene-is", options->scene_is,
+            "known: levels follow from the scene; rough: the scene is a floor or a tank of about the right kind")
         ->check(CLI::IsMember({"known", "rough"}));
     command->add_option("--out", options->out, "the fitted deployment, FITTED.yml; a page and a picture are next to it")
         ->required();
-    command->add_option("--ping", options->ping, "which ping of the deployment is where the recording was made")
+    command->add_option("--ping", options->ping, "ping of the deployment at the place of the recording")
         ->check(CLI::PositiveNumber);
     command->add_flag("--quiet", options->quiet, "no progress");
     command->callback([options, chainAt, write, readLog, &action] {

@@ -44,7 +44,7 @@ void printTable(const LikenessResult& result) {
     fmt::print("\n");
 }
 
-/** Whether none fails. */
+/** Prints the claims; returns whether none fails. */
 bool printClaims(const LikenessResult& result) {
     const LikenessRow* simulated = result.row("simulated");
     if (!simulated) return true;
@@ -63,11 +63,11 @@ struct LikenessOptions : RecordingOptions {
     std::string lines = "deployment", side;
 };
 
-/** What lays the deployment's lines where those of a recording were. */
+/** Returns the settings that place the deployment's lines at those of a recording. */
 std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOptions& options,
                                      const FindChain& chainAt) {
     if (!recorded.is_waterfall)
-        throw types::ConfigError(recorded.file, "--lines", "is recorded; the recording is of no side-scan");
+        throw types::ConfigError(recorded.file, "--lines", "is recorded; the recording is not of a side-scan");
     if (recorded.places.empty())
         throw types::ConfigError(recorded.file, "--lines",
                                  "is recorded; the recording states neither places nor altitudes");
@@ -78,7 +78,7 @@ std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOp
     return settings;
 }
 
-/** What the deployment makes of a recording's kind: a ping, or as many lines of a side-scan as a waterfall has. */
+/** Returns the deployment's simulation of a recording: a ping, or the number of lines of its waterfall. */
 CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& options, const FindPings& pingsAt,
                         const FindChain& chainAt) {
     const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
@@ -91,11 +91,10 @@ CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& option
             side.name = "simulated";
             return side;
         }
-    throw types::ConfigError(options.deployment, "tasks",
-                             "have no side-scan with this side, which the recording is of");
+    throw types::ConfigError(options.deployment, "tasks", "have no side-scan with the side of the recording");
 }
 
-/** Recorded pings of one kind: of a side-scan the lines of one side. */
+/** Returns recorded pings of one kind: for a side-scan the lines of one side. */
 std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded, const std::string& side) {
     if (!recorded.front().is_waterfall) return recorded;
     const std::string file = recorded.front().file;
@@ -103,7 +102,7 @@ std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded, const std::str
     std::erase_if(recorded, [&](const CodedPing& ping) {
         return !ping.is_waterfall || (ping.bearings.front() < 0) != is_starboard;
     });
-    if (recorded.empty()) throw types::ConfigError(file, "--side", "is " + side + ", of which there are no lines");
+    if (recorded.empty()) throw types::ConfigError(file, "--side", "is " + side + ", which has no lines");
     return recorded;
 }
 
@@ -131,17 +130,18 @@ int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const Fin
 void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const FindChain& chainAt,
                       const ReadLog& readLog) {
     const auto options = std::make_shared<LikenessOptions>();
-    CLI::App* command = study.add_subcommand("likeness", "How like recordings of a real sonar simulated pings look");
-    options->addTo(*command, "a YAML file whose receiver gives out codes; absent: what the recordings look like")
+    CLI::App* command = study.add_subcommand("likeness", "Compares simulated pings with recordings of a real sonar");
+    options->addTo(*command, "a YAML file whose receiver outputs codes; absent: statistics of the recordings only")
         ->required();
     command
         ->add_option("--side", options->side,
-                     "of a side-scan: whose lines are compared; none: starboard, if there are any")
+                     "side of a side-scan whose lines are compared; default: starboard, if it has lines")
         ->check(CLI::IsMember({"starboard", "port"}));
     command
-        ->add_option("--lines", options->lines,
-                     "of a side-scan. deployment: its vehicle goes its own way; recorded: straight on, as high above "
-                     "the floor and pitched as the recording states")
+        ->add_option(
+            "--lines", options->lines,
+            "lines of a side-scan. deployment: along its vehicle's track; recorded: a straight track, as high above "
+            "the floor and pitched as the recording states")
         ->check(CLI::IsMember({"deployment", "recorded"}));
     command->callback([options, pingsAt, chainAt, readLog, &action] {
         action = [options, pingsAt, chainAt, readLog] { return runStudy(*options, pingsAt, chainAt, readLog); };

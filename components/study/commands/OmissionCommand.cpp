@@ -52,9 +52,9 @@ std::string line(const OmissionRow& row) {
 
 std::string sheet(const std::string& deployment, const std::vector<OmissionRow>& rows) {
     std::string text = fmt::format(
-        "# What {} leaves out\n\nEach line renders one ping without and with something. Change: largest difference of "
+        "# Omissions of {}\n\nEach line renders one ping without and with an effect. Change: max difference of "
         "a bin over the loudest bin; rel_l2_tvg: relative L2 of all bins after a gain of 50 log10(r); times are "
-        "medians of a ping. `kept` is configured, and shown for what it does and costs; `not measured` is not built, "
+        "medians of a ping. `kept` is configured, and shown for its influence and cost; `not measured` is not built, "
         "or "
         "follows from its reason alone.\n\n"
         "| what | reason | change | rel_l2_tvg | bound | without [ms] | with [ms] | verdict |\n"
@@ -87,12 +87,11 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
 
 void addOmissionStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        study.add_subcommand("omission", "Bins and time with and without each thing that the plan leaves out");
+    CLI::App* command = study.add_subcommand("omission", "Bins and time with and without each omission of the plan");
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file whose sonar and scene are studied")->required();
     command->add_option("--out", options->out, "folder of omission.md and omission.json");
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
-    command->add_option("--pings", options->pings, "timed for each")->check(CLI::Range(1, 1000));
+    command->add_option("--pings", options->pings, "pings timed for each")->check(CLI::Range(1, 1000));
     command->add_flag("--quiet", options->quiet, "no progress");
     command->callback(
         [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });

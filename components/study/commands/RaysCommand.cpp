@@ -18,14 +18,15 @@ struct Options {
     int pings = 30;
 };
 
-/** How long rays take (EmbreeCaster) of the number that a sonar's quality asks for: what a renderer is measured by. */
+/** Times of ray tracing (EmbreeCaster) with the number of rays that a sonar's quality requires, for comparison with a
+ *  renderer. */
 struct RayTimes {
-    size_t rays = 0, met = 0;                      ///< Cast in a ping, and those that met something [1].
-    double alone_median_ms = 0, alone_p99_ms = 0;  ///< Primary rays and nothing else [ms].
+    size_t rays = 0, met = 0;                      ///< Rays traced in a ping, and those that hit something [1].
+    double alone_median_ms = 0, alone_p99_ms = 0;  ///< Primary rays only [ms].
     double ping_median_ms = 0, ping_p99_ms = 0;    ///< With their energies in bins [ms].
 };
 
-/** Of `pings` calls after a first one, shortest first [ms]. */
+/** Returns the times of `pings` calls after a first call, in ascending order [ms]. */
 template <class Work>
 std::vector<double> sortedTimes(int pings, const Work& work) {
     using Clock = std::chrono::steady_clock;
@@ -44,7 +45,7 @@ double share(const std::vector<double>& sorted, double part) {
     return sorted[static_cast<size_t>(std::ceil(part * static_cast<double>(sorted.size()))) - 1];
 }
 
-/** Times so many pings of each kind after a first one, the tree not counted. `config` as for EmbreeCaster. */
+/** Times `pings` pings of each kind after a first ping, without building the tree. `config` as for EmbreeCaster. */
 RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene, int pings) {
     EmbreeCaster caster(scene);
     caster.prepare(config);
@@ -74,11 +75,12 @@ int runStudy(const Options& options, const FindSonar& sonarAt) {
 
 void addRaysStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = study.add_subcommand("rays", "Times as many rays (Embree) as a sonar's quality asks for");
-    command->group("");  // no part of what is documented
+    CLI::App* command =
+        study.add_subcommand("rays", "Times ray tracing (Embree) with the number of rays of a sonar's quality");
+    command->group("");  // not documented
     command->add_option("DEPLOYMENT", options->deployment, "a YAML file with a sonar")->required();
     command->add_option("--ping", options->ping, "which ping of the deployment")->check(CLI::PositiveNumber);
-    command->add_option("--pings", options->pings, "timed of each kind")->check(CLI::Range(1, 100000));
+    command->add_option("--pings", options->pings, "pings timed of each kind")->check(CLI::Range(1, 100000));
     command->callback(
         [options, sonarAt, &action] { action = [options, sonarAt] { return runStudy(*options, sonarAt); }; });
 }

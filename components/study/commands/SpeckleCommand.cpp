@@ -49,7 +49,7 @@ void printTable(const std::vector<SpeckleRow>& rows) {
     fmt::print("\n");
 }
 
-/** Whether none fails. */
+/** Prints the claims; returns whether none fails. */
 bool printClaims(const std::vector<Claim>& claims) {
     for (const Claim& claim : claims)
         fmt::print("{}  {}: {:.3g}, {} {:.4g}\n", claim.verdict(), claim.text, claim.measured,
@@ -70,7 +70,7 @@ std::vector<SpeckleRow> recordedRows(const std::vector<std::string>& real, const
     return rows;
 }
 
-/** Over the flat bottom of the study of the error. */
+/** Returns the sonar over the flat bottom of the study of the error. */
 SonarAt ownSonar() {
     const StudyScene scene =
         std::ranges::find(closedFormScenes(), std::string("flat_bottom"), &SceneMaker::name)->make();

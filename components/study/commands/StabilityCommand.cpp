@@ -29,7 +29,7 @@ void printRow(const StabilityRow& row) {
     std::fflush(stdout);
 }
 
-/** The cases whose names hold `text`; all where it is empty. */
+/** Returns the cases whose names contain `text`; all if it is empty. */
 std::vector<StabilityCase> casesWith(const std::string& text) {
     std::vector<StabilityCase> cases = stabilityCases();
     std::erase_if(cases, [&](const StabilityCase& c) { return c.name.find(text) == c.name.npos; });
@@ -59,9 +59,9 @@ int runStudy(const std::filesystem::path& folder, const std::string& only) {
 
 void addStabilityStudy(CLI::App& study, command::Action& action) {
     const auto folder = std::make_shared<std::string>(), only = std::make_shared<std::string>();
-    CLI::App* command = study.add_subcommand("stability", "Runs stiff and extreme cases and judges each");
+    CLI::App* command = study.add_subcommand("stability", "Runs stiff and extreme cases and evaluates each");
     command->add_option("--out", *folder, "folder for stability.md and stability.json")->required();
-    command->add_option("--only", *only, "the cases that have this text in their names");
+    command->add_option("--only", *only, "only cases whose names contain this text");
     command->callback([=, &action] { action = [=] { return runStudy(*folder, *only); }; });
 }
 

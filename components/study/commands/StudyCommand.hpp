@@ -19,33 +19,35 @@
 
 namespace insonify::study {
 
-/** A sonar as it is configured, of the quality that it has chosen, and what it renders in one ping. */
+/** A configured sonar with its chosen quality, and the snapshot of one ping. */
 struct SonarAt {
     sonar::SonarConfig config;
     types::Snapshot snapshot;
 };
-/** The first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is none. */
+/** Returns the first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError if there is
+ *  none. */
 using FindSonar = std::function<SonarAt(const std::string& deployment, uint64_t ping)>;
 
-/** Pings that a receiver gave out as codes, and by what law. */
+/** Pings that a receiver output as codes, and their law. */
 struct PingsAt {
     std::vector<types::Sonar> pings;
     receiver::CodeConfig code;
 };
-/** At most `count` pings from number `ping`, from 1, of the first receiver of a deployment that gives out codes, all
- *  noise included. Throws types::ConfigError where there is none. @param settings properties that differ from the
+/** Returns at most `count` pings from number `ping`, from 1, of the first receiver of a deployment that outputs codes,
+ *  with all noise. Throws types::ConfigError if there is none. @param settings properties that replace the
  *  deployment's, "task.property=value" */
 using FindPings = std::function<PingsAt(const std::string& deployment, uint64_t ping, size_t count,
                                         const std::vector<std::string>& settings)>;
 
-/** What makes a deployment's pings, and the names of its tasks. */
+/** The chain of a deployment's pings, and the names of its tasks. */
 struct ChainAt {
     FitChain chain;
     FitTasks tasks;
 };
-/** The chain of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where it is not complete. */
+/** Returns the chain of a deployment at its ping number `ping`, from 1. Throws types::ConfigError if it is
+ *  incomplete. */
 using FindChain = std::function<ChainAt(const std::string& deployment, uint64_t ping)>;
-/** The text of a deployment with these settings, for a file in `folder`, with lines at its head. */
+/** Returns the text of a deployment with these settings, for a file in `folder`, with lines at its head. */
 using WriteDeployment =
     std::function<std::string(const std::string& deployment, const std::vector<FitSetting>& settings,
                               const std::filesystem::path& folder, const std::vector<std::string>& head)>;
@@ -58,21 +60,21 @@ void addCommand(CLI::App& app, command::Action& action, const FindSonar& sonarAt
 void addFit(CLI::App& app, command::Action& action, const FindChain& chainAt, const WriteDeployment& write,
             const ReadLog& readLog);
 
-/** Options of the studies that set simulated pings beside recorded ones. */
+/** Options of the studies that compare simulated with recorded pings. */
 struct RecordingOptions {
     std::string deployment, out;
     std::vector<std::string> real;
     uint64_t ping = 1;
 
-    /** Adds them to a command. @param deployment_help what the deployment is studied for
+    /** Adds the options to a command. @param deployment_help purpose of the deployment
      *  @return the option --real */
     CLI::Option* addTo(CLI::App& command, const std::string& deployment_help);
 };
 
-/** {claim, measured, bound, verdict} of each. */
+/** Returns {claim, measured, bound, verdict} of each claim. */
 command::Json verdictsOf(const std::vector<Claim>& claims);
 
-// Each adds one study to the command `study`.
+// Each function adds one study to the command `study`.
 void addErrorStudy(CLI::App& study, command::Action& action, const FindSonar& sonarAt);
 void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings& pingsAt, const FindChain& chainAt,
                       const ReadLog& readLog);

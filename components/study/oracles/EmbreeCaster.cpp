@@ -18,9 +18,9 @@ namespace {
 
 constexpr int tile = 4;  ///< Rays of a packet across, and up.
 static_assert(tile * tile == RayTree::packet);
-constexpr int tiles_up = static_cast<int>(RayTree::packets_at_once);  ///< Tiles that are cast together.
+constexpr int tiles_up = static_cast<int>(RayTree::packets_at_once);  ///< Tiles that are traced together.
 
-/** An angle, as a direction needs it. */
+/** Cosine and sine of an angle, for directions. */
 struct Angle {
     double cosine, sine;
     explicit Angle(double radians = 0) : cosine(std::cos(radians)), sine(std::sin(radians)) {}
@@ -29,8 +29,8 @@ struct Angle {
 /** A column or row of cells: its middle and its edges. */
 struct Strip {
     Angle middle, low, high;
-    double size;  ///< Of a column [rad]; of a row, between the sines of its edges, times what of it a pattern hears. A
-                  ///< cell's solid angle, so weighed, is their product.
+    double size;  ///< Column: width [rad]. Row: difference of the sines of its edges, times its pattern weight. The
+                  ///< product is a cell's weighted solid angle.
 };
 
 Strip column(double low, double high) { return {Angle((low + high) / 2), Angle(low), Angle(high), high - low}; }
@@ -38,7 +38,7 @@ Strip row(double low, double high) {
     return {Angle((low + high) / 2), Angle(low), Angle(high), std::sin(high) - std::sin(low)};
 }
 
-/** What is heard of an elevation, by the laws of `config` in elevation [1]. */
+/** Returns the two-way weight of an elevation, by the patterns of `config` in elevation [1]. */
 double heardOf(const sonar::SonarConfig& config, double elevation) {
     double heard = 1;
     if (!config.beam_pattern) return heard;
@@ -47,8 +47,8 @@ double heardOf(const sonar::SonarConfig& config, double elevation) {
     return heard;
 }
 
-/** How the inverse ranges of a patch of plane are distributed that fills a cell: over a parallelogram of which they are
- *  a linear function, a trapezoid that bends where the corners are. */
+/** Distribution of the inverse range over a patch of plane that fills a cell. Inverse range is a linear function over a
+ *  parallelogram, so the distribution is a trapezoid with bends at the corners. */
 class Spread {
 public:
     explicit Spread(std::array<double, 4> corners) : w_(corners) {
@@ -57,9 +57,9 @@ public:
     }
     double least() const { return w_[0]; }
     double most() const { return w_[3]; }
-    /** All of it is as good as one number. */
+    /** Returns whether all inverse ranges are equal to rounding. */
     bool isPoint() const { return w_[3] - w_[0] <= 1e-12 * w_[3]; }
-    /** Share below w. */
+    /** Returns the fraction below w. */
     double below(double w) const {
         if (w <= w_[0]) return 0;
         if (w >= w_[3]) return 1;
@@ -80,15 +80,15 @@ struct EmbreeCaster::Fan {
 
     RayTree tree;
     Workers workers;
-    std::vector<Strip> columns, rows;  ///< Those of all beams, of low bearing first; from below.
+    std::vector<Strip> columns, rows;  ///< Strips of all beams: columns by ascending bearing, rows from below.
     int columns_per_beam = 0, beams = 0;
-    int stripes = 1;  ///< Of rows that a thread of its own may take: more than 1 where beams are few.
+    int stripes = 1;  ///< Stripes of rows for separate threads: more than 1 if there are few beams.
     size_t bins = 0;
-    double bin_width = 0, nearest = 0, farthest = 0;  ///< [m]; 1 / the nearest and farthest range heard [1/m].
+    double bin_width = 0, nearest = 0, farthest = 0;  ///< [m]; 1 / the nearest and farthest range received [1/m].
     std::vector<double> inverse_edges;                ///< 1 / far edge of each bin [1/m].
     std::vector<double> sums;                         ///< [stripe][beam][bin]
-    std::vector<double> longest;                      ///< Of each part, bins that a cell covered.
-    std::vector<size_t> met;                          ///< Of each part, rays that met something.
+    std::vector<double> longest;                      ///< For each part: max number of bins that a cell covered.
+    std::vector<size_t> met;                          ///< For each part: rays that hit something.
     double kappa_max = 0;
 
     int groups() const { return (beams + tile - 1) / tile; }
@@ -112,7 +112,7 @@ public:
           first_column_(group_ * tile * fan.columns_per_beam),
           end_column_(std::min(first_column_ + tile * fan.columns_per_beam, static_cast<int>(fan.columns.size()))) {}
 
-    /** Calls with column, row and triangle for each ray that meets something. */
+    /** Calls `met` with column, row and triangle for each ray that hits something. */
     template <class Met>
     void cast(const Met& met) {
         const auto rows = static_cast<int>(fan_.rows.size());
@@ -153,7 +153,7 @@ public:
     }
 
 private:
-    /** One above the other, up to a row. */
+    /** Traces tiles one above the other, up to a row. */
     template <class Met>
     void castTiles(int column, int first_row, int end_row, const Met& met) {
         std::array<RayTree::Rays, RayTree::packets_at_once> rays;
@@ -161,7 +161,7 @@ private:
         const int across = std::min(tile, end_column_ - column), up = std::min(tiles_up * tile, end_row - first_row);
         const auto count = static_cast<size_t>((up + tile - 1) / tile);
         for (size_t k = 0; k < count; ++k)
-            for (int i = 0; i < RayTree::packet; ++i) {  // beyond the edge: the last one again
+            for (int i = 0; i < RayTree::packet; ++i) {  // beyond the edge: repeats the last direction
                 const int aside = std::min(i % tile, across - 1), above = static_cast<int>(k) * tile + i / tile;
                 rays[k].set(i, directionOf(fan_.columns[static_cast<size_t>(column + aside)].middle,
                                            fan_.rows[static_cast<size_t>(first_row + std::min(above, up - 1))].middle));
@@ -190,7 +190,8 @@ private:
         return fan_.sums.data() + (static_cast<size_t>(stripe_) * static_cast<size_t>(fan_.beams) + beam) * fan_.bins;
     }
 
-    /** Over inverse range energy goes as its cube; `amount` is energy over that. */
+    /** Adds a cell's energy to the bins. Energy is proportional to the cube of inverse range; `amount` is energy over
+     *  that. */
     void share(const Spread& spread, double amount, double* bins) {
         const double near = std::min(spread.most(), fan_.nearest), far = std::max(spread.least(), fan_.farthest);
         if (near < far || !(near > 0)) return;

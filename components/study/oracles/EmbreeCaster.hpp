@@ -7,15 +7,16 @@
 
 namespace insonify::study {
 
-/** The same physics by casting rays on the processor (Embree), all cores: an independent program, and the answer to
- *  "why not just cast rays". Its samples are cells of equal azimuth and elevation, four by four to a packet; what a
- *  cell's patch of plane returns goes to the ranges between those of the cell's own four corners, each met exactly. As
- *  quick as rays get: threads are kept between pings, angles are tabulated, a ping allocates nothing.
- *  `physical` without absorption and `published`; planar beams; normal maps without mipmaps. What is nearer than
- *  `range_min` hides what lies behind it. */
+/** Traces rays on the processor with Embree, on all cores: an independent program with the same physics, for comparison
+ *  with the renderer. Its samples are cells of equal azimuth and elevation, 4 x 4 per packet. The energy of a cell's
+ *  patch of plane is distributed over the ranges between those of the cell's four corners, which are exact. It is
+ *  optimised: threads persist between pings, angles are tabulated, a ping allocates nothing.
+ *
+ *  Supports `physical` without absorption and `published`; planar beams; normal maps without mipmaps. Surfaces nearer
+ *  than `range_min` hide those behind them. */
 class EmbreeCaster {
 public:
-    /** Builds the tree of all triangles as they lie in the snapshot. Throws std::runtime_error when Embree cannot. */
+    /** Builds the tree of all triangles of the snapshot. Throws std::runtime_error if Embree fails. */
     explicit EmbreeCaster(const types::Snapshot& scene);
     ~EmbreeCaster();
 
@@ -23,13 +24,13 @@ public:
      *  columns_per_beam for each beam. */
     void prepare(const sonar::SonarConfig& config);
 
-    /** Energies E/S0 of one ping from `sonar`, [beam][bin], with the configuration prepared last. */
+    /** Computes the energies E/S0 of one ping from `sonar`, [beam][bin], with the last prepared configuration. */
     void render(const types::Pose& sonar, std::vector<float>& energies);
 
-    /** Casts the rays of a ping and does nothing with them; how many met something [1]. */
+    /** Only traces the rays of a ping; returns the number of hits [1]. */
     size_t castOnly(const types::Pose& sonar);
 
-    /** Of the last ping: bins that the longest cell covered, kappa of ACOUSTICS.md 4.5 [1]. */
+    /** Returns the number of bins that the longest cell of the last ping covered, kappa of ACOUSTICS.md 4.5 [1]. */
     double kappaMax() const;
 
 private:

@@ -15,13 +15,13 @@
 namespace insonify::study {
 namespace {
 
-constexpr int split = 4;  ///< Of a tile, along each side.
+constexpr int split = 4;  ///< Divisions of a tile along each side.
 static_assert(split * split == RayTree::packet);
 constexpr double infinite = std::numeric_limits<double>::infinity();
 using Directions = std::array<glm::dvec3, RayTree::packet>;
 using Distances = std::array<double, RayTree::packet>;
 
-/** As the surface reflects it. */
+/** Returns the direction after reflection by the surface. */
 glm::dvec3 mirrored(const glm::dvec3& direction) { return {direction.x, direction.y, -direction.z}; }
 
 /** The rays of one beam. Directions are unit, in the axes of the world. */
@@ -41,7 +41,7 @@ public:
 
     double rays() const { return rays_; }
 
-    /** Of rays in the sonar's axes that stand for a solid angle each [sr]. */
+    /** Traces rays in the sonar's axes that represent a solid angle each [sr]. */
     void cast(Directions directions, double solid_angle) {
         for (glm::dvec3& d : directions) d = world_from_sonar_ * d;
         solid_angle_ = solid_angle;
@@ -63,7 +63,7 @@ public:
     }
 
 private:
-    /** What a ray meets first. */
+    /** The first hit of a ray. */
     struct Point {
         uint32_t triangle;
         glm::dvec3 origin, direction;
@@ -89,7 +89,7 @@ private:
         return found;
     }
 
-    /** Of the triangle's plane; infinite for none [m]. */
+    /** Returns the range of the triangle's plane; infinite for none [m]. */
     double rangeOf(uint32_t triangle, const glm::dvec3& from, const glm::dvec3& direction) const {
         if (triangle == RayTree::none) return infinite;
         const RayTree::Triangle& plane = tree_[triangle];
@@ -109,7 +109,7 @@ private:
         }
     }
 
-    /** Sound that went out by the other way than it comes back. */
+    /** Adds sound whose way out differs from its way back. */
     void hearOtherWays() {
         Directions out, out_of_sonar;
         Distances reach{}, none{}, to_surface{};
@@ -123,7 +123,7 @@ private:
         }
         const auto first = meet(from_, out_of_sonar, none);
         RayTree::Found second{};
-        Directions below;  // from the image of the sonar: for points that were met directly
+        Directions below;  // from the image of the sonar: for points that were hit directly
         for (size_t i = 0; i < points_.size(); ++i) below[i] = points_[i].is_direct ? out[i] : glm::dvec3(1, 0, 0);
         second = meet(image_, below, to_surface);
         for (size_t i = 0; i < points_.size(); ++i) {
@@ -168,7 +168,7 @@ private:
     std::array<Point, RayTree::packet> points_{};
 };
 
-/** Rays of a tile, one in each of its 16 parts, in the sonar's axes. */
+/** Returns one ray in each of a tile's 16 parts, in the sonar's axes. */
 Directions drawnIn(double azimuth, double width, double up, double height, uint64_t seed) {
     Directions directions;
     for (uint64_t i = 0; i < directions.size(); ++i) {

@@ -18,35 +18,35 @@
 namespace insonify::study {
 namespace {
 
-constexpr int split = 4;       ///< Of a tile, along each side: 16 rays.
-constexpr int partings = 2;    ///< Of a tile that shows more than one triangle.
-constexpr int min_parts = 64;  ///< Of a ping, for threads to share.
-/** Points along each side of a tile that shows one triangle: after all partings, after one, after none. */
+constexpr int split = 4;       ///< Divisions of a tile along each side: 16 rays.
+constexpr int partings = 2;    ///< Max divisions of a tile that shows more than one triangle.
+constexpr int min_parts = 64;  ///< Parts of a ping, shared by threads.
+/** Points along each side of a tile that shows one triangle: after all divisions, after one, after none. */
 constexpr int fill[partings + 1] = {8, 32, 128};
-constexpr int mapped_fill[partings + 1] = {8, 16, 64};  ///< Where each has to look up a normal map.
+constexpr int mapped_fill[partings + 1] = {8, 16, 64};  ///< The same if each point looks up a normal map.
 static_assert(split * split == RayTree::packet);
 
-/** Unit, in the sonar's axes. */
+/** Returns a unit direction in the sonar's axes. */
 glm::dvec3 directionOf(double azimuth, double up) {
     const double level = std::sqrt(1 - up * up);
     return {level * std::cos(azimuth), level * std::sin(azimuth), up};
 }
 using Directions = std::array<glm::dvec3, RayTree::packet>;
 
-/** A stretch of azimuth and of the sine of elevation: its solid angle is their product. */
+/** An interval of azimuth and of the sine of elevation: its solid angle is their product. */
 struct Tile {
     double azimuth, width, up, height;
     double solidAngle() const { return width * height; }
     Tile part(int column, int row) const {
         return {azimuth + column * width / split, width / split, up + row * height / split, height / split};
     }
-    /** In shares of the width and the height. */
+    /** Returns the direction at fractions of the width and the height. */
     glm::dvec3 at(double across, double along) const {
         return directionOf(azimuth + across * width, up + along * height);
     }
 };
 
-/** Where a whole is parted into n, a little at random, so that no two seeds have the same tiles. */
+/** Returns a slightly randomised boundary of a division into n, so that no two seeds have the same tiles. */
 double boundary(int k, int n, uint64_t seed) {
     const double moved =
         k == 0 || k == n ? 0 : (types::unit(types::mixedBits(seed + static_cast<uint64_t>(k)) >> 32) - 0.5) / 2;
@@ -57,7 +57,7 @@ double powerOf(const std::optional<acoustics::BeamLaw>& law, double angle) {
     return law ? acoustics::BeamPattern(*law).power(angle) : 1;
 }
 
-/** What a pattern hears of an elevation there and back, by its sine. */
+/** Two-way weight of an elevation by a pattern, from the elevation's sine. */
 class Aperture {
 public:
     explicit Aperture(const sonar::SonarConfig& config) : half_(std::sin(types::radians(config.beam_height_deg) / 2)) {
@@ -73,7 +73,7 @@ public:
         half_ = 1 - 2.0 * static_cast<double>(heard) / steps;
         weights_ = std::move(all);
     }
-    double half() const { return half_; }  ///< Sine of the highest elevation that is heard [1].
+    double half() const { return half_; }  ///< Sine of the max elevation received [1].
     double weight(double up) const {
         if (weights_.empty()) return 1;
         const double place = std::clamp((up + 1) / 2, 0.0, 1.0) * steps;
@@ -90,7 +90,7 @@ private:
 
 /** Sums of a strip's points: echoes in each bin, and the solid angle that ends in it. */
 struct Sums {
-    std::vector<double> echoes, ended, partial;  ///< `partial`: of what ends in a bin, times 1/edge - 1/range.
+    std::vector<double> echoes, ended, partial;  ///< `partial`: solid angle that ends in a bin, times 1/edge - 1/range.
 };
 
 /** The points of some tiles of one strip. */
@@ -107,7 +107,7 @@ public:
 
     double rays() const { return rays_; }
 
-    /** `seed` is the tile's own. */
+    /** Samples a tile; each tile has its own `seed`. */
     void cast(const Tile& tile, uint64_t seed) {
         seed_ = seed, drawn_ = 0;
         cast(tile, partings);
@@ -118,7 +118,7 @@ private:
 
     void cast(const Tile& tile, int partings_left) {
         Directions directions;
-        for (int i = 0; i < RayTree::packet; ++i)  // an edge that cuts a corner off parts the corners
+        for (int i = 0; i < RayTree::packet; ++i)  // an edge that cuts off a corner separates the corner rays
             directions[static_cast<size_t>(i)] = tile.at(i % split / (split - 1.0), i / split / (split - 1.0));
         const RayTree::Found seen = castRays(directions);
         if (std::ranges::count(seen, seen[0]) == RayTree::packet) {
@@ -131,7 +131,7 @@ private:
         }
     }
 
-    /** One drawn in each part of the tile. */
+    /** Traces one random ray in each part of the tile. */
     void hearRays(const Tile& tile) {
         Directions directions;
         for (int i = 0; i < RayTree::packet; ++i)
@@ -149,7 +149,8 @@ private:
         return found;
     }
 
-    /** Points in columns, each moved up against the one before by the golden section, so that no two lie level. */
+    /** Fills a tile with points in columns. Each column is shifted against the previous by the golden section, so that
+     *  no two points have the same height. */
     void fillWith(uint32_t triangle, const Tile& tile, int count) {
         if (triangle == RayTree::none && sums_.ended.empty()) return;
         const double right = draw(), each = tile.solidAngle() / (count * count);
@@ -188,7 +189,7 @@ private:
         return static_cast<size_t>(std::min(static_cast<int>(range / grid_.bin_width), grid_.bin_count - 1));
     }
 
-    /** Water is heard up to a range. */
+    /** Adds water up to a range. */
     void endAt(double range, double solid_angle) {
         if (sums_.ended.empty() || !(range > grid_.range_min)) return;
         const double end = std::min(range, grid_.range_max);
@@ -213,17 +214,17 @@ private:
     Sums& sums_;
     double rays_ = 0;
     uint64_t seed_ = 0, drawn_ = 0;
-    uint32_t last_ = RayTree::none;  ///< The triangle of which normal and distance are at hand.
+    uint32_t last_ = RayTree::none;  ///< The triangle of normal_ and distance_.
     glm::dvec3 normal_{};            ///< Sonar axes.
-    double distance_ = 0;            ///< Of the plane along it [m].
+    double distance_ = 0;            ///< Distance of the plane along the normal [m].
 };
 
-/** A stretch of azimuth [rad]. */
+/** An interval of azimuth [rad]. */
 struct Strip {
     double low, high;
 };
 
-/** The beams; with a pattern in azimuth eight strips to a beam or to its width, whichever is less, all around. */
+/** Returns the beams; with a pattern in azimuth eight strips per beam, or per its width if that is less, all around. */
 std::vector<Strip> stripsOf(const sonar::SonarConfig& config) {
     std::vector<Strip> strips;
     if (!config.beam_pattern || !config.beam_pattern->hasAzimuth()) {
@@ -239,7 +240,7 @@ std::vector<Strip> stripsOf(const sonar::SonarConfig& config) {
     return strips;
 }
 
-/** Strips that any beam hears, so that nothing is cast elsewhere. */
+/** Returns the strips' weights in each beam; strips without weight are not traced. */
 std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, const std::vector<Strip>& strips) {
     const sonar::BeamPatternConfig& pattern = *config.beam_pattern;
     const auto law = [](const std::optional<acoustics::BeamLaw>& of) {
@@ -262,7 +263,7 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
     return weights;
 }
 
-/** Echoes and water of a strip [bin]. */
+/** Adds echoes of the water of a strip [bin]. */
 void takeWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
     double beyond = 0;
     for (int k = grid.bin_count - 1; k >= 0; --k) {
@@ -273,7 +274,7 @@ void takeWater(Sums& sums, const sonar::BinGrid& grid, double strength) {
     }
 }
 
-/** Each bin as the sum of all by the pulse. */
+/** Spreads each bin by the pulse. */
 void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const acoustics::PulseConfig& config) {
     const acoustics::Pulse pulse(config, grid.speed_of_sound);
     std::vector<double> response;
@@ -295,7 +296,7 @@ void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const 
 
 std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                         uint64_t seed) {
-    if (config.hasLayers()) throw std::invalid_argument("points hear one water alone, no layers");
+    if (config.hasLayers()) throw std::invalid_argument("points support only homogeneous water, no layers");
     tree_.takeLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const std::vector<Strip> strips = stripsOf(config);

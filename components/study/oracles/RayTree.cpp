@@ -16,7 +16,7 @@
 namespace insonify::study {
 namespace {
 
-/** One step along a row or column of a map: to the other end, or not beyond it. */
+/** Returns a texel index within a map: wrapped around, or clamped to the edge. */
 int wrapped(int i, int size, bool repeats) { return repeats ? ((i % size) + size) % size : std::clamp(i, 0, size - 1); }
 
 glm::dvec3 texel(const types::NormalMap& map, int x, int y) {
@@ -25,7 +25,7 @@ glm::dvec3 texel(const types::NormalMap& map, int x, int y) {
     return glm::dvec3(map.rgb[at], map.rgb[at + 1], map.rgb[at + 2]) * (2.0 / 255) - 1.0;
 }
 
-/** Bilinear between the centres of texels. */
+/** Looks up a map bilinearly between the centres of texels. */
 glm::dvec3 lookedUp(const types::NormalMap& map, glm::dvec2 uv) {
     const double x = uv.x * map.width - 0.5, y = uv.y * map.height - 0.5;
     const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
@@ -34,7 +34,7 @@ glm::dvec3 lookedUp(const types::NormalMap& map, glm::dvec2 uv) {
            down * ((1 - right) * texel(map, column, row + 1) + right * texel(map, column + 1, row + 1));
 }
 
-/** What the corners of a triangle weigh at a point of its plane. */
+/** Returns the weights of a triangle's corners at a point of its plane. */
 glm::dvec3 weightsAt(const glm::dvec3& point, const std::array<glm::dvec3, 3>& corners) {
     const glm::dvec3 a = corners[1] - corners[0], b = corners[2] - corners[0], across = glm::cross(a, b);
     const glm::dvec3 p = point - corners[0];
@@ -60,7 +60,7 @@ struct RayTree::Embree {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
     }
-    /** Three corners a triangle, about the origin [m]. */
+    /** Commits triangles, three corners each, about the origin [m]. */
     void commit(std::span<const glm::dvec3> corners);
 };
 
@@ -70,7 +70,7 @@ void RayTree::Embree::commit(std::span<const glm::dvec3> corners) {
                                                                  3 * sizeof(float), corners.size()));
     auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(uint32_t), corners.size() / 3));
-    if (!corners.empty() && (!vertices || !indices)) throw std::runtime_error("Embree has no memory for the scene");
+    if (!corners.empty() && (!vertices || !indices)) throw std::runtime_error("out of memory in Embree for the scene");
     for (size_t i = 0; i < corners.size(); ++i) {
         for (size_t axis = 0; axis < 3; ++axis)
             vertices[3 * i + axis] = static_cast<float>(corners[i][static_cast<int>(axis)]);

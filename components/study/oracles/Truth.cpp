@@ -23,7 +23,7 @@ double integral(double from, double to, const F& f) {
     return half * total;
 }
 
-/** Halves the stretch until that changes nothing: apertures cut corners into what is integrated. */
+/** Integrates; halves the interval until that changes nothing, because apertures cut corners into the integrand. */
 template <class F>
 double adaptive(double from, double to, const F& f, double whole, int depth) {
     constexpr double tolerance = 1e-8;
@@ -42,7 +42,7 @@ struct Profile {
         slope = std::hypot(level, normal.z) / distance;
         steepest = std::atan2(normal.z, level);
     }
-    /** How far from the steepest elevation the range is r; nothing is nearer than 1 / slope. */
+    /** Returns the distance from the steepest elevation at which the range is r; the min range is 1 / slope. */
     double away(double r) const { return std::acos(std::min(1.0, 1 / (slope * r))); }
     /** Integral of cos(theta) r^-2 over solid angle, per azimuth, with cos(theta) = distance / r. */
     double echo(double low, double high, double distance, const Pattern& pattern) const {

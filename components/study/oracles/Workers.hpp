@@ -7,7 +7,7 @@
 
 namespace insonify::study {
 
-/** Threads that are kept between jobs: as many as there are cores, the caller among them. */
+/** Threads that persist between jobs: one per core, including the caller. */
 class Workers {
 public:
     Workers();

@@ -1,11 +1,11 @@
-// Heading, depth and attitude of what carries the sonar, over the picture.
+// Heading, depth and attitude of the sonar's carrier, shown over the picture.
 import {svg} from './graph.js';
 import {element} from './tables.js';
 
 const degrees = 180 / Math.PI;
 
-/** Of a pose in the world of x north, y west, z up: heading clockwise from north [0, 360), pitch positive down, roll
- *  positive to starboard [deg], z [m]; depth [m] where the surface is known. */
+/** Converts a pose in the world of x north, y west, z up: heading clockwise from north [0, 360), pitch positive down,
+ *  roll positive to starboard [deg], z [m]; depth [m] if the surface is known. */
 export function attitudeOf({position, orientation: [x, y, z, w]}, water_surface) {
   const north = 1 - 2 * (y * y + z * z), west = 2 * (x * y + w * z), up = 2 * (x * z - w * y);
   return {
@@ -19,7 +19,7 @@ export function attitudeOf({position, orientation: [x, y, z, w]}, water_surface)
 
 const aside = (angle, positive, negative) => `${Math.abs(angle).toFixed(1)}°` + (Math.abs(angle) < 0.05 ? '' : ` ${angle > 0 ? positive : negative}`);
 
-/** What is told of it, by name. */
+/** Returns the texts to show, by name. */
 export function attitudeTexts(it) {
   return {
     heading: `${it.heading.toFixed(1).padStart(5, '0')}°`.replace('360.0', '000.0'),
@@ -29,7 +29,7 @@ export function attitudeTexts(it) {
   };
 }
 
-/** An artificial horizon: the line that stays level while the vehicle rolls and pitches. */
+/** Draws an artificial horizon: a line that stays level while the vehicle rolls and pitches. */
 function horizon({pitch, roll}) {
   const turn = `rotate(${-roll} 22 22) translate(0 ${-Math.max(-40, Math.min(40, pitch)) * 0.4})`;
   const line = (d, colour, transform = '') => svg('path', {d, stroke: colour, fill: 'none', transform});

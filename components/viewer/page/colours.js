@@ -1,4 +1,4 @@
-// Colour maps: anchors [level, red, green, blue], linear in between; the first is that of the picture files.
+// Colour maps: anchors [level, red, green, blue], linear in between; the first map is that of the picture files.
 
 const anchors = {
   amber: [[0, 6, 5, 6], [40, 44, 22, 6], [96, 120, 62, 8], [150, 204, 118, 14], [200, 246, 180, 48], [235, 255, 226, 140],
@@ -12,7 +12,7 @@ const anchors = {
 
 export const names = Object.keys(anchors);
 
-/** 256 colours of 4 bytes. */
+/** Returns 256 colours of 4 bytes. */
 export function palette(name) {
   const list = anchors[name], colours = new Uint8Array(1024);
   for (let level = 0, i = 0; level < 256; ++level) {

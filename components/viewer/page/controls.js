@@ -1,4 +1,4 @@
-// Buttons for what the deployment offers: recording, pausing, stepping.
+// Buttons for recording, pausing and stepping, as far as the deployment offers them.
 import {element} from './tables.js';
 
 export class Controls {
@@ -19,12 +19,12 @@ export class Controls {
     this.built_for = status.lockstep;
     this.said = element('span', {className: 'refused'});
     this.records = new Map(this.loggers.map((name) => [name, this.button(`● ${name}`, () => this.record(name), 'record, or pause recording')]));
-    this.pause = this.button('pause', () => this.link.ask({pause: !this.paused}), 'simulated time stands still');
-    this.step = this.button('step', () => this.link.ask({step: true}), 'one instant more');
+    this.pause = this.button('pause', () => this.link.ask({pause: !this.paused}), 'simulated time stops');
+    this.step = this.button('step', () => this.link.ask({step: true}), 'one more instant');
     const parts = [this.said, ...this.records.values(), ...(status.lockstep ? [this.pause, this.step] : [])];
     for (const name of status.lockstep ? [] : this.replays)
-      parts.push(this.button(`pause ${name}`, () => this.link.call(`${name}.pause`, true), 'the log\'s time stands still'),
-                 this.button('go on', () => this.link.call(`${name}.pause`, false), 'the log\'s time goes on'),
+      parts.push(this.button(`pause ${name}`, () => this.link.call(`${name}.pause`, true), 'the log\'s time stops'),
+                 this.button('go on', () => this.link.call(`${name}.pause`, false), 'the log\'s time continues'),
                  this.button('step', () => this.link.call(`${name}.step`), 'one instant of the log'));
     this.place.replaceChildren(...(this.control ? parts : []));
   }

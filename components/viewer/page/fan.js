@@ -1,4 +1,4 @@
-// The picture of a ping, drawn by the graphics device straight from its levels; rings and cursor on a canvas above.
+// The picture of a ping, drawn by the graphics device from its levels; rings and cursor on a canvas above.
 import {palette} from './colours.js';
 import {beamAt, levelAt, sameBeams, turned} from './ping.js';
 
@@ -13,14 +13,14 @@ uniform vec2 origin;                        // of the sonar, in pixels
 uniform vec2 scale;                         // pixels per metre; in the polar picture pixels per radian and metre
 uniform vec2 bearings;                      // the lowest and highest edge
 uniform vec2 bins;                          // count, metres
-uniform vec2 brightness;                    // of level 0, and per level
+uniform vec2 brightness;                    // brightness of level 0, and per level
 uniform bool polar;
 out vec4 colour;
 const vec3 nothing = vec3(.027, .035, .043);
 void main() {
   vec2 p = (gl_FragCoord.xy - origin) / scale;
   float range = polar ? p.y : length(p), bearing = polar ? -p.x : atan(p.x == 0. ? -1e-6 : -p.x, p.y);  // some devices have no atan(0, y)
-  if (!polar) bearing += 6.28318531 * ceil((bearings.x - bearing) / 6.28318531);  // the fan may lie across +-180 degrees
+  if (!polar) bearing += 6.28318531 * ceil((bearings.x - bearing) / 6.28318531);  // the fan may cross +-180 degrees
   float share = (bearing - bearings.x) / (bearings.y - bearings.x);
   int bin = int(floor(range / bins.y));
   colour = vec4(nothing, 1);
@@ -57,7 +57,7 @@ function textureOf(gl, unit) {
 const table_size = 4096, degrees = 180 / Math.PI;
 const shortest = (bearing) => bearing - 2 * Math.PI * Math.round(bearing / (2 * Math.PI));
 const bearingText = (any, bearing = shortest(any)) => `${(bearing * degrees).toFixed(1)}°` + (Math.abs(bearing) < 5e-4 ? '' : bearing > 0 ? ' port' : ' stbd');
-/** Ahead and to port [m], and back. */
+/** Converts a place to metres ahead and to port, and back. */
 const metresOf = ({range, bearing}) => [range * Math.cos(bearing), range * Math.sin(bearing)];
 const placeOf = ([ahead, port]) => ({range: Math.hypot(ahead, port), bearing: Math.atan2(port, ahead)});
 
@@ -69,10 +69,10 @@ export class Fan {
     this.rings = true;
     this.span_db = 45;
     this.top_db = 0;
-    this.marks = [];  // places between which is measured, two at most
+    this.marks = [];  // the places of a measurement, at most two
     this.whole();
     const gl = this.gl = canvas.getContext('webgl2', {antialias: false, preserveDrawingBuffer: true});
-    if (!gl) return;  // rings, cursor and levels are there nonetheless
+    if (!gl) return;  // rings, cursor and levels work nonetheless
     this.program = programOf(gl);
     gl.useProgram(this.program);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
@@ -89,7 +89,7 @@ export class Fan {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, 256, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, palette(name));
   }
 
-  /** @param top_db the level of the brightest colour. */
+  /** Shows a ping. @param top_db the level of the brightest colour */
   show(ping, top_db) {
     const gl = this.gl, old = this.ping;
     this.ping = ping;
@@ -112,34 +112,34 @@ export class Fan {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.R32F, table_size, 1, 0, gl.RED, gl.FLOAT, table);
   }
 
-  /** All of the picture, as large as fits. */
+  /** Shows the whole picture, as large as fits. */
   whole() {
     this.zoom = 1;
-    this.shift = [0, 0];  // of the picture's middle, in pixels of the canvas as all offsets
+    this.shift = [0, 0];  // of the picture's middle, in pixels of the canvas, like all offsets
   }
   moveBy(dx, dy) { this.shiftTo([this.shift[0] + dx, this.shift[1] + dy]); }
-  /** Nearer by a factor, about a pixel that stays where it is. */
+  /** Zooms by a factor about a pixel that stays in place. */
   zoomBy(factor, about) {
     const zoom = Math.max(1, Math.min(50, this.zoom * factor)), by = zoom / this.zoom, middle = [this.canvas.width / 2, this.canvas.height / 2];
     this.zoom = zoom;
     this.shiftTo(middle.map((m, i) => (1 - by) * (about[i] - m) + by * this.shift[i]));
   }
-  /** No farther than leaves the picture's edge in the middle. */
+  /** Shifts the picture, at most until its edge is in the middle. */
   shiftTo(shift) {
     const most = [this.canvas.width, this.canvas.height].map((size) => (this.zoom - 1) * size / 2);
     this.shift = shift.map((s, i) => Math.max(-most[i], Math.min(most[i], s)));
   }
-  /** A place to measure from, or to; a third begins anew. */
+  /** Marks the start or the end of a measurement; a third mark starts a new one. */
   mark(at) {
     if (this.ping) this.marks = [...this.marks.length === 2 ? [] : this.marks, this.placeAt(...at)];
   }
 
-  /** Where metres, or radians and metres, lie on the canvas; y goes up. */
+  /** Returns origin and scale of metres, or of radians and metres, on the canvas; y is up. */
   place() {
     const {scale, origin} = this.wholePlace(), middle = [this.canvas.width / 2, this.canvas.height / 2];
     return {scale: scale.map((s) => s * this.zoom), origin: origin.map((o, i) => middle[i] + (o - middle[i]) * this.zoom + this.shift[i])};
   }
-  /** The same of all of the picture. */
+  /** Returns the same for the whole picture. */
   wholePlace() {
     const {width, height} = this.canvas, margin = 26 * devicePixelRatio, far = this.ping.bins * this.ping.bin_m;
     const inner = [width - 2 * margin, height - 2 * margin];
@@ -157,7 +157,7 @@ export class Fan {
             origin: [width / 2 - (box.x0 + box.x1) / 2 * scale, height / 2 - (box.y0 + box.y1) / 2 * scale]};
   }
 
-  /** Pixel of the canvas, from its lower left corner, at which a place is shown. */
+  /** Returns the canvas pixel, from the lower left corner, that shows a place. */
   pixelOf(range, bearing) {
     const {scale, origin} = this.place();
     const p = this.polar ? [-turned(this.ping, bearing), range] : [-range * Math.sin(bearing), range * Math.cos(bearing)];
@@ -247,7 +247,7 @@ export class Fan {
     context.stroke();
   }
 
-  /** What is measured: a straight line in the water, which in the polar picture is none. */
+  /** Draws the measurement: a straight line in the water, which is curved in the polar picture. */
   drawMarks(context, line, label) {
     const ends = this.marks.map(metresOf), colour = '#f2b04a';
     for (const mark of this.marks) this.drawCross(context, this.pixelOf(mark.range, mark.bearing), colour);
@@ -258,13 +258,14 @@ export class Fan {
     const middle = between(0.5);
     label(`${this.measured().distance.toFixed(2)} m`, middle.range, middle.bearing, 0, -8);
   }
-  /** From the first mark to the second: metres, and which way [rad], positive to port of ahead; null: there are no two. */
+  /** Returns the distance [m] and the direction [rad], positive to port of ahead, from the first mark to the second;
+   *  null without two marks. */
   measured() {
     if (this.marks.length < 2) return null;
     const [a, b] = this.marks.map(metresOf), way = placeOf([b[0] - a[0], b[1] - a[1]]);
     return {distance: way.range, bearing: way.bearing};
   }
-  /** @param heading of the sonar, clockwise from north [deg]; undefined: unknown. */
+  /** @param heading of the sonar, clockwise from north [deg]; undefined: unknown */
   measuredText(heading) {
     const told = this.marks.map(({range, bearing}) => `${range.toFixed(2)} m   ${bearingText(bearing)}`), way = this.measured();
     if (way) told.push(`${way.distance.toFixed(2)} m apart, towards ${bearingText(way.bearing)}` +
@@ -272,7 +273,7 @@ export class Fan {
     return told.join('\n');
   }
 
-  /** Range, bearing (positive to port, as in pictures) and level under the cursor, in words. */
+  /** Returns range, bearing (positive to port, as in pictures) and level under the cursor as text. */
   cursorText() {
     if (!this.cursor || !this.ping) return '';
     const {range, bearing} = this.placeAt(...this.cursor), level = levelAt(this.ping, range, bearing);

@@ -1,4 +1,4 @@
-// What is reached for most: range, gain and frequency of the sonar that is shown.
+// The properties used most: range, gain and frequency of the sonar that is shown.
 import {upstream} from './places.js';
 import {element, fieldOf, rank} from './tables.js';
 
@@ -15,7 +15,7 @@ export class First {
     this.control = control;
     this.key = null;
   }
-  /** For each label the first property, of a task that makes the pings of `source`. */
+  /** Finds for each label the first property of a task that contributes to the pings of `source`. */
   find(source, connections) {
     const made_by = upstream(connections, source), found = new Map();
     for (const task of this.tasks.filter((one) => made_by.has(one.name)))

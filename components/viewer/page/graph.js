@@ -1,4 +1,4 @@
-// The tasks as boxes from left to right, what they are connected by, their states and what got lost.
+// The tasks as boxes from left to right, with their connections, states and losses.
 
 export const svg = (name, attributes, text) => {
   const made = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -6,13 +6,13 @@ export const svg = (name, attributes, text) => {
   if (text !== undefined) made.textContent = text;
   return made;
 };
-/** Whether it is a fault that samples were dropped: not where the newest is to take the place of the others. */
+/** Returns whether dropped samples are a fault; they are not if the newest sample replaces others by design. */
 export const isLoss = ({policy}) => policy === 'buffer';
-/** The task of a port. */
+/** Returns the task of a port. */
 export const owner = (port) => port.slice(0, port.indexOf('.'));
 const lamp = {Running: '#58b368', RunTimeError: '#e0b13c', Exception: '#e4574c', FatalError: '#e4574c'};
 
-/** How many connections lie before each task, at most; loops count once. */
+/** Returns the max number of connections before each task; loops count once. */
 function ranks(status) {
   const rank = new Map(status.tasks.map((task) => [task.name, 0]));
   for (let pass = 0; pass < status.tasks.length; ++pass)

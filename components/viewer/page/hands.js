@@ -1,9 +1,9 @@
-// What hands do to the picture: the wheel or two fingers zoom, dragging moves it, a click measures.
+// Pointer gestures on the picture: the wheel or two fingers zoom, dragging moves it, a click measures.
 
 const click_px = 4;
 
 export class Hands {
-  /** @param changed is called when the picture is to be drawn again. */
+  /** @param changed called when the picture must be drawn again */
   constructor(fan, changed) {
     this.fan = fan;
     this.changed = changed;
@@ -18,7 +18,7 @@ export class Hands {
     on('wheel', (event) => this.wheel(event));
     on('dblclick', () => this.measuring || this.whole());
   }
-  /** In pixels of the canvas, from its lower left corner. */
+  /** Returns the place in pixels of the canvas, from its lower left corner. */
   at({offsetX, offsetY}) { return [offsetX * devicePixelRatio, this.fan.canvas.height - offsetY * devicePixelRatio]; }
 
   press(event) {
@@ -73,7 +73,7 @@ export class Hands {
     this.tell();
     this.changed();
   }
-  /** How the picture is handled now. */
+  /** Updates the cursor and the gestures' state on the page. */
   tell() {
     this.fan.canvas.className = this.measuring ? 'measuring' : this.fan.zoom > 1 ? 'near' : '';
     this.on_zoom?.(this.fan.zoom);

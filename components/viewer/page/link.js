@@ -1,10 +1,10 @@
-// The connection to the viewer: opens it, opens it again when it breaks, and takes its messages apart.
+// The connection to the viewer: opens it, reopens it when it breaks, and splits its messages.
 
 const protocol = 'insonify.view.v1';
-/** How long nothing may come, until the first status (a scene may be large) and after it [ms]. */
+/** Max silence until the first status (a scene may be large) and after it [ms]. */
 const first_patience = 30000, patience = 5000;
 
-/** A binary message: u32 kind, u32 size of the JSON, JSON, data. */
+/** Splits a binary message: u32 kind, u32 size of the JSON, JSON, data. */
 export function takeApart(buffer) {
   const head = new DataView(buffer);
   const kind = head.getUint32(0, true), size = head.getUint32(4, true);
@@ -13,7 +13,7 @@ export function takeApart(buffer) {
 }
 
 export class Link {
-  /** @param heard gets each message: JSON with a `type`, or {kind, json, buffer, start}. */
+  /** @param heard receives each message: JSON with a `type`, or {kind, json, buffer, start} */
   constructor(heard, changed) {
     this.heard = heard;
     this.changed = changed;
@@ -38,7 +38,7 @@ export class Link {
     socket.onmessage = (event) => this.take(event.data);
     socket.onclose = () => this.again();
   }
-  /** The other end may be gone without a word: then closing would wait long for its answer. */
+  /** Reopens a silent connection. The other end may be gone without notice; closing would wait long for its answer. */
   watch() {
     if (performance.now() - this.heard_at < this.patience || this.socket.onclose === null) return;
     this.socket.close();
@@ -62,7 +62,7 @@ export class Link {
     this.waiting.delete(message.id);
   }
 
-  /** Gives {result} or {refused: why}. */
+  /** Sends a request; resolves to {result} or {refused: why}. */
   ask(request) {
     const id = this.next_id++;
     if (this.socket.readyState !== WebSocket.OPEN) return Promise.resolve({refused: 'there is no connection'});

@@ -1,4 +1,4 @@
-// What comes over the link, to where it is shown.
+// Routes messages of the link to the parts of the page.
 import {names} from './colours.js';
 import {attitudeOf, showAttitude} from './attitude.js';
 import {Controls} from './controls.js';
@@ -33,7 +33,7 @@ const show = {
   interfaces(message) {
     const before = interfaces;
     interfaces = JSON.stringify(message);
-    if (interfaces === before) return;  // the connection is back: fields stay, with what is being typed
+    if (interfaces === before) return;  // a restored connection: fields keep the text being typed
     for (const part of [properties, controls, first, timelines]) part.setInterfaces(message);
   },
   status(status) {
@@ -61,7 +61,7 @@ function take(message) {
   showScene();
 }
 
-/** The scene of the snapshot that is shown. */
+/** Shows the scene of the current snapshot. */
 function showScene() {
   const wanted = scenes.get(snapshot?.source) ?? scenes.values().next().value;
   if (!world || !wanted || scene === wanted) return;
@@ -69,7 +69,7 @@ function showScene() {
   byId('scene_text').textContent = world.showScene(scene);
 }
 
-/** Everything is where it was when the ping was made; a snapshot may come after its ping. */
+/** Places everything as it was at the time of the ping; a snapshot may arrive after its ping. */
 function place() {
   const {ping} = fan, key = ping && `${ping.source} ${ping.time_us}`;
   const found = ping ? places.of(ping, properties.status?.connections ?? []) : places.newest();
@@ -81,7 +81,7 @@ function place() {
   byId('pose_text').textContent = 'sonar ' + snapshot.position.map((x) => x.toFixed(2)).join('  ') + ' m';
 }
 
-/** Of the vehicle when the ping was made, or else of the sonar; null: nobody tells. */
+/** Returns the attitude of the vehicle at the time of the ping, else of the sonar; null if unknown. */
 function attitude() {
   const {ping} = fan, connections = properties.status?.connections ?? [];
   const found = (ping && poses.of(ping, connections)) ?? snapshot;
@@ -163,7 +163,7 @@ byId('save').onclick = () => savePicture(fan, shown_attitude);
 addEventListener('resize', () => { needs_drawing = true; });
 settingsChanged();
 
-/** The scene is drawn no oftener than leaves most of the time to the fan, but once a second at least. */
+/** Draws the scene for at most a fifth of the time, so that most is left to the fan, but at least once a second. */
 let next_view = 0;
 function frame(now) {
   if (needs_drawing) fan.draw();
@@ -190,5 +190,5 @@ loadThree().then((THREE) => {
   byId('no_view').textContent = `The 3-D view is not there: ${error.message}. It needs three.js, which is built into the viewer where Debian's libjs-three is installed.`;
 });
 
-/** For tests and for the curious. */
+/** For tests and debugging. */
 self.insonify = {fan, link, attitude, shown: () => shown, world: () => world, snapshot: () => snapshot, status: () => properties.status};

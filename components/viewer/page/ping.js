@@ -1,6 +1,6 @@
-// A ping as it came, or many of a scanning head's put together.
+// A received ping, or several pings of a scanning head combined.
 
-/** Its beams go from starboard to port; `edges` has the starboard and the port edge of each [rad]. */
+/** Converts a message. Beams are from starboard to port; `edges` has the starboard and the port edge of each [rad]. */
 export function pingOf(message) {
   return {...message.json, data: new Uint8Array(message.buffer, message.start)};
 }
@@ -8,7 +8,7 @@ export function pingOf(message) {
 const turn = 2 * Math.PI, rows = 720;
 const whole_edges = Array.from({length: 2 * rows}, (_, i) => -Math.PI + Math.ceil(i / 2) * turn / rows);
 
-/** The last turn of a head of one beam, as one ping of beams all around. */
+/** Combines the last turn of a single-beam head into one ping of all directions. */
 export class Scan {
   add(ping) {
     if (!this.whole || this.whole.bins !== ping.bins || this.whole.bin_m !== ping.bin_m) this.clear(ping);
@@ -29,7 +29,7 @@ export class Scan {
   }
 }
 
-/** Level at which 0.2 % of the echoes are louder: what is shown brightest, but for the gain [dB]. */
+/** Returns the level that 0.2 % of the echoes exceed, which is shown brightest apart from the gain [dB]. */
 export function strongLevel(ping) {
   const counts = new Uint32Array(256);
   for (const level of ping.data) ++counts[level];
@@ -39,23 +39,23 @@ export function strongLevel(ping) {
   return ping.top_db - (255 - level) * ping.step_db;
 }
 
-/** Whether two pings have the same beams. */
+/** Returns whether two pings have the same beams. */
 export const sameBeams = ({edges: a}, {edges: b}) => a === b || (a.length === b.length && a.every((edge, i) => edge === b[i]));
 
-/** The same direction within half a turn of the fan's middle, if it is not between the fan's edges already. */
+/** Returns the same direction within half a turn of the fan's middle, unless it is already between the fan's edges. */
 export function turned({edges}, bearing) {
   const low = edges[0], high = edges[edges.length - 1];
   return bearing >= low && bearing <= high ? bearing : bearing - turn * Math.round((bearing - (low + high) / 2) / turn);
 }
 
-/** Which beam is at a bearing; -1: none. */
+/** Returns the beam at a bearing; -1: none. */
 export function beamAt(ping, bearing) {
   const {edges} = ping, at = turned(ping, bearing);
   for (let i = 0; i < ping.beams; ++i) if (at >= edges[2 * i] && at < edges[2 * i + 1]) return i;
   return -1;
 }
 
-/** Level there [dB]; null where there is no beam or bin, -Infinity where there is no echo. */
+/** Returns the level at a place [dB]; null without a beam or bin, -Infinity without an echo. */
 export function levelAt(ping, range, bearing) {
   const beam = beamAt(ping, bearing), bin = Math.floor(range / ping.bin_m);
   if (beam < 0 || bin < 0 || bin >= ping.bins) return null;

@@ -1,9 +1,9 @@
-// Which snapshot or pose a ping was made of.
+// Finds the snapshot or pose that a ping was made from.
 import {owner} from './graph.js';
 
 const most = 64;
 
-/** Tasks that what `port` writes is made by, as far as connections tell. */
+/** Returns the tasks that contribute to `port`, by the connections. */
 export function upstream(connections, port) {
   const tasks = new Set([owner(port)]);
   for (let size = 0; size !== tasks.size;) {
@@ -21,7 +21,8 @@ export class Places {
     if (this.snapshots.length > most) this.snapshots.shift();
   }
   newest() { return this.snapshots.at(-1); }
-  /** That of the ping's stamp, or else the last before; of tasks that the ping comes from, where such write any. */
+  /** Returns the entry of the ping's stamp, else the last before it; from tasks upstream of the ping, if any of them
+   *  write entries. */
   of(ping, connections) {
     const tasks = upstream(connections, ping.source), own = this.snapshots.filter((one) => tasks.has(owner(one.source)));
     const list = own.length ? own : this.snapshots;

@@ -1,10 +1,10 @@
-// The picture of a ping as a file.
+// Saves the picture of a ping as a file.
 import {attitudeTexts} from './attitude.js';
 import {element} from './tables.js';
 
 const caption_px = 22;
 
-/** The picture with what lies over it, and a line that tells whose ping it is. */
+/** Returns the picture with its overlays, and a line that names the ping. */
 function pictureOf(fan, attitude) {
   const {width, height} = fan.canvas, caption = caption_px * devicePixelRatio;
   const canvas = element('canvas', {width, height: height + caption}), context = canvas.getContext('2d');
@@ -18,7 +18,7 @@ function pictureOf(fan, attitude) {
   return canvas;
 }
 
-/** Downloads it as SOURCE_MICROSECONDS.png. */
+/** Downloads the picture as SOURCE_MICROSECONDS.png. */
 export async function savePicture(fan, attitude) {
   if (!fan.ping) return;
   const {source, time_us} = fan.ping;

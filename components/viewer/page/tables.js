@@ -1,4 +1,4 @@
-// Tasks, connections, plan and properties as tables; what can be changed is changed here.
+// Tasks, connections, plan and properties as tables, with inputs for what can be changed.
 import {isLoss} from './graph.js';
 
 export function element(name, attributes = {}, ...children) {
@@ -12,7 +12,7 @@ const cell = (text, kind = '') => element('td', {className: kind}, text);
 const byId = (id) => document.getElementById(id);
 const milliseconds = (s) => s === null ? '-' : (s * 1e3).toFixed(s < 0.01 ? 2 : 1);
 
-/** Samples a second of each port, from one status to the next. */
+/** Computes the samples per second of each port, from one status to the next. */
 export class Rates {
   update(status) {
     const now = status.sent_s, counts = new Map();
@@ -25,15 +25,15 @@ export class Rates {
     }
   }
   of(port) { return this.rates?.get(port) ?? 0; }
-  /** Of the task's busiest port but `state`. */
+  /** Returns the rate of the task's busiest port except `state`. */
   ofTask(task) { return Math.max(0, ...task.outputs.filter((port) => port.name !== 'state').map((port) => this.of(`${task.name}.${port.name}`))); }
 }
 
 const failed = ['RunTimeError', 'Exception', 'FatalError'];
 
-/** An error stands there as long as it lasts: what was refused is told where it was asked for. */
+/** Shows errors as long as they last. Refused settings are reported at their fields. */
 export function showTasks(status, rates) {
-  const rows = status.tasks.map((task) => element('tr', {title: task.error ? `${task.type}; last told: ${task.error}` : task.type},
+  const rows = status.tasks.map((task) => element('tr', {title: task.error ? `${task.type}; last error: ${task.error}` : task.type},
       cell(task.name), cell(task.state, task.state), cell(milliseconds(task.cycle_s), 'n'),
       cell(status.lockstep || !task.latency_s ? '-' : milliseconds(task.latency_s), 'n'), cell(rates.ofTask(task).toFixed(1), 'n'), cell(failed.includes(task.state) ? task.error : '', 'refused')));
   const head = element('tr', {}, ...[['task'], ['state'], ['cycle ms', 'n'], ['latency ms', 'n'], ['samples/s', 'n'], ['']].map(
@@ -47,31 +47,31 @@ export function showPlan(status) {
     if (!task.plan) continue;
     const plan = task.plan, list = element('dl');
     for (const {name, reason} of plan.omitted) list.append(element('dt', {}, name), element('dd', {}, reason));
-    const quality = `${plan.rows} rows, ${plan.columns_per_beam} columns per beam, ${plan.slabs} slabs` +
+    const quality = `${plan.rows} rows, ${plan.columns_per_beam} columns per beam, ${plan.slabs} frusta` +
         (plan.predicted_error === null ? '' : `, predicted error ${plan.predicted_error.toPrecision(2)}`);
     parts.push(element('h3', {}, task.name), element('div', {}, quality),
                element('div', {className: 'dim'}, 'compiled: ' + (plan.features.join(', ') || 'nothing beyond the minimum')),
                element('div', {className: 'dim'}, 'run: ' + plan.passes.join(', ')));
-    if (plan.omitted.length) parts.push(element('h3', {}, 'left out'), list);
+    if (plan.omitted.length) parts.push(element('h3', {}, 'omitted'), list);
     for (const notice of plan.notices) parts.push(element('div', {className: 'RunTimeError'}, notice));
   }
   byId('plan').replaceChildren(...parts, ...lossesOf(status.connections));
 }
 
-/** What was lost, and what was left aside for newer samples as it was meant to be. */
+/** Lists lost samples, and samples replaced by newer samples as configured. */
 function lossesOf(connections) {
   const lost = connections.filter((one) => isLoss(one) && one.lost), parts = [element('h3', {}, 'lost samples')];
   for (const one of lost) parts.push(element('div', {className: 'refused'}, `${one.lost}  ${one.from} > ${one.to} (${one.policy})`));
   if (!lost.length) parts.push(element('div', {className: 'dim'}, 'none'));
   const replaced = connections.map((one) => ({...one, count: one.passed_over + (isLoss(one) ? 0 : one.lost)})).filter((one) => one.count);
-  if (replaced.length) parts.push(element('h3', {}, 'left aside for newer samples, as asked for'));
+  if (replaced.length) parts.push(element('h3', {}, 'replaced by newer samples, as configured'));
   for (const one of replaced) parts.push(element('div', {className: 'dim'}, `${one.count}  ${one.from} > ${one.to} (${one.policy})`));
   return parts;
 }
 
 const setter = (name) => 'set' + name[0].toUpperCase() + name.slice(1);
 
-/** An input that fits the property's type. */
+/** Returns an input that fits the property's type. */
 function inputFor(property) {
   if (property.type === 'bool') return element('input', {type: 'checkbox'});
   if (property.type.includes('|') && !property.type.includes(' '))
@@ -81,10 +81,10 @@ function inputFor(property) {
 function put(input, value) {
   if (input.type === 'checkbox') return void (input.checked = value === true);
   const text = String(typeof value === 'number' && !Number.isInteger(value) ? +value.toPrecision(9) : value ?? '');
-  if (input.value !== text) input.value = text;  // or an open list and a selection would go
+  if (input.value !== text) input.value = text;  // else an open list or a selection would be lost
 }
 
-/** Names of the keys of a block in flow YAML, without those of blocks within it. */
+/** Returns the key names of a block in flow YAML, without those of nested blocks. */
 function keysOf(block) {
   let outer = block.slice(1, -1), before;
   do {
@@ -94,24 +94,24 @@ function keysOf(block) {
   return [...outer.matchAll(/(?:^|,)\s*"?(\w+)"?\s*:/g)].map((found) => found[1]);
 }
 
-/** What to set where a property was `before` and is to be `after`: setting merges blocks, so that keys which are gone
- *  are taken out by null, and so is all of what has been emptied. */
+/** Returns the value to set to change a property from `before` to `after`. Setting merges blocks, so removed keys, and
+ *  the content of emptied blocks, are set to null. */
 export function settingOf(type, before, after) {
   const text = after.trim(), isBlock = (one) => /^\{.*\}$/s.test(one);
   if (!text) return 'null';
-  if (type === 'text' || type === 'text, optional') return JSON.stringify(after);  // YAML of its own signs: "a: b #c"
+  if (type === 'text' || type === 'text, optional') return JSON.stringify(after);  // it may contain YAML syntax: "a: b #c"
   if (!type.startsWith('block') || !isBlock(text) || !isBlock(before ?? '')) return after;
   const kept = keysOf(text), gone = keysOf(before).filter((key) => !kept.includes(key)).map((key) => `${key}: null`);
   return `{${[text.slice(1, -1).trim(), ...gone].filter((part) => part).join(', ')}}`;
 }
 
-/** Properties in the order in which they are shown: these first, the others as the task has them. */
+/** Order of properties: these first, the others in the order of the task. */
 export const rank = ({name}) => (['range', 'gain_db', 'gain', 'frequency_khz'].indexOf(name) + 1) || 99;
 
 const valuesOf = (status, task) => status?.tasks.find((one) => one.name === task)?.properties ?? {};
 
-/** A property where it can be set: its input, and what its last change was refused for. What is typed stays in the input
- *  until Enter, or leaving it, sets the property, or Escape takes it back. */
+/** A property's field: its input, and why its last change was refused. Typed text stays in the input until Enter, or
+ *  leaving it, sets the property, or Escape restores the value. */
 export function fieldOf(link, task, property, control) {
   const input = inputFor(property), said = element('span', {className: 'refused'});
   let is_edited = false, unanswered = 0, is_left_alone = false;
@@ -137,7 +137,7 @@ export function fieldOf(link, task, property, control) {
   input.onblur = () => { is_edited = is_left_alone = false; };
   input.onpointerdown = () => { is_left_alone = false; };
   input.onkeydown = (event) => {
-    is_left_alone = false;  // or an answer that comes late would move the caret of one who types
+    is_left_alone = false;  // else a late answer would move the caret while the user types
     if (event.key !== 'Escape') return;
     is_edited = false;
     said.textContent = '';

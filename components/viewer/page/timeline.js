@@ -1,4 +1,4 @@
-// Where each log is that is played, and going elsewhere in it.
+// The position in each log that is played, and seeking in it.
 import {element} from './tables.js';
 
 const text = ({at_s, length_s}) => `${at_s.toFixed(1)} / ${length_s.toFixed(1)} s`;

@@ -3,7 +3,7 @@
 const most_places = 20000, tints = [0xf2c230, 0x4fc3f7, 0xef6c8f, 0x9ccc65, 0xb39ddb];
 
 export class Vehicle {
-  /** @param number of vehicles before it. */
+  /** @param number of earlier vehicles */
   constructor(THREE, number) {
     const colour = tints[number % tints.length];
     this.body = this.makeBody(THREE, colour);
@@ -25,7 +25,7 @@ export class Vehicle {
     return group;
   }
 
-  /** Time that goes back begins another path: a run that was started again, a log that was sought in. */
+  /** Moves the body. A time that goes back begins another path: a run was restarted, or a log was sought in. */
   moveTo({time_us, position, orientation}) {
     this.body.position.fromArray(position);
     this.body.quaternion.fromArray(orientation);

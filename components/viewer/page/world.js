@@ -1,4 +1,4 @@
-// The scene, the sonar's fan in it, the water and the vehicles' paths, in three dimensions; z is up.
+// The scene, the sonar's fan in it, the water and the vehicles' paths in three dimensions; z is up.
 import {palette} from './colours.js';
 import {sameBeams} from './ping.js';
 import {Vehicle} from './vehicle.js';
@@ -15,13 +15,13 @@ void main() {
   gl_FragColor = vec4(texture2D(colours, vec2((bright * 255. + .5) / 256., .5)).rgb, .12 + .83 * bright);
 }`;
 
-/** three.js, which may not have come with the viewer. */
+/** Loads three.js, which the viewer may have been built without. */
 export async function loadThree() {
   await import('./three.min.js');
   return self.THREE;
 }
 
-/** Takes all out of a group, and off the graphics device. */
+/** Removes everything from a group, and from the graphics device. */
 function empty(group) {
   group.traverse((node) => {
     node.geometry?.dispose();
@@ -58,7 +58,7 @@ export class World {
     this.steer();
   }
 
-  /** Dragging turns; the wheel or two fingers go nearer or farther. */
+  /** Handles dragging, which turns; the wheel or two fingers zoom. */
   steer() {
     const down = new Map(), on = (kind, heard) => this.canvas.addEventListener(kind, heard, {passive: false});
     on('pointerdown', (event) => {
@@ -88,7 +88,7 @@ export class World {
     this.dirty = true;
   }
 
-  /** The scene's meshes: a message of kind 2. */
+  /** Shows the scene's meshes: a message of kind 2. */
   showScene({json, buffer, start}) {
     const {THREE} = this;
     empty(this.content);
@@ -122,7 +122,7 @@ export class World {
     this.showWater(json.water_surface);
     this.dirty = true;
   }
-  /** @param z undefined: there is none. */
+  /** @param z undefined: no water */
   showWater(z) {
     const {THREE} = this;
     if (!this.water && z !== undefined) {
@@ -148,7 +148,7 @@ export class World {
     this.dirty = true;
   }
 
-  /** The ping as it lies in the world, level 0 of the display as faint as it may be seen. */
+  /** Shows the ping in the world; level 0 of the display is as faint as visible. */
   showPing(ping, top_db, span_db, map) {
     const {THREE} = this, key = [ping.bins, ping.bin_m, ping.beam_height].join();
     if (this.fan_key !== key || !sameBeams(this.shown, ping)) this.makeFan(ping, key);
@@ -188,7 +188,7 @@ export class World {
     fan.frustumCulled = false;
     this.sonar.add(fan, this.makeFrame(ping, far));
   }
-  /** Edges of the water that the fan hears. */
+  /** Returns the edges of the water in the fan. */
   makeFrame(ping, far) {
     const {THREE} = this, points = [], half = ping.beam_height / 2, low = ping.edges[0], high = ping.edges[ping.edges.length - 1];
     const at = (edge, up) => [far * Math.cos(up) * Math.cos(edge), far * Math.cos(up) * Math.sin(edge), far * Math.sin(up)];

@@ -1,4 +1,5 @@
-"""What `insonify scene make` starts: python3 -m insonify_worlds, with the options that the command has read."""
+"""The program behind `insonify scene make`: python3 -m insonify_worlds, with the options that the command
+has parsed."""
 
 import argparse
 import json
@@ -158,7 +159,7 @@ def main():
     except RecipeError as error:
         print(error.text(), file=sys.stderr)
         sys.exit(2)
-    except BrokenPipeError:  # whoever reads has enough: `| head`
+    except BrokenPipeError:  # the reader has stopped: `| head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

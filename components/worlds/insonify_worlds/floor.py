@@ -64,7 +64,7 @@ MAX_ROCKS, MAX_PEBBLES = 5000, 50_000
 
 @dataclass
 class Surface:
-    """Triangles with normals, and the places of a normal map."""
+    """Triangles with normals, and the coordinates of a normal map."""
 
     positions: np.ndarray
     faces: np.ndarray
@@ -73,7 +73,8 @@ class Surface:
 
 
 def power_law_relief(rng, shape, cell, slope, rms, longest):
-    """A Gaussian relief [m] whose power spectrum falls as |k|^-slope: cut from one that is periodic over twice the extent."""
+    """A Gaussian relief [m] whose power spectrum falls as |k|^-slope: a part of a relief that is periodic over twice
+    the extent."""
     size = [2 * n for n in shape]
     k = np.hypot(*np.meshgrid(*(np.fft.fftfreq(n, cell) for n in size), indexing="ij"))
     lowest = 1 / longest
@@ -103,7 +104,7 @@ class Ripples:
         return self.length >= 6 * cell
 
     def places(self, x, y):
-        """In tiles."""
+        """Coordinates in tiles."""
         c, s = math.cos(self.heading), math.sin(self.heading)
         return (c * x + s * y) / self.tile, (-s * x + c * y) / self.tile
 
@@ -128,14 +129,14 @@ class Ripples:
 
 
 def sizes_by_power(rng, count, low, high, exponent):
-    """Diameters of which the number above d falls as d^-exponent, from low to high."""
+    """Diameters in ascending order; the number above d falls as d^-exponent."""
     share = rng.uniform(0, 1, count)
     a, b = low**-exponent, high**-exponent
     return (a - share * (a - b)) ** (-1 / exponent)
 
 
 class Floor:
-    """Heights on a grid, and what was drawn for them."""
+    """Heights on a grid, and the parameters drawn for them."""
 
     def __init__(self, item, seed):
         self.item = item
@@ -168,7 +169,7 @@ class Floor:
             )
 
     def laws_of(self, block, name):
-        """One block, or for ripples a list of blocks."""
+        """Reads one block, or for ripples a list of blocks."""
         if name not in block:
             return []
         items = [block[name]]
@@ -213,7 +214,7 @@ class Floor:
                         break
                 else:
                     item.fail(
-                        f"{number} pockmarks found room, the next did not in 1000 tries; ask for fewer or smaller ones"
+                        f"{number} pockmarks found room, the next did not in 1000 tries; ask for fewer or smaller"
                     )
                 places.append((x, y, radius))
                 share = np.clip(1 - ((self.x - x) ** 2 + (self.y - y) ** 2) / radius**2, 0, None)
@@ -230,11 +231,11 @@ class Floor:
             else:
                 item.fail(
                     f"are the second with a wavelength below six cells ({6 * max(self.steps):.3g} m), which are a normal map; "
-                    "one is allowed"
+                    "only one may be"
                 )
 
     def height(self, x, y):
-        """Of the triangles at these places [m]."""
+        """Normals of the triangles at these places [m]."""
         u = np.clip((np.asarray(x, float) - self.low[0]) / self.steps[0], 0, self.shape[0] - 1)
         v = np.clip((np.asarray(y, float) - self.low[1]) / self.steps[1], 0, self.shape[1] - 1)
         i, j = np.minimum(u.astype(int), self.shape[0] - 2), np.minimum(v.astype(int), self.shape[1] - 2)
@@ -267,7 +268,7 @@ class Floor:
             )
 
     def stones(self, seed, name, word, most):
-        """Diameters and values of rocks or pebbles, the largest first; none where the recipe has none."""
+        """Diameters and values of rocks or pebbles, the largest first; none if the recipe has none."""
         for item, laws in self.laws[name]:
             rng = generator(seed, word)
             values = laws.draw(rng)

@@ -1,7 +1,6 @@
 """A writer for binary glTF 2.0. Needs numpy.
 
-Everything here is given in world axes (x north, y west, z up) and metres; the writer turns it into glTF's y-up axes.
-"""
+Input is in world axes (x north, y west, z up) and metres; the writer converts it to glTF's y-up axes."""
 import json
 import struct
 import zlib
@@ -92,11 +91,11 @@ class Glb:
         return self.add("materials", item)
 
     def mesh(self, name, parts, material):
-        """One part, or several that share the material."""
+        """Adds one part, or several that share the material."""
         return self.mesh_of(name, [(part, material) for part in parts])
 
     def mesh_of(self, name, pairs):
-        """Parts, each with its material."""
+        """Adds parts, each with its material."""
         return self.add("meshes", {"name": name, "primitives": [self.primitive(*pair) for pair in pairs]})
 
     def primitive(self, part, material):

@@ -1,4 +1,4 @@
-"""Materials of things: what `extras.acoustics` of a glTF file says of them (components/scene/README.md)."""
+"""Materials of things: their `extras.acoustics` in a glTF file (components/scene/README.md)."""
 
 import math
 from dataclasses import dataclass
@@ -77,7 +77,7 @@ SLOPES = {"clean": 0.05, "weathered": 0.2, "fouled": 0.4}  # rms slopes of the f
 
 @dataclass(frozen=True)
 class Material:
-    """Values are kept as a tuple of pairs, so that equal materials are one."""
+    """A material. Values are a tuple of pairs, so that equal materials compare equal."""
 
     name: str
     colour: tuple

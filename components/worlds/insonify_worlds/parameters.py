@@ -1,4 +1,4 @@
-"""What a recipe may say: parameters with units in their names, bounds and defaults, and the laws that values are drawn by.
+"""The syntax of recipes: parameters with units in their names, bounds and defaults, and laws of random values.
 
 A number is one value, [lowest, highest], {uniform: [lowest, highest]}, {normal: [mean, deviation]} or {choice: [...]}.
 """
@@ -12,7 +12,7 @@ import yaml
 
 
 class RecipeError(Exception):
-    """One thing that is wrong with a recipe: where it is, what it is, what it may be."""
+    """One error of a recipe: its place, the value, and the allowed values."""
 
     def __init__(self, place, path, message):
         super().__init__(message)
@@ -35,7 +35,7 @@ class Item:
         raise RecipeError(self.place, self.path, message)
 
     def said(self):
-        """The value as the recipe has it, for messages."""
+        """The value as written in the recipe, for messages."""
         if isinstance(self.value, dict):
             return "a block"
         if isinstance(self.value, list):
@@ -55,7 +55,8 @@ class Item:
 
 
 class _Composer:
-    """Items of a YAML document; aliases are refused, since a small file could be endless by them."""
+    """Items of a YAML document; aliases are refused, since they could expand a small file without
+    end."""
 
     def __init__(self, name):
         self.name = name
@@ -100,7 +101,7 @@ def read_yaml(text, name):
     except yaml.YAMLError as error:
         raise RecipeError(name, "", f"is no YAML: {str(error).splitlines()[0]}") from None
     except RecursionError:
-        raise RecipeError(name, "", "has blocks in blocks without end") from None
+        raise RecipeError(name, "", "has blocks that are nested too deep") from None
     raise RecipeError(name, "", "is empty; a recipe has a floor, things or both")
 
 
@@ -120,7 +121,7 @@ def number_in(item, low, high, whole=False):
 
 @dataclass
 class Law:
-    """How values are drawn: uniform, normal within the bounds, or one of a list."""
+    """The law of a value: uniform, normal within the bounds, or one of a list."""
 
     kind: str
     values: list
@@ -279,7 +280,7 @@ class Text(Parameter):
 
 @dataclass
 class Drawn:
-    """The laws of some parameters, read of a block."""
+    """The laws of some parameters, read from a block."""
 
     laws: dict = field(default_factory=dict)
 
@@ -288,7 +289,7 @@ class Drawn:
 
 
 def read_parameters(block, parameters):
-    """`block` has items by key."""
+    """Reads `block`, items by key."""
     laws = {}
     for each in parameters:
         laws[each.name] = each.read(block[each.name]) if each.name in block else each.fallback()
@@ -296,5 +297,5 @@ def read_parameters(block, parameters):
 
 
 def generator(*words):
-    """Random numbers that depend on these whole numbers alone."""
+    """Random numbers that depend only on these whole numbers."""
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(words)))

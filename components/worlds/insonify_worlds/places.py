@@ -1,4 +1,4 @@
-"""Where things are: outlines that keep clear of each other, and bodies that come to rest on the floor."""
+"""Places of things: outlines that keep clear of each other, and bodies at rest on the floor."""
 
 import math
 
@@ -37,7 +37,7 @@ def _axes(polygon):
 
 
 def _corner_distance(corners, polygon):
-    """From the nearest corner to an edge of the other polygon."""
+    """Distance from the nearest corner to an edge of the other polygon."""
     start, edge = polygon, np.roll(polygon, -1, 0) - polygon
     length = np.maximum((edge**2).sum(1), 1e-18)
     share = np.clip(((corners[:, None] - start) * edge).sum(-1) / length, 0, 1)
@@ -45,7 +45,7 @@ def _corner_distance(corners, polygon):
 
 
 def distance(one, other):
-    """Between two convex polygons; 0 where they overlap."""
+    """Distance between two convex polygons; 0 if they overlap."""
     for axis in np.vstack([_axes(one), _axes(other)]):
         a, b = one @ axis, other @ axis
         if a.max() < b.min() or b.max() < a.min():
@@ -54,7 +54,7 @@ def distance(one, other):
 
 
 class Taken:
-    """Outlines that are taken, with the gap about each."""
+    """Occupied outlines, with the gap around each."""
 
     def __init__(self):
         self.polygons, self.gaps, self.boxes = [], [], np.empty((0, 4))
@@ -80,7 +80,7 @@ class Taken:
 
 
 class FlatGround:
-    """Where a recipe has no floor."""
+    """The floor of a recipe without one."""
 
     def __init__(self, depth=10.0, size=(200.0, 200.0)):
         self.depth, self.size = depth, size
@@ -96,12 +96,13 @@ def is_inside(polygons, ground):
 
 
 def tilt_about(axis_deg, angle_deg):
-    """A turn about a level axis."""
+    """A rotation about a horizontal axis."""
     return rotation(yaw=axis_deg) @ rotation(roll=angle_deg) @ rotation(yaw=-axis_deg)
 
 
 def floor_turn(ground, polygon):
-    """The turn that lays a level plane onto the floor below an outline, by least squares."""
+    """The rotation that lays a horizontal plane onto the floor below an outline, by least
+    squares."""
     middle = polygon.mean(0)
     points = np.vstack([polygon, middle, (polygon + middle) / 2])
     a = np.c_[points - middle, np.ones(len(points))]
@@ -117,7 +118,7 @@ def floor_turn(ground, polygon):
 
 
 class Body:
-    """A rigid model with the turn that it was given before it meets the floor."""
+    """A rigid model with the rotation that it has before it is laid onto the floor."""
 
     def __init__(self, model, turn):
         self.model, self.turn = model, turn
@@ -131,7 +132,8 @@ class Body:
         return [outline @ turn[:2, :2].T + at for outline in self.model.outlines]
 
     def rest(self, ground, at, buried, height):
-        """The turn and the position of its origin: on the floor at one point at least, then lower by the buried share."""
+        """The rotation and the position of its origin: touching the floor in at least one point, then lowered by the
+        buried share."""
         turn = (
             floor_turn(ground, convex_hull((self.core @ self.turn.T)[:, :2] + at)) @ self.turn
             if height == 0
@@ -144,7 +146,7 @@ class Body:
 
 
 def path_between(rng, start, end, meander, step):
-    """Points about `step` apart from start to end, with two waves of random phase and no more than `meander` beside it."""
+    """Points about `step` apart from start to end, with two waves of random phase and at most `meander` to the side."""
     start, end = np.asarray(start, float), np.asarray(end, float)
     length = np.linalg.norm(end - start)
     count = max(3, int(math.ceil(length / step)) + 1)
@@ -156,7 +158,7 @@ def path_between(rng, start, end, meander, step):
 
 
 def along(path, step):
-    """The path [n, d] in even steps of its own length, no longer than `step`."""
+    """The path [n, d] in even steps of its own length, each at most `step`."""
     legs = np.linalg.norm(np.diff(path, axis=0), axis=1)
     at = np.concatenate([[0], np.cumsum(legs)])
     even = np.linspace(0, at[-1], max(2, int(math.ceil(at[-1] / step)) + 1))

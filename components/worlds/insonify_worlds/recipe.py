@@ -11,7 +11,7 @@ MOST_TRIANGLES = 8_000_000
 
 
 def make_world(recipe, seed):
-    """A world by a recipe, whose text was read as an item."""
+    """Makes a world from a recipe, whose text was read as an item."""
     block = recipe.block(KEYS)
     if "floor" not in block and "things" not in block:
         recipe.fail("is empty; a recipe has a floor, things or both")
@@ -38,7 +38,7 @@ def make_world(recipe, seed):
 
 
 def make_thing(name, assignments, seed):
-    """A world of one thing alone, standing on a flat floor of its own at z = 0 that is not in the file."""
+    """Makes a world of a single thing on a flat floor at z = 0, which is not in the file."""
     if name not in THINGS:
         raise RecipeError("", "--thing", f"is {name}; {may_be_thing(name)}")
     thing = THINGS[name]

@@ -10,8 +10,8 @@ def circle(sides, radius=1.0):
 
 
 def skin(rings, closed=False):
-    """Positions [n, 3] and faces [m, 3] of a skin over rings [rings, points, 3], each counter-clockwise seen from the last; flat ends unless it
-    is closed."""
+    """Positions [n, 3] and faces [m, 3] of a skin over rings [rings, points, 3], each counter-clockwise seen from
+    the last; with flat ends unless it is closed."""
     rings = np.asarray(rings, float)
     m, n = rings.shape[:2]
     i, j = np.mgrid[: m if closed else m - 1, :n]

@@ -22,7 +22,7 @@ def box(size, at=(0, 0, 0)):
 
 
 def cylinder(radius, length, at=(0, 0, 0), axis="z", sides=32, top_radius=None):
-    """About its middle `at`, along an axis; a cone where the top radius differs."""
+    """A cylinder about its middle `at`, along an axis; a cone if the top radius differs."""
     solid = Manifold.cylinder(length, radius, radius if top_radius is None else top_radius, sides, True)
     turns = {"z": (0, 0, 0), "x": (0, 90, 0), "y": (-90, 0, 0)}
     return solid.rotate(turns[axis]).translate(at)
@@ -41,7 +41,7 @@ def revolved(profile, sides=48):
 
 
 def extruded(outline, height):
-    """A polygon of (x, y), raised from z = 0."""
+    """A polygon of (x, y), extruded from z = 0."""
     outline = np.asarray(outline, float)
     x, y = outline.T
     if np.dot(x, np.roll(y, -1)) < np.dot(y, np.roll(x, -1)):
@@ -59,7 +59,7 @@ def loft(rings, closed=False):
 
 
 def tube(path, radius, sides=12, closed=False):
-    """A round bar along a path [m, 3]; `radius` is one, or one for each point."""
+    """A round bar along a path [m, 3]; `radius` is one for all points, or one per point."""
     path = np.asarray(path, float)
     ahead = unit(np.roll(path, -1, 0) - np.roll(path, 1, 0) if closed else np.gradient(path, axis=0))
     mean = np.abs(ahead).mean(0)
@@ -69,7 +69,7 @@ def tube(path, radius, sides=12, closed=False):
         left = unit(left - direction * np.dot(left, direction))
         lefts.append(left)
     lefts = np.array(lefts)
-    if closed:  # what is left over of the twist goes evenly round
+    if closed:  # the remaining twist is distributed evenly
         first = unit(left - ahead[0] * np.dot(left, ahead[0]))
         angle = math.atan2(np.dot(np.cross(first, lefts[0]), ahead[0]), np.dot(first, lefts[0]))
         share = np.arange(len(path))[:, None] / len(path) * angle

@@ -26,7 +26,7 @@ from .things import THINGS
 from .things.catalogue import CREASE_DEG, ENTRY, Model, may_be_thing
 
 STONE_SHAPES = 8
-SMALLEST_M = 1e-5  # shorter edges, which booleans leave, are taken out
+SMALLEST_M = 1e-5  # shorter edges, which booleans leave behind, are removed
 
 
 @dataclass
@@ -40,13 +40,13 @@ class Placed:
 
 
 def surface_of(solid):
-    """Triangles with normals, which are smooth where edges are blunt; those that single precision leaves no area are
-    taken out."""
+    """Triangles with normals, which are smooth at blunt edges. Triangles without area in single precision are
+    removed."""
     mesh = solid.simplify(SMALLEST_M).calculate_normals(0, CREASE_DEG).to_mesh()
     points = mesh.vert_properties[:, :3]
     a, b, c = np.moveaxis(points[mesh.tri_verts].astype(float), 1, 0)
     faces = mesh.tri_verts[np.any(np.cross(b - a, c - a) != 0, axis=1)]
-    normals = mesh.vert_properties[:, 3:6].round(6) + 0.0  # without the last bits, in which versions of numpy differ
+    normals = mesh.vert_properties[:, 3:6].round(6) + 0.0  # drops the last bits, in which versions of numpy differ
     return Surface(points, faces, normals)
 
 
@@ -60,7 +60,7 @@ def joined(surfaces):
 
 
 def surfaces_of(model):
-    """One surface of each material."""
+    """One surface per material."""
     by_material = {}
     for solid, material in model.parts:
         if solid.num_tri() > 0:
@@ -69,7 +69,7 @@ def surfaces_of(model):
 
 
 def centred(model):
-    """The model with the middle of its box above its origin."""
+    """The model, moved so that the middle of its box is above its origin."""
     low, high = bounds([solid for solid, _ in model.parts])
     offset = [*(-(low + high)[:2] / 2), 0]
     outlines = model.outlines and [outline + offset[:2] for outline in model.outlines]
@@ -77,7 +77,7 @@ def centred(model):
 
 
 class Spot:
-    """Where a thing may be: x_m and y_m of an entry, and anywhere on the floor where these are absent."""
+    """The area of a thing: x_m and y_m of an entry, or the whole floor if these are absent."""
 
     def __init__(self, x=None, y=None):
         self.laws = (x, y)
@@ -100,7 +100,7 @@ ANYWHERE = Spot()
 
 
 class World:
-    """`most` triangles, beyond which `refuse` is called with their number."""
+    """A budget of `most` triangles. Beyond it, `refuse` is called with their number."""
 
     def __init__(self, seed, most=math.inf, refuse=None):
         self.seed, self.most, self.refuse, self.triangles = seed, most, refuse, 0
@@ -117,7 +117,7 @@ class World:
         self.numbers[name] = self.numbers.get(name, 0) + 1
         return f"{name}_{self.numbers[name]}"
 
-    # The floor and what belongs to it.
+    # The floor and its parts.
 
     def add_floor(self, item):
         self.ground = Floor(item, self.seed)
@@ -125,7 +125,7 @@ class World:
         self.add("sea_floor", [(each, matter) for each in self.ground.surfaces()])
 
     def add_stones(self):
-        """After the things, which need more room."""
+        """Places the rocks after the things, which need more space."""
         self.add_rocks(self.ground.stones(self.seed, "rocks", 5, floors.MAX_ROCKS))
         self.add_pebbles(self.ground.stones(self.seed, "pebbles", 6, floors.MAX_PEBBLES))
 
@@ -145,7 +145,7 @@ class World:
                 if is_inside([outline + at], self.ground) and self.taken.is_clear([outline + at], 0.0):
                     break
             else:
-                item.fail(f"are {len(sizes)}, of which {number} found room; ask for fewer or smaller ones")
+                item.fail(f"are {len(sizes)}, of which {number} found room; ask for fewer or smaller")
             self.taken.add([outline + at], 0.0)
             tall = np.ptp(turned[:, 2])
             z = (self.ground.height(*(turned[:, :2] + at).T) - turned[:, 2]).max() - values["buried"] * tall
@@ -153,7 +153,7 @@ class World:
             self.add(self.number("rock"), [(surface, matter)], (*at, z))
 
     def add_pebbles(self, stones):
-        """All in one node; they may touch each other, as pebbles do."""
+        """Puts all pebbles in one node; they may touch each other."""
         if not stones:
             return
         _, values, sizes, rng = stones
@@ -210,11 +210,11 @@ class World:
                 tries = "at its place" if spot.is_fixed() else f"in {TRIES} tries"
                 item.fail(
                     f"asks for {count}, of which {number} found room {tries}: on the floor, and gap_m or more from others; "
-                    "give a larger floor, fewer things, smaller ones, or a smaller gap_m"
+                    "give a larger floor, fewer things, smaller things, or a smaller gap_m"
                 )
 
     def place(self, thing, values, rng, node, spot):
-        """Whether it found room."""
+        """Returns whether it found a place."""
         placed = {"body": self.place_body, "line": self.place_line, "structure": self.place_structure}[thing.kind]
         return placed(thing, values, rng, node, spot)
 

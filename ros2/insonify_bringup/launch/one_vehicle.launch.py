@@ -14,7 +14,7 @@ TOPICS = ("odometry", "sonar", "sonar/scan", "sonar/image")  # of config/insonif
 
 
 def default_deployment():
-    """The example that is installed next to the command `insonify`."""
+    """Returns the example that is installed with the command `insonify`."""
     command = shutil.which("insonify")
     return str(Path(command).resolve().parent.parent / "share/insonify/deploy/ros2_fls.yml") if command else ""
 

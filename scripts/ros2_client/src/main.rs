@@ -1,8 +1,8 @@
-//! A ROS 2 client that is not ours lists nodes and receives pings:
+//! An independent ROS 2 client, which lists nodes and receives pings:
 //!
 //!     cargo run --release --manifest-path scripts/ros2_client/Cargo.toml -- /auv sonar 10
 //!
-//! Namespace and name of the topic, and for how many seconds. Exits 1 where no ping came. ROS_DOMAIN_ID counts.
+//! Arguments: namespace and name of the topic, and duration in seconds. Exits with 1 if no ping arrived. Uses ROS_DOMAIN_ID.
 use futures::StreamExt;
 use ros2_client::{qos::History, *};
 use serde::{Deserialize, Serialize};

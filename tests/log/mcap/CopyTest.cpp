@@ -1,4 +1,4 @@
-// MCAP files cut and mended.
+// Cutting and repairing of MCAP files.
 #include <gmock/gmock.h>
 
 #include "components/log/Check.hpp"
@@ -11,7 +11,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/** Records of a file from a place on: kind and where each begins and ends [B]. */
+/** A record from a place on: its kind, begin and end [B]. */
 struct Place {
     Op op;
     uint64_t from, to;
@@ -36,14 +36,14 @@ protected:
         for (int64_t i = 1; i <= 3; ++i) {
             log.write(pose, {i}, smallPose(i));
             log.write(ping, {i}, smallPing(i));
-            log.flush();  // a chunk each
+            log.flush();  // one chunk each
         }
         log.close();
         whole = bytesOf(folder / "whole.0.mcap");
         for (const Place& place : recordsIn(whole))
             if (place.op == Op::Chunk) chunks.push_back(place);
     }
-    /** Copies what is whole of these bytes into bag/y.0.mcap, which must be valid, with an index. */
+    /** Copies the intact parts of these bytes to bag/y.0.mcap, which must be valid, with an index. */
     Copied repaired(const std::vector<char>& bytes) const {
         writeBytes(folder / "x.0.mcap", bytes);
         std::filesystem::remove_all(folder / "bag");
@@ -104,28 +104,28 @@ TEST_F(CopyTest, TheFilesOfALogBecomeOneAndAnotherFormatToo) {
     EXPECT_FALSE(check(folder / "z.0.log").diagnostic);
 }
 
-TEST_F(CopyTest, AFileThatIsCutShortKeepsItsWholeMessages) {
+TEST_F(CopyTest, ATruncatedFileKeepsItsCompleteMessages) {
     EXPECT_EQ(repaired({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(chunks[2].from)}).samples, 4u);
     EXPECT_THAT(pings(), ElementsAre(1, 2));
     const Copied within = repaired({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(chunks[2].to - 1)});
-    EXPECT_EQ(within.samples, 5u) << "the pose stands whole in what is left of the last chunk";
+    EXPECT_EQ(within.samples, 5u) << "the pose is complete in the rest of the last chunk";
     EXPECT_THAT(within.lost, testing::Not(IsEmpty()));
     EXPECT_THAT(pings(), ElementsAre(1, 2));
 }
 
-TEST_F(CopyTest, AnyCutLeavesAValidFileOfWhatIsWholeOrIsRefused) {
+TEST_F(CopyTest, AFileTruncatedAnywhereIsRepairedOrRefused) {
     size_t most = 0;
     for (size_t size = 0; size < whole.size(); size += 41) try {
             const size_t samples = repaired({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)}).samples;
             EXPECT_GE(samples, most) << size;
             most = samples;
         } catch (const types::ConfigError&) {
-            EXPECT_LT(size, chunks[0].to) << "no channel is told yet";
+            EXPECT_LT(size, chunks[0].to) << "no channel is declared yet";
         }
     EXPECT_EQ(most, 6u);
 }
 
-TEST_F(CopyTest, AChunkOfAnotherChecksumIsLeftOutAndTold) {
+TEST_F(CopyTest, AChunkWithAWrongChecksumIsOmittedAndReported) {
     std::vector<char> damaged = whole;
     damaged[chunks[1].to - 3] ^= 0x41;
     const Copied result = repaired(damaged);
@@ -135,7 +135,7 @@ TEST_F(CopyTest, AChunkOfAnotherChecksumIsLeftOutAndTold) {
                                                                   std::to_string(chunks[1].to)))));
 }
 
-TEST_F(CopyTest, ALostFirstChunkDoesNotTakeTheDeclarationsWithIt) {
+TEST_F(CopyTest, ALostFirstChunkDoesNotLoseTheDeclarations) {
     std::vector<char> damaged = whole;
     damaged[chunks[0].to - 3] ^= 0x41;
     EXPECT_EQ(repaired(damaged).samples, 4u);
@@ -157,10 +157,10 @@ TEST_F(CopyTest, AMissingIndexCostsNoMessage) {
     EXPECT_EQ(repaired(no_index).samples, 6u);
 }
 
-TEST_F(CopyTest, ADamagedLengthOrStrayBytesAreSearchedBehind) {
+TEST_F(CopyTest, SearchesBehindADamagedLengthOrForeignBytes) {
     std::vector<char> damaged = whole;
     damaged[chunks[1].from + 5] = 0x7f;
-    EXPECT_EQ(repaired(damaged).samples, 6u) << "its messages stand whole behind its header";
+    EXPECT_EQ(repaired(damaged).samples, 6u) << "its messages are complete behind its header";
     std::vector<char> stray = whole;
     stray.insert(stray.begin() + static_cast<ptrdiff_t>(chunks[1].from), {1, 2, 3, 0, 0});
     EXPECT_EQ(repaired(stray).samples, 6u);
@@ -173,7 +173,7 @@ TEST_F(CopyTest, ADamagedLengthOrStrayBytesAreSearchedBehind) {
     EXPECT_EQ(repaired(begins).samples, 6u);
 }
 
-TEST_F(CopyTest, AnyByteMayBeWrongAndNoMoreThanItsChunkIsLost) {
+TEST_F(CopyTest, AnyWrongByteCostsAtMostItsChunk) {
     for (size_t byte = 0; byte < whole.size(); byte += 23) {
         std::vector<char> damaged = whole;
         damaged[byte] = static_cast<char>(~damaged[byte]);
@@ -181,7 +181,7 @@ TEST_F(CopyTest, AnyByteMayBeWrongAndNoMoreThanItsChunkIsLost) {
     }
 }
 
-TEST_F(CopyTest, WhatHoldsNothingIsRefused) {
+TEST_F(CopyTest, RefusesEmptyFiles) {
     EXPECT_THROW(repaired(std::vector<char>(500, 'x')), types::ConfigError);
     EXPECT_THROW(repaired({}), types::ConfigError);
     EXPECT_THROW(copyLog({folder / "whole.0.mcap"}, folder / "whole.0.mcap"), types::ConfigError);

@@ -1,4 +1,4 @@
-// MCAP files that are cut off, changed, or none.
+// Truncated, changed and invalid MCAP files.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -10,7 +10,7 @@ namespace {
 
 class DamageTest : public testing::Test {
 protected:
-    /** Reads all that can be read of a file; the number of samples. Lets nothing through but ConfigError. */
+    /** Reads all readable samples of a file; returns their number. Only ConfigError may be thrown. */
     size_t readAll(const std::vector<char>& bytes) {
         writeBytes(path_, bytes);
         const auto log = openLog(path_);
@@ -48,7 +48,7 @@ TEST_F(DamageTest, AWholeFileIsValid) {
     EXPECT_EQ(readAll(whole_), 5u);
 }
 
-TEST_F(DamageTest, AFileCutOffAnywhereKeepsItsWholeChunksAndIsNotComplete) {
+TEST_F(DamageTest, AFileTruncatedAnywhereKeepsItsCompleteChunksAndIsIncomplete) {
     size_t with_samples = 0;
     writeBytes(path_, whole_);
     for (size_t size = whole_.size(); size-- > 0;) {
@@ -67,7 +67,7 @@ TEST_F(DamageTest, AFileCutOffAnywhereKeepsItsWholeChunksAndIsNotComplete) {
     EXPECT_GT(with_samples, whole_.size() / 3);
 }
 
-TEST_F(DamageTest, FlushedMessagesOutliveTheWriter) {
+TEST_F(DamageTest, FlushedMessagesSurviveTheWriter) {
     SampleWriter log(folder_ / "whole.mcap", {});
     const size_t stream = log.addStream<double>("a.b", {});
     log.write(stream, {1}, 0.5);
@@ -118,10 +118,10 @@ TEST_F(DamageTest, TheFirstWrongByteIsNamed) {
     EXPECT_EQ(verdictOf(changed), "byte 8: the first record is no header");
     changed = whole_;
     changed.resize(changed.size() + 1);
-    EXPECT_EQ(verdictOf(changed), "byte " + std::to_string(whole_.size()) + ": the file goes on after its end");
+    EXPECT_EQ(verdictOf(changed), "byte " + std::to_string(whole_.size()) + ": the file continues after its end");
 }
 
-TEST_F(DamageTest, WhatIsNoMcapFileIsRefused) {
+TEST_F(DamageTest, RefusesOtherFiles) {
     EXPECT_THAT(verdictOf({'x', 'y'}), testing::EndsWith("damaged.mcap: is no MCAP file"));
     EXPECT_THROW(openLog(folder_ / "none.mcap"), types::ConfigError);
 }

@@ -1,4 +1,4 @@
-// Our files read by others' readers, and theirs by ours.
+// Files of this program read by other programs, and the reverse.
 #include <gmock/gmock.h>
 
 #include "tests/log/mcap/SmallFile.hpp"
@@ -21,7 +21,7 @@ protected:
     const Folder folder_, answers_;
 };
 
-TEST_F(PythonTest, McapAndRosbagsReadWhatWeWrite) {
+TEST_F(PythonTest, McapAndRosbagsReadWrittenFiles) {
     smallFile(folder_ / "x.0.mcap");
     EXPECT_EQ(
         says("read_mcap.py", (folder_ / "x.0.mcap").string()),
@@ -49,7 +49,7 @@ TEST_F(PythonTest, RosbagsReadsALogOfSeveralFiles) {
                 testing::HasSubstr("rosbags: 6 messages of /clock, /sonar/ping in 0.002001 ms\n"));
 }
 
-TEST_F(PythonTest, FilesOfOthersAreReadCompressedOrNot) {
+TEST_F(PythonTest, ReadsFilesOfOtherProgramsCompressedOrNot) {
     for (const std::string compression : {"none", "lz4", "zstd"}) {
         const auto path = folder_ / (compression + ".mcap");
         ASSERT_EQ(says("write_mcap.py", path.string() + " " + compression), "");

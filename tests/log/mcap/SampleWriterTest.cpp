@@ -31,7 +31,7 @@ void expectSame(const types::Sonar& a, const types::Sonar& b) {
     EXPECT_EQ(a.beam_height.isUnknown(), b.beam_height.isUnknown());
 }
 
-TEST(SampleWriterTest, PingsAndPosesComeBackAsTheyWere) {
+TEST(SampleWriterTest, PingsAndPosesAreReadBackUnchanged) {
     const Folder folder;
     smallFile(folder / "x.0.mcap");
     const auto log = openLog(folder / "x.0.mcap");
@@ -65,7 +65,7 @@ TEST(SampleWriterTest, ByDefaultPingsKeepTheirBinsAndPosesAreEastNorthUp) {
     EXPECT_EQ(McapConfig().dtype, ros::ImageType::Float32);
 }
 
-/** What the messages of a stream say, in order. */
+/** Returns the messages of a stream, in order. */
 template <class Message>
 std::vector<Message> messagesOf(log::Reader& log, const std::string& stream) {
     std::vector<Message> messages;
@@ -73,7 +73,7 @@ std::vector<Message> messagesOf(log::Reader& log, const std::string& stream) {
     return messages;
 }
 
-TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
+TEST(SampleWriterTest, AStreamMayHaveItsOwnTopicFramesAndFrequency) {
     const Folder folder;
     McapConfig config;
     config.streams = {{"sonar.ping", {"/auv/sonar", "sonar_link", {}}}, {"vehicle.pose", {"auv/pose", "odom", "auv"}}};
@@ -104,7 +104,7 @@ TEST(SampleWriterTest, AStreamMayHaveATopicFramesAndAFrequencyOfItsOwn) {
     EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*open, "/other/sonar.ping").at(0).ping_info.frequency, 0);
 }
 
-TEST(SampleWriterTest, ANamespaceAndAFramePrefixHoldForTopicsAndFrames) {
+TEST(SampleWriterTest, NamespaceAndFramePrefixApplyToTopicsAndFrames) {
     const Folder folder;
     McapConfig config;
     config.names.setNamespace("auv1");
@@ -130,7 +130,7 @@ TEST(SampleWriterTest, ANamespaceAndAFramePrefixHoldForTopicsAndFrames) {
     EXPECT_EQ(messagesOf<ros::Odometry>(*log, "b.pose").at(0).header.frame_id, "odom");
 }
 
-TEST(SampleWriterTest, AFrequencyIsReadWhateverNumbersTheHostHas) {
+TEST(SampleWriterTest, ReadsAFrequencyInAnyLocale) {
     const test::CommaLocale german;
     if (!german.isThere()) GTEST_SKIP() << german.why();
     const Folder folder;
@@ -143,7 +143,7 @@ TEST(SampleWriterTest, AFrequencyIsReadWhateverNumbersTheHostHas) {
     EXPECT_EQ(messagesOf<ros::ProjectedSonarImage>(*log, "sonar.ping").at(0).ping_info.frequency, 500);
 }
 
-TEST(SampleWriterTest, AStreamIsFoundByTheTopicThatItWasGiven) {
+TEST(SampleWriterTest, AStreamIsFoundByItsConfiguredTopic) {
     const Folder folder;
     McapConfig config;
     config.streams["receiver.ping"].topic = "/auv/sonar";
@@ -171,11 +171,11 @@ TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
         log.addStream<types::Sonar>("sonar.ping");
         FAIL() << "nothing was thrown";
     } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping is that of another stream"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping belongs to another stream"));
     }
 }
 
-TEST(SampleWriterTest, TopicsThatAreNoneOrTwiceThereAreTold) {
+TEST(SampleWriterTest, ReportsInvalidAndDuplicateTopics) {
     McapConfig config;
     config.streams["a.ping"].topic = "/auv/1sonar";
     config.streams["b.ping"].topic = "/auv/sonar";
@@ -184,10 +184,10 @@ TEST(SampleWriterTest, TopicsThatAreNoneOrTwiceThereAreTold) {
     config.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 2u);
     EXPECT_EQ(diagnostics[0].path, "streams.a.ping.topic");
-    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, as that of b.ping; must be another");
+    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, the topic of b.ping; must be another");
 }
 
-TEST(SampleWriterTest, NanosecondsOfAStampThatWasReadComeBack) {
+TEST(SampleWriterTest, NanosecondsOfAReadStampAreKept) {
     const Folder folder;
     ros::fineStamps().note({7, 123'456'789});
     {
@@ -210,7 +210,7 @@ TEST(SampleWriterTest, AStreamIsFoundByItsTopic) {
               3u);
 }
 
-TEST(SampleWriterTest, OtherOrdersAndAxesAreReadAsTheyWereWritten) {
+TEST(SampleWriterTest, ReadsOtherOrdersAndAxesAsWritten) {
     const Folder folder;
     McapConfig config;
     config.order = ros::ImageOrder::BeamMajor;
@@ -267,7 +267,7 @@ TEST(SampleWriterTest, EveryTypeOfALogHasItsMessage) {
     EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
 }
 
-TEST(SampleWriterTest, WhatNoMessageTellsIsAnError) {
+TEST(SampleWriterTest, ASampleWithoutAMessageIsAnError) {
     const Folder folder;
     SampleWriter log(folder / "x.mcap", {});
     const size_t stream = log.addStream<types::Image>("fan.image", {});
@@ -283,7 +283,7 @@ TEST(SampleWriterTest, WhatNoMessageTellsIsAnError) {
     }
 }
 
-TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
+TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileIsReadableAlone) {
     const Folder folder;
     {
         SampleWriter log(folder / "x.0.mcap", {});
@@ -308,7 +308,7 @@ TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileStandsAlone) {
     EXPECT_THAT(bag, testing::HasSubstr("name: \"/sonar/ping\"\n        type: marine_acoustic_msgs/msg/"));
 }
 
-TEST(SampleWriterTest, EachStreamHasItsOwnMetadataInEachFileAndTheDeploymentStandsOnce) {
+TEST(SampleWriterTest, EachFileHasTheStreamsMetadataAndTheDeploymentOnce) {
     const Folder folder, other;
     const Metadata first = {{"insonify_deployment", "tasks: {}"}, {"insonify_seed", "7"}, {"rock_task_model", "a::T"}},
                    second = {{"insonify_seed", "7"}, {"own", "x"}};
@@ -330,7 +330,7 @@ TEST(SampleWriterTest, EachStreamHasItsOwnMetadataInEachFileAndTheDeploymentStan
 TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
     const Folder folder;
     smallFile(folder / "x.0.mcap");
-    smallFile(folder / "x.0.mcap");  // the same again
+    smallFile(folder / "x.0.mcap");  // the same file again
     try {
         smallFile(folder / "y.0.mcap");
         FAIL();
@@ -340,7 +340,7 @@ TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
     }
 }
 
-TEST(SampleWriterTest, MoreThanAChunkComesBackWhole) {
+TEST(SampleWriterTest, MoreThanAChunkIsReadBack) {
     const Folder folder;
     const std::string text(1 << 20, 'x');
     {
@@ -354,7 +354,7 @@ TEST(SampleWriterTest, MoreThanAChunkComesBackWhole) {
     EXPECT_FALSE(check(folder / "x.mcap").diagnostic);
 }
 
-TEST(SampleWriterTest, AFullDiskIsTold) {
+TEST(SampleWriterTest, ReportsAFullDisk) {
     const Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.mcap");
     EXPECT_THROW(SampleWriter(folder / "x.mcap", {}), std::runtime_error);

@@ -6,7 +6,7 @@
 
 namespace insonify::log::mcap {
 
-/** Beam 0 of pings and bins 1, 2, 3...; the last bin is NaN. */
+/** A ping with beam 0 and bins 1, 2, 3...; the last bin is NaN. */
 inline types::Sonar smallPing(int64_t time) {
     types::Sonar ping;
     ping.time = {time};
@@ -30,7 +30,7 @@ inline types::Pose smallPose(int64_t time) {
     return pose;
 }
 
-/** Which gives back every bit of an orientation: as Rock has it. */
+/** This frame keeps every bit of an orientation. */
 inline McapConfig asItIs() {
     McapConfig config;
     config.world_frame = ros::WorldFrame::AsIs;

@@ -14,7 +14,7 @@ const Metadata with_mount = {
     {"insonify_mount", R"({"position": [1, 2, 3], "roll_deg": 0, "pitch_deg": 0, "yaw_deg": 90})"},
     {"insonify_body", "vehicle.pose"}};
 
-/** Messages of a topic of a file, which need be no stream. */
+/** Returns the messages of a topic in a file, which need not be a stream. */
 template <class Message>
 std::vector<Message> messagesOn(const std::filesystem::path& path, const std::string& topic) {
     File file(path);
@@ -56,7 +56,7 @@ protected:
     const std::filesystem::path path = folder / "x.0.mcap";
 };
 
-TEST_F(TransformsTest, CountAsNoSamplesAndAreNoStreams) {
+TEST_F(TransformsTest, AreNeitherSamplesNorStreams) {
     {
         SampleWriter log(path, {});
         const size_t ping = log.addStream<types::Sonar>("sonar.ping", with_mount);
@@ -79,11 +79,12 @@ TEST_F(TransformsTest, CountAsNoSamplesAndAreNoStreams) {
     EXPECT_EQ(log->streams()[2].metadata, (Metadata{{"own", "x"}}));
     std::vector<double> numbers;
     log->forEach<double>("late.number", [&](double number, const SampleRef&) { numbers.push_back(number); });
-    EXPECT_THAT(numbers, ElementsAre(2.5)) << "each sample is its stream's, after topics that are none";
+    EXPECT_THAT(numbers, ElementsAre(2.5))
+        << "each sample belongs to its stream, also after topics that are not streams";
     EXPECT_EQ(log->find("/tf"), nullptr);
 }
 
-TEST_F(TransformsTest, MetadataAfterThemIsThatOfItsStreams) {
+TEST_F(TransformsTest, LaterMetadataBelongsToItsStreams) {
     {
         SampleWriter log(path, {});
         log.write(log.addStream<types::Pose>("vehicle.pose"), {1}, smallPose(1));
@@ -93,7 +94,7 @@ TEST_F(TransformsTest, MetadataAfterThemIsThatOfItsStreams) {
     EXPECT_EQ(log->streams().at(1).metadata, (Metadata{{"own", "x"}}));
 }
 
-TEST_F(TransformsTest, AreNotWrittenWhereTheyAreNotWanted) {
+TEST_F(TransformsTest, AreNotWrittenIfSwitchedOff) {
     McapConfig config;
     config.transforms = false;
     smallFile(path, config);
@@ -102,10 +103,10 @@ TEST_F(TransformsTest, AreNotWrittenWhereTheyAreNotWanted) {
     std::filesystem::create_directory(folder / "copy");
     copyLog({path}, folder / "copy/y.0.mcap");
     File copy(folder / "copy/y.0.mcap");
-    EXPECT_EQ(copy.contents().channels.size(), 2u) << "a cut has what its log has";
+    EXPECT_EQ(copy.contents().channels.size(), 2u) << "a cut has the same as its log";
 }
 
-TEST_F(TransformsTest, AFramePrefixIsBeforeABodyWithoutAName) {
+TEST_F(TransformsTest, AFramePrefixAppliesToABodyWithoutAName) {
     McapConfig config;
     ASSERT_TRUE(config.names.setFramePrefix("auv1"));
     {
@@ -115,7 +116,7 @@ TEST_F(TransformsTest, AFramePrefixIsBeforeABodyWithoutAName) {
     EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("map auv1/base_link"));
 }
 
-TEST_F(TransformsTest, ATopicOfAStreamStaysThatStreams) {
+TEST_F(TransformsTest, AStreamKeepsItsTopic) {
     McapConfig config;
     config.streams["vehicle.pose"].topic = "/tf";
     smallFile(path, config);
@@ -124,7 +125,7 @@ TEST_F(TransformsTest, ATopicOfAStreamStaysThatStreams) {
     EXPECT_EQ(openLog(path)->find("/tf")->name, "vehicle.pose");
 }
 
-TEST_F(TransformsTest, AFrameHasOneParentAndOnlyPosesThatCanBe) {
+TEST_F(TransformsTest, AFrameHasOneParentAndOnlyValidPoses) {
     {
         SampleWriter log(path, {});
         const size_t ping = log.addStream<types::Sonar>("sonar.ping", with_mount),
@@ -150,7 +151,7 @@ TEST_F(TransformsTest, AFrameHasOneParentAndOnlyPosesThatCanBe) {
         log.write(unnamed, {5}, poseOf(5, "", ""));
     }
     EXPECT_THAT(childrenOn(path, "/tf"), ElementsAre("world truth", "world body", "map base_link"));
-    EXPECT_THAT(childrenOn(path, "/tf_static"), ElementsAre("body sonar")) << "of the body that the pings name";
+    EXPECT_THAT(childrenOn(path, "/tf_static"), ElementsAre("body sonar")) << "for the body in the pings";
     const auto mount = transformsOn(path, "/tf_static").at(0).transform;
     EXPECT_EQ(mount.translation, (ros::Vector3{1, 2, 3}));
 }
@@ -194,7 +195,7 @@ TEST_F(TransformsTest, MountsAreInEachFileOfALogAndWithoutPosesBelowBaseLink) {
         first = std::min(first, at.log_ns);
         if (contents.channels.at(at.channel).topic == "/tf_static") mounts = at.log_ns;
     }
-    EXPECT_EQ(mounts, first) << "a player has them from the start";
+    EXPECT_EQ(mounts, first) << "available from the start";
 }
 
 }  // namespace

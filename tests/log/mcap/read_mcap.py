@@ -1,4 +1,4 @@
-"""Prints what mcap and rosbags find in a file and its bag: python3 read_mcap.py FOLDER/x.0.mcap"""
+"""Prints the contents of a file and its bag by mcap and rosbags: python3 read_mcap.py FOLDER/x.0.mcap"""
 
 import pathlib
 import struct

@@ -1,4 +1,4 @@
-"""Writes 50 PoseStamped on /nav/pose and a type that is not ours with mcap: python3 write_mcap.py FILE COMPRESSION"""
+"""Writes 50 PoseStamped on /nav/pose and a foreign type with mcap: python3 write_mcap.py FILE COMPRESSION"""
 
 import sys
 

@@ -19,11 +19,11 @@ std::vector<char> with(std::vector<char> bytes, uint64_t at, T value) {
 
 class CheckTest : public testing::Test {
 protected:
-    /** The first wrong byte of a log of these bytes, which lies alone. */
+    /** Returns the first wrong byte of a log of these bytes, without an index. */
     Diagnostic wrongIn(const std::vector<char>& bytes) const {
         writeBytes(folder / "x.0.log", bytes);
         const Verdict verdict = check(folder / "x.0.log");
-        EXPECT_TRUE(verdict.diagnostic) << "the log was taken";
+        EXPECT_TRUE(verdict.diagnostic) << "the log was accepted";
         return verdict.diagnostic.value_or(Diagnostic{});
     }
     const Folder folder;
@@ -31,7 +31,7 @@ protected:
     const std::vector<uint64_t> blocks = sampleBlocks(folder / "whole.0.log");
 };
 
-TEST_F(CheckTest, TakesWhatTheWriterWroteWithItsIndex) {
+TEST_F(CheckTest, AcceptsTheWritersLogAndIndex) {
     ASSERT_TRUE(std::filesystem::exists(folder / "whole.0.idx"));
     const Verdict verdict = check(folder / "whole.0.log");
     EXPECT_FALSE(verdict.diagnostic) << verdict.diagnostic->message;
@@ -76,7 +76,7 @@ TEST_F(CheckTest, NamesAPingThatContradictsItself) {
     EXPECT_THAT(wrongIn(with(whole, bin_count, uint32_t{4})).message, HasSubstr("other numbers of bins"));
 }
 
-TEST_F(CheckTest, NamesWhatIsWrongInADeclaration) {
+TEST_F(CheckTest, NamesErrorsInADeclaration) {
     const uint64_t first = sizeof(Prologue);
     EXPECT_EQ(wrongIn(with(whole, first + 2, uint16_t{1})).byte, first + 2);
     EXPECT_THAT(wrongIn(with(whole, first + 2, uint16_t{1})).message, HasSubstr("it must be 0: in order"));
@@ -90,12 +90,12 @@ TEST_F(CheckTest, NamesWhatIsWrongInADeclaration) {
     EXPECT_EQ(wrongIn(with(whole, metadata, ' ')).byte, byteOf("rock_orocos_type_name")) << "where indentation ends";
 }
 
-TEST_F(CheckTest, TimesThatRunBackwardsAreWrong) {
+TEST_F(CheckTest, RejectsTimesThatRunBackwards) {
     EXPECT_EQ(wrongIn(with(whole, blocks[3] + 8 + 12, 0u)).byte, blocks[3] + 8 + 8);
     EXPECT_EQ(wrongIn(with(whole, blocks[3] + 8 + 4, 0u)).byte, blocks[3] + 8);
 }
 
-TEST_F(CheckTest, AnIndexOfAnotherLogIsWrong) {
+TEST_F(CheckTest, RejectsAnIndexOfAnotherLog) {
     std::vector<char> index = bytesOf(folder / "whole.0.idx");
     writeBytes(folder / "whole.0.idx", with(index, 25, uint64_t{0}));
     EXPECT_FALSE(check(folder / "whole.0.log").diagnostic) << "copying a log changes its time";
@@ -106,7 +106,7 @@ TEST_F(CheckTest, AnIndexOfAnotherLogIsWrong) {
     EXPECT_EQ(verdict.diagnostic->byte, index.size() - 1);
 }
 
-TEST_F(CheckTest, EveryCutThatIsNotBetweenBlocksIsWrong) {
+TEST_F(CheckTest, RejectsATruncationWithinABlock) {
     const std::set<uint64_t> ends(blocks.begin(), blocks.end());
     for (uint64_t size = blocks[0]; size < whole.size(); ++size) {
         writeBytes(folder / "x.0.log", {whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)});

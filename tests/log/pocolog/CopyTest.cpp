@@ -15,7 +15,7 @@ using testing::IsEmpty;
 
 class CopyTest : public testing::Test {
 protected:
-    /** Copies x.0.log into y.0.log, which must be a valid log. */
+    /** Copies x.0.log to y.0.log, which must be a valid log. */
     Copied copied(const Selection& selection = {}, AtDamage at_damage = AtDamage::Stop) const {
         const Copied result = copyLog({folder / "x.0.log"}, folder / "y.0.log", {at_damage, selection});
         const Verdict verdict = check(folder / "y.0.log");
@@ -56,7 +56,7 @@ TEST_F(CopyTest, ASpanOfTimeOrNumbersAndSomeStreamsCanBeCutOut) {
     EXPECT_EQ(copied({.from = {100}}).samples, 0u);
 }
 
-TEST_F(CopyTest, WhatStandsBehindADamagedBlockIsKept) {
+TEST_F(CopyTest, KeepsSamplesBehindADamagedBlock) {
     std::vector<char> damaged = whole;
     std::fill_n(damaged.begin() + static_cast<ptrdiff_t>(blocks[1]), 20, '\x5a');
     const Copied result = repaired(damaged);
@@ -67,7 +67,7 @@ TEST_F(CopyTest, WhatStandsBehindADamagedBlockIsKept) {
     EXPECT_THAT(result.lost[0], HasSubstr("there is no block"));
 }
 
-TEST_F(CopyTest, ALogWithStrayBytesOrWithoutItsEndKeepsAllWholeSamples) {
+TEST_F(CopyTest, ALogWithForeignBytesOrWithoutItsEndKeepsAllCompleteSamples) {
     std::vector<char> stray = whole;
     stray.insert(stray.begin() + static_cast<ptrdiff_t>(blocks[2]), {1, 2, 3, 0, 0});
     EXPECT_EQ(repaired(stray).samples, 5u);
@@ -85,7 +85,7 @@ TEST_F(CopyTest, ADamagedPrologueCostsNoSample) {
     EXPECT_EQ(bytesOf(folder / "y.0.log"), whole);
 }
 
-TEST_F(CopyTest, ASampleThatIsDamagedWithinIsLeftOutAndTold) {
+TEST_F(CopyTest, ADamagedSampleIsOmittedAndReported) {
     std::vector<char> damaged = whole;
     std::fill_n(damaged.begin() + static_cast<ptrdiff_t>(blocks[1] + sample_header + 8), 8, '\x7f');
     const Copied result = repaired(damaged);
@@ -93,7 +93,7 @@ TEST_F(CopyTest, ASampleThatIsDamagedWithinIsLeftOutAndTold) {
     EXPECT_THAT(result.lost, ElementsAre(testing::AllOf(HasSubstr("sonar.ping"), HasSubstr("announces"))));
 }
 
-TEST_F(CopyTest, AnyByteOfASampleMayBeWrongAndTheOthersAreKept) {
+TEST_F(CopyTest, AnyWrongByteOfASampleCostsNoOtherSample) {
     for (size_t byte = blocks[0]; byte < whole.size(); byte += 3) {
         std::vector<char> damaged = whole;
         damaged[byte] = static_cast<char>(~damaged[byte]);
@@ -131,7 +131,7 @@ TEST_F(CopyTest, TheFilesOfALogBecomeOne) {
     EXPECT_THAT(timesOf("new.stream"), ElementsAre(4));
 }
 
-/** Two streams without samples, a.b of that type. */
+/** Two streams without samples; a.b has that type. */
 void writeStream(const std::filesystem::path& path, const std::string& type, const std::string& registry) {
     Writer log(path);
     log.declare("a.b", type, registry, {});
@@ -150,11 +150,11 @@ TEST_F(CopyTest, StreamsOfOneNameAreNotJoinedWhenTheirTypesOrLayoutsDiffer) {
         return std::string();
     };
     EXPECT_THAT(message("/float", "<typelib/>", {}),
-                testing::AllOf(HasSubstr("x.1.log"), HasSubstr("a.b: is /float; in the log before it was /double")));
+                testing::AllOf(HasSubstr("x.1.log"), HasSubstr("a.b: is /float; in the previous log it was /double")));
     EXPECT_THAT(message("/double", "<other/>", {}),
-                HasSubstr("a.b: is /double of another layout; in the log before it was /double"));
+                HasSubstr("a.b: is /double of another layout; in the previous log it was /double"));
     EXPECT_FALSE(std::filesystem::exists(folder / "y.0.log")) << "refused before anything is written";
-    EXPECT_EQ(message("/float", "<typelib/>", {.streams = {"c.d"}}), "") << "what is not copied may differ";
+    EXPECT_EQ(message("/float", "<typelib/>", {.streams = {"c.d"}}), "") << "streams that are not copied may differ";
     EXPECT_EQ(message("/double", "<typelib/>", {}), "");
 }
 

@@ -1,4 +1,4 @@
-// Logs that end too early or hold what no writer wrote.
+// Logs that end too early or have invalid contents.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -9,7 +9,7 @@
 namespace insonify::log::pocolog {
 namespace {
 
-/** Reads everything that can be decoded and returns how many pings that were. */
+/** Reads all readable samples; returns the number of pings. */
 size_t readAll(const std::filesystem::path& path) {
     Reader reader(path);
     size_t pings = 0;
@@ -27,7 +27,7 @@ size_t readAll(const std::filesystem::path& path) {
     return pings;
 }
 
-TEST(DamageTest, ALogCutAtAnyByteOfItsLastBlockHoldsAllBlocksBefore) {
+TEST(DamageTest, ALogTruncatedInItsLastBlockKeepsAllEarlierBlocks) {
     Folder folder;
     const std::vector<char> whole = smallLog(folder);
     const uint64_t last = sampleBlocks(folder / "whole.0.log").back();
@@ -43,7 +43,7 @@ TEST(DamageTest, ALogCutAtAnyByteOfItsLastBlockHoldsAllBlocksBefore) {
     EXPECT_TRUE(Reader(folder / "cut.0.log").complete()) << "cut between two blocks";
 }
 
-TEST(DamageTest, ALogCutAnywhereIsReadUpToThere) {
+TEST(DamageTest, ALogTruncatedAnywhereIsReadUpToThere) {
     Folder folder;
     const std::vector<char> whole = smallLog(folder);
     size_t before = 0;
@@ -66,7 +66,7 @@ TEST(DamageTest, ATailOfZerosEndsTheLog) {
     EXPECT_EQ(reader.samples().size(), 5u);
 }
 
-TEST(DamageTest, ABlockThatClaimsFourGigabytesTakesNoMemory) {
+TEST(DamageTest, ABlockWithASizeOfFourGigabytesAllocatesNothing) {
     Folder folder;
     std::vector<char> bytes = smallLog(folder);
     const uint64_t last = sampleBlocks(folder / "whole.0.log").back();
@@ -91,7 +91,7 @@ TEST(DamageTest, ASampleOfAnUndeclaredStreamEndsTheLog) {
     EXPECT_THAT(reader.diagnostic(), testing::HasSubstr("not declared"));
 }
 
-TEST(DamageTest, AnyByteMayBeWrongWithoutACrash) {
+TEST(DamageTest, AnyWrongByteCausesNoCrash) {
     Folder folder;
     const std::vector<char> whole = smallLog(folder);
     std::mt19937 random(1);

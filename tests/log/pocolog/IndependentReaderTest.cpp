@@ -1,4 +1,4 @@
-// Our logs, read by a program that shares nothing with this one: read_log.py knows Rock's format and no type.
+// Logs read by an independent program: read_log.py knows Rock's format and no type.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>

@@ -14,7 +14,7 @@ uint64_t number(const std::vector<char>& bytes, size_t position) {
     return value;
 }
 
-TEST(IndexTest, HasRocksBytes) {
+TEST(IndexTest, HasTheBytesOfRocksIndex) {
     const StreamIndex stream{16, {1'000'000}, {3'000'000}, {{300, {1'000'000}}, {400, {2'500'000}}}};
     const StreamIndex empty{200, {}, {}, {}};
     const std::vector<char> bytes = indexBytes({stream, empty}, 500, {7});
@@ -28,7 +28,7 @@ TEST(IndexTest, HasRocksBytes) {
                                               300, 0,   400,     1500000}));
 }
 
-TEST(IndexTest, PointsAtTheBlocksOfTheLogAndKnowsItsSize) {
+TEST(IndexTest, HasTheBlocksOfTheLogAndItsSize) {
     Folder folder;
     Writer log(folder / "x.0.log");
     const size_t stream = log.addStream<double>("a.b");
@@ -49,7 +49,7 @@ TEST(IndexTest, PointsAtTheBlocksOfTheLogAndKnowsItsSize) {
     }
 }
 
-TEST(IndexTest, AnOldIndexGoesWhenItsLogIsWrittenAgain) {
+TEST(IndexTest, RemovesAnOldIndexWhenItsLogIsWrittenAgain) {
     Folder folder;
     writeBytes(folder / "x.0.idx", {'o', 'l', 'd'});
     Writer log(folder / "x.0.log");

@@ -22,7 +22,7 @@ TEST(MetadataTest, RocksWaysOfWritingScalarsAreRead) {
     EXPECT_EQ(got, (Metadata{{"rock_task_name", "sonar"}, {"rock_stream_type", "port"}, {"key", "a b"}}));
 }
 
-TEST(MetadataTest, WhatIsNoMapIsPassedOver) {
+TEST(MetadataTest, IgnoresTextsThatAreNotAMap) {
     EXPECT_TRUE(metadataFromYaml("").empty());
     EXPECT_TRUE(metadataFromYaml("--- {}\n").empty());
     EXPECT_TRUE(metadataFromYaml("- a\n- \"\\x\n").empty());

@@ -18,7 +18,7 @@ void append(std::vector<char>& bytes, const T& value) {
     bytes.insert(bytes.end(), data, data + sizeof value);
 }
 
-/** A log by another hand: zero padding, plain metadata, any flags, one stream of any type. */
+/** A log written by hand: zero padding, plain metadata, any flags, one stream of any type. */
 std::vector<char> foreignLog(const std::string& type, uint32_t flags = 0) {
     std::vector<char> bytes(magic.begin(), magic.end());
     append(bytes, format_version);
@@ -51,12 +51,12 @@ std::string messageFor(const std::filesystem::path& path) {
     return "no error";
 }
 
-TEST(ReaderTest, SamplesOfAllStreamsComeInTheOrderOfTheFile) {
+TEST(ReaderTest, SamplesOfAllStreamsAreInFileOrder) {
     Folder folder;
     Writer log(folder / "x.0.log");
     const size_t a = log.addStream<double>("t.a");
     log.write(a, {10}, 1.0);
-    const size_t b = log.addStream<int32_t>("t.b");  // declared in mid-file
+    const size_t b = log.addStream<int32_t>("t.b");  // declared in the middle of the file
     log.write(b, {20}, 2);
     log.write(a, {30}, 3.0);
     log.close();
@@ -69,7 +69,7 @@ TEST(ReaderTest, SamplesOfAllStreamsComeInTheOrderOfTheFile) {
     EXPECT_THAT(values, testing::ElementsAre(1, 3));
 }
 
-TEST(ReaderTest, StreamsTellCountsSpanAndRate) {
+TEST(ReaderTest, StreamsHaveCountSpanAndRate) {
     Folder folder;
     Writer log(folder / "x.0.log");
     const size_t stream = log.addStream<types::Pose>("vehicle.pose");
@@ -95,7 +95,7 @@ TEST(ReaderTest, StreamsTellCountsSpanAndRate) {
     EXPECT_EQ(silent.rate(), 0);
 }
 
-TEST(ReaderTest, AStreamOfUnknownTypeIsListedAndPassedOver) {
+TEST(ReaderTest, AStreamOfUnknownTypeIsListedAndSkipped) {
     Folder folder;
     std::vector<char> bytes = foreignLog("/gps/Solution");
     appendSample(bytes, {1, 2, 3}, false);
@@ -130,7 +130,7 @@ TEST(ReaderTest, CompressedSamplesAreRead) {
     EXPECT_THROW(reader.read(reader.samples().at(1), text), types::ConfigError);
 }
 
-TEST(ReaderTest, WhatIsNoLogIsAConfigurationErrorThatSaysSo) {
+TEST(ReaderTest, AFileThatIsNotALogIsAConfigurationError) {
     Folder folder;
     EXPECT_THAT(messageFor(folder / "absent.log"), HasSubstr("No such file"));
     EXPECT_THAT(messageFor(folder.path()), HasSubstr("is not a file"));
@@ -146,14 +146,14 @@ TEST(ReaderTest, WhatIsNoLogIsAConfigurationErrorThatSaysSo) {
     EXPECT_THAT(messageFor(folder / "old.log"), HasSubstr("version 1"));
 }
 
-TEST(ReaderTest, AStreamThatIsNotThereIsAnsweredWithThoseThatAre) {
+TEST(ReaderTest, AMissingStreamIsReportedWithTheExistingStreams) {
     Folder folder;
     writeBytes(folder / "x.0.log", foreignLog("/double"));
     Reader reader(folder / "x.0.log");
     EXPECT_EQ(reader.find("sonar.ping"), nullptr);
     try {
         reader.indexOf("sonar.ping");
-        FAIL() << "found what is not there";
+        FAIL() << "found a missing stream";
     } catch (const types::ConfigError& error) {
         EXPECT_THAT(error.what(), HasSubstr("other.port"));
     }

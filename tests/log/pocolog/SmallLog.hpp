@@ -19,7 +19,7 @@ inline types::Sonar smallPing(int64_t time) {
     return ping;
 }
 
-/** A stream of three pings and one of two poses, a ping last, as whole.0.log. */
+/** Writes a stream of three pings and one of two poses, a ping last, to whole.0.log. */
 inline std::vector<char> smallLog(const Folder& folder) {
     Writer log(folder / "whole.0.log");
     const size_t ping = log.addStream<types::Sonar>("sonar.ping");
@@ -32,7 +32,7 @@ inline std::vector<char> smallLog(const Folder& folder) {
     return bytesOf(folder / "whole.0.log");
 }
 
-/** Where the blocks of the small log's samples begin [B]. */
+/** Returns the positions of the blocks of the small log's samples [B]. */
 inline std::vector<uint64_t> sampleBlocks(const std::filesystem::path& path) {
     std::vector<uint64_t> blocks;
     const Reader log(path);

@@ -33,7 +33,7 @@ TEST(TypelibTest, FrameHasRocksOffsetsAndSize) {
     EXPECT_EQ(extentOf<types::Image>().size, 88u);
 }
 
-TEST(TypelibTest, ReadingsOfNavigationLieWhereRockHasThem) {
+TEST(TypelibTest, NavigationReadingsHaveRocksOffsets) {
     EXPECT_THAT(offsetsOf<types::ImuSensors>(), testing::ElementsAre(0, 8, 32, 56));
     EXPECT_EQ(extentOf<types::ImuSensors>().size, 80u);
     EXPECT_EQ(typelibName<types::ImuSensors>(), "/base/samples/IMUSensors_m") << "of Eigen's vectors";

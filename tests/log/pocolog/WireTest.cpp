@@ -87,7 +87,7 @@ struct Inner {
     }
 };
 
-TEST(WireTest, ASonarIsByteForByteWhatRockWrites) {
+TEST(WireTest, ASonarEqualsRocksBytes) {
     EXPECT_EQ(hex(marshalled(rocksSonar())),
               "00401e18240a0600000000000000000064000000000000007b14ae47e17a943f"
               "666666666666d63f0300000000000000000000000000e0bf565555555555c5bf"
@@ -106,7 +106,7 @@ TEST(WireTest, RocksSonarIsReadBack) {
     EXPECT_EQ(ping.bins, rocksSonar().bins);
 }
 
-TEST(WireTest, PaddingTravelsBetweenFieldsAndInVectorsButNotAtTheEnd) {
+TEST(WireTest, PaddingIsWrittenBetweenFieldsAndInVectorsButNotAtTheEnd) {
     EXPECT_EQ(marshalled(Padded{}).size(), 9u);
     EXPECT_EQ(marshalled(std::vector<Padded>(2)).size(), 40u);
     EXPECT_EQ(marshalled(PaddedTwice{}).size(), 49u);
@@ -114,7 +114,7 @@ TEST(WireTest, PaddingTravelsBetweenFieldsAndInVectorsButNotAtTheEnd) {
     EXPECT_EQ(marshalled(Inner{}).size(), 24u);
 }
 
-TEST(WireTest, PaddingIsPassedOverWhateverItHolds) {
+TEST(WireTest, SkipsPaddingOfAnyContent) {
     Inner sent;
     sent.first.flag = 7;
     std::vector<char> bytes = marshalled(sent);
@@ -134,7 +134,7 @@ TEST(WireTest, AQuaternionIsItsImaginaryPartsThenTheRealOne) {
     EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4));
 }
 
-TEST(WireTest, AMatrixGoesColumnByColumn) {
+TEST(WireTest, AMatrixIsColumnByColumn) {
     const std::vector<char> bytes = marshalled(glm::dmat3(1, 2, 3, 4, 5, 6, 7, 8, 9));
     double values[9];
     ASSERT_EQ(bytes.size(), sizeof values);
@@ -142,13 +142,13 @@ TEST(WireTest, AMatrixGoesColumnByColumn) {
     EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
 }
 
-TEST(WireTest, APoseTakesItsFieldsAndTwoNames) {
+TEST(WireTest, APoseHasItsFieldsAndTwoNames) {
     types::Pose pose;
     pose.source_frame = "body";
     EXPECT_EQ(marshalled(pose).size(), 8 + (8 + 4) + 8 + 24 + 72 + 32 + 72 + 24 + 72 + 24 + 72u);
 }
 
-TEST(WireTest, ABeamIsItsScalarsWithTheirPaddingThenItsBytes) {
+TEST(WireTest, ABeamHasScalarsWithPaddingThenBytes) {
     types::SonarBeam beam;
     beam.beam = {1, 2, 3};
     EXPECT_EQ(marshalled(beam).size(), 8 + 8 + 8 + 3 * 4 + 4 + 8 + 3u);
@@ -198,14 +198,14 @@ TEST(WireTest, EveryShorterPingIsRefused) {
     }
 }
 
-TEST(WireTest, BytesTooManyAreRefused) {
+TEST(WireTest, RefusesTooManyBytes) {
     std::vector<char> bytes = marshalled(rocksSonar());
     bytes.push_back(0);
     types::Sonar ping;
     EXPECT_THROW(unmarshal(bytes, ping), std::runtime_error);
 }
 
-TEST(WireTest, ACountThatCannotFitIsRefusedBeforeMemoryIsTaken) {
+TEST(WireTest, RefusesAnImpossibleCountBeforeAllocating) {
     for (const uint64_t count : {uint64_t{1} << 32, uint64_t{1} << 61, std::numeric_limits<uint64_t>::max()}) {
         std::vector<char> bytes = marshalled(rocksSonar());
         std::memcpy(bytes.data() + 88, &count, sizeof count);

@@ -30,7 +30,7 @@ TEST(WriterTest, AFileIsAPrologueThenBlocks) {
     EXPECT_EQ(text.substr(text.size() - 37), sample);
 }
 
-TEST(WriterTest, AStreamCarriesWhatRocksToolsLookFor) {
+TEST(WriterTest, AStreamHasTheMetadataOfRocksTools) {
     Folder folder;
     Writer log(folder / "x.0.log");
     log.addStream<types::Pose>("vehicle.pose", {{"insonify_seed", "7"}});
@@ -82,7 +82,7 @@ TEST(WriterTest, ASampleWithoutAStampHasTheTimeItWasReceived) {
     for (const SampleRef& at : reader.samples()) EXPECT_EQ(at.time.microseconds, 9);
 }
 
-TEST(WriterTest, WhatWasFlushedIsThereBeforeTheLogIsClosed) {
+TEST(WriterTest, FlushedSamplesAreReadableBeforeTheLogIsClosed) {
     Folder folder;
     Writer log(folder / "x.0.log");
     const size_t stream = log.addStream<double>("a.b");
@@ -94,19 +94,19 @@ TEST(WriterTest, WhatWasFlushedIsThereBeforeTheLogIsClosed) {
     EXPECT_EQ(reader.samples().size(), 1u);
 }
 
-TEST(WriterTest, AFolderThatIsNotThereIsAConfigurationError) {
+TEST(WriterTest, AMissingFolderIsAConfigurationError) {
     EXPECT_THROW(Writer("/nonexistent/x.0.log"), types::ConfigError);
     EXPECT_THROW(Writer("/"), types::ConfigError);
 }
 
-TEST(WriterTest, ALogThatIsBeingWrittenIsNotOverwritten) {
+TEST(WriterTest, DoesNotOverwriteALogDuringItsWriting) {
     Folder folder;
     Writer log(folder / "x.0.log");
     log.write(log.addStream<double>("a.b"), {1}, 1.0);
     log.flush();
     try {
         Writer(folder / "x.0.log");
-        FAIL() << "two writers have one file";
+        FAIL() << "two writers opened one file";
     } catch (const types::ConfigError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("another logger writes it"));
     }
@@ -115,28 +115,28 @@ TEST(WriterTest, ALogThatIsBeingWrittenIsNotOverwritten) {
     EXPECT_NO_THROW(Writer(folder / "x.0.log"));
 }
 
-TEST(WriterTest, ADeviceIsThereForEveryone) {
+TEST(WriterTest, ADeviceMayBeShared) {
     Folder folder;
     for (const char* file : {"x.0.log", "y.0.log"}) std::filesystem::create_symlink("/dev/null", folder / file);
     const Writer one(folder / "x.0.log");
     EXPECT_NO_THROW(Writer(folder / "y.0.log"));
 }
 
-TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
+TEST(WriterTest, ReportsAFullDeviceWithTheSystemsReason) {
     Folder folder;
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     Writer log(folder / "x.0.log");
     log.addStream<double>("a.b");
     try {
         log.flush();
-        FAIL() << "a full device took the log";
+        FAIL() << "a full device accepted the log";
     } catch (const std::runtime_error& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("No space left on device"));
     }
 }
 
-/** Writes samples of 1000 bytes, a flush after each, into a file that may not exceed 20000; exits 0 when that is told.
- */
+/** Writes samples of 1000 bytes, with a flush after each, to a file limited to 20000 bytes; exits 0 when the error is
+ *  reported. */
 [[noreturn]] void fillLimitedFile(const std::filesystem::path& path) {
     const rlimit limit{20000, 20000};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -154,7 +154,7 @@ TEST(WriterTest, AFullDeviceIsToldWithTheSystemsReason) {
     std::_Exit(1);
 }
 
-TEST(WriterTest, AWriteThatFailsLeavesTheFlushedBlocksWhole) {
+TEST(WriterTest, AFailedWriteLeavesTheFlushedBlocksIntact) {
     Folder folder;
     const std::filesystem::path path = folder / "x.0.log";
     EXPECT_EXIT(fillLimitedFile(path), testing::ExitedWithCode(0), "");
@@ -166,7 +166,7 @@ TEST(WriterTest, AWriteThatFailsLeavesTheFlushedBlocksWhole) {
                                 [](const std::string& text, const SampleRef&) { EXPECT_EQ(text.size(), 1000u); });
 }
 
-TEST(WriterTest, AnotherFileGoesOnWithTheSameStreamsAndTimes) {
+TEST(WriterTest, TheNextFileContinuesStreamsAndTimes) {
     Folder folder;
     Writer log(folder / "x.0.log");
     const size_t first = log.addStream<double>("a.b");

@@ -1,4 +1,4 @@
-"""Reads a pocolog v2 file with no knowledge of its types: registry, marshalling and index as Rock defines them.
+"""Reads a pocolog v2 file without knowledge of its types: registry, marshalling and index as Rock defines them.
 Prints {"streams": {name: {"type", "metadata", "samples": [[logged us, time us, value]...]}}, "index": bool} as JSON,
 or fails. Python's standard library only."""
 import json
@@ -27,7 +27,7 @@ class Registry:
         return 4 if node.tag == "enum" else int(node.get("size"))
 
     def leaves(self, name, offset=0, path=()):
-        """(offset in memory, size in memory, path, type) of everything that is no compound, in order."""
+        """(offset in memory, size in memory, path, type) of everything except compounds, in order."""
         if name.endswith("]"):
             base, count = name[:-1].rsplit("[", 1)
             for i in range(int(count)):
@@ -52,7 +52,7 @@ class Sample:
     def value(self, name, keeps_tail=False):
         end, values = 0, {}
         for offset, size, path, leaf in self.registry.leaves(name):
-            self.take(offset - end)  # padding between fields travels
+            self.take(offset - end)  # padding between fields is written
             end = offset + size
             values[".".join(map(str, path))] = self.leaf(leaf)
         if keeps_tail:
@@ -86,7 +86,7 @@ def texts(payload):
 
 
 def flat(yaml):
-    """A flat map of double-quoted scalars: JSON's, but for \\x09 and the like."""
+    """A flat map of double-quoted scalars: as in JSON, except \\x09 and similar."""
     pairs = (line.split(": ", 1) for line in yaml.splitlines())
     return {key: json.loads(re.sub(r"(?<!\\)\\x", r"\\u00", value)) for key, value in pairs}
 

@@ -1,4 +1,4 @@
-"""How a thing is described, and the table of all."""
+"""The description of a thing, and the table of all."""
 
 import difflib
 from dataclasses import dataclass
@@ -8,14 +8,15 @@ from ..materials import STATES
 from ..parameters import Choice, Number, Point, Text
 
 THINGS = {}
-CREASE_DEG = 40.0  # edges that are blunter are smooth
+CREASE_DEG = 40.0  # edges with blunter angles are smooth
 
 
 @dataclass
 class Model:
-    """Pairs of a closed solid and its material, in axes of the thing's own: z up, standing on z = 0 or so, x ahead.
+    """Pairs of a closed solid and its material, in the thing's own axes: z up, standing near z = 0, x ahead.
 
-    `outlines` are convex polygons [n, 2] that other things keep off; absent, the convex hull of all from above."""
+    `outlines` are convex polygons [n, 2] that other things keep clear of; absent: the convex hull of all from
+    above."""
 
     parts: list
     outlines: list = None
@@ -23,15 +24,16 @@ class Model:
 
 @dataclass
 class Thing:
-    """`kind` says how it is placed and what it is built from: a body (rng, values) stands on the floor, a line (rng, values,
-    ground, path) is laid along a path on it, a structure (rng, values, depth) has its z from the water surface."""
+    """A thing. `kind` sets how it is placed and built: a body (rng, values) stands on the floor; a line (rng,
+    values, ground, path) is laid along a path on it; a structure (rng, values, depth) has its z from the water
+    surface."""
 
     name: str
     about: str
     parameters: list
     build: Callable
     kind: str = "body"
-    half_width: Callable = None  # of the strip that a line takes, by its values [m]
+    half_width: Callable = None  # width of the strip that a line occupies, by its values [m]
 
     def all_parameters(self):
         return self.parameters + PLACING[self.kind] + COMMON
@@ -59,7 +61,7 @@ PLACING = {
         Number("heading_deg", 0.0, "of its x axis from north to west; absent: north", -360, 360),
     ],
 }
-# What an entry of a recipe has beside the thing's own parameters.
+# Keys of a recipe's entry in addition to the thing's own parameters.
 ENTRY = [
     Number("count", 1, "how many", 0, 2000, whole=True),
     Text("name", None, "of its nodes, before their number; absent: that of the thing"),
@@ -81,6 +83,6 @@ def thing(name, about, *parameters, kind="body", half_width=lambda values: value
 
 
 def may_be_thing(given):
-    """What stands in place of a wrong name, for messages."""
+    """The alternatives to a wrong name, for messages."""
     near = difflib.get_close_matches(given, THINGS, 1) if isinstance(given, str) else []
     return (f"did you mean {near[0]}? " if near else "") + f"may be {', '.join(THINGS)}"

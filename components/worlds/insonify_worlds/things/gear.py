@@ -80,7 +80,7 @@ def rope(rng, p, ground, path):
 
 
 def link(bar_radius):
-    """Along x: six bars long and 3.5 wide, as anchor chain is."""
+    """A link along x: six bar diameters long and 3.5 wide, as in an anchor chain."""
     d = 2 * bar_radius
     angle = np.arange(16) * 2 * np.pi / 16
     straight = np.where(np.cos(angle) > 1e-9, 1, np.where(np.cos(angle) < -1e-9, -1, 0)) * 1.25 * d
@@ -93,7 +93,8 @@ def link(bar_radius):
 
 
 def chain_along(axis, bar_radius):
-    """Links along points that are four bars apart, turned a quarter from one to the next."""
+    """Links along points that are four bar diameters apart, each turned a quarter against the
+    one before."""
     one = link(bar_radius)
     links = []
     for number, (here, ahead) in enumerate(zip(axis, unit(np.gradient(axis, axis=0)))):
@@ -258,7 +259,7 @@ def net(rng, p):
 
 @thing(
     "lobster_pot",
-    "a pot of a steel frame and netting with an entrance, a hand line of rope beside it",
+    "a pot of a steel frame and netting with an entrance, a hand line of rope next to it",
     Number("length_m", 0.9, "", 0.3, 2),
     Number("mesh_m", 0.06, "between two knots", 0.03, 0.3),
 )

@@ -1,4 +1,4 @@
-"""What is thrown away or lost: tires, cans, bottles, barrels, crates, bicycles."""
+"""Things that were thrown away or lost: tires, cans, bottles, barrels, crates, bicycles."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def tire(rng, p):
         (outer, 0.7),
     ]
     profile = [(r, z * half) for r, z in outside] + [(r, -z * half) for r, z in reversed(outside)]
-    # The hollow is the outside moved inwards, open between the beads.
+    # The hollow is the outside offset inwards, open between the beads.
     inside = [
         (inner - 0.01, 0.62 * half - skin),
         (inner + 0.35 * tall, 0.96 * half - skin),
@@ -69,7 +69,7 @@ def can(rng, p):
 
 
 def lying(body, p, materials, radius=None):
-    """A round body on its side, unless it is to stand."""
+    """A round body, lying on its side unless it stands."""
     if not p["upright"]:
         body = moved(body, turn=rotation(pitch=90))
     return Model([(body, materials[0])])

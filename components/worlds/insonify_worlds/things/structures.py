@@ -1,4 +1,4 @@
-"""What is built: quays, piles, jetties, tanks, blocks, and stones."""
+"""Structures: quays, piles, jetties, tanks, blocks, and stones."""
 
 import math
 

@@ -24,7 +24,7 @@ from .catalogue import Model, thing
 
 
 def hull_rings(length, beam, depth, sheer, fullness=0.5, stations=25, sides=20):
-    """Sections from stern to bow: deck edge, bilge, keel; the deck is flat. The keel is at z = 0 or so."""
+    """Sections from stern to bow: deck edge, bilge, keel. The deck is flat, the keel near z = 0."""
     s = np.linspace(-1, 1, stations)
     half = beam / 2 * np.clip(np.where(s > 0, 1 - np.abs(s) ** 2.4, 1 - 0.22 * s**4), 0.02, None)
     draught = depth * np.where(s > 0, 1 - 0.3 * s**4, 1 - 0.25 * s**6)
@@ -41,7 +41,7 @@ def hull_rings(length, beam, depth, sheer, fullness=0.5, stations=25, sides=20):
 
 
 def scaled(rings, share, lift):
-    """The rings of a hold: within the others and above their keel."""
+    """The rings of a hold: inside the hull's rings and above their keel."""
     middle = np.mean(np.vstack(rings), 0) * (1, 0, 0)
     return [(ring - middle) * (share, share, 1) + middle + (0, 0, lift) for ring in rings]
 
@@ -60,7 +60,8 @@ def wreck(rng, p):
     beam, depth = n * p["beam_share"], n * p["beam_share"] * 0.55
     rings = hull_rings(n, beam, depth, 0.05 * n)
     body = loft(rings)
-    # Holds are open to the water: walls of the plates' thickness are too thin for triangles, so the hold's sides stand in.
+    # Holds are open to the water. Walls with the thickness of plates are too thin for triangles, so the hold's sides
+    # represent them.
     for x0, x1 in ((-0.02, 0.16), (0.2, 0.34)):
         hold = box(((x1 - x0) * n, 0.6 * beam, depth), ((x0 + x1) / 2 * n, 0, 0.75 * depth))
         body -= hold
