@@ -96,11 +96,11 @@ void WorldBuilder::addVisual(const std::string& name, int node, const glm::dmat4
 }
 
 void WorldBuilder::leaveOut(const std::string& visual, const std::string& why) {
-    notice(fmt::format("visual {} is left out: {}", visual, why));
+    notice(fmt::format("visual {} is omitted: {}", visual, why));
 }
 
 Scene WorldBuilder::take() {
-    addCount(flat_visuals_, "visuals left out, their size is zero in some direction or not finite", geometry_.notices);
+    addCount(flat_visuals_, "visuals omitted, their size is zero in some direction or not finite", geometry_.notices);
     if (geometry_.objects.empty()) notice("the scene has no triangles: an empty sea");
     scene_.geometry = std::make_shared<const types::Geometry>(std::move(geometry_));
     return std::move(scene_);
@@ -133,7 +133,7 @@ std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Sha
             [&](const MeshShape& mesh) -> Placings { return placingsOfMesh(name, mesh, look); },
             [&](const HeightmapShape& map) -> Placings { return placingsOfHeightmap(name, map, look); },
             [&](const OtherShape&) -> Placings {
-                return leaveOut(name, "its geometry is not one of those that are drawn"), Placings{};
+                return leaveOut(name, "its geometry is not supported"), Placings{};
             },
         },
         shape);

@@ -129,7 +129,7 @@ void orderTriangles(std::span<uint32_t> indices) {
     for (uint32_t& index : indices) index = vertices[index];
 }
 
-/** Vertices in the order of their first use; those that no triangle uses are gone. */
+/** Orders vertices by their first use and removes unused vertices. */
 void orderVertices(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
     std::vector<uint32_t> new_place(mesh.positions.size());
     const size_t used = meshopt_optimizeVertexFetchRemap(new_place.data(), mesh.indices.data(), mesh.indices.size(),
@@ -228,7 +228,7 @@ void findCones(types::Mesh& mesh) {
 
 void buildClusters(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
     if (mesh.indices.size() / 3 > clustered_from) {
-        for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 is 0, and not another place
+        for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 becomes 0, so that both are the same place
         if (mesh.uvs.empty() && mesh.map_uvs.empty() && !numbers) weld(mesh);
         splitRuns(mesh);
     }

@@ -225,7 +225,7 @@ private:
 
     static constexpr int no_mesh = -1;
 
-    /** Index into Geometry::meshes, no_mesh for a mesh without triangles; read when first met. */
+    /** Index into Geometry::meshes, no_mesh for a mesh without triangles. Reads the mesh on its first use. */
     int meshIndex(size_t mesh) {
         const auto [known, is_new] = mesh_indices_.try_emplace(mesh, no_mesh);
         if (!is_new) return known->second;
@@ -296,7 +296,7 @@ private:
         if (!animations->empty()) scene_.animations = std::move(animations);
     }
 
-    /** Adds a mesh in clusters; a large one is split while others are read, and takes its place in finishMeshes(). */
+    /** Adds a mesh in clusters. A large mesh is split while others are read, and is stored by finishMeshes(). */
     void cluster(types::Mesh&& mesh) {
         types::Mesh& place = geometry_.meshes.emplace_back();
         if (mesh.indices.size() / 3 <= clustered_from) {
@@ -323,10 +323,10 @@ private:
         const auto count = [&notices](size_t number, const char* what) { addCount(number, what, notices); };
         const Omissions& omissions = meshes_.omissions();
         omissions.dropped.addTo(notices);
-        count(omissions.other_primitives, "primitives of points or lines left out, they have no surface");
+        count(omissions.other_primitives, "primitives of points or lines omitted, they have no surface");
         count(omissions.unweighted_vertices, "vertices of skins without weights follow the first joint of their skin");
-        count(omissions.unmapped_primitives, "primitives loaded without their map for want of texture coordinates");
-        count(flat_objects_, "objects left out, their scale is zero in some direction");
+        count(omissions.unmapped_primitives, "primitives loaded without their map, they have no texture coordinates");
+        count(flat_objects_, "objects omitted, their scale is zero in some direction");
         count(not_animated_[0], "channels of animations omitted, they animate what is not read");
         count(not_animated_[1], "channels of animations omitted, their nodes are not in the scene");
         count(not_animated_[2], "channels of animations omitted, an earlier one animates the same");

@@ -26,7 +26,7 @@ public:
     std::vector<float> numbers(int accessor, int type) const;
     /** The type of an accessor's components, TINYGLTF_COMPONENT_TYPE_FLOAT for example. */
     int componentType(int accessor) const;
-    /** Bytes [begin, end) of a bufferView. */
+    /** Returns the bytes [begin, end) of a bufferView. */
     std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;
     /** Returns the max value of the accessor's component type: the index that restarts a strip. */
     uint32_t restartIndex(int accessor) const;

@@ -16,7 +16,7 @@ namespace insonify::scene {
 struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
-    size_t unmapped_primitives = 0;  ///< With a map but no texture coordinates for it.
+    size_t unmapped_primitives = 0;  ///< Primitives with a map but without texture coordinates for it.
     size_t unweighted_vertices = 0;  ///< Of skins: they follow no joint.
 };
 

@@ -75,8 +75,8 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
                                                         "insonify scene lists them"});
     std::shared_ptr<Animations> animations;
     if (scene.animations) animations = std::make_shared<Animations>(*scene.animations);
-    std::vector<glm::dmat4> world_from_node;  // with the nodes above as large as they are now
-    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // of what is below a node, in the world
+    std::vector<glm::dmat4> world_from_node;  // with the nodes above at their scaled size
+    std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // below each node, in the world
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = result.nodes[i];
         const bool has_parent = node.parent >= 0;

@@ -85,7 +85,7 @@ glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     return above_from_node;
 }
 
-/** That of the component library. */
+/** Returns the reader of the component library sdf. */
 auto* sdfReader(const std::filesystem::path& file) try {
     return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
 } catch (const types::ConfigError& error) {

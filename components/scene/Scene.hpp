@@ -60,7 +60,8 @@ int findNode(const Scene& scene, const std::string& name);
 /** What a body that has the node's place makes of the node: scale, shear, and the turn to z-up. */
 glm::dmat4 bodyFromNode(const Scene& scene, int node);
 
-/** The objects at and below a node. With a pose of the body, world_from_object = world_from_body * body_from_object. */
+/** Returns the objects at and below a node. With a pose of the body, world_from_object = world_from_body *
+ *  body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
 
 /** Returns a point of a node in the axes of a body. `body` is the index of a node at or above `node`, or -1 for the

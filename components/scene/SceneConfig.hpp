@@ -137,7 +137,7 @@ struct SceneConfig {
                     "materials without acoustic values are of the matter or sediment that their names contain, such as "
                     "Steel.001; false: they are medium sand"},
               self.materials_by_name);
-        visit(Field{"targets", "", "point targets, heard by the active sonar equation; absent: none"}, self.targets);
+        visit(Field{"targets", "", "point targets, rendered by the active sonar equation; absent: none"}, self.targets);
         visit(
             Field{"animations", "",
                   "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "

@@ -382,7 +382,7 @@ void SceneTask::animate(types::Time time) {
     animator_->take((time - environment().start_time()).seconds(), driven_);
 }
 
-/** Each object follows the innermost of its nodes that has a pose. */
+/** Adds the moved objects. Each object follows the innermost of its nodes that has a pose. */
 void SceneTask::addMoved(std::vector<types::MovedObject>& moved) {
     for (const Movable& movable : movables_)
         if (movable.world_from_body)
@@ -401,7 +401,8 @@ const SceneTask::Movable* SceneTask::movableOf(int node) const {
     return found == movables_.end() ? nullptr : &*found;
 }
 
-/** Each target follows the innermost of the nodes at or above its own that has a pose or is animated. */
+/** Adds the point targets. Each target follows the innermost node at or above its own that has a pose or is
+ *  animated. */
 void SceneTask::addTargets(std::vector<types::PointTarget>& targets) const {
     targets.clear();
     for (const PlacedTarget& placed : targets_) {

@@ -124,8 +124,8 @@ private:
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
     std::vector<Movable> movables_;       ///< Outer nodes before inner ones, once configured.
-    size_t part_count_ = 0;               ///< Of all movables, room for which is made before they move.
-    std::vector<const Movable*> mover_;   ///< For each object, who moves it now.
+    size_t part_count_ = 0;               ///< Parts of all movables; their memory is allocated before they move.
+    std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
     std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Timed> timed_;
     std::vector<DrivenNode> driven_;  ///< Of each movable, for the animator.

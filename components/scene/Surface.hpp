@@ -12,11 +12,11 @@ namespace insonify::scene {
 /** Triangles of one material as read from a file: three vertices each, in parallel arrays. */
 struct Surface {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;   ///< Empty, or unit vectors, as many as positions.
-    std::vector<glm::vec4> tangents;  ///< Empty, or unit vectors and handedness, as many as positions.
-    std::vector<glm::vec2> uvs;       ///< Empty, or as many as positions.
-    std::vector<glm::vec2> map_uvs;   ///< Empty, or as many as positions: of a surface map.
-    std::vector<uint32_t> numbers;    ///< Empty, or as many as positions: vertices in the file's mesh that deforms.
+    std::vector<glm::vec3> normals;   ///< Empty, or one unit vector per position.
+    std::vector<glm::vec4> tangents;  ///< Empty, or one unit vector and handedness per position.
+    std::vector<glm::vec2> uvs;       ///< Empty, or one per position.
+    std::vector<glm::vec2> map_uvs;   ///< Empty, or one per position: of a surface map.
+    std::vector<uint32_t> numbers;    ///< Empty, or one per position: vertices in the file's mesh that deforms.
     std::vector<uint32_t> indices;
 };
 
@@ -28,7 +28,7 @@ struct DroppedTriangles {
     void addTo(std::vector<std::string>& notices) const;
 };
 
-/** Drops triangles that cannot be drawn and counts them; a damaged vertex, which none uses any more, goes to 0.
+/** Drops triangles that cannot be rasterised, and counts them. A damaged vertex, which is no longer used, is set to 0.
  *  Triangles without area stay where the surface has `numbers`, for a pose may open them. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 

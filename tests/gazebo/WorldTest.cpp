@@ -72,9 +72,9 @@ TEST_F(WorldTest, AWorldOfHarmonicIsAScene) {
     sdf::expectBounds(boundsOf(scene, "buoy::part1"), {-21, -2, 3.5}, {-19, 2, 4.5});
     sdf::expectBounds(boundsOf(scene, "buoy::part2"), {-21, -1, 6.5}, {-19, 1, 9.5});
     EXPECT_THAT(scene.geometry->notices,
-                ElementsAre("visual rov::link::visual is left out: file:///nowhere/models/rov/meshes/hull.obj is not "
+                ElementsAre("visual rov::link::visual is omitted: file:///nowhere/models/rov/meshes/hull.obj is not "
                             "found",
-                            "visual hill::link::visual is left out: /nowhere/hill.png is not found"));
+                            "visual hill::link::visual is omitted: /nowhere/hill.png is not found"));
     for (const char* name : {"crate", "link", "visual", "leg", "sun"}) EXPECT_TRUE(world.names.contains(name)) << name;
 }
 
@@ -151,15 +151,15 @@ TEST_F(WorldTest, OmitsAndReportsInvalidPosesAndSizes) {
         noticesOf(message),
         ElementsAre("model lost is omitted: its pose is not finite, or its orientation has no length",
                     "model unturned is omitted: its pose is not finite, or its orientation has no length",
-                    "visual bad::negative::visual is left out: its size is -1; must not be negative",
-                    "visual bad::nan::visual is left out: its size is nan; must not be negative",
-                    "visual bad::moved::visual is left out: its pose is not finite, or its orientation has no length",
+                    "visual bad::negative::visual is omitted: its size is -1; must not be negative",
+                    "visual bad::nan::visual is omitted: its size is nan; must not be negative",
+                    "visual bad::moved::visual is omitted: its pose is not finite, or its orientation has no length",
                     "link bad::capsule exists twice; the second is named bad::capsule_2 here",
-                    "visual bad::none::visual is left out: it has no geometry",
-                    "visual bad::text::visual is left out: its geometry is not one of those that are drawn",
-                    "visual bad::mesh::visual is left out: its scale is not finite",
-                    "visual bad::plane::visual is left out: its normal or size is not finite",
-                    "visuals left out, their size is zero in some direction or not finite: 3",
+                    "visual bad::none::visual is omitted: it has no geometry",
+                    "visual bad::text::visual is omitted: its geometry is not supported",
+                    "visual bad::mesh::visual is omitted: its scale is not finite",
+                    "visual bad::plane::visual is omitted: its normal or size is not finite",
+                    "visuals omitted, their size is zero in some direction or not finite: 3",
                     "the scene has no triangles: an empty sea"));
 }
 

@@ -185,8 +185,8 @@ TEST_F(MeshProcessTest, AMeshThatCannotBeReadIsTriedOnceInAWorld) {
     const std::string part = "<mesh><uri>part.dae</uri></mesh>";
     const auto geometry = world(model("a", part) + model("b", part) + model("c", box_)).geometry;
     EXPECT_EQ(geometry->objects.size(), 1u);
-    EXPECT_TRUE(hasNotice(*geometry, "visual a::hull::skin is left out: part.dae cannot be read"));
-    EXPECT_TRUE(hasNotice(*geometry, "visual b::hull::skin is left out: part.dae cannot be read"));
+    EXPECT_TRUE(hasNotice(*geometry, "visual a::hull::skin is omitted: part.dae cannot be read"));
+    EXPECT_TRUE(hasNotice(*geometry, "visual b::hull::skin is omitted: part.dae cannot be read"));
     EXPECT_EQ(std::filesystem::file_size(folder_ / "tries"), std::string("tried\n").size());
 }
 

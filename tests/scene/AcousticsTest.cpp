@@ -151,7 +151,7 @@ TEST(AcousticsTest, NumbersFromOutsideReplaceTheLawOfMatter) {
     EXPECT_EQ(material.matter, "steel");
 }
 
-TEST(AcousticsTest, WhatIsAbsentStaysAsItWas) {
+TEST(AcousticsTest, AbsentValuesChangeNothing) {
     types::Material material;
     material.reflection = 0.3f;
     Acoustics acoustics;

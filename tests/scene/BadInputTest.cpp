@@ -151,7 +151,7 @@ TEST_F(BadInputTest, IndicesOfTrianglesAndAttributesOfOtherLengthsAreRefused) {
     expectGltfDiagnostic(indexed(R"("material":4)"), "material: is 4; the file has 0");
 }
 
-TEST_F(BadInputTest, WhatCannotBeReadIsNamedWithWhatToDo) {
+TEST_F(BadInputTest, ReportsUnsupportedExtensionsWithARemedy) {
     const auto require = [this](const std::string& name, const std::string& part) {
         expectGltfDiagnostic(R"("extensionsUsed":[")" + name + R"("],"extensionsRequired":[")" + name + "\"]",
                              name + " cannot be read; " + part);

@@ -181,7 +181,7 @@ TEST_F(SurfaceMapsTest, ValuesWithoutAClassAndMeshesWithoutCoordinatesAreReporte
     const auto bare = load(painted(R"({"decibels":[-30,0]})", coloured, false));
     EXPECT_TRUE(bare->meshes[0].maps.empty());
     ASSERT_EQ(bare->notices.size(), 1u);
-    EXPECT_NE(bare->notices[0].find("without their map for want of texture coordinates: 1"), std::string::npos);
+    EXPECT_NE(bare->notices[0].find("without their map, they have no texture coordinates: 1"), std::string::npos);
 }
 
 TEST_F(SurfaceMapsTest, AWrongMapIsReportedAtItsPlace) {
@@ -257,7 +257,7 @@ TEST_F(GltfMaterialsTest, ReportsAWrongTableWithItsPlace) {
     expect(R"({"table":"floor.csv","sediment":"clay"})", "table: is given with `sediment` or `lambert_db`");
 }
 
-TEST_F(GltfMaterialsTest, WrongAcousticsSayWhatTheyMayBe) {
+TEST_F(GltfMaterialsTest, ReportsWrongAcousticsWithTheAllowedValues) {
     const auto expect = [this](const char* json, const char* part) {
         EXPECT_NE(diagnosticOfAcoustics(json).find(part), std::string::npos)
             << json << ": " << diagnosticOfAcoustics(json);
@@ -313,7 +313,7 @@ TEST_F(GltfMaterialsTest, TheTextureTransformScalesThenTurnsThenShifts) {
 TEST_F(GltfMaterialsTest, OmitsTheMapWithoutTextureCoordinates) {
     const auto geometry = mapped(png, R"(,"texCoord":1)");
     expectSound(*geometry);
-    EXPECT_TRUE(hasNotice(*geometry, "want of texture coordinates: 1"));
+    EXPECT_TRUE(hasNotice(*geometry, "they have no texture coordinates: 1"));
     const int material = geometry->meshes.at(0).clusters.at(0).material;
     EXPECT_EQ(geometry->materials.at(static_cast<size_t>(material)).normal_map, -1);
 }

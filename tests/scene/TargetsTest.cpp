@@ -87,7 +87,7 @@ TEST_F(TargetsTest, ATargetIsInTheWorldOrOnANodeWithAnOffset) {
     expectClose(snapshot->targets[5].position, {0, 0, 0});
 }
 
-TEST_F(TargetsTest, OneMovesWithItsNodeAndWithTheInnermostThatMoves) {
+TEST_F(TargetsTest, ATargetMovesWithTheInnermostMovingNode) {
     follow(boat_, "boat");
     follow(mast_, "mast");
     config_.targets = {{"bow", glm::dvec3(3, 0, 1), "boat", 0},

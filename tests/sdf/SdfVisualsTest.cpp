@@ -178,12 +178,12 @@ TEST_F(SdfVisualsTest, AnUnsupportedVisualIsANotice) {
               visual("c", "<heightmap><uri>gone.png</uri></heightmap>") + visual("d", "<box><size>1 0 1</size></box>") +
               visual("e", "<empty/>") + "</link></model>");
     EXPECT_TRUE(scene.geometry->objects.empty());
-    for (const char* part : {"visual m::l::a is left out: model://gone.dae is not found",
-                             "visual m::l::b is left out: words.png is neither PNG nor JPEG",
-                             "visual m::l::f is left out: animation.png is neither PNG nor JPEG",
-                             "visual m::l::c is left out: gone.png is not found",
-                             "visuals left out, their size is zero in some direction or not finite: 1",
-                             "visual m::l::e is left out: its geometry is not one of those", "an empty sea"})
+    for (const char* part : {"visual m::l::a is omitted: model://gone.dae is not found",
+                             "visual m::l::b is omitted: words.png is neither PNG nor JPEG",
+                             "visual m::l::f is omitted: animation.png is neither PNG nor JPEG",
+                             "visual m::l::c is omitted: gone.png is not found",
+                             "visuals omitted, their size is zero in some direction or not finite: 1",
+                             "visual m::l::e is omitted: its geometry is not supported", "an empty sea"})
         EXPECT_TRUE(hasNotice(*scene.geometry, part)) << part;
 }
 
