@@ -120,7 +120,7 @@ TEST_F(TransformTreeTest, HasNoPoseBeforeALinkBegan) {
     moving(place("map", "odom", {1, 0, 0}), 100);
     moving(place("odom", "base_link", {1, 0, 0}), 100.5);
     EXPECT_FALSE(find().placed);
-    EXPECT_EQ(find().diagnostic, "odom in map is stamped before all that is kept of the others");
+    EXPECT_EQ(find().diagnostic, "odom in map is stamped before all kept transforms of the others");
     moving(place("map", "odom", {1, 0, 0}), 101);
     expectAt(101, 100.5, {2, 0, 0});
 }

@@ -5,7 +5,7 @@ namespace {
 
 std::string noMap(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
 
-/** Normals from a texture of the material (ACOUSTICS.md 3.3). */
+/** Normals from a texture of the material (ACOUSTICS.md 3.4). */
 class NormalMaps final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {

@@ -8,8 +8,8 @@ namespace insonify::sonar {
  *  [1/s]. */
 constexpr double speed_gradient = 0.1;
 
-/** Offset of a ray that a gradient [1/s] bends, at the far edge, and the offset that can be ignored [m] (ACOUSTICS.md
- *  12). */
+/** Offset of a ray that a gradient [1/s] bends, at the far edge, and the offset that can be ignored [m]
+ *  (ACOUSTICS.md 12). */
 struct Bending {
     double offset, tolerated;
 };

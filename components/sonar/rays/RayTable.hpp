@@ -9,8 +9,8 @@ namespace insonify::sonar {
 
 /** A table of rays that a sound speed profile bends. It maps the elevation at which sound leaves the sonar, and its
  *  travel time, to a place. The time is given as slant range at the sonar's own speed of sound. The table is made for a
- *  depth of the sonar, and again where a change of depth could cause an error of a hundredth of a bin (ACOUSTICS.md
- *  5.19). */
+ *  depth of the sonar, and again where a change of depth could cause an error of a hundredth of a bin
+ *  (ACOUSTICS.md 5.19). */
 class RayTable {
 public:
     static constexpr int max_corners = 512;  ///< [1]

@@ -10,8 +10,8 @@
 
 namespace insonify::sonar {
 
-/** The pulses of other sonars that arrive at a sonar directly or via mirrors: the one-way sonar equation (ACOUSTICS.md
- *  5.29). */
+/** The pulses of other sonars that arrive at a sonar directly or via mirrors: the one-way sonar equation
+ *  (ACOUSTICS.md 5.29). */
 class DirectSound {
 public:
     /** Plan and geometry outlive it; the plan has `crosstalk`. */
