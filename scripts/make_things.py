@@ -17,7 +17,7 @@ from matplotlib import pyplot
 from PIL import Image
 
 PICTURES = Path(__file__).resolve().parent.parent / "deploy" / "pictures"
-LEFT_OUT = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or without detail
+OMITTED = ("quay", "jetty", "tank", "pile", "ball")  # larger than a tile of the picture, or without detail
 DEPTH = 30.0
 SETTINGS = {  # by thing: settings for the picture
     "pipeline": {"length_m": 12}, "cable": {"length_m": 4}, "rope": {"length_m": 2.5, "meander_m": 0.5}, "chain": {"length_m": 2.5},
@@ -114,7 +114,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=PICTURES / "things.png")
     parser.add_argument("--heading-deg", type=float, default=60)
-    parser.add_argument("things", nargs="*", default=[each["thing"] for each in listing if each["thing"] not in LEFT_OUT])
+    parser.add_argument("things", nargs="*", default=[each["thing"] for each in listing if each["thing"] not in OMITTED])
     options = parser.parse_args()
     columns = min(7, len(options.things))
     rows = math.ceil(len(options.things) / columns)

@@ -19,7 +19,7 @@ uniform float range_max;  // [m]
 
 bool isSeen(ClusterRecord cluster, uint in_view) {
     if (in_view == NOT_IN_VIEW) return false;
-    if (in_view == DRAWN_WHOLE) return true;
+    if (in_view == WHOLE_IN_VIEW) return true;
     ObjectRecord object = objects[cluster.object];
     vec3 at = boxCentre(object, cluster.centre.xyz);
     for (int i = 0; i < 5; ++i)

@@ -164,7 +164,7 @@ void depositVolume(Footprint cell, uint beam, vec2 uv) {
     if (cell.pixel > 0.0)
         hideVolume(cell, beam, rise, cell.size);
     else
-        hearLayers(beam, rise, float(bin_count) * bin_width, cell.size);
+        addLayers(beam, rise, float(bin_count) * bin_width, cell.size);
 #else
     if (cell.pixel > 0.0) hideVolume(cell, beam, 0.0, cell.size);
 #endif
@@ -396,8 +396,8 @@ void main() {
     Ray ray = Ray(middleOf(pixel.x, pixel_u, extent_u), middleOf(pixel.y, pixel_v, extent_v));
     Seen seen = seenAt(min(pixel, image_size - 1), ray);
     uint at = sharesOf(min(pixel, image_size - 1)), share = share_starts[at];
-    bool heard = inside && share < share_starts[at + 1u];
-    beginGroup(heard ? shares[share].beam : 0u, heard ? firstBin(seen) : bin_count);
+    bool received = inside && share < share_starts[at + 1u];
+    beginGroup(received ? shares[share].beam : 0u, received ? firstBin(seen) : bin_count);
     if (inside) depositPixel(pixel, ray, seen);
     endGroup();
 }

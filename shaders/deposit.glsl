@@ -51,13 +51,13 @@ double firstShare(Footprint cell, double inverse_range) {
 void depositCell(Footprint cell, uint beam, double strength_range) {
     double range = cell.pixel > 0.0 ? 1.0 / cell.pixel : 0.0;
 #ifdef GLSL
-    bool heard = range > 0.0 && pixel_place >= binEdge(bin_count - 1u);
-    uint bin = heard ? binOf(pixel_place) : 0u;
+    bool received = range > 0.0 && pixel_place >= binEdge(bin_count - 1u);
+    uint bin = received ? binOf(pixel_place) : 0u;
 #else
-    bool heard = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
-    uint bin = heard ? uint(range / bin_width) : 0u;
+    bool received = range > 0.0 && range <= double(bin_count - 1u) * bin_width;
+    uint bin = received ? uint(range / bin_width) : 0u;
 #endif
-    double cosine = heard ? min(strength_range * cell.pixel, 1.0) : 0.0;
+    double cosine = received ? min(strength_range * cell.pixel, 1.0) : 0.0;
 #ifdef HAVE_ABSORPTION
     cosine = attenuated(cosine, range);
 #endif

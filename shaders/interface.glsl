@@ -43,7 +43,7 @@
 #define NOT_IN_VIEW 0u
 #define IN_VIEW 1u
 #define FRONT_IN_VIEW 2u
-#define DRAWN_WHOLE 3u
+#define WHOLE_IN_VIEW 3u
 
 // The pose of a mesh relative to the sonar: rows of the matrix from object to sonar axes, and of its inverse transpose.
 struct ObjectRecord {

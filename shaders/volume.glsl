@@ -24,7 +24,7 @@ void changeVolume(uint beam, double range, double amount) {
 
 #ifdef HAVE_VOLUME_LAYERS
 // Adds the reverberation of each layer from the ray's entry to its exit or `end`. `rise`: metres up per metre of ray.
-void hearLayers(uint beam, double rise, double end, double amount) {
+void addLayers(uint beam, double rise, double end, double amount) {
     for (uint i = 0u; i < layer_count; ++i) {
         double low = layerNumber(3u * i) - sonar_height, high = layerNumber(3u * i + 1u) - sonar_height;
         double slope = abs(rise) > MIN_RISE ? rise : MIN_RISE;
@@ -48,7 +48,7 @@ void hideVolume(Footprint cell, uint beam, double rise, double size) {
         double inverse_range = inverseRange(place);
         if (!(inverse_range > 0.0)) continue;
 #ifdef HAVE_VOLUME_LAYERS
-        hearLayers(beam, rise, 1.0 / inverse_range, size * per_parts);
+        addLayers(beam, rise, 1.0 / inverse_range, size * per_parts);
 #else
         changeVolume(beam, 1.0 / inverse_range, -size * per_parts);
 #endif

@@ -37,10 +37,10 @@ std::string wantedOf(const CsvColumn& column) {
 /** Reads line by line and collects all errors. */
 class Reader {
 public:
-    Reader(std::string file, const std::vector<CsvColumn>& columns, const CsvJudge& judge)
-        : file_(std::move(file)), columns_(columns), judge_(judge) {}
+    Reader(std::string file, const std::vector<CsvColumn>& columns, const CsvValidator& validate)
+        : file_(std::move(file)), columns_(columns), validate_(validate) {}
 
-    std::vector<std::vector<double>> read(std::string_view text, size_t least) {
+    std::vector<std::vector<double>> read(std::string_view text, size_t minimum) {
         if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
         while (!text.empty() && diagnostics_.size() < max_diagnostics) {
             const size_t end = std::min(text.find('\n'), text.size());
@@ -50,10 +50,10 @@ public:
         }
         if (!has_header_)
             report(1, "", "is empty; it must start with the header " + headerOf(columns_));
-        else if (rows_.size() < least && diagnostics_.empty())
+        else if (rows_.size() < minimum && diagnostics_.empty())
             report(1, "",
                    "has " + std::to_string(rows_.size()) + " lines after its header; it needs at least " +
-                       std::to_string(least));
+                       std::to_string(minimum));
         if (!diagnostics_.empty()) throw ConfigError(std::move(diagnostics_));
         return std::move(rows_);
     }
@@ -72,8 +72,8 @@ private:
         std::vector<double> values(columns_.size());
         std::vector<int> places(columns_.size());
         if (!readFields(line, values, places)) return;
-        if (judge_)
-            for (const CsvDiagnostic& diagnostic : judge_(values, rows_.empty() ? nullptr : &rows_.back()))
+        if (validate_)
+            for (const CsvDiagnostic& diagnostic : validate_(values, rows_.empty() ? nullptr : &rows_.back()))
                 report(places[diagnostic.column], columns_[diagnostic.column].name, diagnostic.message);
         rows_.push_back(std::move(values));
     }
@@ -110,8 +110,8 @@ private:
 
     std::string file_;
     const std::vector<CsvColumn>& columns_;
-    const CsvJudge& judge_;
-    std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `judge_`.
+    const CsvValidator& validate_;
+    std::vector<std::vector<double>> rows_;  ///< Rows of valid numbers, with or without errors from `validate_`.
     Diagnostics diagnostics_;
     int line_number_ = 0;
     bool has_header_ = false;
@@ -120,12 +120,12 @@ private:
 }  // namespace
 
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
-                                         size_t least, const CsvJudge& judge) {
+                                         size_t minimum, const CsvValidator& validate) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream || std::filesystem::is_directory(file))
         throw ConfigError(file.string(), "", "cannot be read; it must be a CSV file with header " + headerOf(columns));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    return Reader(file.string(), columns, judge).read(text, least);
+    return Reader(file.string(), columns, validate).read(text, minimum);
 }
 
 }  // namespace insonify::types

@@ -20,7 +20,7 @@ struct CsvDiagnostic {
 };
 
 /** Returns the errors of a row; `before` is the previous row of valid numbers, null for the first. */
-using CsvJudge =
+using CsvValidator =
     std::function<std::vector<CsvDiagnostic>(const std::vector<double>& row, const std::vector<double>* before)>;
 
 /** Returns the rows of a CSV file of numbers, in order. The first line that is not blank has the names of all columns.
@@ -28,6 +28,6 @@ using CsvJudge =
  *  @throws ConfigError with file, line and column of up to a hundred errors: a wrong header, missing or superfluous
  *  fields, fields that are no numbers from min to max, errors from `judge`, fewer than `least` rows */
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
-                                         size_t least, const CsvJudge& judge = {});
+                                         size_t minimum, const CsvValidator& validate = {});
 
 }  // namespace insonify::types

@@ -37,17 +37,17 @@ std::string didYouMean(std::string_view wrong, const std::vector<std::string>& k
     constexpr size_t longest = 200;  // longer texts are no mistyped names
     if (wrong.size() > longest) return "";
     const std::string meant = lower(wrong);
-    size_t least = std::numeric_limits<size_t>::max();
+    size_t minimum = std::numeric_limits<size_t>::max();
     std::vector<std::string> nearest, holding;
     for (const std::string& name : known) {
         const std::string last =
             lower(name).substr(name.rfind(':') + 1);  // SonarTask of sonar::SonarTask; the whole name without ':'
         const size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
-        if (distance < least) nearest = {name};
-        least = std::min(least, distance);
+        if (distance < minimum) nearest = {name};
+        minimum = std::min(minimum, distance);
         if (meant.size() >= 3 && lower(name).find(meant) != std::string::npos) holding.push_back(name);
     }
-    if (!nearest.empty() && least <= std::max<size_t>(1, wrong.size() / 3))
+    if (!nearest.empty() && minimum <= std::max<size_t>(1, wrong.size() / 3))
         return "did you mean " + nearest.front() + "? ";
     return holding.size() == 1 ? "did you mean " + holding.front() + "? " : "";
 }

@@ -18,10 +18,10 @@ namespace insonify::types {
 struct WorldBox {
     glm::dvec3 centre, half;
 
-    WorldBox(const glm::dmat4& world_from_object, const glm::dvec3& middle, const glm::dvec3& told)
+    WorldBox(const glm::dmat4& world_from_object, const glm::dvec3& middle, const glm::dvec3& reported)
         : centre(world_from_object * glm::dvec4(middle, 1)) {
         const glm::dmat3 linear(world_from_object);
-        const glm::dvec3 reach = told + 1e-6 * (glm::abs(middle) + told);
+        const glm::dvec3 reach = reported + 1e-6 * (glm::abs(middle) + reported);
         half = glm::abs(linear[0]) * reach.x + glm::abs(linear[1]) * reach.y + glm::abs(linear[2]) * reach.z;
     }
 };

@@ -77,8 +77,8 @@ void interpolate(const Placed& from, const Placed& to, double share, Pose& pose)
 
 /** Returns a pose, with its stamp, extrapolated by its velocities to `time`, but at most `most` seconds forward and
  *  never back. Returns the pose unchanged when its velocities are unknown. */
-inline Pose extrapolatePose(Pose pose, Time time, double most) {
-    const double seconds = std::clamp((time - pose.time).seconds(), 0.0, most);
+inline Pose extrapolatePose(Pose pose, Time time, double maximum) {
+    const double seconds = std::clamp((time - pose.time).seconds(), 0.0, maximum);
     const double turn = glm::length(pose.angular_velocity) * seconds;
     if (!std::isfinite(glm::length(pose.velocity)) || !std::isfinite(turn)) return pose;
     pose.time.microseconds += std::llround(seconds * 1e6);

@@ -14,10 +14,10 @@ struct Return {
     float& elevation;
 };
 
-void tell(const Sonar& ping, const SonarTruth& truth, size_t at, const Return& told) {
-    told.range = static_cast<float>(ping.binStart(static_cast<double>(at % ping.bin_count) + 0.5));
-    told.level = 10 * std::log10(ping.bins[at]);
-    told.elevation = truth.elevation[at];
+void report(const Sonar& ping, const SonarTruth& truth, size_t at, const Return& reported) {
+    reported.range = static_cast<float>(ping.binStart(static_cast<double>(at % ping.bin_count) + 0.5));
+    reported.level = 10 * std::log10(ping.bins[at]);
+    reported.elevation = truth.elevation[at];
 }
 
 }  // namespace
@@ -38,11 +38,11 @@ void SonarReturns::take(const Sonar& ping, const SonarTruth& truth) {
         auto first = begin;
         while (first < end && !shown(first)) ++first;
         if (first < end)
-            tell(ping, truth, static_cast<size_t>(first),
-                 {first_range[beam], first_level[beam], first_elevation[beam]});
+            report(ping, truth, static_cast<size_t>(first),
+                   {first_range[beam], first_level[beam], first_elevation[beam]});
         if (strongest != ping.bins.begin() + end && *strongest > 0)
-            tell(ping, truth, static_cast<size_t>(strongest - ping.bins.begin()),
-                 {strongest_range[beam], strongest_level[beam], strongest_elevation[beam]});
+            report(ping, truth, static_cast<size_t>(strongest - ping.bins.begin()),
+                   {strongest_range[beam], strongest_level[beam], strongest_elevation[beam]});
     }
 }
 

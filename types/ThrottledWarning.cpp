@@ -19,7 +19,7 @@ void ThrottledWarning::reset() {
     std::lock_guard lock(mutex_);
     by_reason_.clear();
     last_.clear();
-    count_ = told_ = 0;
+    count_ = reported_ = 0;
 }
 
 uint64_t ThrottledWarning::count() const {
@@ -39,9 +39,9 @@ std::map<std::string, uint64_t> ThrottledWarning::byReason() const {
 
 std::string ThrottledWarning::takeWarning(Clock::time_point now) {
     std::lock_guard lock(mutex_);
-    if (count_ == told_ || (told_ > 0 && now < told_at_ + interval)) return "";
-    told_ = count_;
-    told_at_ = now;
+    if (count_ == reported_ || (reported_ > 0 && now < reported_at_ + interval)) return "";
+    reported_ = count_;
+    reported_at_ = now;
     return counted(count_) + "; the last: " + last_;
 }
 

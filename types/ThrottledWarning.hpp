@@ -39,8 +39,8 @@ private:
     mutable std::mutex mutex_;
     std::map<std::string, uint64_t> by_reason_;
     std::string last_;
-    uint64_t count_ = 0, told_ = 0;
-    Clock::time_point told_at_;
+    uint64_t count_ = 0, reported_ = 0;
+    Clock::time_point reported_at_;
 };
 
 }  // namespace insonify::types

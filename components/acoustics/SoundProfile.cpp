@@ -44,7 +44,7 @@ private:
     double gradient() const {
         return inside() ? (speeds_[below_] - speeds_[below_ - 1]) / (depths_[below_] - depths_[below_ - 1]) : 0;
     }
-    bool goesDown() const { return rapidity_ < 0 || (rapidity_ == 0 && gradient() < 0); }
+    bool descends() const { return rapidity_ < 0 || (rapidity_ == 0 && gradient() < 0); }
 
     /** Returns the magnitude of the rapidity with which the ray passes a depth of a speed; -1 when it turns before. */
     double rapidityAt(double speed) const {
@@ -53,7 +53,7 @@ private:
     }
 
     double timeToBoundary() {
-        leaves_down_ = goesDown();
+        leaves_down_ = descends();
         const double g = gradient();
         if (g == 0) return timeStraight();
         // In faster water the ray may turn before the boundary; then it leaves the layer by the other boundary.
@@ -106,10 +106,10 @@ double SoundProfile::slowest() const { return *std::ranges::min_element(speeds_.
 double SoundProfile::fastest() const { return *std::ranges::max_element(speeds_.y); }
 
 double SoundProfile::steepest() const {
-    double most = 0;
+    double maximum = 0;
     for (size_t i = 1; i < speeds_.x.size(); ++i)
-        most = std::max(most, std::abs((speeds_.y[i] - speeds_.y[i - 1]) / (speeds_.x[i] - speeds_.x[i - 1])));
-    return most;
+        maximum = std::max(maximum, std::abs((speeds_.y[i] - speeds_.y[i - 1]) / (speeds_.x[i] - speeds_.x[i - 1])));
+    return maximum;
 }
 
 void traceRay(const SoundProfile& profile, double depth, double elevation, std::span<const double> times,

@@ -11,7 +11,7 @@ using std::numbers::pi;
 double sinc(double u) { return u == 0 ? 1 : std::sin(pi * u) / (pi * u); }
 
 /** Moves u away from places where numerator and denominator are both 0: multiples of 1/2. */
-double besidePoles(double u) {
+double betweenPoles(double u) {
     constexpr double near = 1e-7;
     const double off = std::remainder(u, 0.5);
     return std::abs(u) > 0.25 && std::abs(off) < near ? u - off + near : u;
@@ -50,10 +50,10 @@ double Taper::amplitude(double u) const {
     if (u == 0) return 1;
     switch (weighting_) {
         case Weighting::Uniform: return sinc(u);
-        case Weighting::Cosine: return cosine(besidePoles(u));
-        case Weighting::Hann: return hann(besidePoles(u));
+        case Weighting::Cosine: return cosine(betweenPoles(u));
+        case Weighting::Hann: return hann(betweenPoles(u));
         case Weighting::Hamming: return hamming(u);
-        case Weighting::Taylor: return taylor(besidePoles(u));
+        case Weighting::Taylor: return taylor(betweenPoles(u));
         case Weighting::Dolph: return dolph(u);
         case Weighting::Gaussian: return gaussian(u);
         case Weighting::Piston: return piston(u);

@@ -25,8 +25,8 @@ Shard shardIn(std::string_view text, std::string& why) {
     const auto count = number(slash == text.npos ? "" : text.substr(slash + 1));
     if (!index || !count)
         why = fmt::format("is '{}'; it must be i/N, whole numbers, as in 0/16", text);
-    else if (*count == 0 || *count > Shard::most)
-        why = fmt::format("is {}; N must be from 1 to {}", text, Shard::most);
+    else if (*count == 0 || *count > Shard::maximum)
+        why = fmt::format("is {}; N must be from 1 to {}", text, Shard::maximum);
     else if (*index >= *count)
         why = fmt::format("is {}; of {} shards i may be from 0 to {}", text, *count, *count - 1);
     return {index.value_or(0), count.value_or(1)};

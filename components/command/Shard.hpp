@@ -9,7 +9,7 @@ namespace insonify::command {
 struct Shard {
     uint64_t index = 0, count = 1;
 
-    static constexpr uint64_t most = 1'000'000'000;  ///< Max number of parts [1].
+    static constexpr uint64_t maximum = 1'000'000'000;  ///< Max number of parts [1].
 
     /** Parses "3/16". Throws types::ConfigError that names `option`. */
     static Shard read(const std::string& text, const std::string& option = "--shard");

@@ -109,7 +109,7 @@ private:
         uint32_t first = 0;  // bin of the shadow
         for (uint32_t k = 0; k < ping_.bin_count; ++k) {
             if (truth_.shadow[start + k] != 0) continue;
-            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], casterOf(start, first, k));
+            if (first < k) std::fill(&shadow_of_[first], &shadow_of_[k], tracerOf(start, first, k));
             first = k + 1;
         }
     }
@@ -117,7 +117,7 @@ private:
     /** Returns the number of the shadow of the object that hides the bins from `first` to `behind`. Returns none if the
      *  object has no class, or is also what is behind the shadow, as on an uneven floor. If several echoes have
      *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others. */
-    int32_t casterOf(size_t start, uint32_t first, uint32_t behind) const {
+    int32_t tracerOf(size_t start, uint32_t first, uint32_t behind) const {
         const auto elevation = [&](uint32_t k) {
             return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
                                       : static_cast<double>(truth_.elevation[start + k]);
@@ -129,9 +129,9 @@ private:
         if (behind + 1 < ping_.bin_count && std::isfinite(apart(behind + 1))) nearest += apart(behind + 1);
         for (uint32_t k = first; k-- > 0;) {
             if (directAt(start + k) == none || !(apart(k) <= nearest)) continue;
-            const int32_t caster = instanceAt(start + k);
-            if (caster == none || caster == instanceAt(start + behind)) return none;
-            return instances_.shadow(caster) == 0 ? none : caster + first_shadow_;
+            const int32_t placer = instanceAt(start + k);
+            if (placer == none || placer == instanceAt(start + behind)) return none;
+            return instances_.shadow(placer) == 0 ? none : placer + first_shadow_;
         }
         return none;
     }

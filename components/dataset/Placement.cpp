@@ -18,7 +18,7 @@ constexpr uint64_t tries = 1000, words_per_try = 4;
 constexpr uint64_t stream = 0x706c6163650000;        ///< Random words; numbers of groups and objects are added.
 constexpr uint64_t tilt_words = uint64_t{1} << 40;   ///< First word of roll and pitch, after all others.
 constexpr uint64_t scale_words = uint64_t{1} << 41;  ///< First word of scales.
-constexpr double out_of_hearing = 1e5;               ///< Depth below its place of an absent object [m].
+constexpr double out_of_range = 1e5;                 ///< Depth below its place of an absent object [m].
 
 /** Returns radius and lowest point of a turned object, without its points. */
 Placeable turned(const Placeable& object, const glm::dquat& turn) {
@@ -84,7 +84,7 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
         const Placeable& object = scene_.placeables.at(names[i]);
         if (!present[i]) {
             objects_.push_back({names[i], object.filed, false});
-            objects_.back().at.position.z -= out_of_hearing;
+            objects_.back().at.position.z -= out_of_range;
             continue;
         }
         std::optional<PlacedObject> placed;

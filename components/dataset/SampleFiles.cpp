@@ -106,47 +106,47 @@ void addRangeImage(log::NpzFile& npz, const types::DepthMap& image, const types:
         });
 }
 
-void writeNpz(const fs::path& file, const Heard& heard, const std::string& meta) {
-    const types::Sonar& ping = heard.run.ping();
-    const uint32_t lines = heard.run.size(), beams = ping.beam_count / lines;
+void writeNpz(const fs::path& file, const Recorded& recorded, const std::string& meta) {
+    const types::Sonar& ping = recorded.run.ping();
+    const uint32_t lines = recorded.run.size(), beams = ping.beam_count / lines;
     std::vector<size_t> shape{beams, ping.bin_count};
     if (lines > 1) shape.insert(shape.begin(), lines);
     std::vector<double> bearings, ranges;
     for (uint32_t beam = 0; beam < beams; ++beam) bearings.push_back(ping.bearings[beam].rad);
-    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * heard.bin_width);
+    for (uint32_t k = 0; k < ping.bin_count; ++k) ranges.push_back((k + 0.5) * recorded.bin_width);
     log::NpzFile npz(file);
     npz.array("bins", shape, ping.bins);
     npz.array("bearings", {bearings.size()}, bearings);
     npz.array("range_m", {ranges.size()}, ranges);
     types::SonarTruth::forEachArray(
-        heard.run.truth(), [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
+        recorded.run.truth(), [&]<class Number>(const char* name, const auto& numbers, std::type_identity<Number>) {
             addTruth<Number>(npz, name, numbers, shape);
         });
-    if (heard.range_image) addRangeImage(npz, *heard.range_image, *heard.range_truth);
-    if (lines > 1) addLines(npz, heard.sample.run);
-    npz.texts("objects", heard.run.truth().objects);
+    if (recorded.range_image) addRangeImage(npz, *recorded.range_image, *recorded.range_truth);
+    if (lines > 1) addLines(npz, recorded.sample.run);
+    npz.texts("objects", recorded.run.truth().objects);
     npz.text("meta", meta);
     npz.close();
 }
 
-void writeMcap(const fs::path& file, const Heard& heard) {
+void writeMcap(const fs::path& file, const Recorded& recorded) {
     const fs::path bag = file.string() + ".bag", inside = bag / "sample.mcap";  // a description is written next to it
     fs::create_directory(bag);
     const auto log = log::createLog(inside);
     const size_t ping = log->addStream<types::Sonar>("sonar.ping");
     const size_t truth = log->addStream<types::SonarTruth>("sonar.truth");
     const size_t pose = log->addStream<types::Pose>("vehicle.pose");
-    if (heard.range_image) {
-        const types::Time time = heard.run.pings()[0]->time;
-        log->write(log->addStream<types::DepthMap>("sonar.range_image"), time, *heard.range_image);
-        log->write(log->addStream<types::SonarTruth>("sonar.range_truth"), time, *heard.range_truth);
+    if (recorded.range_image) {
+        const types::Time time = recorded.run.pings()[0]->time;
+        log->write(log->addStream<types::DepthMap>("sonar.range_image"), time, *recorded.range_image);
+        log->write(log->addStream<types::SonarTruth>("sonar.range_truth"), time, *recorded.range_truth);
     }
-    for (uint32_t i = 0; i < heard.run.size(); ++i) {
-        types::Pose at = heard.sample.run[i].at;
-        at.time = heard.run.pings()[i]->time;
+    for (uint32_t i = 0; i < recorded.run.size(); ++i) {
+        types::Pose at = recorded.sample.run[i].at;
+        at.time = recorded.run.pings()[i]->time;
         log->write(pose, at.time, at);
-        log->write(ping, at.time, *heard.run.pings()[i]);
-        log->write(truth, at.time, *heard.run.truths()[i]);
+        log->write(ping, at.time, *recorded.run.pings()[i]);
+        log->write(truth, at.time, *recorded.run.truths()[i]);
     }
     log->close();
     fs::rename(inside, file);
@@ -158,43 +158,43 @@ void writeMcap(const fs::path& file, const Heard& heard) {
 SampleFiles::SampleFiles(const Sweep& sweep, Format format, const Classes& classes, Store& store)
     : sweep_(sweep), format_(format), classes_(classes), store_(store), picture_(sweep.picture) {}
 
-void SampleFiles::write(const Heard& heard) {
-    const Annotated annotated = annotatedOf(heard);
-    Json record = recordOf(heard, annotated);
-    record["files"] = writeFiles(store_.stemOf(heard.sample.index), heard, annotated, record);
-    store_.putRecord(heard.sample.index, std::move(record));
+void SampleFiles::write(const Recorded& recorded) {
+    const Annotated annotated = annotatedOf(recorded);
+    Json record = recordOf(recorded, annotated);
+    record["files"] = writeFiles(store_.stemOf(recorded.sample.index), recorded, annotated, record);
+    store_.putRecord(recorded.sample.index, std::move(record));
 }
 
-Annotated SampleFiles::annotatedOf(const Heard& heard) {
-    const types::Sonar& ping = heard.run.ping();
+Annotated SampleFiles::annotatedOf(const Recorded& recorded) {
+    const types::Sonar& ping = recorded.run.ping();
     if (sweep_.picture.shape == output::PlainShape::Range) {
-        const types::DepthMap& image = *heard.range_image;
-        picture_.take(image, ping.bin_count * heard.bin_width);
+        const types::DepthMap& image = *recorded.range_image;
+        picture_.take(image, ping.bin_count * recorded.bin_width);
         types::Sonar cells;
         cells.bin_count = 1;
-        cells.beam_count = heard.range_truth->beam_count;
-        cells.bearings = heard.range_truth->bearings;
+        cells.beam_count = recorded.range_truth->beam_count;
+        cells.bearings = recorded.range_truth->bearings;
         cells.bins = image.remissions;
-        return annotate(cells, *heard.range_truth, picture_, classes_, heard.instances, sweep_.annotations,
-                        output::BinScale::Linear, heard.bin_width, image.distances);
+        return annotate(cells, *recorded.range_truth, picture_, classes_, recorded.instances, sweep_.annotations,
+                        output::BinScale::Linear, recorded.bin_width, image.distances);
     }
     picture_.take(ping);
-    return annotate(ping, heard.run.truth(), picture_, classes_, heard.instances, sweep_.annotations,
-                    sweep_.picture.scale, heard.bin_width);
+    return annotate(ping, recorded.run.truth(), picture_, classes_, recorded.instances, sweep_.annotations,
+                    sweep_.picture.scale, recorded.bin_width);
 }
 
-Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const {
-    const Sample& sample = heard.sample;
+Json SampleFiles::recordOf(const Recorded& recorded, const Annotated& annotated) const {
+    const Sample& sample = recorded.sample;
     Json record{{"index", sample.index},
                 {"part", std::string(types::EnumNames<Part>::names[static_cast<size_t>(sample.part)])},
-                {"scene", heard.scene},
+                {"scene", recorded.scene},
                 {"sequence", {sample.scene, sample.setting}},
                 {"frame", sample.pose},
                 {"time_s", sample.run.front().time},
                 {"settings", Json::object()},
                 {"pose", toJson(sample.run.front().at)},
                 {"objects", Json::array()},
-                {"ping", toJson(heard.run, heard.bin_width, picture_.arc())},
+                {"ping", toJson(recorded.run, recorded.bin_width, picture_.arc())},
                 {"picture",
                  {{"width", picture_.width()},
                   {"height", picture_.height()},
@@ -202,7 +202,7 @@ Json SampleFiles::recordOf(const Heard& heard, const Annotated& annotated) const
                    std::string(types::EnumNames<output::PlainShape>::names[static_cast<size_t>(sweep_.picture.shape)])},
                   {"reference_db", picture_.referenceDb()}}},
                 {"annotations", Json::array()}};
-    for (const auto& [property, value] : heard.settings) record["settings"][property] = value;
+    for (const auto& [property, value] : recorded.settings) record["settings"][property] = value;
     for (const PlacedObject& object : sample.objects) {
         Json placed{{"name", object.name}, {"present", object.present}};
         if (object.present) placed.update(toJson(object.at));
@@ -218,7 +218,7 @@ std::string SampleFiles::putPicture(const std::string& name, const types::Image&
     return store_.put(name, [&](const fs::path& file) { output::writePng(file, picture); });
 }
 
-Json SampleFiles::writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated,
+Json SampleFiles::writeFiles(const std::string& stem, const Recorded& recorded, const Annotated& annotated,
                              const Json& meta) {
     Json files = Json::object();
     if (hasPictures(format_)) files[stem + ".png"] = putPicture(stem + ".png", picture_.image());
@@ -230,9 +230,9 @@ Json SampleFiles::writeFiles(const std::string& stem, const Heard& heard, const 
         }
     if (format_ == Format::Npz)
         files[stem + ".npz"] =
-            store_.put(stem + ".npz", [&](const fs::path& file) { writeNpz(file, heard, textOf(meta)); });
+            store_.put(stem + ".npz", [&](const fs::path& file) { writeNpz(file, recorded, textOf(meta)); });
     if (format_ == Format::Mcap)
-        files[stem + ".mcap"] = store_.put(stem + ".mcap", [&](const fs::path& file) { writeMcap(file, heard); });
+        files[stem + ".mcap"] = store_.put(stem + ".mcap", [&](const fs::path& file) { writeMcap(file, recorded); });
     return files;
 }
 

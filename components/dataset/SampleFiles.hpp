@@ -12,7 +12,7 @@
 namespace insonify::dataset {
 
 /** A sample with its pings and truth. */
-struct Heard {
+struct Recorded {
     const Sample& sample;
     const Run& run;
     const Instances& instances;
@@ -28,14 +28,14 @@ class SampleFiles {
 public:
     SampleFiles(const Sweep& sweep, Format format, const Classes& classes, Store& store);
     /** Writes a sample. Throws std::runtime_error if a file cannot be written. */
-    void write(const Heard& heard);
+    void write(const Recorded& recorded);
 
 private:
     /** Renders the picture, and finds its annotations. */
-    Annotated annotatedOf(const Heard& heard);
-    Json recordOf(const Heard& heard, const Annotated& annotated) const;
+    Annotated annotatedOf(const Recorded& recorded);
+    Json recordOf(const Recorded& recorded, const Annotated& annotated) const;
     /** Writes the files. Returns their names and SHA-256 sums. */
-    Json writeFiles(const std::string& stem, const Heard& heard, const Annotated& annotated, const Json& meta);
+    Json writeFiles(const std::string& stem, const Recorded& recorded, const Annotated& annotated, const Json& meta);
     std::string putPicture(const std::string& name, const types::Image& picture);
 
     const Sweep& sweep_;

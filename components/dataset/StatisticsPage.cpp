@@ -69,12 +69,12 @@ std::string StatisticsPage::exampleOf(const Json& record, const std::string& pic
 }
 
 std::string StatisticsPage::drawn(const std::string& caption, const Bars& bars) {
-    uint64_t most = 1;
-    for (const auto& [name, count] : bars) most = std::max(most, count);
+    uint64_t maximum = 1;
+    for (const auto& [name, count] : bars) maximum = std::max(maximum, count);
     std::string text = fmt::format("<h2>{}</h2>\n<table>\n", escaped(caption));
     for (const auto& [name, count] : bars)
         text += fmt::format("<tr><td>{}</td><td><meter max=\"{}\" value=\"{}\"></meter></td><td>{}</td></tr>\n",
-                            escaped(name), most, count, count);
+                            escaped(name), maximum, count, count);
     return text + "</table>\n";
 }
 

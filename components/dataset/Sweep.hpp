@@ -249,7 +249,7 @@ struct Sweep {
     AnnotationConfig annotations;
 };
 
-/** Returns whether a name matches a pattern, in which * stands for any number of letters. */
+/** Returns whether a name matches a pattern, in which * matches any number of letters. */
 bool matches(const std::string& pattern, const std::string& name);
 
 }  // namespace insonify::dataset

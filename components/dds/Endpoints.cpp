@@ -22,8 +22,8 @@ Qos makeQos(const Quality& quality, const std::string& type_hash) {
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, quality.depth);
     const dds_data_representation_id_t plain = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(qos.get(), 1, &plain);
-    const std::string told = "typehash=" + type_hash + ";";
-    if (!type_hash.empty()) dds_qset_userdata(qos.get(), told.data(), told.size());
+    const std::string reported = "typehash=" + type_hash + ";";
+    if (!type_hash.empty()) dds_qset_userdata(qos.get(), reported.data(), reported.size());
     return qos;
 }
 
@@ -50,12 +50,12 @@ bool Writer::hasReaders() const {
 }
 
 Reader::Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
-               const Quality& quality, std::function<void()> arrived, size_t largest)
+               const Quality& quality, std::function<void()> arrived, size_t maximum)
     : arrived_(std::make_unique<std::function<void()>>(std::move(arrived))),
-      topic_(node.makeTopic(dds_topic, ddsType(ros_type), largest)) {
+      topic_(node.makeTopic(dds_topic, ddsType(ros_type), maximum)) {
     dds_listener_t* listener = dds_create_listener(arrived_.get());
-    const auto tell = [](dds_entity_t, void* called) { (*static_cast<std::function<void()>*>(called))(); };
-    if (*arrived_) dds_lset_data_available(listener, tell);
+    const auto notify = [](dds_entity_t, void* called) { (*static_cast<std::function<void()>*>(called))(); };
+    if (*arrived_) dds_lset_data_available(listener, notify);
     const Qos qos = makeQos(quality, type_hash);
     const dds_entity_t made = dds_create_reader(node.participant(), topic_.handle(), qos.get(), listener);
     dds_delete_listener(listener);
@@ -78,7 +78,7 @@ bool Reader::take(Bytes& message, uint64_t& sender) {
     return false;
 }
 
-bool Reader::hears(uint64_t sender) const {
+bool Reader::receives(uint64_t sender) const {
     dds_builtintopic_endpoint_t* found = dds_get_matched_publication_data(entity_.handle(), sender);
     if (found) dds_builtintopic_free_endpoint(found);
     return found;

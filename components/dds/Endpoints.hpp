@@ -37,14 +37,14 @@ public:
      *  @param largest max message [B]; larger messages arrive empty
      *  The node must outlive the reader. Throws types::ConfigError. */
     Reader(Node& node, const std::string& dds_topic, const std::string& ros_type, const std::string& type_hash,
-           const Quality& quality, std::function<void()> arrived, size_t largest = any_size);
+           const Quality& quality, std::function<void()> arrived, size_t maximum = any_size);
     ~Reader();
 
     /** Takes the next message into `message`, whose memory is reused. Returns false if there is none. `sender` is a
      *  number that identifies the writer. */
     bool take(Bytes& message, uint64_t& sender);
     /** Returns whether the sender is still present. */
-    bool hears(uint64_t sender) const;
+    bool receives(uint64_t sender) const;
     int32_t handle() const { return entity_.handle(); }
 
 private:

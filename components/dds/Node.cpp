@@ -90,8 +90,8 @@ Node::Node(uint32_t domain, const std::string& name, size_t gid_size)
       participant_(joinDomain(domain, "enclave=/;")) {}
 Node::~Node() = default;
 
-Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest) const {
-    ddsi_sertype* type = makeRawType(dds_type, largest);
+Entity Node::makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t maximum) const {
+    ddsi_sertype* type = makeRawType(dds_type, maximum);
     const dds_entity_t topic =
         dds_create_topic_sertype(participant(), dds_topic.c_str(), &type, nullptr, nullptr, nullptr);
     if (topic > 0) return Entity(topic);

@@ -49,7 +49,7 @@ public:
     int32_t participant() const { return participant_.handle(); }
     /** Returns a topic with the given DDS name and type; may be called several times for the same topic. See
      *  makeRawType() for `largest`. Throws types::ConfigError. */
-    Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t largest = any_size) const;
+    Entity makeTopic(const std::string& dds_topic, const std::string& dds_type, size_t maximum = any_size) const;
 
     /** Returns the domain's present writers, except those of this node. Takes a fraction of a millisecond. */
     std::vector<Published> published();

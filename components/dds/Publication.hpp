@@ -140,14 +140,14 @@ public:
     /** Returns a remedy once, if a message was larger than Linux's default receive buffers; else an empty text. */
     std::string takeSizeWarning() {
         constexpr size_t usual_buffer = 212'992;  // net.core.rmem_default [B]
-        if (largest_ <= usual_buffer || std::exchange(size_is_told_, true)) return "";
+        if (maximum_ <= usual_buffer || std::exchange(size_is_reported_, true)) return "";
         const bool can_shrink =
             std::is_same_v<Sample, types::Sonar> && options_.messages.dtype == ros::ImageType::Float32;
         return fmt::format(
             "{}: its messages of {:.0f} kB are larger than Linux's receive buffers ({:.0f} kB), so that readers "
             "with Fast DDS lose most of them; {}raise net.core.rmem_default on their machine, see "
             "components/dds/README.md",
-            topic_, static_cast<double>(largest_) / 1e3, static_cast<double>(usual_buffer) / 1e3,
+            topic_, static_cast<double>(maximum_) / 1e3, static_cast<double>(usual_buffer) / 1e3,
             can_shrink ? "take dtype: uint8, or " : "");
     }
 
@@ -161,7 +161,7 @@ public:
             drops_.add(topic_ + ": " + error.what());
             return false;
         }
-        largest_ = std::max(largest_, bytes_.size());
+        maximum_ = std::max(maximum_, bytes_.size());
         if (writer_.write(bytes_)) return true;
         drops_.add(topic_ + ": " + writer_.failure());
         return false;
@@ -174,8 +174,8 @@ private:
     Encode<Sample> encode_;
     Writer writer_;
     Bytes bytes_;
-    size_t largest_ = 0;  ///< Max size of a message so far [B].
-    bool size_is_told_ = false;
+    size_t maximum_ = 0;  ///< Max size of a message so far [B].
+    bool size_is_reported_ = false;
     types::ThrottledWarning& drops_;
 };
 

@@ -14,7 +14,7 @@
 namespace insonify::dds {
 namespace {
 
-void tellLatency(framework::TaskContext& task, const auto& sample) {
+void reportLatency(framework::TaskContext& task, const auto& sample) {
     if constexpr (requires { sample.time; }) framework::noteLatency(task, sample.time);
 }
 
@@ -34,7 +34,7 @@ void send(Input& input, const typename Input::Carried& sample, framework::TaskCo
     const auto* const content = types::carriedSample(sample);
     if (!content) return drops.add(input.port.path() + ": a sample is null");
     for (const auto& publication : input.kept.publications)
-        if (publication->publish(*content)) tellLatency(task, *content);
+        if (publication->publish(*content)) reportLatency(task, *content);
 }
 
 }  // namespace
@@ -108,9 +108,9 @@ ros::TFMessage PublisherTask::mounts() const {
         for (const TopicOut& topic : config->topics) {
             const auto axes = axesOf(topic);
             const std::string frame = environment().names.frame(config->frameOf(topic));
-            const bool is_told =
+            const bool is_known =
                 std::ranges::count(message.transforms, frame, &ros::TransformStamped::child_frame_id) > 0;
-            if (topic.port != input.port.name() || !mount || !axes || is_told) continue;
+            if (topic.port != input.port.name() || !mount || !axes || is_known) continue;
             message.transforms.push_back({{ros::toRos(now()), environment().names.frame(config->tf_static->frame_id)},
                                           frame,
                                           ros::toTransform(*mount, config->node.world_frame, *axes)});
@@ -150,7 +150,7 @@ void PublisherTask::updateHook() {
             recordStage("send", std::chrono::duration<double>(Clock::now() - start).count());
         }
     });
-    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
 }
 
 void PublisherTask::cleanupHook() {

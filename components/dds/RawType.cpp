@@ -16,7 +16,7 @@ namespace {
 
 /** A sample in transit, shared by Cyclone's caches. */
 struct Serdata : ddsi_serdata {
-    explicit Serdata(size_t most) : bytes(new char[most]), capacity(most) {}
+    explicit Serdata(size_t maximum) : bytes(new char[maximum]), capacity(maximum) {}
     std::unique_ptr<char[]> bytes;  ///< Uninitialised.
     size_t capacity;
     uint32_t size = 0;
@@ -24,7 +24,7 @@ struct Serdata : ddsi_serdata {
 
 /** Cyclone's type together with our data. */
 struct RawType : ddsi_sertype {
-    size_t largest = 0;  ///< Max message accepted from the network [B].
+    size_t maximum = 0;  ///< Max message accepted from the network [B].
 };
 
 const RawType& own(const ddsi_sertype* type) { return *static_cast<const RawType*>(type); }
@@ -89,7 +89,7 @@ Serdata* copyOf(const ddsi_sertype* type, ddsi_serdata_kind kind, const char* by
 }
 
 ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* chain, size_t size) {
-    if (size > own(type).largest) return copyOf(type, kind, nullptr, 0);
+    if (size > own(type).maximum) return copyOf(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     uint32_t filled = 0;
@@ -106,7 +106,7 @@ ddsi_serdata* fromFragments(const ddsi_sertype* type, ddsi_serdata_kind kind, co
 
 ddsi_serdata* fromPieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                          const ddsrt_iovec_t* pieces, size_t size) {
-    if (size > own(type).largest) return copyOf(type, kind, nullptr, 0);
+    if (size > own(type).maximum) return copyOf(type, kind, nullptr, 0);
     Serdata* data = pool().take(type, kind, size);
     if (!data) return nullptr;
     size_t filled = 0;
@@ -182,7 +182,7 @@ const ddsi_sertype_ops type_operations = {
     .zero_samples = [](const ddsi_sertype*, void*, size_t) {},
     .realloc_samples = [](void**, const ddsi_sertype*, void*, size_t, size_t) { std::abort(); },
     .free_samples = [](const ddsi_sertype*, void**, size_t, dds_free_op_t) {},
-    .equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return own(a).largest == own(b).largest; },
+    .equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return own(a).maximum == own(b).maximum; },
     .hash = [](const ddsi_sertype*) { return uint32_t{0}; },
     .type_id = nullptr,
     .type_map = nullptr,
@@ -194,10 +194,10 @@ const ddsi_sertype_ops type_operations = {
 
 }  // namespace
 
-ddsi_sertype* makeRawType(const std::string& type_name, size_t largest) {
+ddsi_sertype* makeRawType(const std::string& type_name, size_t maximum) {
     auto type = std::make_unique<RawType>();
     ddsi_sertype_init(type.get(), type_name.c_str(), &type_operations, &data_operations, true);
-    type->largest = largest;
+    type->maximum = maximum;
     return type.release();
 }
 

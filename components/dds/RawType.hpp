@@ -17,6 +17,6 @@ inline constexpr size_t any_size = std::numeric_limits<size_t>::max();
  *  It has no key and does not announce its members, so peers match it by name alone, as in ROS 2. Otherwise a peer of a
  *  newer Cyclone that asks a process with 0.10 for the members crashes it. Bytes from the network are passed on
  *  unchecked; the receiver checks them. Messages of more than `largest` bytes are passed on empty. */
-ddsi_sertype* makeRawType(const std::string& type_name, size_t largest = any_size);
+ddsi_sertype* makeRawType(const std::string& type_name, size_t maximum = any_size);
 
 }  // namespace insonify::dds

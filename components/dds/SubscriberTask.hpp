@@ -23,7 +23,7 @@ struct Topic {
  *  `world_frame`. A message that arrives wakes the task; with a period, each cycle takes the messages that have
  *  arrived. With `depth: 1` only the newest is passed on, else all in order as long as the task keeps up.
  *
- *  A message that cannot be decoded, a pose that is not finite or a stamp that goes back is dropped and counted. A
+ *  A message that cannot be decoded, a pose that is not finite or a stamp that decreases is dropped and counted. A
  *  warning reports the first drop and then at most one every ten seconds; a notice reports the sum at the end. A topic
  *  without a pose for three seconds after the start is reported once, together with similar topics of the domain.
  *  Refused in lockstep, whose time does not wait for messages. */

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int min_depth = 64;         ///< So that invalid messages do not displace a valid message before it is read.
 constexpr int max_drops = 64;         ///< In one take(): a sender of invalid messages blocks nobody.
-constexpr size_t largest = 64 << 10;  ///< A message's 712 bytes and two names, rounded up [B].
+constexpr size_t maximum = 64 << 10;  ///< A message's 712 bytes and two names, rounded up [B].
 constexpr types::Time max_ahead{1'000'000};    ///< Max stamp ahead of the clock; a sonar refuses later snapshots too.
 constexpr types::Time max_silence{1'000'000};  ///< After it, a sender's clock may have been set back.
 
@@ -47,7 +47,7 @@ std::string similarTopics(const std::vector<Published>& all, const std::string& 
 Reader readerOf(Node& node, const SubscriberConfig& config, const TopicIn& topic, std::function<void()> arrived) {
     const char* hash = topic.type == PoseType::Odometry ? ros::Odometry::type_hash : ros::PoseStamped::type_hash;
     const Quality quality{.reliability = config.reliability, .depth = std::max(config.depth, min_depth)};
-    return {node, ddsTopic(topic.topic), typeOf(topic.type), hash, quality, std::move(arrived), largest};
+    return {node, ddsTopic(topic.topic), typeOf(topic.type), hash, quality, std::move(arrived), maximum};
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ std::string Subscription::diagnosticOf(types::Time now, const types::Pose& pose)
     if (!types::isUsable(pose)) return "position and orientation are not finite, or the orientation has no length";
     if (pose.time - now > max_ahead) return "the stamp is more than a second ahead of the clock";
     if (pose.time >= newest_ || now - newest_came_ > max_silence) return "";
-    const bool sender_lives = sender_ == newest_sender_ || reader_.hears(newest_sender_);
+    const bool sender_lives = sender_ == newest_sender_ || reader_.receives(newest_sender_);
     return sender_lives ? "the stamp is before that of the previous pose" : "";
 }
 

@@ -9,14 +9,14 @@ namespace {
 
 constexpr int max_transforms_at_once = 1000;      ///< Messages of a topic in one cycle; then the other topic follows.
 constexpr int depth = 1000;                       ///< Queued messages of all senders.
-constexpr size_t largest = size_t{1} << 20;       ///< Size of a message [B].
+constexpr size_t maximum = size_t{1} << 20;       ///< Size of a message [B].
 constexpr types::Time chain_patience{2'000'000};  ///< Before an incomplete chain is reported.
 constexpr types::Time static_period{100'000};
 
 std::unique_ptr<Reader> transformReader(Node& node, const std::string& topic, const Quality& quality,
                                         std::function<void()> arrived) {
     auto made = std::make_unique<Reader>(node, ddsTopic(topic), ros::TFMessage::type_name, ros::TFMessage::type_hash,
-                                         quality, std::move(arrived), largest);
+                                         quality, std::move(arrived), maximum);
     node.addReader(made->handle());
     return made;
 }
@@ -97,9 +97,9 @@ bool TransformTask::startHook() {
 void TransformTask::updateHook() {
     take(*fixed_, true);
     take(*moving_, false);
-    outputs_.forEach([this](auto& output) { tell(output); });
+    outputs_.forEach([this](auto& output) { report(output); });
     for (auto* counted : {&drops_, &gaps_})
-        if (const std::string told = counted->takeWarning(); !told.empty()) warn(told);
+        if (const std::string reported = counted->takeWarning(); !reported.empty()) warn(reported);
 }
 
 void TransformTask::take(Reader& reader, bool is_static) {
@@ -125,7 +125,7 @@ void TransformTask::add(const ros::TransformStamped& transform, bool is_static) 
 }
 
 template <class Output>
-void TransformTask::tell(Output& output) {
+void TransformTask::report(Output& output) {
     auto& kept = output.kept;
     auto [placed, diagnostic] = tree_.newest(config->world_frame_id, kept.frame_id, now());
     if (placed && diagnostic.empty())

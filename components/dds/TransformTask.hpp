@@ -16,7 +16,7 @@ namespace insonify::dds {
 
 /** The state of an output of TransformTask. */
 template <class Sample>
-struct Told {
+struct SentFrame {
     std::string frame_id;
     types::Time time, written;           ///< Time of the last pose: its chain's, and the clock's.
     uint64_t life = 0;                   ///< TransformTree::lives() at the last pose.
@@ -32,7 +32,7 @@ struct Told {
  *  Refused transforms are counted. A warning reports the first and then at most one every ten seconds; a notice reports
  *  the sum at the end. A chain that leads nowhere, is circular or is interrupted is reported once, after two seconds.
  *  Refused in lockstep, whose time does not wait for messages. */
-class TransformTask final : public pose::ListenerTask<TransformConfig, &TransformConfig::frames, Told> {
+class TransformTask final : public pose::ListenerTask<TransformConfig, &TransformConfig::frames, SentFrame> {
 public:
     using ListenerTask::ListenerTask;
 
@@ -49,7 +49,7 @@ private:
     void take(Reader& reader, bool is_static);
     void add(const ros::TransformStamped& transform, bool is_static);
     template <class Output>
-    void tell(Output& output);
+    void report(Output& output);
 
     std::optional<Node> node_;
     std::unique_ptr<Reader> moving_, fixed_;

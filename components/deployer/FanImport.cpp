@@ -98,8 +98,8 @@ Imported importFan(const fs::path& recording, std::optional<DeploymentSpec> spec
         for (const std::string& notice : file->notices()) why += "; " + notice;
         throw types::ConfigError(recording.string(), "", "holds no ping of a sonar" + why);
     }
-    const double largest = std::exp2(FanFile::code_bits) - 1;
-    FanTasks tasks{.largest_code = largest};
+    const double maximum = std::exp2(FanFile::code_bits) - 1;
+    FanTasks tasks{.max_code = maximum};
     if (spec) {
         tasks = FanTasks::of(*spec);
         if (!isUsable(frame->sonar)) refuseWithoutTrajectory(tasks, spec->file);
@@ -107,7 +107,7 @@ Imported importFan(const fs::path& recording, std::optional<DeploymentSpec> spec
     RecordedLog log(recording, std::move(spec), fanTextOf(*file), to);
     FanLog written(log, tasks, *file, *frame);
     Imported imported{.stream = tasks.receiver + ".ping"};
-    for (; frame; frame = file->next(), ++imported.pings) written.write(*frame, tasks.largest_code / largest);
+    for (; frame; frame = file->next(), ++imported.pings) written.write(*frame, tasks.max_code / maximum);
     log.close();
     imported.properties = log.properties();
     imported.changes = log.changes();

@@ -21,7 +21,7 @@ FanTasks FanTasks::of(const framework::DeploymentSpec& spec) {
     FanTasks tasks;
     std::tie(tasks.sonar, tasks.receiver) = recordedTasksOf<sonar::SonarTask>(deployment, "sonar::SonarTask");
     const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, spec.file);
-    tasks.largest_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
+    tasks.max_code = std::exp2(receiver.config->code.value_or(receiver::CodeConfig{}).bits) - 1;
     const auto* sonar = dynamic_cast<const sonar::SonarTask*>(deployment.task(tasks.sonar));
     tasks.has_beam_width = sonar->sonarConfig().beam_width_deg.has_value();
     for (const auto& task : deployment.tasks())

@@ -13,7 +13,7 @@ namespace insonify::deployer {
  *  names. */
 struct FanTasks {
     std::string sonar = "sonar", receiver = "receiver";
-    double largest_code = 0;  ///< The receiver's max code.
+    double max_code = 0;  ///< The receiver's max code.
     bool has_beam_width = false;
     std::vector<std::pair<std::string, pose::Trajectory>> trajectories{};  ///< By the stream of their poses.
 

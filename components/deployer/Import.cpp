@@ -25,9 +25,9 @@ using output::SideScanLine;
 /** Facts about a side-scan's recording that are needed before its first ping is written. */
 struct SideScanCodes {
     bool whole = true;  ///< All samples are whole numbers of at most 16 bits.
-    float largest = 0;
+    float maximum = 0;
     size_t pings = 0;
-    int bits() const { return std::max(1, static_cast<int>(std::ceil(std::log2(largest + 1)))); }
+    int bits() const { return std::max(1, static_cast<int>(std::ceil(std::log2(maximum + 1)))); }
 };
 
 SideScanCodes codesIn(const fs::path& recording) {
@@ -36,7 +36,7 @@ SideScanCodes codesIn(const fs::path& recording) {
     for (auto line = file->next(); line; line = file->next(), ++codes.pings)
         for (const float bin : line->ping.bins) {
             codes.whole &= bin >= 0 && bin <= 65535 && std::floor(bin) == bin;
-            codes.largest = std::max(codes.largest, bin);
+            codes.maximum = std::max(codes.maximum, bin);
         }
     if (codes.pings == 0) {
         std::string why;

@@ -61,11 +61,11 @@ Json metadataJson(const log::Reader& log) {
 }
 
 void printMetadata(const log::Reader& log) {
-    std::set<std::pair<std::string, std::string>> told;  // once for all streams with the same metadata
+    std::set<std::pair<std::string, std::string>> reported;  // once for all streams with the same metadata
     for (const log::Stream& stream : log.streams()) {
         fmt::print("\n{}\n{}\n", stream.name, text(meaningOf(log, stream)));
         for (const auto& [key, value] : stream.metadata)
-            if (told.emplace(key, value).second)
+            if (reported.emplace(key, value).second)
                 fmt::print("{}:{}{}\n", key, value.find('\n') == value.npos ? " " : "\n", value);
     }
 }
@@ -94,14 +94,14 @@ void makeFolderOf(const fs::path& to) {
 
 /** Pings as text are about ten times as large as in the log, and slow to read. */
 void noteSize(log::Reader& log, const std::string& stream, const fs::path& to) {
-    constexpr double line = 40, told_from = 1e8;  // [B]
+    constexpr double line = 40, reported_from = 1e8;  // [B]
     const size_t index = log.indexOf(stream);
     const log::Stream& pings = log.streams()[index];
     if (!log::holdsPings(pings) || pings.count == 0) return;
     types::Sonar ping;
     readPing(log, *std::ranges::find(log.samples(), index, &log::SampleRef::stream), ping);
     const double bins = static_cast<double>(ping.bins.size()) * static_cast<double>(pings.count);
-    if (bins * line > told_from)
+    if (bins * line > reported_from)
         fmt::print(stderr,
                    "notice: {} gets a line for each bin, some {:.0f} million, {:.1f} GB; an .npz takes {:.2g} GB\n",
                    to.string(), bins / 1e6, bins * line / 1e9, bins * sizeof(float) / 1e9);
@@ -138,7 +138,7 @@ struct Options {
     bool json = false, metadata = false, ground = false;
 };
 
-void tellLost(const log::Copied& copied) {
+void reportLost(const log::Copied& copied) {
     for (const std::string& lost : copied.lost) fmt::print(stderr, "lost: {}\n", lost);
 }
 
@@ -147,7 +147,7 @@ int exportMessages(const Options& options) {
     log::Selection selection;
     if (!options.stream.empty()) selection.streams.insert(options.stream);
     const log::Copied copied = log::copyLog({options.file}, options.to, {.selection = selection, .anew = options.mcap});
-    tellLost(copied);
+    reportLost(copied);
     fmt::print("{}: {} messages\n", options.to, copied.samples);
     return 0;
 }
@@ -205,7 +205,7 @@ log::Selection selectionOf(const Options& options) {
 int copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
     makeFolderOf(to);
     const log::Copied copied = log::copyLog(files, to, options);
-    tellLost(copied);
+    reportLost(copied);
     if (const std::string notice = log::copyProperties(files.front(), to); !notice.empty())
         fmt::print(stderr, "notice: {}\n", notice);
     fmt::print("{}: {} samples, {}\n", to, copied.samples,

@@ -50,15 +50,15 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& option
 }
 
 /** Reports the tasks that do not run because they communicate outside. */
-void tellLeftOut(const framework::DeploymentSpec& spec, const Asked& options) {
+void reportOmitted(const framework::DeploymentSpec& spec, const Asked& options) {
     if (options.replay.outside) return;
     for (const std::string& task : outsideTasks(spec))
         notice(options, task + " is omitted, because it communicates outside the deployment; --outside runs it");
 }
 
 /** Scores the log against the new rendering and prints the score. Returns the exit code. */
-int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
-              const std::filesystem::path& folder) {
+int printScore(log::Reader& log, const std::vector<std::string>& streams, size_t worst,
+               const std::filesystem::path& folder) {
     const auto again = log::openLog(folder / rerendered_file);
     log::Reader& rendered = *again;
     std::vector<StreamScore> scores;
@@ -67,7 +67,7 @@ int tellScore(log::Reader& log, const std::vector<std::string>& streams, size_t 
     writeScorePictures(log, rendered, scores, worst, folder);
     fmt::print("{}", scoreTable(scores, worst));
     for (const StreamScore& score : scores)
-        if (const std::string rest = leftOut(score); !rest.empty())
+        if (const std::string rest = findOmitted(score); !rest.empty())
             fmt::print(stderr, "warning: {}: not all pings were compared: {}\n", score.stream, rest);
     if (std::ranges::any_of(scores, [](const StreamScore& score) { return !score.pings.empty(); })) return 0;
     fmt::print(stderr, "insonify: no ping of {} could be compared with one that was rendered again\n",
@@ -129,7 +129,7 @@ int replay(Asked options) {
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = takeSettings(log, options);
     framework::DeploymentSpec spec = loadSpec(options);
-    tellLeftOut(spec, options);
+    reportOmitted(spec, options);
     const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
     if (options.score && streams.empty())
         throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
@@ -138,7 +138,7 @@ int replay(Asked options) {
     followLog(options, std::move(changed));
     std::filesystem::path folder;
     const int code = runDeployment(std::move(spec), options, &folder);
-    return code == 0 && options.score ? tellScore(log, streams, options.worst, folder) : code;
+    return code == 0 && options.score ? printScore(log, streams, options.worst, folder) : code;
 }
 
 }  // namespace

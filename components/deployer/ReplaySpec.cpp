@@ -100,18 +100,18 @@ std::vector<ConnectionSpec> reconnected(const DeploymentSpec& spec, const log::R
 /** Adds tasks between others that get no input any more: their writers are replaced, and the log lacks the writers'
  *  samples. */
 void addDeaf(const DeploymentSpec& spec, const log::Reader& log, std::set<std::string>& replaced) {
-    const auto hears = [&](const ConnectionSpec& connection) {
+    const auto receives = [&](const ConnectionSpec& connection) {
         return !replaced.contains(splitPort(connection.from).first) || !streamOf(log, spec, connection.from).empty();
     };
     const auto isDeaf = [&](const TaskSpec& task) {
-        bool reads = false, writes = false, hears_any = false;
+        bool reads = false, writes = false, has_reader = false;
         for (const ConnectionSpec& connection : spec.connections) {
             writes |= splitPort(connection.from).first == task.name;
             if (splitPort(connection.to).first != task.name) continue;
             reads = true;
-            hears_any |= hears(connection);
+            has_reader |= receives(connection);
         }
-        return reads && writes && !hears_any;
+        return reads && writes && !has_reader;
     };
     for (size_t before = 0; before != replaced.size();) {
         before = replaced.size();

@@ -107,8 +107,8 @@ private:
     double seconds_;
 };
 
-std::vector<std::string> without(std::vector<std::string> notices, const std::vector<std::string>& told) {
-    std::erase_if(notices, [&](const std::string& notice) { return std::ranges::count(told, notice) > 0; });
+std::vector<std::string> without(std::vector<std::string> notices, const std::vector<std::string>& reported) {
+    std::erase_if(notices, [&](const std::string& notice) { return std::ranges::count(reported, notice) > 0; });
     return notices;
 }
 
@@ -120,8 +120,8 @@ void printNotices(const framework::TaskContext& task, const std::vector<std::str
 void refuseUnwritable(const std::filesystem::path& summary_file) {
     namespace fs = std::filesystem;
     const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
-    const fs::path judged = fs::exists(summary_file) ? summary_file : folder;
-    if (!summary_file.empty() && (fs::is_directory(summary_file) || access(judged.c_str(), W_OK) != 0))
+    const fs::path evaluated = fs::exists(summary_file) ? summary_file : folder;
+    if (!summary_file.empty() && (fs::is_directory(summary_file) || access(evaluated.c_str(), W_OK) != 0))
         throw types::ConfigError(summary_file, "--summary", "cannot be written to");
 }
 
@@ -141,11 +141,11 @@ Notices noticesOf(const framework::Deployment& deployment) {
     return all;
 }
 
-/** Prints new notices since `told`, and the summary. */
-void tell(const framework::Deployment& deployment, const Notices& told, const Summary& summary) {
-    for (size_t i = 0; i < told.size(); ++i) {
+/** Prints new notices since `reported`, and the summary. */
+void report(const framework::Deployment& deployment, const Notices& reported, const Summary& summary) {
+    for (size_t i = 0; i < reported.size(); ++i) {
         const framework::TaskContext& task = *deployment.tasks()[i];
-        printNotices(task, without(noticesOf(task), told[i]));
+        printNotices(task, without(noticesOf(task), reported[i]));
     }
     fmt::print("{}", summary.text());
 }
@@ -203,10 +203,10 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     folder.keep();
     callAll(deployment, options);
 
-    const Notices told = noticesOf(deployment);
+    const Notices reported = noticesOf(deployment);
     framework::RunResult result = runAll(deployment, options, stop);
     const Summary summary(deployment, result);
-    if (!options.quiet) tell(deployment, told, summary);
+    if (!options.quiet) report(deployment, reported, summary);
     if (!options.quiet && !options.shard) fmt::print("files in {}\n", folder.path().string());
     if (!options.summary.empty()) write(summary.json(), options.summary);
     for (std::string& failure : deployment.cleanup()) result.failures.push_back(std::move(failure));

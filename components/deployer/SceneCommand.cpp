@@ -110,7 +110,7 @@ bool isGltf(const std::string& file) {
 }
 
 /** Whether a scene written with z up was turned as if y were up: its sea floor is then a wall across y. */
-bool liesOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
+bool isOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
     const double all = facing.x + facing.y + facing.z;
     const glm::dvec3 size = extent.size();
     return all > 0 && facing.y > 0.6 * all && size.z > 2 * size.y;
@@ -119,7 +119,7 @@ bool liesOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
 Json warningsOf(const std::string& file, const types::Extent& extent, const Surfaces& surfaces, const Json& materials) {
     Json warnings = Json::array();
     const glm::dvec3 facing = surfaces.facing;
-    if (isGltf(file) && liesOnItsSide(extent, facing))
+    if (isGltf(file) && isOnItsSide(extent, facing))
         warnings.push_back(fmt::format(
             "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} "
             "m "

@@ -117,7 +117,7 @@ constexpr Column columns[] = {
 void addSummary(std::string& text, const StreamScore& score) {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "{}: {} pings compared", score.stream, score.pings.size());
-    if (const std::string rest = leftOut(score); !rest.empty()) text += ", " + rest;
+    if (const std::string rest = findOmitted(score); !rest.empty()) text += ", " + rest;
     if (!score.pings.empty())
         fmt::format_to(out, "; relative L2 {:.4g} to {:.4g}, median {:.4g}", score.pings.back().metrics.rel_l2,
                        score.pings.front().metrics.rel_l2, score.pings[score.pings.size() / 2].metrics.rel_l2);
@@ -174,7 +174,7 @@ void writePictures(log::Reader& recorded, log::Reader& rendered, const StreamSco
 
 }  // namespace
 
-std::string leftOut(const StreamScore& score) {
+std::string findOmitted(const StreamScore& score) {
     std::vector<std::string> reasons;
     if (score.not_rendered > 0) reasons.push_back(fmt::format("{} not rendered again", score.not_rendered));
     if (score.not_recorded > 0) reasons.push_back(fmt::format("{} not in the log", score.not_recorded));

@@ -32,7 +32,7 @@ struct StreamScore {
 StreamScore score(log::Reader& recorded, log::Reader& rendered, const std::string& stream);
 
 /** Returns how many pings were not compared, and why; empty: all were. */
-std::string leftOut(const StreamScore& score);
+std::string findOmitted(const StreamScore& score);
 
 /** Returns, for each stream, a line on all its pings and a table of the `worst` pings with the greatest error. */
 std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst);

@@ -88,7 +88,7 @@ void removeIndices(const std::filesystem::path& folder) {
     for (const auto& index : indices) std::filesystem::remove(index);
 }
 
-void tell(const RunOptions& options, const Json& manifest, const std::filesystem::path& folder, const char* how) {
+void report(const RunOptions& options, const Json& manifest, const std::filesystem::path& folder, const char* how) {
     if (options.quiet) return;
     fmt::print("shard {}: {} pings from {} on, of {}; {} files {} {}\n", options.shard->text(),
                manifest["pings"].dump(), manifest["first_ping"].dump(), manifest["pings_of_run"].dump(),
@@ -117,7 +117,7 @@ int runShard(RunOptions options) {
     for (const std::string& assignment : pinnedRays(spec)) spec.set(assignment);
     ShardFolder folder(options.out, *options.shard, runOf(options, spec));
     if (const auto manifest = folder.done()) {
-        tell(options, *manifest, folder.path(), "existed already, in");
+        report(options, *manifest, folder.path(), "existed already, in");
         return 0;
     }
     options.out = folder.begin().string();
@@ -131,7 +131,7 @@ int runShard(RunOptions options) {
     removeIndices(options.out);
     const auto block = options.shard->block(pings);
     const Json more = {{"first_ping", made.first}, {"pings", block.last - block.first}, {"pings_of_run", pings}};
-    tell(options, folder.finish(more), folder.path(), "in");
+    report(options, folder.finish(more), folder.path(), "in");
     return 0;
 }
 

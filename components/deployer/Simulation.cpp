@@ -80,10 +80,10 @@ void throwAny(const std::vector<std::string>& failures) {
 }
 
 /** Returns the deployment without those tasks and their connections. */
-DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& left_out) {
+DeploymentSpec without(DeploymentSpec spec, const std::set<std::string>& omitted) {
     std::set<std::string> kept;
     for (const std::string& name : spec.taskNames())
-        if (!left_out.contains(name)) kept.insert(name);
+        if (!omitted.contains(name)) kept.insert(name);
     return restrictedTo(std::move(spec), kept);
 }
 
@@ -170,15 +170,15 @@ void Simulation::connectReaders(bool truth) {
         PingReader& reader = *readers_.emplace_back(std::make_unique<PingReader>(port->path()));
         port->connectTo(reader.ping, framework::ConnPolicy::buffer(4));
         if (!truth) continue;
-        framework::OutputPortBase* const told = truthBehind(*deployment_, &port->owner());
-        if (!told)
+        framework::OutputPortBase* const reported = truthBehind(*deployment_, &port->owner());
+        if (!reported)
             throw types::ConfigError(deployment_->spec().file, port->path(),
                                      "is not from a sonar that writes its truth");
-        told->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
-        reader.sonar = dynamic_cast<const sonar::AimedTask*>(&told->owner());
-        if (framework::OutputPortBase* const image = told->owner().output("range_image")) {
+        reported->connectTo(reader.truth, framework::ConnPolicy::buffer(4));
+        reader.sonar = dynamic_cast<const sonar::TriggeredTask*>(&reported->owner());
+        if (framework::OutputPortBase* const image = reported->owner().output("range_image")) {
             image->connectTo(reader.range_image, framework::ConnPolicy::buffer(4));
-            told->owner().output("range_truth")->connectTo(reader.range_truth, framework::ConnPolicy::buffer(4));
+            reported->owner().output("range_truth")->connectTo(reader.range_truth, framework::ConnPolicy::buffer(4));
         }
     }
 }

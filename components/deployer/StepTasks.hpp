@@ -11,7 +11,7 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/TaskContext.hpp"
-#include "components/sonar/AimedTask.hpp"
+#include "components/sonar/TriggeredTask.hpp"
 #include "types/DepthMap.hpp"
 #include "types/Pose.hpp"
 #include "types/Sonar.hpp"
@@ -66,7 +66,7 @@ struct PingReader : framework::TaskContext {
                                                          framework::Need::Optional};
     framework::InputPort<types::SonarTruthPtr> range_truth{this, "range_truth", "what that shows",
                                                            framework::Need::Optional};
-    const sonar::AimedTask* sonar = nullptr;  ///< The source of the truth; null for tasks of other libraries.
+    const sonar::TriggeredTask* sonar = nullptr;  ///< The source of the truth; null for tasks of other libraries.
 };
 
 }  // namespace insonify::deployer

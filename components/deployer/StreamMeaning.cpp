@@ -112,12 +112,12 @@ Json poseMeaning() {
 template <class T>
 Json fieldsOf() {
     Json fields = Json::object();
-    const auto tell = [&](const types::Field& field, const auto&) {
+    const auto report = [&](const types::Field& field, const auto&) {
         const std::string unit = field.unit;
         fields[field.name] = std::string(field.doc) + (unit.empty() || unit == "1" ? "" : " [" + unit + "]");
     };
     const T sample;
-    T::describe(sample, tell);
+    T::describe(sample, report);
     return fields;
 }
 

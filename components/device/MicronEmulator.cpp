@@ -16,7 +16,7 @@ constexpr double motor_unit = 10e-6;      // of motor_delay [s]
 constexpr double interval_unit = 640e-9;  // of ad_interval [s]
 constexpr double clock_hz = 32e6;         // unit of transmit frequencies
 constexpr double full_gain = 210, usual_gain = 84, full_gain_db = 80;
-constexpr double largest_code = 65535;
+constexpr double max_code = 65535;
 constexpr uint16_t max_bins = 1500, max_interval = 1500;
 constexpr double lowest_khz = 100, highest_khz = 2000;
 
@@ -62,7 +62,7 @@ void MicronEmulator::take(Client client, const SeaNetMessage& message, types::Ti
         case SeaNetType::SendUserData: return outlet_.send(client, SeaNetUserData{}.message().packet());
         case SeaNetType::HeadCommand: return configure(client, message, now);
         case SeaNetType::SendData: return requestLine(client, now);
-        case SeaNetType::StopAlive: tells_alive_ = false; return;
+        case SeaNetType::StopAlive: sends_alive_ = false; return;
         default: return;
     }
 }
@@ -71,7 +71,7 @@ void MicronEmulator::reboot(types::Time now) {
     state_ = State::Booting;
     begun_ = now;
     next_alive_ = now + seconds(device_.boot_time);
-    tells_alive_ = true;
+    sends_alive_ = true;
     bearing_ = seanet_ahead;
     line_.reset();
 }
@@ -138,7 +138,7 @@ void MicronEmulator::askForPing(types::Time now) {
 Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
     const auto level = [&](size_t bin) {  // in 255ths of 80 dB
         const double code = bin < ping.bins.size() ? static_cast<double>(ping.bins[bin]) : 0;
-        return std::isfinite(code) ? 255 * std::clamp(code / largest_code, 0.0, 1.0) : 0;
+        return std::isfinite(code) ? 255 * std::clamp(code / max_code, 0.0, 1.0) : 0;
     };
     if (command_.has(SeaNetControl::eight_bits)) {
         Bytes data(command_.bins);
@@ -154,7 +154,7 @@ Bytes MicronEmulator::dataOf(const types::Sonar& ping) const {
     return data;
 }
 
-void MicronEmulator::heard(const types::Sonar& ping) {
+void MicronEmulator::takePing(const types::Sonar& ping) {
     if (!line_ || !line_->asked.take(ping.time)) return;
     warned_ = false;
     line_->data = dataOf(ping);
@@ -208,10 +208,10 @@ SeaNetAlive MicronEmulator::alive(types::Time now) const {
             .bearing = static_cast<uint16_t>(bearing_)};
 }
 
-void MicronEmulator::tellAlive(types::Time now) {
+void MicronEmulator::sendAlive(types::Time now) {
     next_alive_ = now + seconds(alive_period);
     if (state_ == State::Booting) state_ = State::Unconfigured;
-    if (!tells_alive_) return;
+    if (!sends_alive_) return;
     const Bytes packet = alive(now).message().packet();
     for (const auto& [client, reader] : clients_) outlet_.send(client, packet);
 }
@@ -226,7 +226,7 @@ std::optional<types::Time> MicronEmulator::tick(types::Time now) {
         askForPing(now);
     }
     const bool is_late = line_ && line_->asked.size() > 1;
-    if (now >= next_alive_ && (!line_ || is_late)) tellAlive(now);
+    if (now >= next_alive_ && (!line_ || is_late)) sendAlive(now);
     if (!line_) return next_alive_;
     if (line_->data) return line_->whole;
     if (line_->asked.empty()) return line_->ready;

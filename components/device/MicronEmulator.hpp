@@ -56,7 +56,7 @@ public:
     void closed(Client client);
     /** Takes a requested ping, in codes on a scale of 80 dB from the smallest to the max code. Ignores pings of earlier
      *  requests. */
-    void heard(const types::Sonar& ping);
+    void takePing(const types::Sonar& ping);
     /** Does the due work; returns when the next is due. */
     std::optional<types::Time> tick(types::Time now);
 
@@ -87,7 +87,7 @@ private:
     void turnTo(int bearing);
     void turn();  ///< By one step, reversing at a limit.
     SeaNetAlive alive(types::Time now) const;
-    void tellAlive(types::Time now);
+    void sendAlive(types::Time now);
     double listening() const;  ///< Two-way travel time to the last bin [s].
     Bytes dataOf(const types::Sonar& ping) const;
 
@@ -96,7 +96,7 @@ private:
     std::map<Client, SeaNetReader> clients_;
     State state_ = State::Off;
     types::Time begun_, next_alive_;
-    bool tells_alive_ = true;
+    bool sends_alive_ = true;
     SeaNetHeadCommand command_;
     int bearing_ = seanet_ahead;
     bool backwards_ = false;  ///< Counter-clockwise.

@@ -51,7 +51,7 @@ private:
     void received(Client client, std::span<const uint8_t> bytes) override { emulator_->received(client, bytes, now()); }
     void closed(Client client) override { emulator_->closed(client); }
     void takePings() override {
-        for (types::SonarPtr sample; ping.readNew(sample);) emulator_->heard(*sample);
+        for (types::SonarPtr sample; ping.readNew(sample);) emulator_->takePing(*sample);
     }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 

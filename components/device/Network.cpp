@@ -85,7 +85,7 @@ public:
     };
 
     /** False: too much waits, stop reading for now. */
-    bool tell(NetworkEvent event) {
+    bool report(NetworkEvent event) {
         bool room = false;
         {
             std::lock_guard lock(mutex_);
@@ -153,7 +153,7 @@ public:
     asio::io_context io{1};
     std::vector<std::shared_ptr<EndBase>> ends;
     std::atomic<uint64_t> dropped{0}, displaced{0}, failures{0};
-    uint64_t heard = 0;  ///< Messages from connections so far, for the network's thread.
+    uint64_t last_message = 0;  ///< Messages from connections so far, for the network's thread.
 
 private:
     /** Serves until the end. A failure in one place, such as out of memory, is counted, and the other ends continue. */
@@ -208,10 +208,10 @@ public:
                                     self->reading_ = false;
                                     if (self->closed_) return;
                                     if (error) return self->end();
-                                    self->heard_ = ++self->core_.heard;
+                                    self->last_message_ = ++self->core_.last_message;
                                     const auto begin = self->buffer_.begin();
                                     const Bytes bytes(begin, begin + static_cast<std::ptrdiff_t>(count));
-                                    if (self->core_.tell({NetworkEvent::Kind::Received, self->client_, bytes, ""}))
+                                    if (self->core_.report({NetworkEvent::Kind::Received, self->client_, bytes, ""}))
                                         self->read();
                                 });
     }
@@ -233,13 +233,13 @@ public:
         write();
     }
     /** The number of its last message among those of all sessions; 0: it has sent none. */
-    uint64_t heard() const { return heard_; }
+    uint64_t last_message() const { return last_message_; }
     /** Ends it at once and drops its waiting messages. */
     void end() {
         if (closed_ || !ended_) return;
         shut();
         ended_();
-        core_.tell({NetworkEvent::Kind::Closed, client_, {}, ""});
+        core_.report({NetworkEvent::Kind::Closed, client_, {}, ""});
     }
     /** Without an event. */
     void shut() {
@@ -289,7 +289,7 @@ private:
     std::optional<Bytes> newest_;  ///< Of the streamed messages.
     Bytes sending_;
     size_t waiting_ = 0;  ///< In `replies_` [bytes].
-    uint64_t heard_ = 0;
+    uint64_t last_message_ = 0;
     bool reading_ = false, writing_ = false, closing_ = false, closed_ = false;
 };
 
@@ -359,14 +359,15 @@ private:
             std::make_shared<TcpSession>(core_, std::move(socket), Client{end_, number},
                                          TcpSession::Ended{[this, number] { sessions_.erase(number); }});
         sessions_[number] = session;
-        core_.tell({NetworkEvent::Kind::Opened, {end_, number}, {}, textOf(peer)});
+        core_.report({NetworkEvent::Kind::Opened, {end_, number}, {}, textOf(peer)});
         session->read();
     }
 
     /** Disconnects the client silent for longest, for a newer client. */
     void displace() {
-        const auto silent =
-            std::ranges::min_element(sessions_, {}, [](const auto& each) { return each.second->heard(); })->second;
+        const auto silent = std::ranges::min_element(sessions_, {}, [](const auto& each) {
+                                return each.second->last_message();
+                            })->second;
         ++core_.displaced;
         silent->end();
     }
@@ -398,7 +399,7 @@ public:
         if (error) ++core_.dropped;
     }
     void close(uint64_t client) override {
-        if (clients_.erase(client) > 0) core_.tell({NetworkEvent::Kind::Closed, {end_, client}, {}, ""});
+        if (clients_.erase(client) > 0) core_.report({NetworkEvent::Kind::Closed, {end_, client}, {}, ""});
     }
     void resume() override { read(); }
     void shut() override {
@@ -409,7 +410,7 @@ public:
 private:
     struct Known {
         Udp::endpoint endpoint;
-        uint64_t heard = 0;  ///< The number of its last datagram, among those of all.
+        uint64_t last_message = 0;  ///< The number of its last datagram, among those of all.
     };
 
     void read() {
@@ -428,18 +429,20 @@ private:
         }
         const Client client{end_, numberOf(from_)};
         const auto begin = buffer_.begin();
-        core_.tell({NetworkEvent::Kind::Received, client, {begin, begin + static_cast<std::ptrdiff_t>(count)}, ""});
+        core_.report({NetworkEvent::Kind::Received, client, {begin, begin + static_cast<std::ptrdiff_t>(count)}, ""});
     }
     uint64_t numberOf(const Udp::endpoint& peer) {
         for (auto& [number, known] : clients_)
             if (known.endpoint == peer) {
-                known.heard = ++heard_;
+                known.last_message = ++last_message_;
                 return number;
             }
         if (clients_.size() >= Network::max_clients)
-            close(std::ranges::min_element(clients_, {}, [](const auto& each) { return each.second.heard; })->first);
-        clients_[next_] = {peer, ++heard_};
-        core_.tell({NetworkEvent::Kind::Opened, {end_, next_}, {}, textOf(peer)});
+            close(std::ranges::min_element(clients_, {}, [](const auto& each) {
+                      return each.second.last_message;
+                  })->first);
+        clients_[next_] = {peer, ++last_message_};
+        core_.report({NetworkEvent::Kind::Opened, {end_, next_}, {}, textOf(peer)});
         return next_++;
     }
 
@@ -449,7 +452,7 @@ private:
     Udp::endpoint from_;
     std::array<uint8_t, 65536> buffer_{};
     std::map<uint64_t, Known> clients_;
-    uint64_t next_ = 1, heard_ = 0;
+    uint64_t next_ = 1, last_message_ = 0;
     bool reading_ = false;
 };
 
@@ -489,7 +492,7 @@ public:
         name = "serial line " + link_.string();
         session_ = std::make_shared<Line>(core, asio::posix::stream_descriptor(core.io, terminal_.master), client_,
                                           Line::Drain{[this] { drain(); }});
-        core.tell({NetworkEvent::Kind::Opened, client_, {}, terminal_.name});
+        core.report({NetworkEvent::Kind::Opened, client_, {}, terminal_.name});
         session_->read();
     }
     void send(uint64_t /*client*/, Bytes bytes, Network::Kind kind) override { session_->send(std::move(bytes), kind); }

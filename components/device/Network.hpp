@@ -85,9 +85,9 @@ public:
     /** Closes a connection once all replies have been sent. A Closed event follows. */
     void close(Client client);
     void wakeAt(std::chrono::steady_clock::time_point when);
-    /** Messages dropped: replaced by newer ones, or no route to the receiver [1]. */
+    /** Messages dropped: replaced by newer messages, or no route to the receiver [1]. */
     uint64_t dropped() const;
-    /** Connections closed for newer ones at max_clients [1]. */
+    /** Connections closed for newer connections at max_clients [1]. */
     uint64_t displaced() const;
     /** Failures on the network's thread, each followed by normal operation: out of memory, an exception of `wake`
      *  [1]. */

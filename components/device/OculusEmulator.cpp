@@ -110,7 +110,7 @@ OculusEmulator::Due OculusEmulator::tick(Time now) {
     }
     due.next = last_status_ + second;
     if (clients_.empty()) return due;
-    if (standsBy()) {
+    if (inStandby()) {
         if (now >= last_dummy_ + dummy_period) {
             due.dummy = oculusDummy(static_cast<uint16_t>(config_.serial_number), capabilities_.part);
             last_dummy_ = now;
@@ -134,7 +134,7 @@ Bytes OculusEmulator::ping(const types::Sonar& codes) {
     const auto asked = fits ? asked_.take(codes.time) : std::nullopt;
     if (!asked) return {};
     if (std::isnan(asked->settings.speed_of_sound)) own_speed_ = static_cast<double>(codes.speed_of_sound);
-    if (standsBy()) return {};
+    if (inStandby()) return {};
     return bytesOf(resultOf(*asked, codes));
 }
 

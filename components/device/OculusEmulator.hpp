@@ -92,7 +92,7 @@ public:
     /** @param started when the device was switched on */
     OculusEmulator(const OculusConfig& config, types::Time started);
 
-    void opened(ClientId client) { clients_[client] = OculusFramer(largest_message); }
+    void opened(ClientId client) { clients_[client] = OculusFramer(max_message); }
     void received(ClientId client, std::span<const uint8_t> bytes);
     void closed(ClientId client);
 
@@ -106,12 +106,12 @@ public:
 
     /** The settings of the next ping, as interpreted. */
     const OculusFire& fire() const { return fire_; }
-    bool standsBy() const { return clients_.empty() || fire_.isStandby(); }
+    bool inStandby() const { return clients_.empty() || fire_.isStandby(); }
     uint64_t lost() const { return lost_; }        ///< Pings that did not arrive in time.
     uint64_t refused() const { return refused_; }  ///< Client messages that were not valid settings.
 
 private:
-    static constexpr size_t largest_message = 4096;
+    static constexpr size_t max_message = 4096;
 
     struct Asked {
         types::SonarSettings settings;

@@ -221,7 +221,7 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text) {
 size_t OculusFramer::sizeOf(std::span<const uint8_t> bytes) const {
     if (bytes.size() < OculusHeader::size) return OculusHeader::size;
     const auto header = oculusHeader(bytes);
-    return header && header->payload_size <= largest_ ? messageSize(*header) : 0;
+    return header && header->payload_size <= maximum_ ? messageSize(*header) : 0;
 }
 
 Bytes OculusFramer::next() {

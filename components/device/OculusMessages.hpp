@@ -163,7 +163,7 @@ Bytes oculusLog(uint16_t source, uint16_t part, const std::string& text);
 class OculusFramer final : public Framer {
 public:
     /** @param largest max payload of a message; a header with a larger payload is not accepted [B] */
-    explicit OculusFramer(size_t largest = size_t{1} << 28) : Framer(CutOff::Waits), largest_(largest) {}
+    explicit OculusFramer(size_t maximum = size_t{1} << 28) : Framer(CutOff::Waits), maximum_(maximum) {}
 
     /** Returns the next complete message; empty: there is none yet. */
     Bytes next();
@@ -174,7 +174,7 @@ public:
 private:
     size_t sizeOf(std::span<const uint8_t> bytes) const override;
 
-    size_t largest_;
+    size_t maximum_;
 };
 
 }  // namespace insonify::device

@@ -139,34 +139,34 @@ std::vector<OculusPing> readOculusPings(const std::filesystem::path& file) {
 void OculusEncoder::bend(double gamma) {
     if (gamma == gamma_) return;
     gamma_ = gamma;
-    bent_.resize(size_t{largest_in_} + 1);
+    bent_.resize(size_t{max_code_} + 1);
     for (size_t code = 0; code < bent_.size(); ++code)
-        bent_[code] = std::pow(static_cast<double>(code) / largest_in_, gamma);
+        bent_[code] = std::pow(static_cast<double>(code) / max_code_, gamma);
 }
 
 uint32_t OculusEncoder::indexOf(float code) const {
     if (!(code > 0)) return 0;  // also unknown values
-    return code < static_cast<float>(largest_in_) ? static_cast<uint32_t>(code + 0.5f) : largest_in_;
+    return code < static_cast<float>(max_code_) ? static_cast<uint32_t>(code + 0.5f) : max_code_;
 }
 
 template <class Code>
 void OculusEncoder::rows(const types::Sonar& codes, const std::vector<uint32_t>& beams, OculusResult& result) const {
-    constexpr double largest = std::numeric_limits<Code>::max();
+    constexpr double maximum = std::numeric_limits<Code>::max();
     uint8_t* to = result.image.data();
     std::vector<double> row(beams.size());
     for (size_t bin = 0; bin < codes.bin_count; ++bin) {
         for (size_t i = 0; i < beams.size(); ++i)
             row[i] = bent_[indexOf(codes.bins[size_t{beams[i]} * codes.bin_count + bin])];
-        double scale = largest;
+        double scale = maximum;
         if (result.gainBytes() > 0) {
-            const double most = row.empty() ? 1 : std::ranges::max(row);
-            const auto gain = static_cast<uint32_t>(std::clamp(1 / (most * most), 1.0, 4294967295.0));
+            const double max_code = row.empty() ? 1 : std::ranges::max(row);
+            const auto gain = static_cast<uint32_t>(std::clamp(1 / (max_code * max_code), 1.0, 4294967295.0));
             std::memcpy(to, &gain, sizeof gain);
             to += sizeof gain;
             scale *= std::sqrt(gain);
         }
         for (const double share : row) {
-            const auto code = static_cast<Code>(std::min(share * scale + 0.5, largest));
+            const auto code = static_cast<Code>(std::min(share * scale + 0.5, maximum));
             std::memcpy(to, &code, sizeof code);
             to += sizeof code;
         }

@@ -24,7 +24,7 @@ struct OculusPing {
     std::vector<uint32_t> row_gains;  ///< Of each bin, if the device sends gains; else empty.
 
     uint32_t beamCount() const { return static_cast<uint32_t>(bearings.size()); }
-    double largestCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
+    double maxCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }
 };
 
 OculusPing pingOf(const OculusResult& result);
@@ -51,7 +51,7 @@ std::vector<OculusPing> readOculusPings(const std::filesystem::path& file);
 class OculusEncoder {
 public:
     /** @param bits of the receiver's codes */
-    explicit OculusEncoder(int bits = 16) : largest_in_((1u << bits) - 1) {}
+    explicit OculusEncoder(int bits = 16) : max_code_((1u << bits) - 1) {}
 
     /** Sets image, bearings, counts and code width by `result.fire`. Beams are ordered from port to starboard; bearings
      *  ascend, also below -180 degrees. Beams of unknown bearing are omitted. */
@@ -63,7 +63,7 @@ private:
     template <class Code>
     void rows(const types::Sonar& codes, const std::vector<uint32_t>& beams, OculusResult& result) const;
 
-    uint32_t largest_in_;
+    uint32_t max_code_;
     double gamma_ = 0;
     std::vector<double> bent_;  ///< Fraction of the max code, by the receiver's code.
 };

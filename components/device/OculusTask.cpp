@@ -9,13 +9,13 @@ namespace insonify::device {
 
 void OculusTask::check(types::Diagnostics& diagnostics) const {
     DeviceTask::check(diagnostics);
-    const std::string &address = config->address, &told = config->device.device_address;
-    const bool tells_none = address.find(':') != std::string::npos || ipv4(address) == Ipv4{};
-    if (told.empty() && tells_none)
+    const std::string &address = config->address, &reported = config->device.device_address;
+    const bool has_no_host = address.find(':') != std::string::npos || ipv4(address) == Ipv4{};
+    if (reported.empty() && has_no_host)
         diagnostics.push_back({"device_address", "is empty; with address " + address +
                                                      " the status needs an IPv4 address that drivers can connect to"});
-    if (!told.empty() && ipv4(told).value_or(Ipv4{}) == Ipv4{})
-        diagnostics.push_back({"device_address", "is '" + told + "'; must be an IPv4 address, as 192.168.2.3"});
+    if (!reported.empty() && ipv4(reported).value_or(Ipv4{}) == Ipv4{})
+        diagnostics.push_back({"device_address", "is '" + reported + "'; must be an IPv4 address, as 192.168.2.3"});
     if (config->device.gain_min_db > config->device.gain_max_db)
         diagnostics.push_back({"gain_min_db", "is above gain_max_db"});
 }
@@ -74,14 +74,14 @@ void OculusTask::closed(Client client) {
 void OculusTask::takePings() {
     types::SonarPtr sample;
     while (ping.readNew(sample)) {
-        judge(*sample);
+        checkCodes(*sample);
         const Bytes message = emulator_->ping(*sample);
         sendToAll(message);
         if (recorder_ && !message.empty()) recorder_->write(now().seconds(), message);
     }
 }
 
-void OculusTask::judge(const types::Sonar& codes) {
+void OculusTask::checkCodes(const types::Sonar& codes) {
     const auto is_no_code = [](float bin) { return bin != std::floor(bin); };
     if (no_codes_.isDue(std::ranges::any_of(codes.bins, is_no_code)))
         warn("ping: bins are no whole numbers; give the receiver output: code");

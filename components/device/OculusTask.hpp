@@ -66,7 +66,7 @@ private:
     void sendStatus(const Bytes& status, Network& network) const;
     void sendToAll(const Bytes& message);
     /** Warns when bins are not codes. */
-    void judge(const types::Sonar& codes);
+    void checkCodes(const types::Sonar& codes);
 
     std::optional<OculusEmulator> emulator_;
     std::optional<OculusRecorder> recorder_;

@@ -25,20 +25,20 @@ bool isMeasurement(uint16_t message) {
 }  // namespace
 
 Ping1dReturn ping1dReturn(std::span<const float> codes) {
-    const float most = codes.empty() ? 0 : *std::ranges::max_element(codes);
-    if (!(most > 0)) return {};
-    const auto strong = [&](float code) { return code >= most / 2; };
+    const float max_code = codes.empty() ? 0 : *std::ranges::max_element(codes);
+    if (!(max_code > 0)) return {};
+    const auto strong = [&](float code) { return code >= max_code / 2; };
     const auto begin = std::ranges::find_if(codes, strong);
     const auto end = std::find_if_not(begin, codes.end(), strong);
     const double mean = std::accumulate(codes.begin(), codes.end(), 0.0) / static_cast<double>(codes.size());
     return {static_cast<size_t>(std::max_element(begin, end) - codes.begin()),
-            static_cast<uint16_t>(std::lround(100 * (1 - mean / static_cast<double>(most))))};
+            static_cast<uint16_t>(std::lround(100 * (1 - mean / static_cast<double>(max_code))))};
 }
 
-Ping1dEmulator::Ping1dEmulator(const Ping1dConfig& config, double most)
+Ping1dEmulator::Ping1dEmulator(const Ping1dConfig& config, double max_code)
     : PingDevice({static_cast<uint8_t>(PingDeviceType::Ping1d), 1, 3, 29, 0, 0}, {1, 0, 0, 0}, 1),
       config_(config),
-      most_(most),
+      max_code_(max_code),
       length_(static_cast<uint32_t>(std::lround(1000 * config.max_range))) {}
 
 template <class Message, class Value>
@@ -181,9 +181,9 @@ void Ping1dEmulator::finish(const types::Sonar& ping) {
             ? 0
             : made.start + static_cast<uint32_t>(std::lround((static_cast<double>(found.bin) + 0.5) * step));
     ++made.ping_number;
-    last_.data = bytesOfCodes(profile, most_);
-    for (const Wanted& wanted : std::exchange(waiting_, {})) tell(wanted, false);
-    for (const Wanted& wanted : streams_) tell(wanted, true);
+    last_.data = bytesOfCodes(profile, max_code_);
+    for (const Wanted& wanted : std::exchange(waiting_, {})) report(wanted, false);
+    for (const Wanted& wanted : streams_) report(wanted, true);
     if (mode_auto_ != 0) adapt(found);
 }
 
@@ -197,7 +197,7 @@ void Ping1dEmulator::adapt(const Ping1dReturn& found) {
     length_ = std::clamp(reach, shortest_scan, end);
 }
 
-void Ping1dEmulator::tell(const Wanted& wanted, bool stream) {
+void Ping1dEmulator::report(const Wanted& wanted, bool stream) {
     const Ping1dMeasurement& made = last_.measurement;
     if (wanted.message == Ping1dProfile::message) send(wanted.client, last_, stream);
     if (wanted.message == Ping1dDistance::message) send(wanted.client, Ping1dDistance{made}, stream);
@@ -212,7 +212,7 @@ void Ping1dEmulator::refuseWaiting() {
 
 void Ping1dEmulator::proceed(types::Time now) {
     if (const types::SonarPtr ping = turn_.due(now)) {
-        noteHeard();
+        noteReceived();
         finish(*ping);
     } else if (turn_.failed(now)) {
         warnOfSilence();
@@ -220,7 +220,7 @@ void Ping1dEmulator::proceed(types::Time now) {
     }
     if (turn_.underWay()) return;
     if (enabled_ == 0)  // the last ping
-        for (const Wanted& wanted : std::exchange(waiting_, {})) tell(wanted, false);
+        for (const Wanted& wanted : std::exchange(waiting_, {})) report(wanted, false);
     if (wantsPing(now)) listen(now);
 }
 

@@ -37,7 +37,7 @@ Ping1dReturn ping1dReturn(std::span<const float> codes);
 class Ping1dEmulator final : public PingDevice {
 public:
     /** @param most the max code of the receiver that the pings come from */
-    explicit Ping1dEmulator(const Ping1dConfig& config, double most = 65535);
+    explicit Ping1dEmulator(const Ping1dConfig& config, double max_code = 65535);
 
     std::optional<types::Time> wakeAt() const override;
 
@@ -66,11 +66,11 @@ private:
     void listen(types::Time now);
     void finish(const types::Sonar& ping);
     void adapt(const Ping1dReturn& found);
-    void tell(const Wanted& wanted, bool stream);
+    void report(const Wanted& wanted, bool stream);
     void refuseWaiting();
 
     Ping1dConfig config_;
-    double most_;
+    double max_code_;
     uint32_t start_ = 0, length_;          ///< [mm]
     uint32_t speed_of_sound_ = 1'500'000;  ///< As set [mm/s].
     uint8_t mode_auto_ = 1, enabled_ = 1, gain_ = 3;

@@ -62,10 +62,10 @@ std::string ping360Discovery(std::span<const uint8_t, 6> mac, std::span<const ui
                        fmt::join(mac, "-"), fmt::join(ip, "."));
 }
 
-Ping360Emulator::Ping360Emulator(const Ping360Config& config, double most)
+Ping360Emulator::Ping360Emulator(const Ping360Config& config, double max_code)
     : PingDevice({static_cast<uint8_t>(PingDeviceType::Ping360), 1, 3, 3, 8, 0}, {1, 1, 0, 0}, 2),
       config_(config),
-      most_(most),
+      max_code_(max_code),
       state_(atBoot()) {}
 
 int Ping360Emulator::Scan::width() const { return (asked.sector.stop - asked.sector.start + turn) % turn; }
@@ -217,8 +217,8 @@ bool Ping360Emulator::step(types::Time now) {
         return true;
     }
     if (const types::SonarPtr ping = turn_.due(now)) {
-        noteHeard();
-        finish(now, bytesOfCodes(ping->bins, most_));
+        noteReceived();
+        finish(now, bytesOfCodes(ping->bins, max_code_));
         return true;
     }
     if (!turn_.failed(now)) return false;

@@ -37,7 +37,7 @@ struct Ping360Config {
 class Ping360Emulator final : public PingDevice {
 public:
     /** @param most the max code of the receiver that the pings come from */
-    explicit Ping360Emulator(const Ping360Config& config, double most = 65535);
+    explicit Ping360Emulator(const Ping360Config& config, double max_code = 65535);
 
     std::optional<types::Time> wakeAt() const override;
     uint16_t angle() const { return state_.angle; }  ///< Present or next angle of the head [gradian].
@@ -77,7 +77,7 @@ private:
     double listens() const;  ///< Listening time of one ping [s].
 
     Ping360Config config_;
-    double most_;
+    double max_code_;
     Ping360DeviceData state_;
     Phase phase_ = Phase::Idle;
     types::Time ready_;             ///< When the head has arrived, or the next ping of a scan may begin.

@@ -21,10 +21,10 @@ std::string diagnosticOf(std::initializer_list<PingBound> bounds) {
     return "";
 }
 
-Bytes bytesOfCodes(std::span<const float> codes, double most) {
+Bytes bytesOfCodes(std::span<const float> codes, double max_code) {
     Bytes bytes(codes.size());
     std::ranges::transform(codes, bytes.begin(), [&](float code) {
-        const double part = code > 0 ? code / most : 0;  // 0 for NaN
+        const double part = code > 0 ? code / max_code : 0;  // 0 for NaN
         return static_cast<uint8_t>(std::lround(255 * std::min(1.0, part)));
     });
     return bytes;
@@ -93,7 +93,7 @@ void PingDevice::close(PingClient client) {
     forget(client);
 }
 
-void PingDevice::hear(const types::SonarPtr& ping, types::Time now) {
+void PingDevice::takePing(const types::SonarPtr& ping, types::Time now) {
     turn_.take(ping, now);
     if (std::string warning = turn_.takeWarning(); !warning.empty() && !std::exchange(silent_, true))
         warnings_.push_back(std::move(warning));

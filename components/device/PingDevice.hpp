@@ -32,7 +32,7 @@ struct PingBound {
 std::string diagnosticOf(std::initializer_list<PingBound> bounds);
 
 /** Converts a ping's codes to 8 bits. @param most the max code of the receiver */
-Bytes bytesOfCodes(std::span<const float> codes, double most);
+Bytes bytesOfCodes(std::span<const float> codes, double max_code);
 
 /** One ping at a time that is requested from a simulated sonar.
  *
@@ -89,7 +89,7 @@ public:
     /** Forgets a client: nothing is sent to it any more, and its requests are dropped. */
     void close(PingClient client);
     /** Takes a ping of the simulated sonar, in codes. */
-    void hear(const types::SonarPtr& ping, types::Time now);
+    void takePing(const types::SonarPtr& ping, types::Time now);
     /** Does the due work. */
     void tick(types::Time now) { proceed(now); }
     /** Returns when tick is needed next; none: not before an input. */
@@ -131,7 +131,7 @@ protected:
     }
     /** Warns once of missing pings, until a ping arrives. */
     void warnOfSilence();
-    void noteHeard() { silent_ = false; }
+    void noteReceived() { silent_ = false; }
     const PingDeviceInformation& information() const { return information_; }
     /** Ignores clients' messages until then. */
     void setDeaf(types::Time until) { deaf_until_ = until; }

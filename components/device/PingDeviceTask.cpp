@@ -18,7 +18,7 @@ void PingDeviceTask::received(Client client, std::span<const uint8_t> bytes) {
 void PingDeviceTask::closed(Client client) { device_->close(numberOf(client)); }
 
 void PingDeviceTask::takePings() {
-    for (types::SonarPtr sample; ping.readNew(sample);) device_->hear(sample, now());
+    for (types::SonarPtr sample; ping.readNew(sample);) device_->takePing(sample, now());
 }
 
 std::optional<types::Time> PingDeviceTask::tick(types::Time now) {

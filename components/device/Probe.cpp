@@ -135,12 +135,12 @@ std::string nameOf(const Probe& probe, const ProbeAddress& address) {
 /** Sends the question and reads until the device has identified itself. */
 std::optional<std::string> converse(const Probe& probe, const DriverLine& line, std::chrono::milliseconds patience) {
     if (!probe.question.empty()) line.send(probe.question);
-    Bytes heard;
+    Bytes received;
     const auto end = Clock::now() + patience;
-    while (Clock::now() < end && heard.size() < (1 << 20)) {
+    while (Clock::now() < end && received.size() < (1 << 20)) {
         const Bytes more = line.receive(std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
-        heard.insert(heard.end(), more.begin(), more.end());
-        if (auto device = probe.read(heard)) return device;
+        received.insert(received.end(), more.begin(), more.end());
+        if (auto device = probe.read(received)) return device;
     }
     return {};
 }
@@ -158,10 +158,10 @@ std::optional<std::string> overhear(const Probe& probe, const DriverLine& line, 
     const std::vector<Ipv4> addresses = ipv4Of(host == "::1" ? "127.0.0.1" : host);
     const auto end = Clock::now() + patience;
     while (Clock::now() < end) {
-        const auto heard =
+        const auto received =
             line.receiveDatagram(std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
-        if (!isOf(heard, addresses)) continue;
-        if (auto device = probe.read(heard.bytes)) return device;
+        if (!isOf(received, addresses)) continue;
+        if (auto device = probe.read(received.bytes)) return device;
     }
     return {};
 }

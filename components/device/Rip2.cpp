@@ -16,7 +16,7 @@
 namespace insonify::device {
 namespace {
 
-constexpr size_t packet_header_size = 8, crc_size = 4, max_complaints = 100;
+constexpr size_t packet_header_size = 8, crc_size = 4, max_diagnostics = 100;
 constexpr size_t max_image_bytes = size_t{1} << 22;  // uncompressed [bytes]
 constexpr std::string_view magic1 = "RIP1", magic2 = "RIP2", type_url = "type.googleapis.com/",
                            package = "waterlinked.sonar.protocol.", range_image = "RangeImage",
@@ -243,7 +243,7 @@ std::vector<RipMessage> ripMessages(std::span<const uint8_t> bytes, std::vector<
             messages.push_back(readPacket(rest, length));
             at += length;
         } catch (const BadPacket& error) {
-            if (diagnostics && diagnostics->size() < max_complaints)
+            if (diagnostics && diagnostics->size() < max_diagnostics)
                 diagnostics->push_back(fmt::format("the packet at byte {} {}", at, error.what()));
             at += magic1.size();
         }

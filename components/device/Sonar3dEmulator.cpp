@@ -307,7 +307,7 @@ void Sonar3dEmulator::send(const Bytes& packet) {
         outlet_.send(device_.multicast_address, static_cast<uint16_t>(device_.multicast_port), packet);
 }
 
-void Sonar3dEmulator::heard(const types::DepthMap& map) {
+void Sonar3dEmulator::takePing(const types::DepthMap& map) {
     const auto asked = asked_.take(map.time);
     if (!asked) return;
     warned_ = false;

@@ -78,7 +78,7 @@ public:
 
     HttpReply answer(const HttpRequest& request, types::Time now);
     /** Takes a requested ping, even a late one: ranges and strengths by direction. */
-    void heard(const types::DepthMap& map);
+    void takePing(const types::DepthMap& map);
     /** Sends due requests; returns when the next is due. */
     std::optional<types::Time> tick(types::Time now);
     const Sonar3dState& state() const { return state_; }

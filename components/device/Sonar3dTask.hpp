@@ -59,7 +59,7 @@ private:
     }
     void closed(Client client) override { clients_.erase(client); }
     void takePings() override {
-        for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->heard(*map);
+        for (types::DepthMapPtr map; range_image.readNew(map);) emulator_->takePing(*map);
     }
     std::optional<types::Time> tick(types::Time now) override { return emulator_->tick(now); }
 

@@ -118,7 +118,7 @@ void Deployment::warn(const std::string& text) {
     constexpr size_t at_most = 100;
     std::lock_guard lock(warning_mutex_);
     if (warnings_.size() < at_most) warnings_.push_back(text);
-    if (told_) told_(text);
+    if (reported_) reported_(text);
 }
 
 // -- life cycle -------------------------------------------------------------------------------------------------------

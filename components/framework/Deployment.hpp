@@ -66,7 +66,7 @@ public:
     /** Sets the receiver of warnings in realtime. Before tasks start it gets the priorities, processors and memory that
      *  were not permitted; later, tasks that hang or are in error, and their recovery. Called on any thread, one call
      *  at a time. */
-    void onWarning(std::function<void(const std::string&)> told) { told_ = std::move(told); }
+    void onWarning(std::function<void(const std::string&)> reported) { reported_ = std::move(reported); }
 
     std::string call(const std::string& operation, const std::vector<std::string>& arguments) override;
     types::DeploymentStatus status() const override;
@@ -94,7 +94,7 @@ private:
     Graph graph_;
     std::mutex warning_mutex_;
     std::vector<std::string> warnings_;
-    std::function<void(const std::string&)> told_;
+    std::function<void(const std::string&)> reported_;
 };
 
 }  // namespace insonify::framework

@@ -299,9 +299,9 @@ std::vector<std::string> DeploymentSpec::unused() const {
     static const DeploymentSpec usual;
     std::vector<std::string> lines;
     for (const TaskSpec& task : tasks)
-        if (!task.left_out.empty())
+        if (!task.omitted.empty())
             lines.push_back(task.name +
-                            ": omitted by ignored_properties: " + fmt::format("{}", fmt::join(task.left_out, ", ")));
+                            ": omitted by ignored_properties: " + fmt::format("{}", fmt::join(task.omitted, ", ")));
     const auto note = [&](const std::string& whose, const std::string& keys) {
         if (!keys.empty()) lines.push_back(whose + "not used in " + (lockstep ? "lockstep: " : "realtime: ") + keys);
     };

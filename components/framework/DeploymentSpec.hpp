@@ -31,7 +31,7 @@ struct TaskSpec {
     std::map<std::string, std::string> copies;    ///< "task.property" that also gets this property's value.
     std::map<std::string, std::string> switches;  ///< "task.property", a block: true inserts it, false removes it.
     std::vector<std::string> ignored_properties;  ///< Properties without meaning here: their values are omitted.
-    std::set<std::string> left_out;               ///< Ignored properties that were given a value.
+    std::set<std::string> omitted;                ///< Ignored properties that were given a value.
     PropertyFiles property_files;
     YAML::Node properties{YAML::NodeType::Undefined};  ///< From all sources; undefined when there are none.
     YAML::Node place{YAML::NodeType::Undefined};       ///< The task's whole block, for diagnostics.

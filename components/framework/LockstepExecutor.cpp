@@ -134,7 +134,7 @@ void LockstepExecutor::keepPace(double pace, types::Time instant, const std::ato
     if (pace <= 0) return;
     using Seconds = std::chrono::duration<double>;
     const Seconds due((instant - start_).seconds() / pace);
-    for (Seconds left = due; !stop && !standsStill() && left.count() > 0;
+    for (Seconds left = due; !stop && !isHalted() && left.count() > 0;
          left = due - (Clock::now() - wall_start_ - stood_still_))
         std::this_thread::sleep_for(std::min(left, Seconds(0.02)));
 }
@@ -164,14 +164,14 @@ void LockstepExecutor::step() {
 }
 
 bool LockstepExecutor::takeStep() {
-    if (standsStill()) return false;
+    if (isHalted()) return false;
     if (paused_) --steps_;
     return true;
 }
 
 void LockstepExecutor::standStill(const std::atomic<bool>& stop) {
     const auto since = Clock::now();
-    while (standsStill() && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (isHalted() && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     stood_still_ += Clock::now() - since;
 }
 

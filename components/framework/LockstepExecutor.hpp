@@ -48,7 +48,7 @@ private:
     bool sourcesAreDone(const RunLimits& limits) const;
     /** Waits until the instant is due at the given pace, or until time is paused. */
     void keepPace(double pace, types::Time instant, const std::atomic<bool>& stop) const;
-    bool standsStill() const { return paused_ && steps_ == 0; }
+    bool isHalted() const { return paused_ && steps_ == 0; }
     /** Waits while paused, until a step is requested. */
     void standStill(const std::atomic<bool>& stop);
     /** Returns whether an instant may begin; while paused, uses up one of the requested steps. Between instants. */

@@ -94,7 +94,7 @@ YAML::Node PropertySources::withoutAliases(TaskSpec& task, const YAML::Node& blo
         } else if (const auto change = task.switches.find(name); change != task.switches.end()) {
             moved.push_back({change->second, entry.second, below(origin, entry.first), true});
         } else if (task.ignores(name)) {
-            task.left_out.insert(name);
+            task.omitted.insert(name);
         } else if (takesApart(task, name)) {
             const YAML::Node inner = withoutAliases(task, entry.second, name, below(origin, entry.first), moved);
             if (!inner.IsMap() || inner.size() > 0) rest.force_insert(entry.first, inner);

@@ -11,7 +11,7 @@
 namespace insonify::gazebo {
 namespace {
 
-constexpr size_t max_heard = 100, max_versions = 3;
+constexpr size_t max_received = 100, max_versions = 3;
 
 std::string framed(const wire::Discovery& message) {
     std::string datagram(2, '\0');
@@ -56,19 +56,19 @@ Publication publicationOf(const wire::Discovery::Publisher& message) {
 
 }  // namespace
 
-void Heard::add(const Publication& publication) {
+void Received::add(const Publication& publication) {
     is_anybody_there_ = true;
-    if (publication.topic.ends_with(ending_) && names_.size() < max_heard) names_.insert(publication.topic);
+    if (publication.topic.ends_with(ending_) && names_.size() < max_received) names_.insert(publication.topic);
 }
 
-void Heard::addVersion(uint32_t version) {
+void Received::addVersion(uint32_t version) {
     if (version == discovery_version)
         is_anybody_there_ = true;
     else if (other_versions_.size() < max_versions)
         other_versions_.insert(version);
 }
 
-std::string Heard::text() const {
+std::string Received::text() const {
     std::vector<std::string> texts, names;
     for (const std::string& each : names_)
         if (const auto name = TopicName::of(each))
@@ -89,14 +89,15 @@ std::string Heard::text() const {
     return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard) {
+std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process,
+                                         Received& received) {
     if (datagram.size() < 2) return {};
     const size_t size = static_cast<uint8_t>(datagram[0]) | size_t{static_cast<uint8_t>(datagram[1])} << 8;
     if (size + 2 != datagram.size()) return {};
     wire::Discovery message;
     if (!message.ParseFromArray(datagram.data() + 2, static_cast<int>(size))) return {};
     if (message.process_uuid().empty() || message.process_uuid() == own_process) return {};
-    heard.addVersion(message.version());
+    received.addVersion(message.version());
     if (message.version() != discovery_version || message.flags().relay()) return {};
     const auto kind = kindOf(message.type());
     if (!kind) return {};
@@ -106,7 +107,7 @@ std::optional<Announcement> readDatagram(std::string_view datagram, const std::s
     if (!is_whole || !message.pub().address().starts_with("tcp://")) return {};
     if (message.pub().scope() == wire::Discovery::Publisher::PROCESS) return {};
     announcement.publication = publicationOf(message.pub());
-    if (*kind == Announcement::Kind::Offer) heard.add(announcement.publication);
+    if (*kind == Announcement::Kind::Offer) received.add(announcement.publication);
     return announcement;
 }
 

@@ -37,10 +37,10 @@ struct Announcement {
 inline constexpr double silence_s = 3;
 
 /** The available topics and services, to list when the topic or service of a user is missing. */
-class Heard {
+class Received {
 public:
     /** Keeps the names of topics with this ending, such as "/pose/info". */
-    explicit Heard(std::string ending) : ending_(std::move(ending)) {}
+    explicit Received(std::string ending) : ending_(std::move(ending)) {}
     void add(const Publication& publication);
     void addVersion(uint32_t version);
     /** Returns a text such as "available are /world/sea/pose/info in partition auv:me", or that nothing is
@@ -56,7 +56,7 @@ private:
 
 /** Reads a datagram. Returns none if the datagram is damaged, of `own_process`, without use for a receiver, or of
  *  another version. `heard` keeps other versions. */
-std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Heard& heard);
+std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Received& received);
 
 /** Returns a datagram that asks for publishers of a topic or a service. */
 std::string askDatagram(const std::string& process, const std::string& topic);

@@ -11,8 +11,8 @@ constexpr double patience = 5;  ///< Time until the warning that nobody offers a
 
 /** Returns a text such as "crate, lid and 3 more". */
 std::string listOf(const std::vector<std::string>& names) {
-    constexpr size_t most = 5;
-    const size_t shown = std::min(names.size(), most);
+    constexpr size_t maximum = 5;
+    const size_t shown = std::min(names.size(), maximum);
     std::string text;
     for (size_t i = 0; i < shown; ++i) text += (i > 0 ? ", " : "") + names[i];
     return names.size() > shown ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
@@ -71,7 +71,7 @@ bool PoseTask::startHook() {
 void PoseTask::updateHook() {
     for (Arrived& message : inbox_->take()) take(message);
     warnOfSilence();
-    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
 }
 
 void PoseTask::warnOfSilence() {
@@ -80,7 +80,7 @@ void PoseTask::warnOfSilence() {
     for (size_t i = 0; i < subscriptions_->topics().size(); ++i)
         if (!subscriptions_->hasPublisher(i))
             warn("nobody publishes " + subscriptions_->topics()[i] + " in partition " + subscriptions_->partition() +
-                 "; " + subscriptions_->heard());
+                 "; " + subscriptions_->received());
 }
 
 void PoseTask::report(const WorldWatch::Change& change) {

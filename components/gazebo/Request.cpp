@@ -46,13 +46,13 @@ public:
           timeout_(timeout),
           end_(ReplyClock::now() + std::chrono::duration_cast<ReplyClock::duration>(timeout)),
           multicast_(options, options.service_port),
-          heard_(endingOfService(service.name)) {}
+          received_(endingOfService(service.name)) {}
 
     Reply call(const std::string& message) {
         const std::optional<Publication> found = find();
         if (!found)
             return {"", other_types_.empty() ? fmt::format("is not offered in partition {} within {:g} s (timeout); {}",
-                                                           options_.partition, timeout_.count(), heard_.text())
+                                                           options_.partition, timeout_.count(), received_.text())
                                              : fmt::format("takes {}, not {} and {}", other_types_,
                                                            service_.request_type, service_.reply_type)};
         zmq::context_t context;
@@ -87,14 +87,14 @@ private:
             }
             waitFor({{nullptr, multicast_.descriptor(), ZMQ_POLLIN, 0}}, std::min(next, end_));
             while (const auto datagram = multicast_.receive())
-                if (const auto news = readDatagram(datagram->bytes, process_, heard_);
-                    news && offersIt(*news, *datagram))
+                if (const auto news = readDatagram(datagram->bytes, process_, received_);
+                    news && takesOffer(*news, *datagram))
                     return news->publication;
         }
         return {};
     }
 
-    bool offersIt(const Announcement& news, const Multicast::Datagram& datagram) {
+    bool takesOffer(const Announcement& news, const Multicast::Datagram& datagram) {
         const Publication& offer = news.publication;
         if (news.kind != Announcement::Kind::Offer || !offer.is_service || offer.topic != name_) return false;
         if (offer.is_for_host && !datagram.is_from_here) return false;
@@ -127,7 +127,7 @@ private:
     const ReplyClock::time_point end_;
     const std::string process_ = makeUuid(), node_ = makeUuid();
     Multicast multicast_;
-    Heard heard_;
+    Received received_;
     std::string other_types_;  ///< Types of a service with this name but other types.
 };
 

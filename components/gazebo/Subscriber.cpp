@@ -41,7 +41,7 @@ public:
           multicast_(options, options.topic_port),
           stop_(eventfd(0, EFD_CLOEXEC)),
           has_publisher_(topics_.size()),
-          heard_(topics_.empty() ? "" : endingOf(topics_[0].name)) {
+          received_(topics_.empty() ? "" : endingOf(topics_[0].name)) {
         socket_.set(zmq::sockopt::linger, 0);
         socket_.set(zmq::sockopt::maxmsgsize, max_message);
         for (size_t i = 0; i < topics_.size(); ++i) {
@@ -63,15 +63,15 @@ public:
     }
 
     bool hasPublisher(size_t topic) const { return has_publisher_[topic]; }
-    std::string heard() const {
+    std::string received() const {
         const std::lock_guard lock(mutex_);
-        return heard_.text();
+        return received_.text();
     }
 
 private:
     void run() {
         auto next = WorkerClock::now();
-        for (bool goes_on = true; goes_on;) {
+        for (bool continues = true; continues;) {
             if (WorkerClock::now() >= next) {
                 announce();
                 next = WorkerClock::now() + period;
@@ -87,7 +87,7 @@ private:
             }
             if (items[0].revents) readMessages();
             if (items[1].revents) readDatagrams();
-            goes_on = !items[2].revents;
+            continues = !items[2].revents;
         }
         for (const auto& [address, publication] : publications_) connect(publication, false);
         multicast_.send(goodbyeDatagram(process_));
@@ -99,7 +99,7 @@ private:
         for (size_t i = 0; i < names_.size(); ++i)
             if (!has_publisher_[i]) multicast_.send(askDatagram(process_, names_[i]));
         const auto oldest = WorkerClock::now() - std::chrono::duration<double>(silence_s);
-        for (auto each = last_heard_.begin(); each != last_heard_.end();) {
+        for (auto each = last_received_.begin(); each != last_received_.end();) {
             const auto [process, time] = *each++;
             if (time < oldest) forget(process, "");
         }
@@ -122,7 +122,7 @@ private:
             std::optional<Announcement> news;
             {
                 const std::lock_guard lock(mutex_);
-                news = readDatagram(datagram->bytes, process_, heard_);
+                news = readDatagram(datagram->bytes, process_, received_);
             }
             if (!news) continue;
             const Publication& publication = news->publication;
@@ -134,7 +134,7 @@ private:
                 case Announcement::Kind::Goodbye: forget(news->process, ""); break;
                 case Announcement::Kind::Alive: break;
             }
-            if (const auto known = last_heard_.find(news->process); known != last_heard_.end())
+            if (const auto known = last_received_.find(news->process); known != last_received_.end())
                 known->second = WorkerClock::now();
         }
     }
@@ -154,7 +154,7 @@ private:
                 return;  // invalid address
             }
             publications_[{publication.address, publication.topic}] = publication;
-            last_heard_[publication.process] = WorkerClock::now();
+            last_received_[publication.process] = WorkerClock::now();
             countPublishers();
         }
         connect(publication, true);
@@ -175,7 +175,7 @@ private:
             each = publications_.erase(each);
             if (!isConnected(key.address)) zmq_disconnect(socket_.handle(), key.address.c_str());
         }
-        if (topic.empty()) last_heard_.erase(process);
+        if (topic.empty()) last_received_.erase(process);
         countPublishers();
     }
 
@@ -196,12 +196,12 @@ private:
     Multicast multicast_;
     zmq::context_t context_;
     zmq::socket_t socket_{context_, zmq::socket_type::sub};
-    std::map<Key, Publication> publications_;                    ///< Publications that are received.
-    std::map<std::string, WorkerClock::time_point> last_heard_;  ///< Time of the last datagram of their processes.
-    const int stop_;                                             ///< Becomes readable when the thread shall end.
-    std::vector<std::atomic<bool>> has_publisher_;               ///< For each topic.
+    std::map<Key, Publication> publications_;                       ///< Publications that are received.
+    std::map<std::string, WorkerClock::time_point> last_received_;  ///< Time of the last datagram of their processes.
+    const int stop_;                                                ///< Becomes readable when the thread shall end.
+    std::vector<std::atomic<bool>> has_publisher_;                  ///< For each topic.
     mutable std::mutex mutex_;
-    Heard heard_;
+    Received received_;
     std::thread thread_;
 };
 
@@ -209,6 +209,6 @@ Subscriber::Subscriber(const TransportOptions& options, std::vector<Topic> topic
     : worker_(std::make_unique<Worker>(options, std::move(topics))) {}
 Subscriber::~Subscriber() = default;
 bool Subscriber::hasPublisher(size_t topic) const { return worker_->hasPublisher(topic); }
-std::string Subscriber::heard() const { return worker_->heard(); }
+std::string Subscriber::received() const { return worker_->received(); }
 
 }  // namespace insonify::gazebo

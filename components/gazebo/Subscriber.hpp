@@ -32,7 +32,7 @@ public:
     /** Returns whether the topic of this index has a publisher. Thread-safe. */
     bool hasPublisher(size_t topic) const;
     /** Lists the available topics with the ending of the first topic. Thread-safe. */
-    std::string heard() const;
+    std::string received() const;
 
 private:
     class Worker;

@@ -60,7 +60,7 @@ public:
     const std::string& partition() const { return options_.partition; }
     bool hasPublisher(size_t topic) const { return subscriber_->hasPublisher(topic); }
     /** Lists the available topics with the ending of the first topic. */
-    std::string heard() const { return subscriber_->heard(); }
+    std::string received() const { return subscriber_->received(); }
 
 private:
     Topic entities(const PoseConfig& config, Inbox& inbox);

@@ -160,9 +160,9 @@ std::vector<fs::path> folders() {
         rest.erase(0, end + 1);
     }
     const fs::path own = ownFile().parent_path();
-    for (const fs::path& beside : {own / "insonify", own.parent_path() / "lib" / "insonify"})
-        if (std::error_code none; fs::is_directory(beside, none)) {
-            all.push_back(beside);
+    for (const fs::path& folder : {own / "insonify", own.parent_path() / "lib" / "insonify"})
+        if (std::error_code none; fs::is_directory(folder, none)) {
+            all.push_back(folder);
             break;
         }
     return all;

@@ -35,7 +35,7 @@ LogThread::~LogThread() {
 LogThread::Entry& LogThread::freeEntry() {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return count_ < ring_.size() || failed_; });
-    if (failed_) tellFailure();
+    if (failed_) reportFailure();
     return ring_[(first_ + count_) % ring_.size()];
 }
 
@@ -52,7 +52,7 @@ void LogThread::finish() {
         work_.notify_one();
     }
     if (thread_.joinable()) thread_.join();
-    if (!failure_.empty()) tellFailure();
+    if (!failure_.empty()) reportFailure();
 }
 
 void LogThread::declare(Declare declaration) {
@@ -60,7 +60,7 @@ void LogThread::declare(Declare declaration) {
     commit();
 }
 
-void LogThread::tellFailure() {
+void LogThread::reportFailure() {
     const std::string why = std::exchange(failure_, {});
     const uint64_t lost = pushed_ - (kept_ - kept_before_);
     throw std::runtime_error(why.empty() ? "the log has failed"

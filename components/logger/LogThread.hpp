@@ -82,7 +82,7 @@ private:
     void refuse(Entry& entry, const std::string& why);
     void beginOutage(const std::string& why);
     void tryAgain();
-    [[noreturn]] void tellFailure();
+    [[noreturn]] void reportFailure();
 
     log::Writer& log_;
     Rotation& rotation_;

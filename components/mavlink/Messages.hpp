@@ -81,8 +81,8 @@ struct CommandLong {
 };
 
 /** The messages that are received. A heartbeat reveals a vehicle that sends nothing else. */
-inline constexpr std::array heard_kinds{Heartbeat::kind, AttitudeQuaternion::kind, LocalPositionNed::kind,
-                                        VisionPositionEstimate::kind};
+inline constexpr std::array received_kinds{Heartbeat::kind, AttitudeQuaternion::kind, LocalPositionNed::kind,
+                                           VisionPositionEstimate::kind};
 
 /** Appends fields to a payload. */
 struct PayloadWriter {

@@ -53,16 +53,16 @@ bool PoseTask::startHook() {
 void PoseTask::updateHook() {
     for (const device::NetworkEvent& event : network_->take()) take(event);
     if (config->request) request(now());
-    if (const std::string told = drops_.takeWarning(); !told.empty()) warn(told);
+    if (const std::string reported = drops_.takeWarning(); !reported.empty()) warn(reported);
     if (has_written_) return;
-    if (const std::string told = others_.takeWarning(); !told.empty()) warn(told);
+    if (const std::string reported = others_.takeWarning(); !reported.empty()) warn(reported);
 }
 
 void PoseTask::take(const device::NetworkEvent& event) {
     using Happened = device::NetworkEvent::Kind;
     if (event.kind == Happened::Closed) peers_.erase(event.client);
     if (event.kind != Happened::Received) return;
-    const Datagram datagram = readDatagram(event.bytes, heard_kinds);
+    const Datagram datagram = readDatagram(event.bytes, received_kinds);
     if (!datagram.diagnostic.empty()) drops_.add(datagram.diagnostic);
     for (const Frame& frame : datagram.frames) take(frame, event.client);
 }

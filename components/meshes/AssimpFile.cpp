@@ -65,8 +65,8 @@ void rethrow(const Assimp::Importer& importer) {
 
 /** Shortens a text: assimp cites unreadable input, which may be the rest of the file. */
 std::string shortened(const std::string& text) {
-    constexpr size_t most = 160;
-    return text.size() <= most ? text : text.substr(0, most) + "...";
+    constexpr size_t maximum = 160;
+    return text.size() <= maximum ? text : text.substr(0, maximum) + "...";
 }
 
 /** Throws assimp's message. Messages of the standard library are replaced, as they do not describe the file. */

@@ -46,7 +46,7 @@ Placing turnedTo(Placing placing, glm::dvec3 normal) {
 }  // namespace
 
 types::Diagnostic faultOf(const Shape& shape) {
-    const auto judged = [](const char* key, std::initializer_list<double> sizes) {
+    const auto checked = [](const char* key, std::initializer_list<double> sizes) {
         for (const double size : sizes)
             if (!(size >= 0)) return types::Diagnostic{key, fmt::format("is {}; must not be negative", size)};
         return types::Diagnostic{};
@@ -54,19 +54,19 @@ types::Diagnostic faultOf(const Shape& shape) {
     return std::visit(
         Overloaded{
             [&](const BoxShape& box) {
-                return judged("size", {box.size.x, box.size.y, box.size.z});
+                return checked("size", {box.size.x, box.size.y, box.size.z});
             },
             [&](const EllipsoidShape& ball) {
-                return judged(ball.is_sphere ? "radius" : "radii", {ball.radii.x, ball.radii.y, ball.radii.z});
+                return checked(ball.is_sphere ? "radius" : "radii", {ball.radii.x, ball.radii.y, ball.radii.z});
             },
             [&](const CylinderShape& c) {
-                return judged("radius, length", {c.radius, c.length});
+                return checked("radius, length", {c.radius, c.length});
             },
             [&](const ConeShape& c) {
-                return judged("radius, length", {c.radius, c.length});
+                return checked("radius, length", {c.radius, c.length});
             },
             [&](const CapsuleShape& c) {
-                return judged("radius, length", {c.radius, c.length});
+                return checked("radius, length", {c.radius, c.length});
             },
             [&](const auto&) { return types::Diagnostic{}; },
         },
@@ -132,9 +132,7 @@ std::vector<Placing> WorldBuilder::placingsOf(const std::string& name, const Sha
             },
             [&](const MeshShape& mesh) -> Placings { return placingsOfMesh(name, mesh, look); },
             [&](const HeightmapShape& map) -> Placings { return placingsOfHeightmap(name, map, look); },
-            [&](const OtherShape&) -> Placings {
-                return leaveOut(name, "its geometry is not supported"), Placings{};
-            },
+            [&](const OtherShape&) -> Placings { return leaveOut(name, "its geometry is not supported"), Placings{}; },
         },
         shape);
 }

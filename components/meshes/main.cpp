@@ -30,11 +30,11 @@ constexpr bool limits_memory = true;
 #endif
 
 /** Lowers a limit; a lower limit stays. */
-void limit(__rlimit_resource what, rlim_t most, rlim_t at_last) {
+void limit(__rlimit_resource what, rlim_t maximum, rlim_t at_last) {
     rlimit limits{};
     getrlimit(what, &limits);
     limits.rlim_max = std::min(limits.rlim_max, at_last);
-    limits.rlim_cur = std::min({limits.rlim_cur, most, limits.rlim_max});
+    limits.rlim_cur = std::min({limits.rlim_cur, maximum, limits.rlim_max});
     setrlimit(what, &limits);
 }
 

@@ -73,39 +73,39 @@ double Dvl::variance(double velocity) const {
     return square(errors.velocity_noise) + square(errors.velocity_bias) + square(errors.scale_error * velocity);
 }
 
-void Dvl::measure(const Motion& motion, const Bottom& bottom, types::Dvl& told) const {
+void Dvl::measure(const Motion& motion, const Bottom& bottom, types::Dvl& reported) const {
     const glm::dvec3 velocity = glm::conjugate(motion.orientation) * motion.velocity;
     const bool is_under_water = bottom.isUnderWater(motion.position);
-    told.time = motion.time;
-    told.speed_of_sound = config_.speed_of_sound;
-    told.beam_directions.assign(beams_.begin(), beams_.end());
-    for (auto* list : {&told.beam_ranges, &told.beam_velocities, &told.beam_velocity_variances})
+    reported.time = motion.time;
+    reported.speed_of_sound = config_.speed_of_sound;
+    reported.beam_directions.assign(beams_.begin(), beams_.end());
+    for (auto* list : {&reported.beam_ranges, &reported.beam_velocities, &reported.beam_velocity_variances})
         list->assign(beam_count, types::Pose::unknown);
     for (size_t i = 0; i < beam_count; ++i) {
-        told.beam_ranges[i] = is_under_water ? range(i, motion, bottom) : types::Pose::unknown;
-        if (std::isnan(told.beam_ranges[i])) continue;
+        reported.beam_ranges[i] = is_under_water ? range(i, motion, bottom) : types::Pose::unknown;
+        if (std::isnan(reported.beam_ranges[i])) continue;
         const double along = glm::dot(beams_[i], velocity);
         const double noise =
             config_.errors.velocity_noise * normal(config_.sensor.randomSeed(), channelOf(Velocity, i), motion.time);
-        told.beam_velocities[i] = (1 + scale_[i]) * along + bias_[i] + noise;
-        told.beam_velocity_variances[i] = variance(along);
+        reported.beam_velocities[i] = (1 + scale_[i]) * along + bias_[i] + noise;
+        reported.beam_velocity_variances[i] = variance(along);
     }
-    solve(told);
+    solve(reported);
 }
 
-void Dvl::solve(types::Dvl& told) const {
+void Dvl::solve(types::Dvl& reported) const {
     std::array<double, beam_count> velocities, variances;
     double sum = 0;
     for (size_t i = 0; i < beam_count; ++i) {
-        velocities[i] = told.beam_velocities[i];
-        variances[i] = told.beam_velocity_variances[i];
-        sum += std::isnan(told.beam_ranges[i]) ? 0 : told.beam_ranges[i];
+        velocities[i] = reported.beam_velocities[i];
+        variances[i] = reported.beam_velocity_variances[i];
+        sum += std::isnan(reported.beam_ranges[i]) ? 0 : reported.beam_ranges[i];
     }
-    const auto good = static_cast<double>(told.goodBeams());
-    told.altitude = good > 0 ? cosine_ * sum / good : types::Pose::unknown;
+    const auto good = static_cast<double>(reported.goodBeams());
+    reported.altitude = good > 0 ? cosine_ * sum / good : types::Pose::unknown;
     const auto solution = solveVelocity(beams_, velocities, variances);
-    told.velocity = solution ? solution->velocity : glm::dvec3(types::Pose::unknown);
-    told.cov_velocity = solution ? solution->covariance : types::Pose::unknownMatrix();
+    reported.velocity = solution ? solution->velocity : glm::dvec3(types::Pose::unknown);
+    reported.cov_velocity = solution ? solution->covariance : types::Pose::unknownMatrix();
 }
 
 types::Pose velocityOf(const types::Dvl& dvl) {

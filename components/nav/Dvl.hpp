@@ -34,13 +34,13 @@ class Dvl {
 public:
     explicit Dvl(const DvlConfig& config);
     /** Fills `told` with one ping. With fewer than three good beams there is no bottom lock and no velocity. */
-    void measure(const Motion& motion, const Bottom& bottom, types::Dvl& told) const;
+    void measure(const Motion& motion, const Bottom& bottom, types::Dvl& reported) const;
 
 private:
     /** Returns the range of a beam [m]; NaN for a lost beam. */
     double range(size_t beam, const Motion& motion, const Bottom& bottom) const;
     double variance(double velocity) const;
-    void solve(types::Dvl& told) const;
+    void solve(types::Dvl& reported) const;
 
     DvlConfig config_;
     BeamDirections beams_;

@@ -26,16 +26,16 @@ void DvlTask::updateHook() {
     if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
     if (state() == framework::TaskState::RunTimeError) recover();
     const std::optional<Motion> motion = tracker_.take(body);
-    if (const std::string told = tracker_.takeWarning(); !told.empty()) warn(told);
+    if (const std::string reported = tracker_.takeWarning(); !reported.empty()) warn(reported);
     if (motion && cadence_.isDue(motion->time)) measure(*motion);
 }
 
 void DvlTask::measure(const Motion& motion) {
-    const auto told = pool_.take();
-    log_->measure(motion, bottom_, *told);
-    pool_.stock(*told);
-    dvl.write(told);
-    velocity_samples.write(velocityOf(*told));
+    const auto reported = pool_.take();
+    log_->measure(motion, bottom_, *reported);
+    pool_.stock(*reported);
+    dvl.write(reported);
+    velocity_samples.write(velocityOf(*reported));
 }
 
 }  // namespace insonify::nav

@@ -44,11 +44,11 @@ double WanderingBias::at(types::Time time) {
 }
 
 double Axis::measure(double truth, double constant_bias, types::Time time, double interval) {
-    double told = truth + constant_bias + bias_.at(time);
+    double reported = truth + constant_bias + bias_.at(time);
     if (errors_.noise_density > 0)
-        told += errors_.noise_density / std::sqrt(interval) * normal(seed_, noise_channel_, time);
-    if (errors_.resolution > 0) told = errors_.resolution * std::round(told / errors_.resolution);
-    return errors_.range ? std::clamp(told, -lastStep(errors_), lastStep(errors_)) : told;
+        reported += errors_.noise_density / std::sqrt(interval) * normal(seed_, noise_channel_, time);
+    if (errors_.resolution > 0) reported = errors_.resolution * std::round(reported / errors_.resolution);
+    return errors_.range ? std::clamp(reported, -lastStep(errors_), lastStep(errors_)) : reported;
 }
 
 double varianceOf(const AxisErrors& errors, double interval) {

@@ -47,13 +47,13 @@ Imu::Triad Imu::triad(const AxisErrors& errors, uint64_t seed, uint64_t first_ch
 }
 
 glm::dvec3 Imu::measured(Triad& triad, const glm::dvec3& truth, const glm::dvec3& bias, const Motion& motion) {
-    glm::dvec3 told;
+    glm::dvec3 reported;
     for (int i = 0; i < 3; ++i)
-        told[i] = triad[static_cast<size_t>(i)].measure(truth[i], bias[i], motion.time, interval_);
-    return told;
+        reported[i] = triad[static_cast<size_t>(i)].measure(truth[i], bias[i], motion.time, interval_);
+    return reported;
 }
 
-void Imu::tellAttitude(const Motion& motion, types::Imu& imu) {
+void Imu::writeAttitude(const Motion& motion, types::Imu& imu) {
     glm::dvec3 error, variance;
     for (int i = 0; i < 3; ++i) {
         error[i] = attitude_errors_[static_cast<size_t>(i)].at(motion.time);
@@ -76,7 +76,7 @@ types::Imu Imu::measure(const Motion& motion) {
     imu.linear_acceleration = measured(accelerometer_, truth.specific_force, config_.accelerometer.bias, motion);
     imu.cov_angular_velocity = glm::dmat3(varianceOf(config_.gyroscope, interval_));
     imu.cov_linear_acceleration = glm::dmat3(varianceOf(config_.accelerometer, interval_));
-    tellAttitude(motion, imu);
+    writeAttitude(motion, imu);
     return imu;
 }
 

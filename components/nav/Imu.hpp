@@ -29,7 +29,7 @@ private:
     using Triad = std::array<Axis, 3>;
     static Triad triad(const AxisErrors& errors, uint64_t seed, uint64_t first_channel);
     glm::dvec3 measured(Triad& triad, const glm::dvec3& truth, const glm::dvec3& bias, const Motion& motion);
-    void tellAttitude(const Motion& motion, types::Imu& imu);
+    void writeAttitude(const Motion& motion, types::Imu& imu);
 
     ImuConfig config_;
     double gravity_;

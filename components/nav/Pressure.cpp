@@ -57,10 +57,10 @@ types::Pressure PressureGauge::measure(const types::Pose& gauge) {
     double pascal = pressureAt(config_.water_surface - gauge.position.z, config_);
     pascal += errors.offset + drift_.at(gauge.time) +
               errors.noise * normal(config_.sensor.randomSeed(), noise_channel, gauge.time);
-    const double most = config_.max_pressure.value_or(1e12);
+    const double maximum = config_.max_pressure.value_or(1e12);
     if (errors.resolution > 0) pascal = errors.resolution * std::round(pascal / errors.resolution);
     pascal = std::clamp(pascal, 0.0,
-                        errors.resolution > 0 ? errors.resolution * std::floor(most / errors.resolution) : most);
+                        errors.resolution > 0 ? errors.resolution * std::floor(maximum / errors.resolution) : maximum);
     return {static_cast<float>(pascal), gauge.time};
 }
 

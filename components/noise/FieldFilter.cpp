@@ -13,7 +13,7 @@ constexpr size_t blocks = 64;              ///< Philox blocks that are drawn at 
 constexpr size_t block_bins = 2 * blocks;  ///< Bins whose complex fields these blocks contain.
 constexpr size_t filtered_bins = 256;      ///< Bins of a beam that are filtered at a time.
 constexpr size_t margin = 64;              ///< Max reach of a filter to either side [bins].
-constexpr size_t drawn_bins = filtered_bins + 2 * margin;
+constexpr size_t random_bins = filtered_bins + 2 * margin;
 
 /** Real and imaginary parts of a field along a beam. */
 template <size_t count>
@@ -23,10 +23,10 @@ struct Field {
 
 /** Fills white noise of the bins from `margin` before the chunk to `margin` behind it. */
 INSONIFY_VECTOR_CLONES
-void drawField(const BeamKey& key, size_t chunk, Field<drawn_bins>& field) {
-    static_assert(drawn_bins % block_bins == 0 && filtered_bins % block_bins == 0);
+void drawField(const BeamKey& key, size_t chunk, Field<random_bins>& field) {
+    static_assert(random_bins % block_bins == 0 && filtered_bins % block_bins == 0);
     uint32_t words[4][blocks];
-    for (size_t part = 0; part < drawn_bins / block_bins; ++part) {
+    for (size_t part = 0; part < random_bins / block_bins; ++part) {
         const size_t first = (chunk * (filtered_bins / block_bins) + part) * blocks;
         for (size_t i = 0; i < blocks; ++i) {
             const Counter block =
@@ -82,8 +82,8 @@ std::vector<float> gaussianFilter(double width) {
         half.push_back(tap);
         sum += (t == 0 ? 1 : 2) * tap * tap;
     }
-    constexpr double least = 1e-5;  // relative to the middle tap
-    while (half.size() > 1 && std::abs(half.back()) < least * half.front()) half.pop_back();
+    constexpr double minimum = 1e-5;  // relative to the middle tap
+    while (half.size() > 1 && std::abs(half.back()) < minimum * half.front()) half.pop_back();
     std::vector<float> taps;
     for (const double tap : half) taps.push_back(static_cast<float>(tap / std::sqrt(sum)));
     return taps;
@@ -96,7 +96,7 @@ FieldFilter::FieldFilter(const FilterConfig& config)
       beams_((2 * across_.size() - 1) * 2 * filtered_bins) {}
 
 void FieldFilter::fillBeam(const BeamKey& key, size_t chunk, size_t beam) {
-    Field<drawn_bins> drawn;
+    Field<random_bins> drawn;
     drawField({key.seed, key.beam | static_cast<uint32_t>(beam), key.ping_low, key.ping_high}, chunk, drawn);
     float* const kept = &beams_[beam % (2 * across_.size() - 1) * 2 * filtered_bins];
     filterAlong(drawn.real, along_.data(), along_.size(), kept);

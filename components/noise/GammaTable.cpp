@@ -31,8 +31,8 @@ double endOf(double shape, double inside, double outside) {
 
 /** Integrates the density of y = ln x of a gamma variate x of unit mean, by Simpson's rule over each step. */
 Shares sharesOf(double shape) {
-    constexpr double least = -90;  // exp(-90) is as good as 0 in a float
-    const double low = endOf(shape, 0, least), high = endOf(shape, 0, 40);
+    constexpr double minimum = -90;  // exp(-90) is as good as 0 in a float
+    const double low = endOf(shape, 0, minimum), high = endOf(shape, 0, 40);
     const double scale = shape * std::log(shape) - std::lgamma(shape);
     const auto density = [&](double y) { return std::exp(scale + shape * (y - std::exp(y))); };
     Shares shares{low, (high - low) / steps, std::vector<double>(steps + 1), std::vector<double>(steps + 1)};
@@ -70,11 +70,11 @@ double quantile(const Shares& shares, double t) {
 
 GammaTable::GammaTable(double shape) {
     const Shares shares = sharesOf(shape);
-    constexpr float least = std::numeric_limits<float>::min();  // smaller numbers are slow, and as good as 0
+    constexpr float minimum = std::numeric_limits<float>::min();  // smaller numbers are slow, and as good as 0
     for (int32_t bits = first_bits; bits <= last_bits; bits += cell_size) {
         const double y = quantile(shares, static_cast<double>(std::bit_cast<float>(bits)));
         const auto x = static_cast<float>(std::exp(y));
-        table_.push_back(x < least ? 0.0f : x);
+        table_.push_back(x < minimum ? 0.0f : x);
     }
 }
 

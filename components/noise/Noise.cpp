@@ -11,8 +11,8 @@ namespace insonify::noise {
 namespace {
 
 /** Philox blocks are drawn 64 at a time: bin 256 c + 64 w + i of a beam gets word w of block 64 c + i. */
-constexpr size_t lanes = 64;
-constexpr size_t chunk_bins = 4 * lanes;
+constexpr size_t batch = 64;
+constexpr size_t chunk_bins = 4 * batch;
 
 /** Uniform words, then variates, of the bins of one chunk. */
 using Words = std::array<uint32_t, chunk_bins>;
@@ -22,11 +22,11 @@ using Variates = std::array<float, chunk_bins>;
 enum class Stream : uint32_t { Speckle = 0, Additive = 0x80000000, Ambient = 0x40000000, Texture = 0xC0000000 };
 
 inline void drawWords(const BeamKey& key, Stream stream, size_t chunk, Words& words) {
-    for (size_t i = 0; i < lanes; ++i) {
-        const Counter block = philox({static_cast<uint32_t>(chunk * lanes + i),
+    for (size_t i = 0; i < batch; ++i) {
+        const Counter block = philox({static_cast<uint32_t>(chunk * batch + i),
                                       key.beam | static_cast<uint32_t>(stream), key.ping_low, key.ping_high},
                                      key.seed);
-        for (size_t word = 0; word < 4; ++word) words[word * lanes + i] = block[word];
+        for (size_t word = 0; word < 4; ++word) words[word * batch + i] = block[word];
     }
 }
 
@@ -41,11 +41,11 @@ INSONIFY_VECTOR_CLONES
 void drawNormals(const BeamKey& key, Stream stream, size_t chunk, Variates& variates) {
     Words words;
     drawWords(key, stream, chunk, words);
-    for (size_t pair = 0; pair < chunk_bins; pair += 2 * lanes)
-        for (size_t i = pair; i < pair + lanes; ++i) {
-            const Normals drawn = normals(words[i], words[i + lanes]);
+    for (size_t pair = 0; pair < chunk_bins; pair += 2 * batch)
+        for (size_t i = pair; i < pair + batch; ++i) {
+            const Normals drawn = normals(words[i], words[i + batch]);
             variates[i] = drawn.first;
-            variates[i + lanes] = drawn.second;
+            variates[i + batch] = drawn.second;
         }
 }
 
@@ -68,12 +68,12 @@ constexpr uint32_t high(uint64_t word) { return static_cast<uint32_t>(word >> 32
 }  // namespace
 
 void SpeckleConfig::check(types::Diagnostics& diagnostics) const {
-    const auto judge = [&](const char* name, const std::optional<double>& value, bool needed, const char* owner) {
+    const auto require = [&](const char* name, const std::optional<double>& value, bool needed, const char* owner) {
         if (needed && !value) diagnostics.push_back({name, std::string("is absent; law: ") + owner + " needs it"});
         if (!needed && value) diagnostics.push_back({name, std::string("is given; it belongs to law: ") + owner});
     };
-    judge("looks", looks, law == SpeckleLaw::Gamma, "gamma");
-    judge("shape", shape, law == SpeckleLaw::K, "k");
+    require("looks", looks, law == SpeckleLaw::Gamma, "gamma");
+    require("shape", shape, law == SpeckleLaw::K, "k");
 }
 
 /** One run of bins, at most a chunk long. */

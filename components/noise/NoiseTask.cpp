@@ -47,18 +47,18 @@ types::SonarPtr NoiseTask::withNoise(const types::SonarPtr& ping) {
     if (config->isNone()) return ping;
     const auto result = pool_.take();
     clamped_ += noise_->add(*ping, *result);
-    if (noise_->background() > 0) judge(*ping);
+    if (noise_->background() > 0) require(*ping);
     pool_.stock(*result);
     return result;
 }
 
-void NoiseTask::judge(const types::Sonar& ping) {
-    float most = 0;
-    for (const float bin : ping.bins) most = bin > most ? bin : most;
-    if (most == 0) return;  // the sonar reports an empty ping
-    const bool is_buried = static_cast<double>(most) < noise_->background();
+void NoiseTask::require(const types::Sonar& ping) {
+    float maximum = 0;
+    for (const float bin : ping.bins) maximum = bin > maximum ? bin : maximum;
+    if (maximum == 0) return;  // the sonar reports an empty ping
+    const bool is_buried = static_cast<double>(maximum) < noise_->background();
     if (!buried_.isDue(is_buried)) return;
-    const auto loudest = static_cast<size_t>(std::ranges::find(ping.bins, most) - ping.bins.begin());
+    const auto loudest = static_cast<size_t>(std::ranges::find(ping.bins, maximum) - ping.bins.begin());
     warn(burialText(ping, loudest, noise_->background()));
 }
 

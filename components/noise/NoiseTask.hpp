@@ -41,7 +41,7 @@ private:
     void errorHook() override { updateHook(); }
     types::SonarPtr withNoise(const types::SonarPtr& ping);
     /** Warns when all echoes of a ping are below the mean of the added noise. */
-    void judge(const types::Sonar& ping);
+    void require(const types::Sonar& ping);
 
     std::optional<Noise> noise_;
     framework::SamplePool<types::Sonar> pool_;

@@ -20,8 +20,8 @@ FanShape FanShape::of(const types::Sonar& ping) {
     return shape;
 }
 
-double FanShape::halfAngle(double right, double left, double least) {
-    return std::min(std::max({std::abs(left), std::abs(right), least}), pi);
+double FanShape::halfAngle(double right, double left, double minimum) {
+    return std::min(std::max({std::abs(left), std::abs(right), minimum}), pi);
 }
 
 FanLayout::FanLayout(int width, double right, double left, double range) : range_(range), right_(right), left_(left) {

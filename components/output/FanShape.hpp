@@ -13,7 +13,7 @@ struct FanShape : types::BeamArc {
 
     static FanShape of(const types::Sonar& ping);
     /** Returns the max angle from ahead, at least `least` and at most half a turn [rad]. */
-    static double halfAngle(double right, double left, double least);
+    static double halfAngle(double right, double left, double minimum);
 };
 
 /** The layout of a fan with given edges in a picture: ahead is up, port is left. */

@@ -10,7 +10,7 @@ namespace insonify::output {
 void LevelScale::applyToCodes(const cv::Mat& bins, cv::Mat& levels) {
     bins.copyTo(decibels_);
     cv::patchNaNs(decibels_, 0);
-    decibels_.convertTo(levels, CV_8U, 255 / config_.largestCode());
+    decibels_.convertTo(levels, CV_8U, 255 / config_.maxCode());
 }
 
 void LevelScale::apply(const cv::Mat& bins, cv::Mat& levels) {

@@ -134,7 +134,7 @@ void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display) 
         overlay.text(text, {x + 8, y}, Overlay::Anchor::Left);
     };
     const bool codes = display.scale == BinScale::Code;
-    const double span = codes ? display.largestCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
+    const double span = codes ? display.maxCode() : display.dynamic_range_db, step = roundStep(span / 4.5);
     label(0, codes ? fmt::format("{:.0f}", span) : "0 dB");
     if (codes)
         for (double code = 0; code <= span - step / 2; code += step)
@@ -144,10 +144,10 @@ void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display) 
             label(below / span, fmt::format("{:g}", -below));
 }
 
-double roundStep(double least) {
-    const double power = std::pow(10, std::floor(std::log10(least)));
+double roundStep(double minimum) {
+    const double power = std::pow(10, std::floor(std::log10(minimum)));
     for (const double factor : {1, 2, 5})
-        if (factor * power >= least * (1 - 1e-9)) return factor * power;
+        if (factor * power >= minimum * (1 - 1e-9)) return factor * power;
     return 10 * power;
 }
 

@@ -45,6 +45,6 @@ bool fitsColourBar(cv::Size picture, cv::Point at);
 void addColourBar(Overlay& overlay, cv::Point at, const DisplayConfig& display);
 
 /** Returns a round step (1, 2 or 5 times a power of ten) not below `least`. */
-double roundStep(double least);
+double roundStep(double minimum);
 
 }  // namespace insonify::output

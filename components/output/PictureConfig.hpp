@@ -24,7 +24,7 @@ struct DisplayConfig {
     BinScale scale = BinScale::Linear;
     int code_bits = 8;
 
-    double largestCode() const { return std::exp2(code_bits) - 1; }
+    double maxCode() const { return std::exp2(code_bits) - 1; }
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {

@@ -162,7 +162,7 @@ void PlainPicture::findLevels(const types::Sonar& ping) {
             shown.push_back(!linear ? mean : mean > 0 ? 10 * std::log10(mean) : nothing);
         }
     reference_db_ = codes ? 0 : config_.reference_db.value_or(strongLevel(shown));
-    const double step = codes ? 255 / config_.display().largestCode() : 255 / config_.dynamic_range_db;
+    const double step = codes ? 255 / config_.display().maxCode() : 255 / config_.dynamic_range_db;
     const double black = codes ? 0 : reference_db_ - config_.dynamic_range_db;
     levels_.clear();
     for (const double level : shown)  // unknown levels and no echo: 0

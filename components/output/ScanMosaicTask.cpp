@@ -13,7 +13,7 @@ void ScanMosaicTask::keep(const types::Pose& body) {
 
 bool ScanMosaicTask::startHook() {
     before_.reset();
-    laid_ = held_ = left_out_ = 0;
+    laid_ = held_ = omitted_ = 0;
     held_for_ = 0;
     return PairPictureTask::startHook();
 }
@@ -22,7 +22,7 @@ void ScanMosaicTask::show(const types::Sonar& sample) {
     std::optional<types::Pose> sonar = bodyAt(sample.time);
     if (sonar) types::place(types::Pose(*sonar), config->mount, *sonar);
     const bool usable = picture_->place(sonar);
-    ++(sonar && usable ? laid_ : left_out_);
+    ++(sonar && usable ? laid_ : omitted_);
     describeMap(caption_);
     picture_->setCaption(caption_);
     take(sample);
@@ -51,13 +51,13 @@ void ScanMosaicTask::describeMap(std::string& text) const {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "each ping at its pose, north up: {} pings", laid_);
     if (held_ > 0) fmt::format_to(out, ", {} at a pose held for up to {:.3g} s", held_, held_for_);
-    if (left_out_ > 0) fmt::format_to(out, ", {} not shown because they have no usable pose", left_out_);
+    if (omitted_ > 0) fmt::format_to(out, ", {} not shown because they have no usable pose", omitted_);
 }
 
 std::vector<std::string> ScanMosaicTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
     std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
-    if (held_ + left_out_ > 0) {
+    if (held_ + omitted_ > 0) {
         std::string map;
         describeMap(map);
         notices.push_back("Warning: " + map);

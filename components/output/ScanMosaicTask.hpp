@@ -45,7 +45,7 @@ private:
 
     std::string caption_;
     std::optional<types::Pose> before_;
-    uint64_t laid_ = 0, held_ = 0, left_out_ = 0;
+    uint64_t laid_ = 0, held_ = 0, omitted_ = 0;
     double held_for_ = 0;  ///< Max time to a pose that was used without interpolation [s].
 
     framework::AlignedPort<types::Pose> poses_{aligner_, pose, [this](const types::Pose& body) { keep(body); }};

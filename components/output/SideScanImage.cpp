@@ -38,10 +38,10 @@ double SideScanImage::altitudeOf(const types::Sonar& ping) const {
     if (ground_range_->altitude) return *ground_range_->altitude;
     if (std::isfinite(altitude_)) return altitude_;
     const auto strongest = std::max_element(ping.bins.begin(), ping.bins.end());
-    const float least = *strongest * static_cast<float>(std::pow(10, ground_range_->threshold_db / 10));
+    const float minimum = *strongest * static_cast<float>(std::pow(10, ground_range_->threshold_db / 10));
     uint32_t first = ping.bin_count;
     for (size_t k = 0; k < ping.bins.size(); ++k)
-        if (ping.bins[k] > 0 && ping.bins[k] >= least)
+        if (ping.bins[k] > 0 && ping.bins[k] >= minimum)
             first = std::min(first, static_cast<uint32_t>(k % ping.bin_count));
     return ping.binStart(first == ping.bin_count ? 0 : first + 0.5);
 }

@@ -17,7 +17,7 @@ public:
     explicit TruthImage(const DisplayConfig& config);
 
     /** Sets the truth of the next ping; it must outlive its picture. */
-    void regard(const types::SonarTruth& truth) { truth_ = &truth; }
+    void setTruth(const types::SonarTruth& truth) { truth_ = &truth; }
     /** Throws std::runtime_error if ping and truth differ in beams or bins. */
     void paint(const types::Sonar& ping, types::Image& picture) override;
 

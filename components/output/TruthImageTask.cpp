@@ -9,7 +9,7 @@ namespace insonify::output {
 
 bool TruthImageTask::startHook() {
     last_.reset();
-    left_out_ = 0;
+    omitted_ = 0;
     return PairPictureTask::startHook();
 }
 
@@ -20,18 +20,18 @@ void TruthImageTask::stopHook() {
 
 void TruthImageTask::show(const types::Sonar& sample) {
     if (!last_ || last_->time != sample.time) {
-        ++left_out_;
+        ++omitted_;
         return;
     }
-    picture_->regard(*last_);
+    picture_->setTruth(*last_);
     take(sample);
 }
 
 std::vector<std::string> TruthImageTask::notices() const {
     std::vector<std::string> notices = aligner_.notices();
     std::ranges::move(PictureTask::notices(), std::back_inserter(notices));
-    if (left_out_ > 0)
-        notices.push_back(fmt::format("Warning: {} pings not shown because their truth is missing", left_out_));
+    if (omitted_ > 0)
+        notices.push_back(fmt::format("Warning: {} pings not shown because their truth is missing", omitted_));
     return notices;
 }
 

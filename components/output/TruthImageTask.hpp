@@ -28,7 +28,7 @@ private:
     void show(const types::Sonar& sample);
 
     types::SonarTruthPtr last_;
-    uint64_t left_out_ = 0;  ///< Number of pings [1].
+    uint64_t omitted_ = 0;  ///< Number of pings [1].
 
     framework::AlignedPort<types::SonarTruthPtr> truths_{
         aligner_, truth, [this](const types::SonarTruthPtr& sample) { last_ = sample; }, 16};

@@ -35,8 +35,8 @@ INSONIFY_VECTOR_CLONES
 void takeLevels(const float* __restrict in, const float* __restrict offset_db, float* __restrict out, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const float level = types::decibels(in[i]) + offset_db[i];
-        const float heard = level < floor_db ? floor_db : level;
-        out[i] = in[i] > 0 ? heard : in[i] == 0 ? floor_db : in[i];
+        const float kept = level < floor_db ? floor_db : level;
+        out[i] = in[i] > 0 ? kept : in[i] == 0 ? floor_db : in[i];
     }
 }
 
@@ -54,11 +54,11 @@ void bend(float* values, double gamma, size_t count) {
 
 /** Rounds to whole numbers from 0 to `most`; NaN becomes 0. */
 INSONIFY_VECTOR_CLONES
-void quantise(float* values, float per_unit, float zero, float most, size_t count) {
+void quantise(float* values, float per_unit, float zero, float maximum, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const float x = (values[i] - zero) * per_unit;
         const float above = x > 0 ? x : 0.0f;
-        const float code = above < most ? above : most;
+        const float code = above < maximum ? above : maximum;
         values[i] = static_cast<float>(static_cast<int32_t>(code + 0.5f));
     }
 }
@@ -152,8 +152,8 @@ double Receiver::scaleDb() const {
 }
 
 double Receiver::saturation() const {
-    constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
-    return config_.saturation_db ? std::min(largest, powerOf(*config_.saturation_db + scaleDb())) : largest;
+    constexpr double maximum = static_cast<double>(std::numeric_limits<float>::max());
+    return config_.saturation_db ? std::min(maximum, powerOf(*config_.saturation_db + scaleDb())) : maximum;
 }
 
 void Receiver::followLevel(const types::Sonar& ping) {
@@ -177,11 +177,11 @@ void Receiver::followLevel(const types::Sonar& ping) {
 }
 
 void Receiver::encode(float* received) const {
-    const float most = largestCode();
+    const float maximum = maxCode();
     const auto range_db = static_cast<float>(code_.dynamic_range_db);
-    if (isLevel()) return quantise(received, most / range_db, -range_db, most, axis_.bin_count);
+    if (isLevel()) return quantise(received, maximum / range_db, -range_db, maximum, axis_.bin_count);
     bend(received, code_.gamma, axis_.bin_count);
-    quantise(received, most, 0, most, axis_.bin_count);
+    quantise(received, maximum, 0, maximum, axis_.bin_count);
 }
 
 void Receiver::receiveBeam(const float* intensities, float* received) const {
@@ -210,16 +210,16 @@ void Receiver::receive(const types::Sonar& intensities, types::Sonar& received) 
 
 Receiver::Flaws Receiver::flawsOf(const types::Sonar& intensities, const types::Sonar& received) const {
     Flaws flaws;
-    const size_t count = axis_.bin_count, heard = count - silent_;
-    flaws.blanked = count > 0 && heard == 0;
+    const size_t count = axis_.bin_count, kept = count - silent_;
+    flaws.blanked = count > 0 && kept == 0;
     if (flaws.blanked || config_.output != Output::Code) return flaws;
     size_t full = 0, empty = 0;
     for (size_t beam = 0; beam < received.beam_count; ++beam) {
-        const auto codes = std::span(received.bins).subspan(beam * count + silent_, heard);
-        full += static_cast<size_t>(std::ranges::count(codes, largestCode()));
+        const auto codes = std::span(received.bins).subspan(beam * count + silent_, kept);
+        full += static_cast<size_t>(std::ranges::count(codes, maxCode()));
         empty += static_cast<size_t>(std::ranges::count(codes, 0.0f));
     }
-    const size_t all = heard * received.beam_count;
+    const size_t all = kept * received.beam_count;
     flaws.saturated = all > 0 ? static_cast<double>(full) / static_cast<double>(all) : 0;
     flaws.all_zero = empty == all && std::isfinite(loudestDb(intensities));
     return flaws;
@@ -236,7 +236,7 @@ double Receiver::loudestDb(const types::Sonar& intensities) const {
 }
 
 double Receiver::lowestDb() const {
-    const double half = 0.5 / static_cast<double>(largestCode());
+    const double half = 0.5 / static_cast<double>(maxCode());
     if (code_.law == CodeLaw::Log) return (half - 1) * code_.dynamic_range_db;
     return (code_.law == CodeLaw::Sqrt ? 20 : 10) * std::log10(half);
 }
@@ -254,7 +254,7 @@ std::string Receiver::text(const Flaws& flaws, const types::Sonar& intensities) 
     return fmt::format(
         "saturates: {:.3g} % of the codes are {:g}, and the loudest bin is {:.3g} dB above full_scale_db, {:g} dB; "
         "lower gain_db, or raise full_scale_db",
-        100 * flaws.saturated, largestCode(), loudest, code_.full_scale_db);
+        100 * flaws.saturated, maxCode(), loudest, code_.full_scale_db);
 }
 
 std::vector<std::string> Receiver::notices() const {

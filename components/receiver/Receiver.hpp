@@ -67,7 +67,7 @@ private:
     bool isLevel() const;
     void receiveBeam(const float* intensities, float* received) const;
     void encode(float* received) const;
-    float largestCode() const { return static_cast<float>((1 << code_.bits) - 1); }
+    float maxCode() const { return static_cast<float>((1 << code_.bits) - 1); }
     /** Returns the level of the loudest bin after blanking, all gain included, relative to full_scale_db [dB]. */
     double loudestDb(const types::Sonar& intensities) const;
     /** Returns the level relative to full_scale_db above which codes are not 0 [dB]. */

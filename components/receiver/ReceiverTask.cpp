@@ -38,12 +38,12 @@ types::SonarPtr ReceiverTask::received(const types::SonarPtr& sample) {
     if (receiver_->isNeutral()) return sample;
     const auto result = pool_.take();
     receiver_->receive(*sample, *result);
-    judge(*sample, *result);
+    evaluate(*sample, *result);
     pool_.stock(*result);
     return result;
 }
 
-void ReceiverTask::judge(const types::Sonar& intensities, const types::Sonar& received) {
+void ReceiverTask::evaluate(const types::Sonar& intensities, const types::Sonar& received) {
     const Receiver::Flaws flaws = receiver_->flawsOf(intensities, received);
     if (flawed_.isDue(flaws.any())) warn(receiver_->text(flaws, intensities));
 }

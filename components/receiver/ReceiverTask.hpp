@@ -44,7 +44,7 @@ private:
     void takeSettings();
     types::SonarPtr received(const types::SonarPtr& sample);
 
-    void judge(const types::Sonar& intensities, const types::Sonar& received);
+    void evaluate(const types::Sonar& intensities, const types::Sonar& received);
 
     std::optional<Receiver> receiver_;
     types::RecurringDiagnostic flawed_;

@@ -203,8 +203,8 @@ bool ReplayTask::startHook() {
 }
 
 types::Time ReplayTask::due() {
-    const bool as_fast_as_it_goes = !environment().lockstep && pace_ == 0;
-    return as_fast_as_it_goes ? next_time_ : now();
+    const bool unpaced = !environment().lockstep && pace_ == 0;
+    return unpaced ? next_time_ : now();
 }
 
 void ReplayTask::noteInstant() {
@@ -236,8 +236,8 @@ void ReplayTask::playNext() {
 }
 
 void ReplayTask::updateHook() {
-    const bool stands_still = paused_us_ != 0 && pace_ == 0;
-    if (!stands_still) play(due());
+    const bool halted = paused_us_ != 0 && pace_ == 0;
+    if (!halted) play(due());
 }
 
 void ReplayTask::play(types::Time until) {

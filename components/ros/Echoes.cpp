@@ -44,9 +44,9 @@ public:
         : scale_(options.scale), reference_(referenceDb(ping, options)), per_db_(255 / options.dynamic_range_db) {
         if (scale_ == BinScale::Decibel) return;
         for (size_t level = 1; level < 256; ++level)
-            least_[level] = binAt(reference_ + (static_cast<double>(level) - 255.5) / per_db_, scale_);
-        first_ = cellOf(least_[1]);
-        last_ = cellOf(least_[255]);
+            minimum_[level] = binAt(reference_ + (static_cast<double>(level) - 255.5) / per_db_, scale_);
+        first_ = cellOf(minimum_[1]);
+        last_ = cellOf(minimum_[255]);
         uint8_t level = 0;
         for (uint32_t cell = first_; cell <= last_; ++cell)
             begin_[cell] = level = above(level, std::bit_cast<float>(cell << 16));
@@ -62,7 +62,7 @@ private:
     static uint32_t cellOf(float bin) { return std::bit_cast<uint32_t>(bin) >> 16; }
     /** Returns the level of a bin whose level is at least `level`. */
     uint8_t above(uint8_t level, float bin) const {
-        while (level < 255 && bin >= least_[level + 1u]) ++level;
+        while (level < 255 && bin >= minimum_[level + 1u]) ++level;
         return level;
     }
     uint8_t ofDecibels(float bin) const {
@@ -73,7 +73,7 @@ private:
 
     BinScale scale_;
     double reference_, per_db_;
-    std::array<float, 256> least_{};  ///< Min bin of each level; ascending.
+    std::array<float, 256> minimum_{};  ///< Min bin of each level; ascending.
     uint32_t first_ = 0, last_ = 0;  ///< Range of cells that contain several levels. A cell is the positive floats with
                                      ///< the same first 16 bits.
     std::array<uint8_t, 32768> begin_;  ///< Level of the min float in each cell.
@@ -94,10 +94,10 @@ Vector3 directionOf(double bearing_rad, SensorFrame frame) {
 }
 
 DetectionThreshold::DetectionThreshold(const types::Sonar& ping, const SonarOptions& options) : ping_(ping) {
-    least_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
+    minimum_ = binAt(referenceDb(ping, options) + options.threshold_db, options.scale);
     const float min_echo = options.scale == BinScale::Linear ? std::numeric_limits<float>::denorm_min()
                                                              : std::nextafter(static_cast<float>(nothing_db), 0.0f);
-    least_ = std::max(least_, min_echo);
+    minimum_ = std::max(minimum_, min_echo);
 }
 
 std::optional<uint32_t> DetectionThreshold::firstOf(uint32_t beam) const {

@@ -18,13 +18,13 @@ Vector3 directionOf(double bearing_rad, SensorFrame frame);
 class DetectionThreshold {
 public:
     DetectionThreshold(const types::Sonar& ping, const SonarOptions& options);
-    bool isReturn(float bin) const { return bin >= least_; }
+    bool isReturn(float bin) const { return bin >= minimum_; }
     /** Returns the first bin of a beam that is a return. */
     std::optional<uint32_t> firstOf(uint32_t beam) const;
 
 private:
     const types::Sonar& ping_;
-    float least_;
+    float minimum_;
 };
 
 /** Writes the bins in the order and type of the options. */

@@ -37,22 +37,23 @@ glm::dmat3 matrixOf(const Covariance3& rows, double unknown) {
 }
 
 /** Writes a vector of the body, and its covariance. */
-void tell(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& told, Covariance3& rows) {
+void report(glm::dvec3 value, const glm::dmat3& covariance, WorldFrame frame, Vector3& reported, Covariance3& rows) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
-    told = isUnknown(value) ? Vector3{} : vectorOf(body(value));
+    reported = isUnknown(value) ? Vector3{} : vectorOf(body(value));
     rows = rowsOf(both(covariance, body), !isUnknown(value), 0);
 }
 
-void read(const Vector3& told, const Covariance3& rows, WorldFrame frame, glm::dvec3& value, glm::dmat3& covariance) {
+void read(const Vector3& reported, const Covariance3& rows, WorldFrame frame, glm::dvec3& value,
+          glm::dmat3& covariance) {
     const auto body = [frame](glm::dvec3 v) { return types::Axes{frame}.body(v); };
-    value = rows[0] == -1 ? glm::dvec3(types::Pose::unknown) : body(fromRos(told));
+    value = rows[0] == -1 ? glm::dvec3(types::Pose::unknown) : body(fromRos(reported));
     covariance = both(matrixOf(rows, 0), body);
 }
 
 /** Converts from axes with z up to an instrument's axes, whose z is its look direction, and back. */
 glm::dvec3 turnedOver(glm::dvec3 v) { return {v.x, -v.y, -v.z}; }
 
-void tellBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {
+void writeBeam(const types::Dvl& dvl, size_t beam, Dvl& message) {
     const double range = dvl.beam_ranges[beam], variance = dvl.beam_velocity_variances[beam];
     message.beam_unit_vec[beam] = vectorOf(turnedOver(dvl.beam_directions[beam]));
     message.range[beam] = range;
@@ -79,10 +80,10 @@ void convert(const types::Imu& imu, WorldFrame frame, const std::string& frame_i
     message.orientation = {q.x, q.y, q.z, q.w};
     const auto to_world = [&](glm::dvec3 v) { return types::Axes{frame}.worldFromRock(imu.orientation * v); };
     message.orientation_covariance = rowsOf(both(imu.cov_orientation, to_world), is_known, 0);
-    tell(imu.angular_velocity, imu.cov_angular_velocity, frame, message.angular_velocity,
-         message.angular_velocity_covariance);
-    tell(imu.linear_acceleration, imu.cov_linear_acceleration, frame, message.linear_acceleration,
-         message.linear_acceleration_covariance);
+    report(imu.angular_velocity, imu.cov_angular_velocity, frame, message.angular_velocity,
+           message.angular_velocity_covariance);
+    report(imu.linear_acceleration, imu.cov_linear_acceleration, frame, message.linear_acceleration,
+           message.linear_acceleration_covariance);
 }
 
 void convert(const Imu& message, WorldFrame frame, types::Imu& imu) {
@@ -134,7 +135,7 @@ void convert(const types::Dvl& dvl, const std::string& frame_id, Dvl& message) {
     message.beam_ranges_valid = dvl.goodBeams() > 0;
     message.beam_velocities_valid = dvl.hasBottomLock();
     clearBeams(message);
-    for (size_t beam = 0; beam < dvl.beam_directions.size(); ++beam) tellBeam(dvl, beam, message);
+    for (size_t beam = 0; beam < dvl.beam_directions.size(); ++beam) writeBeam(dvl, beam, message);
 }
 
 void convert(const Dvl& message, types::Dvl& dvl) {

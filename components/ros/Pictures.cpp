@@ -50,8 +50,8 @@ void convert(const types::Image& picture, const std::string& frame_id, Image& me
 void convert(const Image& message, types::Image& picture) {
     const Encoding encoding = encodingWhere("encoding '" + message.encoding + "'",
                                             [&](const Encoding& e) { return e.name == message.encoding; });
-    constexpr uint32_t most = std::numeric_limits<uint16_t>::max();
-    if (message.height > most || message.width > most)
+    constexpr uint32_t maximum = std::numeric_limits<uint16_t>::max();
+    if (message.height > maximum || message.width > maximum)
         throw std::invalid_argument("a picture of more than 65535 rows or columns");
     if (message.is_bigendian && encoding.depth > 8) throw std::invalid_argument("big-endian pixels are not read");
     picture.time = picture.received_time = fromRos(message.header.stamp);

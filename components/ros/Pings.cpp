@@ -47,17 +47,17 @@ void fillDelays(const types::Sonar& ping, std::vector<float>& delays) {
 double stepTo(const types::BeamArc& arc, size_t place) { return arc.bearings[place] - arc.bearings[place - 1]; }
 
 /** Returns the min angle between two neighbouring beams; 0 for fewer than two beams [rad]. */
-double smallestStep(const types::BeamArc& arc) {
-    double smallest = arc.beams.size() > 1 ? stepTo(arc, 1) : 0;
-    for (size_t place = 2; place < arc.beams.size(); ++place) smallest = std::min(smallest, stepTo(arc, place));
-    return smallest;
+double minStep(const types::BeamArc& arc) {
+    double minimum = arc.beams.size() > 1 ? stepTo(arc, 1) : 0;
+    for (size_t place = 2; place < arc.beams.size(); ++place) minimum = std::min(minimum, stepTo(arc, place));
+    return minimum;
 }
 
 /** Returns the LaserScan's ray for the beam at `place`, if the preceding beam is ray `before`. */
-size_t rayOf(const types::BeamArc& arc, size_t place, double smallest, size_t before) {
+size_t rayOf(const types::BeamArc& arc, size_t place, double minimum, size_t before) {
     constexpr double tolerance = 1e-3, max_rays = 16384;
-    const double step = stepTo(arc, place), steps = std::round(step / smallest);
-    if (!(std::abs(step - steps * smallest) < tolerance * steps * smallest) ||
+    const double step = stepTo(arc, place), steps = std::round(step / minimum);
+    if (!(std::abs(step - steps * minimum) < tolerance * steps * minimum) ||
         static_cast<double>(before) + steps >= max_rays)
         throw std::invalid_argument(
             "the beams are not at equal angles from one another, nor at multiples of the smallest angle, as a "
@@ -129,12 +129,12 @@ void convert(const types::Sonar& ping, const SonarOptions& options, LaserScan& m
     fillHeader(ping, options, message.header);
     static thread_local types::BeamArc arc;  // reuses its memory
     arc.take(ping);
-    const double smallest = smallestStep(arc);
+    const double minimum = minStep(arc);
     const DetectionThreshold rule(ping, options);
     message.ranges.clear();
     message.intensities.clear();
     for (size_t place = 0, ray = 0; place < arc.beams.size(); ++place) {
-        if (place > 0) ray = rayOf(arc, place, smallest, ray);
+        if (place > 0) ray = rayOf(arc, place, minimum, ray);
         message.ranges.resize(ray + 1, std::numeric_limits<float>::quiet_NaN());
         message.intensities.resize(ray + 1, 0);
         const auto bin = rule.firstOf(arc.beams[place]);

@@ -12,7 +12,8 @@ namespace insonify::scene {
 constexpr size_t clustered_from = 10'000;
 /** Max triangles of a cluster of a split mesh. Most clusters have at least half of it. */
 constexpr size_t cluster_triangles = 250;
-/** Max triangles of the smallest kind of patch, which has at least half of it. Each larger kind has 4 times as many. */
+/** Max triangles of the smallest kind of patch, which has at least half of it. Each larger kind has 4 times the number.
+ */
 constexpr size_t min_node_triangles = 1000;
 /** Max triangles of a mesh's outline, for each run of one material. */
 constexpr size_t max_coarse_triangles = 4000;

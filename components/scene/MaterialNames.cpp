@@ -53,7 +53,7 @@ constexpr Synonym synonyms[] = {
 
 bool is(int (*kind)(int), char c) { return kind(static_cast<unsigned char>(c)) != 0; }
 
-/** Splits a name into lower-case words of letters; "castIron" has two. */
+/** Splits a name into lower-case words of letters; "traceIron" has two. */
 std::vector<std::string> wordsOf(const std::string& name) {
     std::vector<std::string> words(1);
     for (size_t i = 0; i < name.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace insonify::scene {
 
 /** Returns the names of matter and sediments in the name of a material, as modellers write it: "Steel.001",
- *  "M_Rusty-Steel", "Material_Aluminium" and "castIron 2". Each name occurs once, in the order of the material's
+ *  "M_Rusty-Steel", "Material_Aluminium" and "traceIron 2". Each name occurs once, in the order of the material's
  *  name. */
 std::vector<std::string_view> matterIn(const std::string& name);
 

@@ -9,7 +9,7 @@
 
 namespace insonify::scene {
 
-/** A node of a scene, as the file arranges them. Every parent comes before its children. */
+/** A node of a scene, as the file arranges them. Every parent precedes its children. */
 struct Node {
     std::string name;                ///< Unique: the file's, else its mesh's, else "node_3".
     int parent = -1;                 ///< Index of a node, -1 at the root.
@@ -21,9 +21,9 @@ struct Node {
 struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
-    std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
-    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 except for instances and visuals.
-    glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
+    std::vector<int> object_nodes;                      ///< For each object of the geometry, its node.
+    std::vector<glm::dmat4> node_from_object;           ///< For each object; 1 except for instances and visuals.
+    glm::dmat4 z_up_from_file{1};                       ///< The turn of the file's axes to the world's.
     std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
 };
 

@@ -254,7 +254,7 @@ bool SceneTask::startHook() {
     }
     if (animator_) animator_->forgetTimes();
     newest_ = arrived_ = now();
-    newest_came_ = waiting_is_told_ = is_stale_ = false;
+    newest_came_ = waiting_is_reported_ = is_stale_ = false;
     if (bathymetry_) bathymetry_->forget();
     return true;
 }
@@ -275,12 +275,13 @@ std::string SceneTask::staleness() const {
     };
     const auto text = [this](const auto& port, types::Time newest, types::Time arrived) {
         const double behind = (arrived - newest).seconds();
-        const bool comes = (now() - arrived).seconds() <= poseTimeout();
+        const bool arrives = (now() - arrived).seconds() <= poseTimeout();
         return fmt::format("{}: no pose in the last {:g} s (pose_timeout){}", port.path(), poseTimeout(),
-                           comes ? fmt::format("; the poses that arrive have stamps {:.3g} s {} this clock; if they "
-                                               "are of another clock, set `stamp: arrival` in the task that reads them",
-                                               std::abs(behind), behind > 0 ? "behind" : "ahead of")
-                                 : "");
+                           arrives
+                               ? fmt::format("; the poses that arrive have stamps {:.3g} s {} this clock; if they "
+                                             "are of another clock, set `stamp: arrival` in the task that reads them",
+                                             std::abs(behind), behind > 0 ? "behind" : "ahead of")
+                               : "");
     };
     if (stale(newest_)) return text(pose, newest_, arrived_);
     for (const Movable& movable : movables_)
@@ -293,7 +294,7 @@ void SceneTask::lackPose(const std::string& why) {
     const bool is_first = !newest_came_ && (now() - newest_).seconds() > poseTimeout();
     is_stale_ = !is_first;
     if (!is_first) return error(why);
-    if (!std::exchange(waiting_is_told_, true)) warn(pose.path() + ": waits for the first pose");
+    if (!std::exchange(waiting_is_reported_, true)) warn(pose.path() + ": waits for the first pose");
 }
 
 void SceneTask::updateHook() try {

@@ -123,7 +123,7 @@ private:
     mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
-    std::vector<Movable> movables_;       ///< Outer nodes before inner ones, once configured.
+    std::vector<Movable> movables_;       ///< Outer nodes before inner nodes, once configured.
     size_t part_count_ = 0;               ///< Parts of all movables; their memory is allocated before they move.
     std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
     std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
@@ -136,7 +136,7 @@ private:
     types::Time arrived_;                     ///< When that pose came; the start before the first.
     types::RecurringDiagnostic odd_lengths_;  ///< Reports quaternions of the body that are not of unit length.
     bool newest_came_ = false;                ///< A pose of the body has come since the start.
-    bool waiting_is_told_ = false;            ///< Whether waiting for the first pose has been reported.
+    bool waiting_is_reported_ = false;        ///< Whether waiting for the first pose has been reported.
     std::atomic<bool> is_stale_ = false;      ///< In error because no pose came, not because a pose was invalid.
 };
 

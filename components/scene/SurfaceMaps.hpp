@@ -40,7 +40,7 @@ struct MapValues {
     bool operator==(const MapValues&) const = default;
 };
 
-/** Returns a map of `width` x `height` values in rows from the top; NaN stands for the surface's own material.
+/** Returns a map of `width` x `height` values in rows from the top; NaN means the surface's own material.
  *  @param materials of each class, in the order of MapValues::classes. */
 types::SurfaceMap surfaceMapOf(std::span<const float> values, int width, int height, const MapValues& meaning,
                                std::vector<int> materials);

@@ -77,15 +77,15 @@ public:
 private:
     size_t workOfInclude(const std::string& uri, const std::filesystem::path& from) {
         const auto found = paths_.find(uri, from);
-        size_t most = 0;  // only one of a model's versions is read
+        size_t maximum = 0;  // only one of a model's versions is read
         for (const std::filesystem::path& included : found ? filesOf(*found) : std::vector<std::filesystem::path>()) {
             if (std::ranges::count(open_, included) > 0)
                 throw types::ConfigError(
                     from.string(), "include",
                     fmt::format("{} comes back to {}; a model may not include itself", uri, included.string()));
-            most = std::max(most, workOf(included));
+            maximum = std::max(maximum, workOf(included));
         }
-        return most;
+        return maximum;
     }
 
     static std::vector<std::filesystem::path> filesOf(const std::filesystem::path& found) {
@@ -221,14 +221,14 @@ types::Diagnostic readLine(const std::string& line) {
 void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
     diagnostic.message = plain(diagnostic.message);
     const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
-    const auto tellsAll = [&](const types::Diagnostic& known) {
+    const auto includes = [&](const types::Diagnostic& known) {
         const bool is_same_place =
             !diagnostic.path.empty() && known.path == diagnostic.path && known.line == diagnostic.line;
         return known.text() == diagnostic.text() || is_same_place ||
                (says("Error reading element") && known.path.starts_with(diagnostic.path));
     };
     if (says("Unable to read file:") || says("Failed to load a world")) return;
-    if (!diagnostic.message.empty() && std::ranges::none_of(diagnostics, tellsAll)) diagnostics.push_back(diagnostic);
+    if (!diagnostic.message.empty() && std::ranges::none_of(diagnostics, includes)) diagnostics.push_back(diagnostic);
 }
 
 /** Adds the diagnostics that libsdformat printed and those that it returned. */

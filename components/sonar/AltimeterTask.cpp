@@ -8,15 +8,15 @@ SonarConfig AltimeterConfig::beam() const {
     return one;
 }
 
-void AltimeterTask::tellMore(const types::Sonar& sample, const types::Pose& /*sonar*/) {
+void AltimeterTask::writeMore(const types::Sonar& sample, const types::Pose& /*sonar*/) {
     if (!range.connected()) return;
-    types::Range told;
-    told.time = sample.time;
-    if (const auto found = Detector(config->detection, sample, binWidth()).first(0)) told.range = found->range;
-    told.range_min = config->sonar.range_min;
-    told.range_max = binWidth() * sample.bin_count;
-    told.field_of_view = sample.beam_width;
-    range.write(told);
+    types::Range reported;
+    reported.time = sample.time;
+    if (const auto found = Detector(config->detection, sample, binWidth()).first(0)) reported.range = found->range;
+    reported.range_min = config->sonar.range_min;
+    reported.range_max = binWidth() * sample.bin_count;
+    reported.field_of_view = sample.beam_width;
+    range.write(reported);
 }
 
 }  // namespace insonify::sonar

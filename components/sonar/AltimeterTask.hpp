@@ -41,7 +41,7 @@ public:
     SonarConfig sonarConfig() const override { return config->beam(); }
 
 protected:
-    void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
 };
 
 }  // namespace insonify::sonar

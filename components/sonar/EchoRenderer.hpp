@@ -54,7 +54,7 @@ public:
     /** Returns whether the last ping has any echo. */
     virtual bool hasEchoes() const = 0;
     /** Returns the parts of the scene that the last ping omitted. */
-    virtual std::vector<LeftOut> culled() const { return {}; }
+    virtual std::vector<Omitted> culled() const { return {}; }
     /** Returns the device: an OpenGL renderer and its driver, or the processor. */
     virtual const std::string& device() const = 0;
     /** Returns a notice about the device for the user; may be empty. */
@@ -67,11 +67,11 @@ bool haveRays();
 /** Makes a renderer that traces rays on the processor, without OpenGL. Threads take beams as they become free. One
  *  thread traces a beam's rays, deposits them and fills its bins, while they are in its cache. Throws
  *  std::runtime_error where the build has no rays, or Embree refuses the scene. */
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
+std::unique_ptr<EchoRenderer> makeRayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
 
 /** Makes a renderer that rasterises pings by OpenGL. Make it, use it and destroy it on one thread, under
  *  EglContext::making(). Throws gpu::GlError when there is no OpenGL 4.5 context, or when it is lost. */
-std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                              const PingEffects& effects);
+std::unique_ptr<EchoRenderer> makeRasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                               const PingEffects& effects);
 
 }  // namespace insonify::sonar

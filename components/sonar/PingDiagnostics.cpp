@@ -120,8 +120,8 @@ std::string targetText(const Coverage& coverage, const types::Snapshot& scene) {
 constexpr float min_mean = 6.2e-6f;
 
 bool isLoud(Model model, const types::Sonar& ping) {
-    const float least = model == Model::Cerqueira2017 ? min_mean : 0;
-    return std::ranges::any_of(ping.bins, [least](float bin) { return bin > least; });
+    const float minimum = model == Model::Cerqueira2017 ? min_mean : 0;
+    return std::ranges::any_of(ping.bins, [minimum](float bin) { return bin > minimum; });
 }
 
 /** Returns why a sonar may receive no echo. The text states its place and look direction, the extent of the scene, and
@@ -149,7 +149,7 @@ std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
 
 }  // namespace
 
-std::string PingDiagnostics::follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
+std::string PingDiagnostics::follow(bool received, Model model, const types::Snapshot& scene, const types::Sonar& ping,
                                     const std::function<RenderPlan()>& coverage) {
     if (pings_++ % between_looks == 0) {
         sightlines_->place(scene);
@@ -157,10 +157,10 @@ std::string PingDiagnostics::follow(bool heard, Model model, const types::Snapsh
         inside_ = around.has_value();
         if (enclosure_.isDue(inside_)) return enclosureText(scene, *around);
     }
-    const bool hears = heard && isLoud(model, ping);
-    silent_ = hears ? 0 : silent_ + 1;
-    if (!hears && silent_ < turn_) return {};
-    return silence_.isDue(!hears && !inside_) ? silenceText(coverage(), turn_ > 1, scene) : "";
+    const bool receives = received && isLoud(model, ping);
+    silent_ = receives ? 0 : silent_ + 1;
+    if (!receives && silent_ < turn_) return {};
+    return silence_.isDue(!receives && !inside_) ? silenceText(coverage(), turn_ > 1, scene) : "";
 }
 
 }  // namespace insonify::sonar

@@ -17,9 +17,9 @@ public:
     /** Switches to another geometry from the next ping on, which must outlive it. */
     void takeScene(const types::Geometry& geometry) { sightlines_.emplace(geometry); }
 
-    /** Returns the diagnostic of a ping: usually empty, and then nothing is allocated. `heard`: it has an echo;
+    /** Returns the diagnostic of a ping: usually empty, and then nothing is allocated. `received`: it has an echo;
      *  `coverage`: returns the plan of a sonar that covers in one ping what this sonar covers. */
-    std::string follow(bool heard, Model model, const types::Snapshot& scene, const types::Sonar& ping,
+    std::string follow(bool received, Model model, const types::Snapshot& scene, const types::Sonar& ping,
                        const std::function<RenderPlan()>& coverage);
 
 private:

@@ -77,7 +77,7 @@ bool PingTask::configureHook() {
     transmitted_ = {};
     renderer_.reset();
     plan_.reset();
-    resetAim();
+    resetTrigger();
     return true;
 }
 
@@ -121,8 +121,8 @@ void PingTask::prepareTransmission() {
 void PingTask::transmit() {
     if (!transmitted_.radiation) prepareTransmission();
     const auto sent = std::make_shared<types::Transmission>(transmitted_);
-    sent->time = aimed().time;
-    sent->sonar = aimed().sonar;
+    sent->time = takenScene().time;
+    sent->sonar = takenScene().sonar;
     transmission.write(sent);
 }
 
@@ -131,13 +131,13 @@ void PingTask::complete() {
     goOn();
 }
 
-void PingTask::hearOthers() {
+void PingTask::receiveOthers() {
     types::TransmissionPtr sent;
-    while (others.readNew(sent)) others_heard_.add(sent);
+    while (others.readNew(sent)) others_received_.add(sent);
 }
 
 void PingTask::listen() {
-    hearOthers();
+    receiveOthers();
     if (listening_ && (now() - listening_->scene.time).seconds() >= echoTime()) endListening();
     if (!takeNext()) return;
     if (listening_) endListening();  // the next ping ends it
@@ -146,31 +146,31 @@ void PingTask::listen() {
         listening_ = taken();
         return;
     }
-    const types::Time heard = lastEcho(), ready = heard - types::Time::fromSeconds(1.2 * render_seconds_ + 1e-3);
+    const types::Time received = lastEcho(), ready = received - types::Time::fromSeconds(1.2 * render_seconds_ + 1e-3);
     if (ready > now() && !activity().sleepUntil(ready)) return;
-    hearOthers();
-    others_heard_.give(aimed(), grid().range_max, grid().speed_of_sound);
+    receiveOthers();
+    others_received_.give(takenScene(), grid().range_max, grid().speed_of_sound);
     complete();
 }
 
 void PingTask::endListening() {
     swapTaken(*listening_);
-    others_heard_.give(aimed(), grid().range_max, grid().speed_of_sound);
+    others_received_.give(takenScene(), grid().range_max, grid().speed_of_sound);
     complete();
     swapTaken(*listening_);
     listening_.reset();
 }
 
 void PingTask::stopHook() {
-    AimedTask::stopHook();
+    TriggeredTask::stopHook();
     cut_off_ += listening_ ? 1 : 0;
     listening_.reset();
-    others_heard_.clear();
+    others_received_.clear();
 }
 
 void PingTask::rehearse() {
     const auto sample = std::make_shared<types::Sonar>();
-    sample->time = aimed().time;
+    sample->time = takenScene().time;
     if (pose.connected()) pose.write(usedPose());
     ping.write(sample);
 }
@@ -183,9 +183,9 @@ std::string PingTask::indivisible() const {
 }
 
 void PingTask::prepareRenderer() {
-    if (renderer_ && geometry_ == aimed().geometry) return;
-    const types::GeometryPtr before = std::exchange(geometry_, aimed().geometry);  // kept until unused
-    aimed().moved.reserve(geometry_->objects.size());
+    if (renderer_ && geometry_ == takenScene().geometry) return;
+    const types::GeometryPtr before = std::exchange(geometry_, takenScene().geometry);  // kept until unused
+    takenScene().moved.reserve(geometry_->objects.size());
     if (renderer_) {
         diagnostics_->takeScene(*geometry_);
         if (renderer_->setGeometry(geometry_)) takePlan();
@@ -203,63 +203,63 @@ void PingTask::prepareRenderer() {
 
 void PingTask::takePlan() {
     plan_ = renderer_->plan();
-    if (const std::string note = depthNotice(renderer_->renderPlan(), aimed()); !note.empty())
+    if (const std::string note = depthNotice(renderer_->renderPlan(), takenScene()); !note.empty())
         plan_->notices.push_back(note);
     if (quality_ && quality_->isChosen()) plan_->predicted_error = quality_->quality().error;
     culling_untold_ = true;
-    plan_told_ = false;
+    plan_reported_ = false;
 }
 
 void PingTask::followQuality(types::Sonar& sample, double ms) {
     if (!quality_) return;
-    const bool changed = quality_->follow(*renderer_, aimed(), sample, ms, 1e3 * realtimePeriod());
+    const bool changed = quality_->follow(*renderer_, takenScene(), sample, ms, 1e3 * realtimePeriod());
     std::ranges::move(quality_->takeNotices(), std::back_inserter(plan_->notices));
     if (!changed) return;
     plan_->rows = quality_->quality().rows;
     plan_->columns_per_beam = quality_->quality().columns_per_beam;
     plan_->predicted_error = quality_->quality().error;
-    plan_told_ = false;
+    plan_reported_ = false;
 }
 
 bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types::Sonar& sample,
                           types::SonarTruth* truth_of_ping) {
     renderer.setTruth(sample, truth_of_ping);
     renderer.render(scene, sample);
-    return renderer.hasEchoes() || renderer.othersHeard() > 0;
+    return renderer.hasEchoes() || renderer.othersReceived() > 0;
 }
 
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
-std::string PingTask::diagnosticOf(bool heard, const types::Sonar& sample) {
+std::string PingTask::diagnosticOf(bool received, const types::Sonar& sample) {
     const Model model = renderer_->renderPlan().config.model;
-    return diagnostics_->follow(heard, model, aimed(), sample, [this] { return coverage(aimed()); });
+    return diagnostics_->follow(received, model, takenScene(), sample, [this] { return coverage(takenScene()); });
 }
 
 void PingTask::render() {
     prepareRenderer();
     const auto sample = pool_.take();
-    const auto told = takeTruth();
+    const auto reported = takeTruth();
     const auto start = std::chrono::steady_clock::now();
-    const bool heard = renderPing(*renderer_, aimed(), *sample, told.get());
+    const bool received = renderPing(*renderer_, takenScene(), *sample, reported.get());
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     render_seconds_ = took.count() / 1e3;
     for (const Stage& stage : renderStages(*renderer_)) recordStage(stage.name, stage.seconds);
     if (std::exchange(culling_untold_, false) && rendersOnce()) {
-        for (const LeftOut& what : renderer_->leftOut()) {
+        for (const Omitted& what : renderer_->omissions()) {
             plan_->omitted.push_back(describe(what, grid()));
             if (what.reason == Reason::Lacking) plan_->notices.push_back("Warning: " + plan_->omitted.back().reason);
         }
     }
     followQuality(*sample, took.count());
-    if (const std::string diagnostic = diagnosticOf(heard, *sample); !diagnostic.empty()) warn(diagnostic);
+    if (const std::string diagnostic = diagnosticOf(received, *sample); !diagnostic.empty()) warn(diagnostic);
     stampBearings(*sample);
     pool_.stock(*sample);
-    if (!std::exchange(plan_told_, true)) refreshRecord();
+    if (!std::exchange(plan_reported_, true)) refreshRecord();
     if (!waitForLastEcho()) return;
     if (pose.connected()) pose.write(usedPose());
-    tellMore(*sample, aimed().sonar);
+    writeMore(*sample, takenScene().sonar);
     ping.write(sample);
-    if (told) writeTruth(*sample, told);
+    if (reported) writeTruth(*sample, reported);
     if (elements.connected()) writeElements(*sample);
 }
 
@@ -271,14 +271,14 @@ void PingTask::nameObjects(types::SonarTruth& truth_of_ping) const {
     for (size_t i = 0; i < names.size(); ++i) names[i] = geometry_->objects[i].name;
 }
 
-void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told) {
-    told->takeGrid(sample);
-    nameObjects(*told);
-    truths_.stock(*told);
-    if (truth.connected()) truth.write(told);
+void PingTask::writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& reported) {
+    reported->takeGrid(sample);
+    nameObjects(*reported);
+    truths_.stock(*reported);
+    if (truth.connected()) truth.write(reported);
     if (!returns.connected()) return;
     const auto found = all_returns_.take();
-    found->take(sample, *told);
+    found->take(sample, *reported);
     all_returns_.stock(*found);
     returns.write(found);
 }
@@ -292,7 +292,7 @@ void PingTask::writeElements(const types::Sonar& sample) {
 
 types::Time PingTask::lastEcho() const {
     // No ping is ahead of the clock by more than a second, unless the clock has been set back meanwhile.
-    const types::Time sent = std::min(std::max(aimed().time, begun()), now() + types::Time::fromSeconds(1));
+    const types::Time sent = std::min(std::max(takenScene().time, begun()), now() + types::Time::fromSeconds(1));
     return {sent.microseconds + static_cast<int64_t>(std::ceil(echoTime() * 1e6))};
 }
 

@@ -6,10 +6,10 @@
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
 #include "components/framework/SamplePool.hpp"
-#include "components/sonar/AimedTask.hpp"
-#include "components/sonar/OthersHeard.hpp"
+#include "components/sonar/OthersReceived.hpp"
 #include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/TriggeredTask.hpp"
 #include "components/sonar/quality/QualityKeeper.hpp"
 #include "types/Sonar.hpp"
 #include "types/SonarElements.hpp"
@@ -19,7 +19,7 @@
 
 namespace insonify::sonar {
 
-/** Base of the sonar tasks: renders one ping for each input that an AimedTask takes.
+/** Base of the sonar tasks: renders one ping for each input that an TriggeredTask takes.
  *
  *  The renderer is made at the first ping, when the geometry is known. When the geometry changes, the renderer keeps
  *  its threads, its quality and its data of meshes that are still in use. A scene that cannot be rendered leads to
@@ -41,9 +41,9 @@ namespace insonify::sonar {
  *
  *  In a run that is divided into shards every ping is that of the whole run. Its quality has to be given, because a
  *  chosen quality depends on the pings before. */
-class PingTask : public AimedTask, public framework::Planned, public framework::Divisible {
+class PingTask : public TriggeredTask, public framework::Planned, public framework::Divisible {
 public:
-    using AimedTask::AimedTask;
+    using TriggeredTask::TriggeredTask;
     /** Stops and cleans up: the renderer must be destroyed on the task's own thread. */
     ~PingTask() override;
 
@@ -95,7 +95,7 @@ protected:
     /** Advances a turning head after a ping has been rendered or rehearsed. */
     virtual void goOn() {}
     /** Writes the other outputs of a ping that is about to be written, from the pose where it was rendered. */
-    virtual void tellMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
+    virtual void writeMore(const types::Sonar& /*sample*/, const types::Pose& /*sonar*/) {}
     /** Returns the plan of a sonar that covers in one ping what this sonar covers, to explain missing echoes. */
     virtual RenderPlan coverage(const types::Snapshot& scene) const;
     /** Returns the pings of one revolution of a turning head [1]. */
@@ -117,7 +117,7 @@ private:
     void transmit();
     /** Renders the ping that has begun, and advances. */
     void complete();
-    void hearOthers();
+    void receiveOthers();
     /** Takes pings whose rendering waits until all pulses of others have arrived. */
     void listen();
     /** Renders the ping that waits for pulses, with those that arrived meanwhile. */
@@ -128,7 +128,7 @@ private:
     /** Returns the truth that the next ping fills; null where no output needs it. */
     std::shared_ptr<types::SonarTruth> takeTruth();
     void writeElements(const types::Sonar& sample);
-    void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& told);
+    void writeTruth(const types::Sonar& sample, const std::shared_ptr<types::SonarTruth>& reported);
     /** Returns the time in realtime at which the last echo of this ping's range is back. */
     types::Time lastEcho() const;
     /** Waits in realtime until lastEcho(). Returns false if the task is to stop. */
@@ -137,7 +137,7 @@ private:
     void prepareRenderer();
     void takePlan();
     /** Returns the diagnostic of a ping that may be empty. */
-    std::string diagnosticOf(bool heard, const types::Sonar& sample);
+    std::string diagnosticOf(bool received, const types::Sonar& sample);
     /** Updates the quality after a ping that took `ms` to render; may render it again. */
     void followQuality(types::Sonar& sample, double ms);
 
@@ -147,10 +147,10 @@ private:
     bool culling_untold_ = false;      ///< Whether the plan still lacks what the first ping's culling omitted.
     int threads_ = 0;                  ///< Threads of the renderer [1].
     std::optional<types::Plan> plan_;  ///< Outlives the renderer, for the summary.
-    bool plan_told_ = false;           ///< Whether the record has the current plan.
+    bool plan_reported_ = false;       ///< Whether the record has the current plan.
     types::GeometryPtr geometry_;      ///< The renderer's.
     types::Transmission transmitted_;  ///< Everything except time and pose; made for the first ping.
-    OthersHeard others_heard_;
+    OthersReceived others_received_;
     std::optional<Taken> listening_;  ///< The ping that waits for pulses of others.
     double render_seconds_ = 0;       ///< Time that the last ping took [s].
     uint64_t cut_off_ = 0;            ///< Pings that still waited for pulses at the stop [1].

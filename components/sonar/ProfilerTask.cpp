@@ -4,7 +4,7 @@
 
 namespace insonify::sonar {
 
-void ProfilerTask::tellMore(const types::Sonar& sample, const types::Pose& sonar) {
+void ProfilerTask::writeMore(const types::Sonar& sample, const types::Pose& sonar) {
     if (!soundings.connected()) return;
     const auto cloud = clouds_.take();
     cloud->clear();

@@ -38,7 +38,7 @@ public:
     SonarConfig sonarConfig() const override { return config->sonar.fan(); }
 
 protected:
-    void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
 
 private:
     framework::SamplePool<types::PointCloud> clouds_;

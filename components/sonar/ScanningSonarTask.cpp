@@ -34,28 +34,28 @@ bool ScanningSonarTask::propertiesHook() {
     return PingTask::propertiesHook();
 }
 
-const char* ScanningSonarTask::steer(types::Snapshot& scene) {
+const char* ScanningSonarTask::setLook(types::Snapshot& scene) {
     if (last_ && scene.time < *last_) return "the snapshot is older than the one before";
     if (last_ && !step_checked_ && asked_.isUnknown()) checkStep((scene.time - *last_).seconds());
     step_checked_ = last_.has_value();
     const double seconds = last_ ? (scene.time - *last_).seconds() : 0;
     last_ = scene.time;
-    const Aim aim{scene.sonar.orientation, types::radians(bearingDeg())};
-    scene.sonar.orientation *= glm::angleAxis(aim.bearing, glm::dvec3(0, 0, 1));
-    if (config->sonar.motion_in_ping) turn(scene.sonar, aim, seconds);
-    before_ = aim;
+    const Look look{scene.sonar.orientation, types::radians(bearingDeg())};
+    scene.sonar.orientation *= glm::angleAxis(look.bearing, glm::dvec3(0, 0, 1));
+    if (config->sonar.motion_in_ping) turn(scene.sonar, look, seconds);
+    before_ = look;
     return nullptr;
 }
 
-void ScanningSonarTask::turn(types::Pose& sonar, const Aim& aim, double seconds) const {
+void ScanningSonarTask::turn(types::Pose& sonar, const Look& look, double seconds) const {
     const bool follows = before_ && seconds > 0;
     glm::dvec3 turn(0);  // in the world
     if (std::isfinite(glm::length(sonar.angular_velocity)))
-        turn = aim.body * sonar.angular_velocity;
+        turn = look.body * sonar.angular_velocity;
     else if (follows && !jumped())
-        turn = turnBetween(before_->body, aim.body, seconds);
-    const double step = follows ? std::remainder(aim.bearing - before_->bearing, 2 * std::numbers::pi) : 0;
-    if (config->head.sweeps && follows) turn += aim.body * glm::dvec3(0, 0, step / seconds);
+        turn = turnBetween(before_->body, look.body, seconds);
+    const double step = follows ? std::remainder(look.bearing - before_->bearing, 2 * std::numbers::pi) : 0;
+    if (config->head.sweeps && follows) turn += look.body * glm::dvec3(0, 0, step / seconds);
     sonar.angular_velocity = glm::conjugate(sonar.orientation) * turn;
 }
 

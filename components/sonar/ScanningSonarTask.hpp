@@ -23,7 +23,7 @@ public:
 protected:
     bool startHook() override;
     bool propertiesHook() override;
-    const char* steer(types::Snapshot& scene) override;
+    const char* setLook(types::Snapshot& scene) override;
     void turnHead(types::Angle bearing) override { asked_ = bearing; }
     void stampBearings(types::Sonar& sample) override;
     void goOn() override { scan_->advance(); }
@@ -31,21 +31,21 @@ protected:
 
 private:
     /** Look direction of a ping: the sonar with its head ahead, in the world, and the bearing of the head [rad]. */
-    struct Aim {
+    struct Look {
         glm::dquat body;
         double bearing;
     };
     void checkStep(double period) const;
     /** Sets the angular velocity of a sonar whose head has been turned: that of its vehicle, plus the head's own if it
      *  sweeps. */
-    void turn(types::Pose& sonar, const Aim& aim, double seconds) const;
+    void turn(types::Pose& sonar, const Look& look, double seconds) const;
 
     double bearingDeg() const { return asked_.isUnknown() ? scan_->bearingDeg() : asked_.deg(); }
 
     std::optional<HeadScan> scan_;
     types::Angle asked_;               ///< Requested by settings.
     std::optional<types::Time> last_;  ///< Time of the ping before.
-    std::optional<Aim> before_;        ///< Look direction of the ping before.
+    std::optional<Look> before_;       ///< Look direction of the ping before.
     bool step_checked_ = false;
 };
 

@@ -47,7 +47,7 @@ void SideScanConfig::check(types::Diagnostics& diagnostics) const {
     if (diagnostics.empty()) acrossTrack().checkBeam(diagnostics);
 }
 
-const char* SideScanTask::steer(types::Snapshot& scene) {
+const char* SideScanTask::setLook(types::Snapshot& scene) {
     scene.sonar.orientation *= glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
     return nullptr;
 }

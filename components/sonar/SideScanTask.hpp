@@ -42,7 +42,7 @@ public:
     SonarConfig sonarConfig() const override { return config->acrossTrack(); }
 
 protected:
-    const char* steer(types::Snapshot& scene) override;
+    const char* setLook(types::Snapshot& scene) override;
     void stampBearings(types::Sonar& sample) override;
 };
 

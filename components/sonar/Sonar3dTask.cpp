@@ -76,7 +76,7 @@ RenderPlan Sonar3dTask::coverage(const types::Snapshot& scene) const {
     fan.beam_pattern.reset();  // that of one beam
     fan.beam_count = config->horizontal.beam_count;
     fan.field_of_view_deg = config->horizontal.field_of_view_deg;
-    fan.beam_height_deg = std::min(config->vertical.field_of_view_deg, fan.castsRays() ? 180 : tallest_image_deg);
+    fan.beam_height_deg = std::min(config->vertical.field_of_view_deg, fan.tracesRays() ? 180 : tallest_image_deg);
     return makeRenderPlan(fan, *scene.geometry);
 }
 
@@ -84,7 +84,7 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
                              types::SonarTruth* truth_of_ping) {
     const glm::dquat ahead = scene.sonar.orientation;
     const glm::dquat stood_up = glm::angleAxis(types::radians(90), glm::dvec3(1, 0, 0));  // bearings become elevations
-    bool heard = false;
+    bool received = false;
     renderer.setTruth(fan_, truth_of_ping ? &fan_truth_ : nullptr);
     for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i] = {renderer.stages()[i].name, 0};
     for (int column = 0; column < config->horizontal.beam_count; ++column) {
@@ -92,7 +92,7 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
         scene.sonar.orientation = ahead * glm::angleAxis(azimuth, glm::dvec3(0, 0, 1)) * stood_up;
         renderer.render(scene, fan_);
         for (size_t i = 0; i < fan_stages_.size(); ++i) fan_stages_[i].seconds += renderer.stages()[i].seconds;
-        heard = renderer.hasEchoes() || renderer.othersHeard() > 0 || heard;
+        received = renderer.hasEchoes() || renderer.othersReceived() > 0 || received;
         if (column == 0) shape(sample);
         if (column == 0 && truth_of_ping) GridTruth::shape(sample, map_.vertical_size, *truth_of_ping, return_truth_);
         addTo(sample, column);
@@ -100,7 +100,7 @@ bool Sonar3dTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, ty
         if (wantsReturns()) detect(column, truth_of_ping != nullptr);
     }
     scene.sonar.orientation = ahead;
-    return heard;
+    return received;
 }
 
 void Sonar3dTask::shape(types::Sonar& sample) {
@@ -148,12 +148,12 @@ void Sonar3dTask::detect(int column, bool with_truth) {
         }
 }
 
-void Sonar3dTask::tellMore(const types::Sonar& sample, const types::Pose& sonar) {
+void Sonar3dTask::writeMore(const types::Sonar& sample, const types::Pose& sonar) {
     if (!wantsReturns()) return;
     const float strongest = *std::max_element(map_.remissions.begin(), map_.remissions.end());
-    const float least = strongest * static_cast<float>(std::pow(10, config->detection.threshold_db / 10));
+    const float minimum = strongest * static_cast<float>(std::pow(10, config->detection.threshold_db / 10));
     for (size_t cell = 0; cell < map_.distances.size(); ++cell)  // weak in the ping, if not in their azimuth
-        if (map_.remissions[cell] < least) {
+        if (map_.remissions[cell] < minimum) {
             map_.distances[cell] = types::DepthMap::too_far;
             map_.remissions[cell] = 0;
             if (range_truth.connected()) GridTruth::forget(cell, return_truth_);

@@ -82,7 +82,7 @@ protected:
                     types::SonarTruth* truth_of_ping) override;
     bool wantsTruth() const override { return PingTask::wantsTruth() || range_truth.connected(); }
     RenderPlan coverage(const types::Snapshot& scene) const override;
-    void tellMore(const types::Sonar& sample, const types::Pose& sonar) override;
+    void writeMore(const types::Sonar& sample, const types::Pose& sonar) override;
     /** Applies `field_of_view` and `beam_count` to a row of beams side by side, and `beam_height` to one beam. */
     std::map<std::string, std::string> changedBy(const types::SonarSettings& asked) const override;
 

@@ -34,11 +34,11 @@ struct SonarRenderer::Parts {
     types::GeometryPtr geometry;               ///< That is rendered: the scene, or that of `deformed`.
     RenderPlan plan;
     PingEffects effects;
-    types::Plan told;
+    types::Plan reported;
     Stages stages = no_time;
     std::unique_ptr<EchoRenderer> echoes;
-    const types::Sonar* told_ping = nullptr;
-    types::SonarTruth* truth = nullptr;  ///< Filled with `told_ping`; null: no truth.
+    const types::Sonar* reported_ping = nullptr;
+    types::SonarTruth* truth = nullptr;  ///< Filled with `reported_ping`; null: no truth.
     std::optional<LineArray> array;      ///< Made at the first ping whose signals are taken.
 };
 
@@ -49,24 +49,24 @@ SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given,
 }
 
 void SonarRenderer::Parts::makeEchoes() {
-    if (plan.casts_rays) {
-        echoes = makeCastEchoes(plan, geometry, effects);
+    if (plan.traces_rays) {
+        echoes = makeRayEchoes(plan, geometry, effects);
         return;
     }
     const auto alone = gpu::EglContext::making();
     echoes.reset();
-    echoes = makeDrawnEchoes(plan, geometry, effects);
+    echoes = makeRasterEchoes(plan, geometry, effects);
 }
 
 void SonarRenderer::Parts::describePlan() {
-    told = report(plan, *geometry);
-    told.device = echoes->device();
-    if (const std::string notice = echoes->notice(); !notice.empty()) told.notices.push_back(notice);
+    reported = report(plan, *geometry);
+    reported.device = echoes->device();
+    if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
 }
 
 /** Rays alone see what deforms. */
 void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
-    if (!plan.casts_rays) return;
+    if (!plan.traces_rays) return;
     if (!deformed || !deformed->serves(snapshot)) {
         const auto before = std::exchange(
             deformed,
@@ -83,7 +83,7 @@ void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
 bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
     if (given == scene) return false;
     const std::unique_ptr<DeformedMeshes> deformed_before = std::move(deformed);
-    if (deformed_before && plan.casts_rays) echoes->deform(nullptr, scene);
+    if (deformed_before && plan.traces_rays) echoes->deform(nullptr, scene);
     scene = given;
     const bool same_plan =
         given->materials == geometry->materials && given->normal_maps.sharesAll(geometry->normal_maps);
@@ -100,7 +100,7 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
 }
 
 SonarRenderer::Parts::~Parts() {
-    if (plan.casts_rays) return;
+    if (plan.traces_rays) return;
     const auto alone = gpu::EglContext::making();
     echoes.reset();
 }
@@ -134,7 +134,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     parts_->fillHeader(snapshot, ping);
-    types::SonarTruth* const truth = &ping == parts_->told_ping ? parts_->truth : nullptr;
+    types::SonarTruth* const truth = &ping == parts_->reported_ping ? parts_->truth : nullptr;
     if (truth) truth->takeGrid(ping);
     parts_->effects.begin({snapshot, truth});
     parts_->echoes->setTruth(truth);
@@ -148,7 +148,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
 }
 
 void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth) {
-    parts_->told_ping = &ping;
+    parts_->reported_ping = &ping;
     parts_->truth = truth;
 }
 
@@ -182,22 +182,22 @@ bool SonarRenderer::setGeometry(types::GeometryPtr geometry) { return parts_->ta
 
 void SonarRenderer::setQuality(int rows, int columns_per_beam) {
     parts_->plan.setQuality(rows, columns_per_beam);
-    parts_->told.rows = rows;
-    parts_->told.columns_per_beam = columns_per_beam;
+    parts_->reported.rows = rows;
+    parts_->reported.columns_per_beam = columns_per_beam;
     parts_->effects.takeQuality();
     parts_->echoes->takeQuality();
 }
 
 std::span<const Stage> SonarRenderer::stages() const { return parts_->stages; }
 bool SonarRenderer::hasEchoes() const { return parts_->echoes->hasEchoes(); }
-std::vector<LeftOut> SonarRenderer::leftOut() const {
-    std::vector<LeftOut> all = parts_->echoes->culled();
-    std::ranges::move(parts_->effects.leftOut(), std::back_inserter(all));
+std::vector<Omitted> SonarRenderer::omissions() const {
+    std::vector<Omitted> all = parts_->echoes->culled();
+    std::ranges::move(parts_->effects.omissions(), std::back_inserter(all));
     return all;
 }
-size_t SonarRenderer::othersHeard() const { return parts_->effects.heard(); }
+size_t SonarRenderer::othersReceived() const { return parts_->effects.received(); }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
-const types::Plan& SonarRenderer::plan() const { return parts_->told; }
+const types::Plan& SonarRenderer::plan() const { return parts_->reported; }
 const std::string& SonarRenderer::device() const { return parts_->echoes->device(); }
 
 }  // namespace insonify::sonar

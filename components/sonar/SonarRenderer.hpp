@@ -61,9 +61,9 @@ public:
     bool hasEchoes() const;
     /** Returns what the last ping omitted: objects, triangles and images that were not rasterised, point targets
      *  without echo, or a water surface that does not reflect. */
-    std::vector<LeftOut> leftOut() const;
+    std::vector<Omitted> omissions() const;
     /** Returns the number of things other than surfaces, such as point targets, with an echo in the last ping [1]. */
-    size_t othersHeard() const;
+    size_t othersReceived() const;
     const std::string& device() const;  ///< Name of the rendering device, with its driver.
 
 private:

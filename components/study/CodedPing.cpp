@@ -41,10 +41,10 @@ std::vector<CodedPing> pingsOfOculus(const fs::path& file) {
 
 /** Returns the law of codes with the bits of the max code. */
 receiver::CodeConfig withBits(receiver::CodeConfig code, const std::vector<types::Sonar>& pings) {
-    float largest = 255;
+    float maximum = 255;
     for (const types::Sonar& ping : pings)
-        for (const float bin : ping.bins) largest = std::max(largest, bin);
-    code.bits = std::min(16, static_cast<int>(std::ceil(std::log2(largest + 1))));
+        for (const float bin : ping.bins) maximum = std::max(maximum, bin);
+    code.bits = std::min(16, static_cast<int>(std::ceil(std::log2(maximum + 1))));
     return code;
 }
 
@@ -163,7 +163,7 @@ std::vector<LinePlace> placesOf(const std::vector<types::Pose>& sonars, const st
 }
 
 double CodedPing::levelDb(float code) const {
-    const double least = 0.5 / (std::pow(2, bits) - 1), share = std::max(least, static_cast<double>(code));
+    const double minimum = 0.5 / (std::pow(2, bits) - 1), share = std::max(minimum, static_cast<double>(code));
     if (law.law == receiver::CodeLaw::Log) return (share - 1) * law.dynamic_range_db;
     return (law.law == receiver::CodeLaw::Sqrt ? 20 : 10) * std::log10(share) / law.gamma;
 }
@@ -181,7 +181,7 @@ CodedPing codedPing(const device::OculusPing& ping, std::string name) {
                     .frequency_khz = ping.frequency_hz / 1e3};
     for (size_t i = 0; i < ping.codes.size(); ++i) {
         const double gain = ping.row_gains.empty() ? 1 : std::max(1u, ping.row_gains[i % ping.bin_count]);
-        coded.codes.push_back(static_cast<float>(ping.codes[i] / std::sqrt(gain) / ping.largestCode()));
+        coded.codes.push_back(static_cast<float>(ping.codes[i] / std::sqrt(gain) / ping.maxCode()));
     }
     return coded;
 }
@@ -218,13 +218,13 @@ std::vector<CodedPing> codedLines(const std::vector<types::Sonar>& lines, const 
                           .resolution = lines.front().binStart(1),
                           .speed_of_sound = static_cast<double>(lines.front().speed_of_sound),
                           .is_waterfall = true};
-        const auto largest = static_cast<float>((1 << code.bits) - 1);
+        const auto maximum = static_cast<float>((1 << code.bits) - 1);
         for (size_t i = 0; i < lines.size(); ++i)
             for (size_t beam = 0; beam < lines[i].beam_count; ++beam) {
                 const types::Sonar& line = lines[i];
                 if (line.bin_count != picture.bin_count || line.bearings[beam].rad * side <= 0) continue;
                 for (size_t bin = 0; bin < line.bin_count; ++bin)
-                    picture.codes.push_back(line.bins[beam * line.bin_count + bin] / largest);
+                    picture.codes.push_back(line.bins[beam * line.bin_count + bin] / maximum);
                 if (!places.empty()) picture.places.push_back(places[i]);
                 picture.bearings.push_back(side * static_cast<double>(++picture.beam_count));
             }

@@ -73,12 +73,13 @@ void studyCoherent(const StudyScene& scene, const ErrorOptions& options, int min
         Measurement point{scene.name, Method::Footprint, min_rows << level, base_columns << level, 1, {}, 0, 0, 0, 0};
         options.progress(fmt::format("{} footprint {} x {}", scene.name, point.rows, point.columns_per_beam));
         std::vector<double> times;
-        const Halves heard = meansOf(scene, configOf(point.rows, point.columns_per_beam), poses, &times, result.device);
+        const Halves received =
+            meansOf(scene, configOf(point.rows, point.columns_per_beam), poses, &times, result.device);
         double square = 0, scale = 0, spread = 0, got = 0, all = 0;
-        for (size_t i = 0; i < heard[0].size(); ++i) {
-            const double product = (heard[0][i] - expected[0][i]) * (heard[1][i] - expected[1][i]);
+        for (size_t i = 0; i < received[0].size(); ++i) {
+            const double product = (received[0][i] - expected[0][i]) * (received[1][i] - expected[1][i]);
             square += product, spread += product * product, scale += expected[0][i] * expected[1][i];
-            got += heard[0][i] + heard[1][i], all += expected[0][i] + expected[1][i];
+            got += received[0][i] + received[1][i], all += expected[0][i] + expected[1][i];
         }
         const double by_chance = std::sqrt(std::sqrt(spread) / scale);
         chance = std::max(chance, by_chance);

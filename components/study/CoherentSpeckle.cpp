@@ -66,7 +66,7 @@ public:
         sonar::SonarRenderer(even, bottomFrom({}).geometry).render(bottomFrom({}), means_);
     }
     /** Returns the bins of slant ranges [from, to). */
-    SpeckleField heard(const glm::dvec3& position, double from = 6, double to = range) {
+    SpeckleField received(const glm::dvec3& position, double from = 6, double to = range) {
         types::Sonar ping;
         renderer_.render(bottomFrom(position), ping);
         SpeckleField field = overMeans(ping, means_);
@@ -85,7 +85,8 @@ private:
 double offBy(double value, double truth) { return std::abs(value / truth - 1); }
 
 void addStillness(Bottom& bottom, std::vector<Claim>& claims) {
-    const SpeckleField first = bottom.heard({}), again = bottom.heard({}), elsewhere = bottom.heard({0, 0.5, 0});
+    const SpeckleField first = bottom.received({}), again = bottom.received({}),
+                       elsewhere = bottom.received({0, 0.5, 0});
     claims.push_back(
         {"coherent: two pings of a still scene: correlation", likewise(first, again).intensities, 1 - 1e-12, false});
     claims.push_back(
@@ -93,7 +94,7 @@ void addStillness(Bottom& bottom, std::vector<Claim>& claims) {
 }
 
 void addLaws(Bottom& bottom, std::vector<Claim>& claims) {
-    const SpeckleFigures figures = figuresOf(bottom.heard({}));
+    const SpeckleFigures figures = figuresOf(bottom.received({}));
     claims.push_back({"coherent, many scatterers: distance of the exponential law, times root n",
                       figures.rayleigh_distance, rayleigh_distance_limit, true});
     claims.push_back({"coherent, many scatterers: scintillation index off 1 [errors]",
@@ -114,11 +115,11 @@ void addLaws(Bottom& bottom, std::vector<Claim>& claims) {
  *  aperture at twice the distance, (1 - 2 x / L)^2. */
 void addLateral(Bottom& bottom, std::vector<Claim>& claims) {
     const double length = aperture() * wavelength, theory = 0.5 * length * (1 - std::sqrt(0.5));
-    const SpeckleField still = bottom.heard({});
+    const SpeckleField still = bottom.received({});
     double before = 1, at = 0;
     for (int step = 1; step < 40; ++step) {
         at = 0.1 * step * theory;
-        const double now = likewise(still, bottom.heard({0, at, 0})).intensities;
+        const double now = likewise(still, bottom.received({0, at, 0})).intensities;
         if (now < 0.5) {
             at -= 0.1 * theory * (0.5 - now) / (before - now);
             break;
@@ -137,8 +138,8 @@ void addShapes(std::vector<Claim>& claims) {
     constexpr int places = 6;
     for (int i = 0; i < places; ++i) {
         const glm::dvec3 place(0, 20.0 * i, 0);
-        near += figuresOf(bottom.heard(place, 5, 6)).texture.value / places;
-        far += figuresOf(bottom.heard(place, 10, 12)).texture.value / places;
+        near += figuresOf(bottom.received(place, 5, 6)).texture.value / places;
+        far += figuresOf(bottom.received(place, 10, 12)).texture.value / places;
     }
     claims.push_back({"coherent, few scatterers: 1 / shape of K", near, 0.1, false});
     claims.push_back(

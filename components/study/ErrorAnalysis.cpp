@@ -38,7 +38,7 @@ double onLine(double x, double x1, double y1, double x2, double y2) {
                     (std::log(x) - std::log(x1)) * (std::log(y2) - std::log(y1)) / (std::log(x2) - std::log(x1)));
 }
 
-void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
+void evaluateFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
     if (const Measurement* m = find(result, "flat_bottom", Method::Footprint, 512, 2))
         all.push_back({"flat bottom, 512 rows: mean relative L2 of footprints", m->metrics.mean_rel_l2, 5e-4, true});
     if (const Measurement* m = find(result, "flat_bottom_edge", Method::Footprint, 512, 2))
@@ -61,7 +61,7 @@ void judgeFlatBottom(const ErrorResult& result, std::vector<Claim>& all) {
                    *errorAt(ms, nearest) / *errorAt(ms, footprint), 20, false, true, true});
 }
 
-void judgeSlopes(const ErrorResult& result, std::vector<Claim>& all) {
+void evaluateSlopes(const ErrorResult& result, std::vector<Claim>& all) {
     for (const char* scene : slope_scenes) {
         if (!has(result, scene)) continue;
         const double error = referenceError(result, scene);
@@ -79,15 +79,15 @@ void judgeSlopes(const ErrorResult& result, std::vector<Claim>& all) {
     }
 }
 
-void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
+void evaluateComputed(const ErrorResult& result, std::vector<Claim>& all) {
     for (const Reference& reference : result.references) {
         if (!(reference.error > 0)) continue;
-        double smallest = std::numeric_limits<double>::infinity();
+        double minimum = std::numeric_limits<double>::infinity();
         for (const Measurement& m : result.measurements)
-            if (m.scene == reference.scene) smallest = std::min(smallest, m.metrics.rel_l2);
+            if (m.scene == reference.scene) minimum = std::min(minimum, m.metrics.rel_l2);
         all.push_back({fmt::format("{}: smallest error over that of the reference ({:.2g} rays)", reference.scene,
                                    reference.rays),
-                       smallest / reference.error, reference_margin, false, false});
+                       minimum / reference.error, reference_margin, false, false});
         const auto traced = ladder(result, reference.scene, Method::Embree);
         const auto rays = timeTo(0.01, traced),
                    drawn = timeTo(0.01, ladder(result, reference.scene, Method::Footprint));
@@ -100,7 +100,7 @@ void judgeComputed(const ErrorResult& result, std::vector<Claim>& all) {
 }
 
 /** Checks predictions. In scenes with a closed form, the coarsest available quality may be better than required. */
-void judgePredictions(const ErrorResult& result, std::vector<Claim>& all) {
+void evaluatePredictions(const ErrorResult& result, std::vector<Claim>& all) {
     for (const Prediction& p : result.predictions) {
         const auto reference = std::ranges::find(result.references, p.scene, &Reference::scene);
         if (reference == result.references.end()) continue;
@@ -196,10 +196,10 @@ bool onParetoFront(const Measurement& point, const ErrorResult& result) {
 
 std::vector<Claim> claims(const ErrorResult& result) {
     std::vector<Claim> all;
-    judgeFlatBottom(result, all);
-    judgeSlopes(result, all);
-    judgeComputed(result, all);
-    judgePredictions(result, all);
+    evaluateFlatBottom(result, all);
+    evaluateSlopes(result, all);
+    evaluateComputed(result, all);
+    evaluatePredictions(result, all);
     return all;
 }
 

@@ -15,9 +15,9 @@
 #include "components/sonar/quality/Quality.hpp"
 #include "components/sonar/rays/AngularView.hpp"
 #include "components/study/CoherentError.hpp"
-#include "components/study/oracles/EmbreeCaster.hpp"
-#include "components/study/oracles/PathCaster.hpp"
-#include "components/study/oracles/PointCaster.hpp"
+#include "components/study/oracles/EmbreeTracer.hpp"
+#include "components/study/oracles/PathTracer.hpp"
+#include "components/study/oracles/PointTracer.hpp"
 
 namespace insonify::study {
 namespace {
@@ -72,33 +72,33 @@ sonar::RenderOptions optionsOf(const Measurement& point) {
 
 /** Returns the max number of samples of one plane that rays merge to one cell; 1 if no rays are traced [1]. */
 int mergedBy(const sonar::RenderPlan& plan) {
-    if (!plan.casts_rays) return 1;
+    if (!plan.traces_rays) return 1;
     const sonar::AngularView view = sonar::makeAngularView(plan);
     return sonar::TileShape(view, plan.grid, view.beams).max_merged;
 }
 
 /** Traces `up` x `across` tiles in each beam with a seed; adds to the number of rays [1]. */
-using ReferenceCast = std::function<std::vector<double>(int up, int across, uint64_t seed, double& rays)>;
+using ReferenceTrace = std::function<std::vector<double>(int up, int across, uint64_t seed, double& rays)>;
 
-template <class Caster>
-ReferenceCast castBy(const StudyScene& scene) {
+template <class Tracer>
+ReferenceTrace traceBy(const StudyScene& scene) {
     return
-        [&scene, caster = std::make_shared<Caster>(scene.snapshot)](int up, int across, uint64_t seed, double& rays) {
-            auto energies = caster->render(scene.snapshot.sonar, scene.config, up, across, seed);
-            rays += caster->rays();
+        [&scene, tracer = std::make_shared<Tracer>(scene.snapshot)](int up, int across, uint64_t seed, double& rays) {
+            auto energies = tracer->render(scene.snapshot.sonar, scene.config, up, across, seed);
+            rays += tracer->rays();
             return energies;
         };
 }
 
-ReferenceCast referenceOf(const StudyScene& scene) {
-    return scene.config.multipath ? castBy<PathCaster>(scene) : castBy<PointCaster>(scene);
+ReferenceTrace referenceOf(const StudyScene& scene) {
+    return scene.config.multipath ? traceBy<PathTracer>(scene) : traceBy<PointTracer>(scene);
 }
 
 /** One scene under study: measures points, and makes the reference. */
 class SceneStudy {
 public:
     SceneStudy(const StudyScene& scene, const ErrorOptions& options, ErrorResult& result)
-        : scene_(scene), options_(options), result_(result), caster_(scene.snapshot) {
+        : scene_(scene), options_(options), result_(result), tracer_(scene.snapshot) {
         const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
         layout_ = {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from};
         base_columns_ = std::max(1, min_rows / scene.config.beam_count);
@@ -110,9 +110,9 @@ public:
         measureAll();
         predict();
         if (!scene_.truth) refineReference();
-        for (const Heard& heard : heard_) {
-            result_.measurements.push_back(heard.point);
-            result_.measurements.back().metrics = compare(heard.energies, energies_, layout_);
+        for (const Received& received : received_) {
+            result_.measurements.push_back(received.point);
+            result_.measurements.back().metrics = compare(received.energies, energies_, layout_);
         }
         prediction_.error = compare(predicted_, energies_, layout_).rel_l2_tvg;
         result_.predictions.push_back(prediction_);
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    struct Heard {
+    struct Received {
         Measurement point;
         std::vector<float> energies;
     };
@@ -152,26 +152,26 @@ private:
     }
 
     void measure(Method method, int rows, int columns) {
-        Heard heard{{scene_.name, method, rows, columns, 1, {}, 0, 0, 0, 0}, {}};
+        Received received{{scene_.name, method, rows, columns, 1, {}, 0, 0, 0, 0}, {}};
         options_.progress(fmt::format("{} {} {} x {}", scene_.name, nameOf(method), rows, columns));
-        const sonar::SonarConfig config = configOf(scene_, heard.point);
+        const sonar::SonarConfig config = configOf(scene_, received.point);
         if (method == Method::Embree) {
-            caster_.prepare(config);
-            const auto ping = [&](auto& energies) { caster_.render(scene_.snapshot.sonar, energies); };
-            time(ping, options_.pings, heard.energies, heard.point);
+            tracer_.prepare(config);
+            const auto ping = [&](auto& energies) { tracer_.render(scene_.snapshot.sonar, energies); };
+            time(ping, options_.pings, received.energies, received.point);
         } else {
-            timeRenderer(config, heard);
+            timeRenderer(config, received);
         }
-        if (method == Method::Embree) heard.point.kappa_max = caster_.kappaMax();
-        heard_.push_back(std::move(heard));
+        if (method == Method::Embree) received.point.kappa_max = tracer_.kappaMax();
+        received_.push_back(std::move(received));
     }
 
-    void timeRenderer(const sonar::SonarConfig& config, Heard& heard) {
-        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry, optionsOf(heard.point));
+    void timeRenderer(const sonar::SonarConfig& config, Received& received) {
+        sonar::SonarRenderer renderer(config, scene_.snapshot.geometry, optionsOf(received.point));
         types::Sonar ping;
-        time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, heard.energies, heard.point);
-        heard.energies = ping.bins;
-        heard.point.merged = mergedBy(renderer.renderPlan());
+        time([&](auto&) { renderer.render(scene_.snapshot, ping); }, options_.pings, received.energies, received.point);
+        received.energies = ping.bins;
+        received.point.merged = mergedBy(renderer.renderPlan());
         result_.device = renderer.device();
     }
 
@@ -198,8 +198,8 @@ private:
             energies_ = trueEnergies(scene_);
             return;
         }
-        cast_ = referenceOf(scene_);
-        castReference(1);
+        trace_ = referenceOf(scene_);
+        traceReference(1);
         if (std::ranges::none_of(energies_, [](double energy) { return energy > 0; }))
             throw std::runtime_error(scene_.name +
                                      ": the sonar receives no echo in this ping; choose another ping with --ping");
@@ -207,24 +207,24 @@ private:
 
     void refineReference() {
         int refinement = 1;
-        while (reference_.error * reference_margin > smallestError() && 4 * reference_.rays <= options_.reference_rays)
-            castReference(refinement *= 2);  // at most 4 times the rays
+        while (reference_.error * reference_margin > minError() && 4 * reference_.rays <= options_.reference_rays)
+            traceReference(refinement *= 2);  // at most 4 times the rays
     }
 
-    double smallestError() const {
-        double smallest = std::numeric_limits<double>::infinity();
-        for (const Heard& heard : heard_)
-            smallest = std::min(smallest, compare(heard.energies, energies_, layout_).rel_l2);
-        return smallest;
+    double minError() const {
+        double minimum = std::numeric_limits<double>::infinity();
+        for (const Received& received : received_)
+            minimum = std::min(minimum, compare(received.energies, energies_, layout_).rel_l2);
+        return minimum;
     }
 
     /** Computes the mean of two halves. The distance of each half from it is an estimate of its own error. */
-    void castReference(int refinement) {
+    void traceReference(int refinement) {
         const int up = min_rows / 4 * refinement, across = std::max(1, base_columns_ / 4) * refinement;
         double rays = 0;
         const auto half = [&](uint64_t seed) {
             options_.progress(fmt::format("{} reference, {} x {} tiles", scene_.name, up, across));
-            return cast_(up, across, seed, rays);
+            return trace_(up, across, seed, rays);
         };
         energies_ = half(2 * static_cast<uint64_t>(refinement));
         const std::vector<float> first(energies_.begin(), energies_.end());
@@ -239,11 +239,11 @@ private:
     const StudyScene& scene_;
     const ErrorOptions& options_;
     ErrorResult& result_;
-    EmbreeCaster caster_;
-    ReferenceCast cast_;
+    EmbreeTracer tracer_;
+    ReferenceTrace trace_;
     Layout layout_{};
     int base_columns_ = 1;
-    std::vector<Heard> heard_;
+    std::vector<Received> received_;
     Prediction prediction_{};
     std::vector<float> predicted_;
     Reference reference_;

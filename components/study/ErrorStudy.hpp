@@ -66,7 +66,7 @@ struct ErrorOptions {
 };
 
 /** Measures all methods on all scenes. Rows and columns are doubled together from 64 rows on; footprints also with rows
- *  alone (2 columns per beam). A scene without truth gets a brute-force reference (PointCaster) of two independent
+ *  alone (2 columns per beam). A scene without truth gets a brute-force reference (PointTracer) of two independent
  *  halves. It is refined until their mean is ten times more accurate than every point, or the rays are used up. */
 ErrorResult studyError(const std::vector<StudyScene>& scenes, const ErrorOptions& options);
 

@@ -364,7 +364,7 @@ std::vector<std::array<double, 2>> beginnings(const FitChain& chain, double rang
 /** Fits pitch, height and elevation width, each with the best level parameters. */
 Values fitScene(LevelModel& model, const Values& values, const std::function<void()>& progress) {
     Values best = values;
-    double least = std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity();
     const auto costAt = [&](Values tried, bool anew) {
         if (std::abs(tried[elevation] - std::log(elevation_before)) > 2.5 || std::abs(tried[pitch]) > 60) return 1e9;
         model.look(tried);
@@ -372,8 +372,8 @@ Values fitScene(LevelModel& model, const Values& values, const std::function<voi
         tried = fitInner(model, tried, 150, 1);
         progress();
         const double found = model.cost(tried);
-        if (found < least) {
-            least = found;
+        if (found < lowest) {
+            lowest = found;
             best = tried;
         }
         return found;
@@ -444,7 +444,7 @@ cv::Mat jacobian(LevelModel& model, const Values& at, const Chosen& chosen) {
 Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::function<void()>& progress) {
     constexpr int max_steps = 20;
     model.look(at);
-    double least = model.cost(at), damping = 1e-3;
+    double lowest = model.cost(at), damping = 1e-3;
     for (int step = 0; step < max_steps && damping < 1e4; ++step) {
         const std::vector<double> off = model.residuals(at), pulls = model.pulls(at);
         cv::Mat derivatives = jacobian(model, at, chosen),
@@ -465,13 +465,13 @@ Values polished(LevelModel& model, Values at, const Chosen& chosen, const std::f
         model.look(tried);
         progress();
         const double cost = model.cost(tried);
-        if (!(cost < least)) {
+        if (!(cost < lowest)) {
             damping *= 10;
             model.look(at);
             continue;
         }
-        const bool is_there = least - cost < 1e-6 * least;
-        least = cost, at = tried, damping /= 10;
+        const bool is_there = lowest - cost < 1e-6 * lowest;
+        lowest = cost, at = tried, damping /= 10;
         if (is_there) break;
     }
     model.look(at);

@@ -5,7 +5,7 @@
 
 namespace insonify::study {
 
-/** Fits the speckle of a device that averages several looks in each bin, as many side-scans do. Its intensities vary
+/** Fits the speckle of a device that averages several looks in each bin, like most side-scans. Its intensities vary
  *  less than those of one look, which fields of scatterers cannot reproduce. It is drawn for each bin before the
  *  receiver, as the mean of looks over a gamma-distributed texture (K law).
  *

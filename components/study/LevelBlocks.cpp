@@ -30,12 +30,12 @@ LevelBlocks blocksBy(size_t beams, size_t bins, double resolution, const Intensi
 
 CodeResponse::CodeResponse(const CodedPing& law) {
     constexpr int quantiles = 128;
-    const double largest = std::pow(2, law.bits) - 1;
+    const double maximum = std::pow(2, law.bits) - 1;
     const auto codeOf = [&](double intensity) {
         const double exponent = (law.law.law == receiver::CodeLaw::Sqrt ? 0.5 : 1.0) * law.law.gamma;
         const double share = law.law.law == receiver::CodeLaw::Log ? 1 + toDb(intensity) / law.law.dynamic_range_db
                                                                    : std::pow(intensity, exponent);
-        return static_cast<float>(std::round(std::clamp(share, 0.0, 1.0) * largest) / largest);
+        return static_cast<float>(std::round(std::clamp(share, 0.0, 1.0) * maximum) / maximum);
     };
     for (double level = response_low; level <= response_high; level += response_step) {
         double sum = 0;
@@ -77,11 +77,11 @@ LevelBlocks meanOf(const std::vector<LevelBlocks>& all) {
     return mean;
 }
 
-LevelBlocks leastOf(const std::vector<LevelBlocks>& all) {
-    LevelBlocks least = all.front();
+LevelBlocks minimumOf(const std::vector<LevelBlocks>& all) {
+    LevelBlocks minimum = all.front();
     for (const LevelBlocks& each : all)
-        for (size_t i = 0; i < least.level.size(); ++i) least.level[i] = std::min(least.level[i], each.level[i]);
-    return least;
+        for (size_t i = 0; i < minimum.level.size(); ++i) minimum.level[i] = std::min(minimum.level[i], each.level[i]);
+    return minimum;
 }
 
 }  // namespace insonify::study

@@ -42,6 +42,6 @@ LevelBlocks blocksOf(const types::Sonar& intensities);
 /** Returns the mean of several pings, as intensities. */
 LevelBlocks meanOf(const std::vector<LevelBlocks>& all);
 /** Returns the min of several pings. */
-LevelBlocks leastOf(const std::vector<LevelBlocks>& all);
+LevelBlocks minimumOf(const std::vector<LevelBlocks>& all);
 
 }  // namespace insonify::study

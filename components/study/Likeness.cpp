@@ -8,11 +8,11 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t patch = 16;              ///< Bins and beams of a patch.
-constexpr double quarters_alike = 0.25;   ///< Max relative difference of a quarter's mean from the patch's mean [1].
-constexpr double clipped_at_most = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
-constexpr double seen_arc_db = 3;         ///< Min level of an arc above its surroundings.
-constexpr size_t targets = 5;             ///< Number of targets whose arcs are examined.
+constexpr size_t patch = 16;             ///< Bins and beams of a patch.
+constexpr double quarters_alike = 0.25;  ///< Max relative difference of a quarter's mean from the patch's mean [1].
+constexpr double clipped_at_max = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
+constexpr double seen_arc_db = 3;        ///< Min level of an arc above its surroundings.
+constexpr size_t targets = 5;            ///< Number of targets whose arcs are examined.
 
 double median(std::vector<double> values) {
     if (values.empty()) return NAN;
@@ -41,13 +41,13 @@ public:
     double amplitude(size_t beam, size_t bin) const { return std::sqrt(intensity(beam, bin)); }
     bool isClipped(size_t beam, size_t bin) const {
         const float code = ping_.code(beam, bin);
-        return code <= 0 || code >= largest_;
+        return code <= 0 || code >= maximum_;
     }
 
 private:
     const CodedPing& ping_;
     std::vector<double> intensity_;
-    float largest_ = 254.0f / 255;
+    float maximum_ = 254.0f / 255;
 };
 
 void addCodes(const CodedPing& ping, Looks& looks) {
@@ -99,7 +99,7 @@ struct Patch {
         size_t clipped = 0;
         for (size_t i = 0; i < patch; ++i)
             for (size_t j = 0; j < patch; ++j) clipped += picture.isClipped(beam + i, bin + j);
-        if (static_cast<double>(clipped) > clipped_at_most * patch * patch) return false;
+        if (static_cast<double>(clipped) > clipped_at_max * patch * patch) return false;
         const double all = meanOf(0, 0, patch);
         for (const size_t i : {size_t{0}, patch / 2})
             for (const size_t j : {size_t{0}, patch / 2})
@@ -167,7 +167,7 @@ std::vector<Target> strongestTargets(const Picture& picture, size_t apart_bins) 
 
 /** Returns the median intensity of the beams next to a target, from 1/32 to 1/4 of all beams away, in bins [from,
  *  to]. */
-double beside(const Picture& picture, const Target& target, size_t from, size_t to) {
+double levelNear(const Picture& picture, const Target& target, size_t from, size_t to) {
     const size_t near = std::max<size_t>(4, picture.beams() / 32), far = picture.beams() / 4;
     std::vector<double> values;
     for (size_t beam = 0; beam < picture.beams(); ++beam) {
@@ -182,9 +182,9 @@ void addArcs(const Picture& picture, Looks& looks) {
     const size_t apart_bins = std::max<size_t>(6, picture.bins() / 64);
     std::vector<double> arcs, excess;
     for (const Target& target : strongestTargets(picture, apart_bins)) {
-        const double at = beside(picture, target, target.bin - 1, target.bin + 1);
-        const double nearer = beside(picture, target, target.bin - apart_bins, target.bin - apart_bins / 2);
-        const double farther = beside(picture, target, target.bin + apart_bins / 2, target.bin + apart_bins);
+        const double at = levelNear(picture, target, target.bin - 1, target.bin + 1);
+        const double nearer = levelNear(picture, target, target.bin - apart_bins, target.bin - apart_bins / 2);
+        const double farther = levelNear(picture, target, target.bin + apart_bins / 2, target.bin + apart_bins);
         arcs.push_back(decibels(at) - decibels(target.intensity));
         excess.push_back(decibels(at) - decibels((nearer + farther) / 2));
     }

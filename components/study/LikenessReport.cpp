@@ -26,8 +26,8 @@ public:
             width_ = static_cast<int>(ping.beam_count);
             return;
         }
-        const auto [least, most] = std::ranges::minmax(ping.bearings);
-        half_ = std::min(std::max(std::abs(least), std::abs(most)), 0.5 * std::numbers::pi);
+        const auto [minimum, maximum] = std::ranges::minmax(ping.bearings);
+        half_ = std::min(std::max(std::abs(minimum), std::abs(maximum)), 0.5 * std::numbers::pi);
         width_ = static_cast<int>(std::ceil(2 * fan_height * std::sin(half_))) + 2;
         order_.resize(ping.bearings.size());
         for (size_t i = 0; i < order_.size(); ++i) order_[i] = i;

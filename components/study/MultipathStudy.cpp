@@ -65,19 +65,18 @@ void studyTarget(MultipathResult& result) {
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     types::Snapshot snapshot = under(3, openWater());
     snapshot.targets = {{{12, 0, -1}, 0}};
-    const Probe heard = probe(underSurface(40), snapshot);
-    HeardCurve level{"target", "Returns of a target by the surface", "range [m]", "level [dB]", {}};
-    const std::array expected{HeardPoint{r1, 0, std::pow(r1, -4)},
-                              HeardPoint{(r1 + r2) / 2, 0, 2 / (r1 * r1 * r2 * r2)},
-                              HeardPoint{r2, 0, std::pow(r2, -4)}};
+    const Probe received = probe(underSurface(40), snapshot);
+    EchoCurve level{"target", "Returns of a target by the surface", "range [m]", "level [dB]", {}};
+    const std::array expected{EchoPoint{r1, 0, std::pow(r1, -4)}, EchoPoint{(r1 + r2) / 2, 0, 2 / (r1 * r1 * r2 * r2)},
+                              EchoPoint{r2, 0, std::pow(r2, -4)}};
     std::vector<size_t> bins;
-    for (size_t k = 0; k < heard.ping.bin_count; ++k)
-        if (heard.ping.bins[k] > 0) bins.push_back(k);
+    for (size_t k = 0; k < received.ping.bin_count; ++k)
+        if (received.ping.bins[k] > 0) bins.push_back(k);
     double off_by = bins.size() == expected.size() ? 0 : 1e3;
     for (size_t i = 0; i < std::min(bins.size(), expected.size()); ++i) {
         off_by = std::max(off_by, std::abs(static_cast<double>(bins[i]) + 0.5 - expected[i].x / 0.1));
         level.points.push_back(
-            {expected[i].x, decibels(double{heard.ping.bins[bins[i]]}), decibels(expected[i].expected)});
+            {expected[i].x, decibels(double{received.ping.bins[bins[i]]}), decibels(expected[i].expected)});
     }
     result.claims.push_back({"ranges of a target's three returns off, in bins", off_by, 0.5, true});
     result.claims.push_back({"levels of a target's three returns off [dB]", level.worst(), 0.3, true});
@@ -89,7 +88,7 @@ void studyBottom(MultipathResult& result) {
     const double fov = radians(8), half = radians(60), step = 1e-3;
     const types::GeometryPtr scene = sceneOf({levelGround(-4)});
     const Probe with = probe(underSurface(8), under(2, scene)), without = probe(listener(8, 0), under(2, scene));
-    std::array<double, 30> expected{}, heard{};
+    std::array<double, 30> expected{}, received{};
     const auto add = [&](double range, double energy) {
         if (range < 30) expected[static_cast<size_t>(range)] += energy;
     };
@@ -101,12 +100,12 @@ void studyBottom(MultipathResult& result) {
     double nearer = 0;
     for (size_t k = 0; k < 300; ++k) {
         const double more = double{with.ping.bins[k]} - double{without.ping.bins[k]};
-        heard[k / 10] += more;
+        received[k / 10] += more;
         if (k < 60) nearer += std::abs(more);
     }
-    HeardCurve curve{"bottom", "Ghost of a flat bottom", "range [m]", "level of 1 m [dB]", {}};
+    EchoCurve curve{"bottom", "Ghost of a flat bottom", "range [m]", "level of 1 m [dB]", {}};
     for (size_t k = 10; k < expected.size(); ++k)
-        curve.points.push_back({static_cast<double>(k) + 0.5, decibels(heard[k]), decibels(expected[k])});
+        curve.points.push_back({static_cast<double>(k) + 0.5, decibels(received[k]), decibels(expected[k])});
     result.claims.push_back({"ghost of a flat bottom off [dB]", curve.worst(), 0.1, true});
     result.claims.push_back({"change of bins before any ghost", nearer, 0, true});
     result.curves.push_back(std::move(curve));
@@ -114,7 +113,7 @@ void studyBottom(MultipathResult& result) {
 
 /** Tests a target next to a mirror that ends at different places: the three returns, or only the first. */
 void studyWall(MultipathResult& result) {
-    HeardCurve curve{"wall", "Returns of a target next to a mirror that ends", "end of the mirror [m]", "returns", {}};
+    EchoCurve curve{"wall", "Returns of a target next to a mirror that ends", "end of the mirror [m]", "returns", {}};
     types::Material mirror;
     mirror.mirror = true;
     mirror.lambert_db = -200;
@@ -122,8 +121,8 @@ void studyWall(MultipathResult& result) {
         const auto wall = quad({-20, 4, -20}, {20 + end, 0, 0}, {0, 0, 40});
         types::Snapshot snapshot = lookingAt(ofMaterial(sceneOf({wall}), mirror));
         snapshot.targets = {{{12, 1, 0}, 0}};
-        const Probe heard = probe(listener(170, 1), snapshot);
-        const auto count = std::ranges::count_if(heard.ping.bins, [](float bin) { return bin > 0; });
+        const Probe received = probe(listener(170, 1), snapshot);
+        const auto count = std::ranges::count_if(received.ping.bins, [](float bin) { return bin > 0; });
         curve.points.push_back({end, static_cast<double>(count), end > 12 * 4.0 / 7 ? 3.0 : 1.0});
     }
     result.claims.push_back({"returns too many or too few next to a mirror that ends", curve.worst(), 0, true});
@@ -186,7 +185,7 @@ double trihedralAperture(bool square, double yaw_deg) {
 
 template <class Scene, class Aperture>
 void studyCorner(MultipathResult& result, const std::string& name, const Scene& scene, const Aperture& aperture) {
-    HeardCurve curve{name, "Target strength of a " + name, "turned by [deg]", "target strength [dB]", {}};
+    EchoCurve curve{name, "Target strength of a " + name, "turned by [deg]", "target strength [dB]", {}};
     for (double yaw = -20; yaw <= 20; yaw += 5)
         curve.points.push_back({yaw, strengthOf(scene(yaw)), 20 * std::log10(aperture(yaw) / wavelength)});
     result.claims.push_back({"target strength of a " + name + " off over 40 deg [dB]", curve.worst(), 2, true});
@@ -195,9 +194,9 @@ void studyCorner(MultipathResult& result, const std::string& name, const Scene& 
 
 }  // namespace
 
-double HeardCurve::worst() const {
+double EchoCurve::worst() const {
     double worst = 0;
-    for (const HeardPoint& point : points) worst = std::max(worst, std::abs(point.heard - point.expected));
+    for (const EchoPoint& point : points) worst = std::max(worst, std::abs(point.received - point.expected));
     return worst;
 }
 
@@ -218,9 +217,9 @@ MultipathResult studyMultipath() {
 
 std::string csvOf(const MultipathResult& result) {
     std::string text = "curve,x,heard,expected\n";
-    for (const HeardCurve& curve : result.curves)
-        for (const HeardPoint& point : curve.points)
-            fmt::format_to(std::back_inserter(text), "{},{:.6g},{:.6g},{:.6g}\n", curve.name, point.x, point.heard,
+    for (const EchoCurve& curve : result.curves)
+        for (const EchoPoint& point : curve.points)
+            fmt::format_to(std::back_inserter(text), "{},{:.6g},{:.6g},{:.6g}\n", curve.name, point.x, point.received,
                            point.expected);
     return text;
 }

@@ -7,18 +7,18 @@
 namespace insonify::study {
 
 /** A received value and its expected value. */
-struct HeardPoint {
-    double x, heard, expected;
+struct EchoPoint {
+    double x, received, expected;
 };
-struct HeardCurve {
+struct EchoCurve {
     std::string name, title, x_label, y_label;
-    std::vector<HeardPoint> points;
+    std::vector<EchoPoint> points;
 
     double worst() const;  ///< Returns the max difference.
 };
 
 struct MultipathResult {
-    std::vector<HeardCurve> curves;
+    std::vector<EchoCurve> curves;
     std::vector<Claim> claims;
 };
 
@@ -27,6 +27,6 @@ struct MultipathResult {
  *  and turned dihedrals and trihedrals. The first echo must not change. */
 MultipathResult studyMultipath();
 
-std::string csvOf(const MultipathResult& result);  ///< Returns curve,x,heard,expected.
+std::string csvOf(const MultipathResult& result);  ///< Returns a row per point of each curve.
 
 }  // namespace insonify::study

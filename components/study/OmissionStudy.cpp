@@ -107,13 +107,13 @@ public:
         sonar::SonarRenderer renderer(planned_.config, snapshot.geometry);
         types::Sonar ping;
         renderer.render(snapshot, ping);
-        left_out_ = renderer.renderPlan().left_out;
-        std::ranges::copy(renderer.leftOut(), std::back_inserter(left_out_));
+        omitted_ = renderer.renderPlan().omitted;
+        std::ranges::copy(renderer.omissions(), std::back_inserter(omitted_));
     }
 
     std::vector<OmissionRow> run() {
         measureQuality();
-        for (const sonar::LeftOut& what : left_out_) rows_.push_back(measured(what));
+        for (const sonar::Omitted& what : omitted_) rows_.push_back(measured(what));
         measureKept();
         return std::move(rows_);
     }
@@ -130,7 +130,7 @@ private:
         rows_.push_back({"twice the rows and columns", "quality", ablation, {}, "", true});
     }
 
-    OmissionRow measured(const sonar::LeftOut& what) {
+    OmissionRow measured(const sonar::Omitted& what) {
         const types::Omission words = sonar::describe(what, sonar::makeBinGrid(planned_.config));
         progress_(words.name);
         OmissionRow row{words.name, words.reason, {}, {}, "", false};
@@ -140,7 +140,7 @@ private:
     }
 
     /** Puts back an omission; returns false if that is impossible. */
-    bool putBack(const sonar::LeftOut& what, Way& with, OmissionRow& row) const {
+    bool putBack(const sonar::Omitted& what, Way& with, OmissionRow& row) const {
         const auto bound = [&](double value, const char* of) {
             row.bound = value;
             row.bound_of = of;
@@ -180,7 +180,7 @@ private:
             {"motion within a ping",
              [&] {
                  with.config.motion_in_ping = true;
-                 return planned_.config.castsRays() && bound(0, "change: a sonar at rest");
+                 return planned_.config.tracesRays() && bound(0, "change: a sonar at rest");
              }},
             {"absorption inside a bin", [&] { return splitBins(with, row); }},
             {"further slabs",
@@ -267,7 +267,7 @@ private:
     Way planned_;
     int pings_;
     const std::function<void(const std::string&)>& progress_;
-    std::vector<sonar::LeftOut> left_out_;
+    std::vector<sonar::Omitted> omitted_;
     double quality_ = 0;
     std::vector<OmissionRow> rows_;
 };

@@ -9,7 +9,7 @@
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/study/Shapes.hpp"
-#include "components/study/oracles/EmbreeCaster.hpp"
+#include "components/study/oracles/EmbreeTracer.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
@@ -25,11 +25,11 @@ double kappa(const sonar::SonarConfig& config, const types::Snapshot& snapshot) 
     if (!planar || rays > max_rays || static_cast<double>(snapshot.geometry->triangleCount()) > max_triangles)
         return NAN;
 #ifdef INSONIFY_EMBREE
-    EmbreeCaster caster(snapshot);
+    EmbreeTracer tracer(snapshot);
     std::vector<float> unused;
-    caster.prepare(config);
-    caster.render(snapshot.sonar, unused);
-    return caster.kappaMax();
+    tracer.prepare(config);
+    tracer.render(snapshot.sonar, unused);
+    return tracer.kappaMax();
 #else
     return NAN;
 #endif
@@ -82,12 +82,12 @@ bool Probe::isSound() const {
 
 Probe probe(const sonar::SonarConfig& config, const types::Snapshot& snapshot) {
     sonar::SonarRenderer renderer(config, snapshot.geometry);
-    Probe heard;
-    renderer.render(snapshot, heard.ping);
-    heard.plan = renderer.plan();
-    heard.device = renderer.device();
-    heard.conditions = conditionsOf(config, snapshot, heard.ping);
-    return heard;
+    Probe received;
+    renderer.render(snapshot, received.ping);
+    received.plan = renderer.plan();
+    received.device = renderer.device();
+    received.conditions = conditionsOf(config, snapshot, received.ping);
+    return received;
 }
 
 sonar::SonarConfig fan(double fov_deg, double height_deg, int beams, double range) {
@@ -148,16 +148,16 @@ double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& 
     return truth({limits.low, limits.high, types::radians(config.beam_height_deg) / 2}, r1, r2);
 }
 
-double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Truth& truth) {
+double worstBeam(const Probe& received, const sonar::SonarConfig& config, const Truth& truth) {
     double worst = 0;
-    for (uint32_t beam = 0; beam < heard.ping.beam_count; ++beam)
-        worst = std::max(worst, off(heard.energy(beam), trueEnergy(config, beam, truth)));
+    for (uint32_t beam = 0; beam < received.ping.beam_count; ++beam)
+        worst = std::max(worst, off(received.energy(beam), trueEnergy(config, beam, truth)));
     return worst;
 }
 
-Outcome within(double tolerance, double deviation, const std::string& got, const Probe& heard) {
-    return {heard.conditions, got, deviation,
-            deviation <= tolerance && heard.isSound() ? Verdict::Pass : Verdict::Fail};
+Outcome within(double tolerance, double deviation, const std::string& got, const Probe& received) {
+    return {received.conditions, got, deviation,
+            deviation <= tolerance && received.isSound() ? Verdict::Pass : Verdict::Fail};
 }
 
 }  // namespace insonify::study

@@ -47,9 +47,9 @@ double off(double a, double b);
 double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth);
 double trueEnergy(const sonar::SonarConfig& config, uint32_t beam, const Truth& truth, double r1, double r2);
 /** Returns the max |energy / truth - 1| over the beams. */
-double worstBeam(const Probe& heard, const sonar::SonarConfig& config, const Truth& truth);
+double worstBeam(const Probe& received, const sonar::SonarConfig& config, const Truth& truth);
 
 /** Returns a pass if the deviation is at most `tolerance` and the ping is sound. */
-Outcome within(double tolerance, double deviation, const std::string& got, const Probe& heard);
+Outcome within(double tolerance, double deviation, const std::string& got, const Probe& received);
 
 }  // namespace insonify::study

@@ -343,13 +343,13 @@ private:
  *  none. */
 double ringingRange(const std::vector<CodedPing>& recorded) {
     constexpr double nearly_all = 0.9;
-    constexpr float largest = 0.99f;
+    constexpr float maximum = 0.99f;
     const CodedPing& first = recorded.front();
     size_t bin = 0;
     for (; bin < first.bin_count / 16; ++bin) {
         double clipped = 0, all = 0;
         for (const CodedPing& ping : recorded)
-            for (size_t beam = 0; beam < ping.beam_count; ++beam) ++all, clipped += ping.code(beam, bin) >= largest;
+            for (size_t beam = 0; beam < ping.beam_count; ++beam) ++all, clipped += ping.code(beam, bin) >= maximum;
         if (clipped < nearly_all * all) break;
     }
     return first.resolution * static_cast<double>(bin);
@@ -438,7 +438,7 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
     for (size_t round = 0; round < rounds; ++round) {
         const auto show = [&] { progress(fmt::format("round {} of {}: levels", round + 1, rounds)); };
         fit.levels = fitLevels(levels, recorded.front(), chain,
-                               {.rough = rough, .water = leastOf(blocks), .fits_scene = rough && round == 0}, show);
+                               {.rough = rough, .water = minimumOf(blocks), .fits_scene = rough && round == 0}, show);
         if (round == 0)
             pitch = fit.levels.pitch_deg, height = fit.levels.height_m, elevation = fit.levels.elevation_deg;
         chain = fit.levels.applied(chain);

@@ -9,8 +9,8 @@
 namespace insonify::study {
 namespace {
 
-constexpr size_t patch = 16;              ///< Bins and beams of a patch, and of a block of the jackknife.
-constexpr double clipped_at_most = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
+constexpr size_t patch = 16;             ///< Bins and beams of a patch, and of a block of the jackknife.
+constexpr double clipped_at_max = 0.02;  ///< Max fraction of a patch's bins with code 0 or the max code [1].
 constexpr size_t fewest_blocks = 4;
 
 /** Intensities on any scale, with marks for those that an instrument has clipped. */
@@ -63,7 +63,7 @@ struct Patch {
         size_t clipped = 0;
         for (size_t i = 0; i < patch; ++i)
             for (size_t j = 0; j < patch; ++j) clipped += all.clipped[place(i, j)];
-        if (static_cast<double>(clipped) > clipped_at_most * patch * patch) return false;
+        if (static_cast<double>(clipped) > clipped_at_max * patch * patch) return false;
         const double mean = meanAmplitude(0, 0, patch);
         for (const size_t i : {size_t{0}, patch / 2})
             for (const size_t j : {size_t{0}, patch / 2})

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double fewest_bins = 1024;  ///< Min bins of a slice: four patches.
 
-double told(const SpeckleField& field) {
+double reported(const SpeckleField& field) {
     return static_cast<double>(std::ranges::count_if(field.relative, [](double x) { return !std::isnan(x); }));
 }
 
@@ -19,7 +19,7 @@ SpeckleRow rowOf(const std::string& name, size_t loudest, const SpeckleField& fi
     SpeckleRow row{.name = name, .loudest = loudest, .slices = {}};
     for (size_t slice = 0; slice < speckle_slices; ++slice) {
         const SpeckleField part = sliceOf(field, slice);
-        if (told(part) < fewest_bins) continue;
+        if (reported(part) < fewest_bins) continue;
         row.slices.push_back({slice, figuresOf(part), {}});
         if (next) row.slices.back().next = likewise(part, *next);
     }
@@ -40,7 +40,7 @@ types::Sonar later(types::Sonar ping) {
 }
 
 /** Returns a ping whose bins are all 1. */
-types::Sonar ones() {
+types::Sonar items() {
     types::Sonar ping;
     ping.time.microseconds = 1;
     ping.beam_count = 256;
@@ -89,7 +89,7 @@ std::vector<SpeckleRow> simulatedRows(const sonar::SonarConfig& config, const ty
 
 std::vector<Claim> lawClaims() {
     constexpr double shape = 3, looks = 4;
-    const types::Sonar clean = ones();
+    const types::Sonar clean = items();
     const auto fieldOf = [&](const noise::SpeckleConfig& law) { return overMeans(withSpeckle(clean, law), clean); };
     const SpeckleField rayleigh = fieldOf({}), next = overMeans(withSpeckle(later(clean), {}), clean);
     const SpeckleFigures figures = figuresOf(rayleigh);

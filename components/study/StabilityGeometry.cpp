@@ -20,9 +20,9 @@ types::GeometryPtr wallAndBall() { return sceneOf({facingWall(12), sphere(1.5, 4
 
 /** Passes if a changed scene has the echoes of wall and ball, to `tolerance`. */
 Outcome sounds(double tolerance, const types::GeometryPtr& changed, const std::string& got) {
-    const Probe heard = probe(smallFan(), lookingAt(changed)), plain = probe(smallFan(), lookingAt(wallAndBall()));
-    const double deviation = difference(heard.ping, plain.ping);
-    return within(tolerance, deviation, got + (deviation == 0 ? ": bit-identical" : ""), heard);
+    const Probe received = probe(smallFan(), lookingAt(changed)), plain = probe(smallFan(), lookingAt(wallAndBall()));
+    const double deviation = difference(received.ping, plain.ping);
+    return within(tolerance, deviation, got + (deviation == 0 ? ": bit-identical" : ""), received);
 }
 
 /** Returns wall and ball with `change` applied to the scene. */
@@ -36,10 +36,10 @@ types::GeometryPtr changed(const Change& change) {
 Outcome insideAClosedMesh() {
     const sonar::SonarConfig config = fan(60, 40, 8, 8);
     const types::Snapshot snapshot = lookingAt(sceneOf({sphere(5.05, 256)}));
-    const Probe heard = probe(config, snapshot), again = probe(config, snapshot);
+    const Probe received = probe(config, snapshot), again = probe(config, snapshot);
     const double truth = radians(60) * 2 * std::sin(radians(20)) / (5.05 * 5.05);
-    const double deviation = heard.ping.bins == again.ping.bins ? off(heard.energy(), truth) : INFINITY;
-    return within(1e-3, deviation, "a sphere seen from its centre, both sides reflect; bit-identical again", heard);
+    const double deviation = received.ping.bins == again.ping.bins ? off(received.energy(), truth) : INFINITY;
+    return within(1e-3, deviation, "a sphere seen from its centre, both sides reflect; bit-identical again", received);
 }
 
 Outcome exactlyOnASurface() {
@@ -48,14 +48,14 @@ Outcome exactlyOnASurface() {
                                      glm::vec3(40 * std::sin(lean), 0, 40 * std::cos(lean)));
     const Probe alone = probe(smallFan(), lookingAt(sceneOf({facingWall(12)})));
     double worst = 0;
-    Probe heard;
+    Probe received;
     for (const types::Mesh& own : {levelGround(0), through, quad({0, 0, 0}, {0, 3, 0}, {0, 0, 3}), facingWall(0)}) {
-        heard = probe(smallFan(), lookingAt(sceneOf({facingWall(12), own})));
-        worst = std::max(worst, heard.isSound() ? difference(heard.ping, alone.ping) : INFINITY);
+        received = probe(smallFan(), lookingAt(sceneOf({facingWall(12), own})));
+        worst = std::max(worst, received.isSound() ? difference(received.ping, alone.ping) : INFINITY);
     }
     return within(1e-3, worst,
                   "the sonar in a level, a leaning and a facing plane and at a corner; the wall behind as without",
-                  heard);
+                  received);
 }
 
 Outcome duplicatedFaces() {
@@ -99,19 +99,20 @@ Outcome stretched() {
     for (glm::vec3& p : egg.positions) p *= glm::vec3(0.5, -2, 1.25);
     egg.clusters[0].half = glm::vec3(2.1f);
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.6, glm::dvec3(1, 2, 3));
-    const Probe heard = probe(smallFan(),
-                              lookingAt(placedBall(sphere(1, 48), turn * glm::scale(glm::dmat4(1), {0.5, -2, 1.25})))),
+    const Probe received =
+                    probe(smallFan(),
+                          lookingAt(placedBall(sphere(1, 48), turn * glm::scale(glm::dmat4(1), {0.5, -2, 1.25})))),
                 plain = probe(smallFan(), lookingAt(placedBall(egg, turn)));
-    return within(1e-5, difference(heard.ping, plain.ping),
-                  "a turned ball of scale (0.5, -2, 1.25) against a mesh of that shape", heard);
+    return within(1e-5, difference(received.ping, plain.ping),
+                  "a turned ball of scale (0.5, -2, 1.25) against a mesh of that shape", received);
 }
 
 Outcome straightDown() {
     sonar::SonarConfig config = fan(40, 40, 1, 12);
     setSamples(config, 256, 64);
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5.05f)}), {}, 0.7, radians(90)));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5.05)),
-                  "a level bottom below a sonar that looks straight down", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5.05f)}), {}, 0.7, radians(90)));
+    return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 5.05)),
+                  "a level bottom below a sonar that looks straight down", received);
 }
 
 }  // namespace

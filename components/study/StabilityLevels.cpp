@@ -18,7 +18,7 @@ namespace {
 
 using sonar::SonarConfig;
 
-bool tells(const std::vector<std::string>& notices, const std::string& words) {
+bool reports(const std::vector<std::string>& notices, const std::string& words) {
     return std::ranges::any_of(notices,
                                [&](const std::string& notice) { return notice.find(words) != std::string::npos; });
 }
@@ -66,8 +66,8 @@ double trueLevel(const SonarConfig& config, const Truth& truth, int bin) {
 
 Outcome twoMegahertz(int bins, bool in_coarse_bins) {
     SonarConfig config = fan(1, 2, 1, 105);
-    const Probe heard = twoMegahertzOn(config, far_wall, bins);
-    const types::Sonar levels = received(receiver::Receiver(inLevels()), heard.ping);
+    const Probe echoes = twoMegahertzOn(config, far_wall, bins);
+    const types::Sonar levels = received(receiver::Receiver(inLevels()), echoes.ping);
     const Truth truth = planeTruth({1, 0, 0}, far_wall);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const int first = static_cast<int>(far_wall / grid.bin_width),
@@ -79,28 +79,29 @@ Outcome twoMegahertz(int bins, bool in_coarse_bins) {
         worst = std::max(worst, std::abs(levels.bins[static_cast<size_t>(bin)] - level));
     }
     const double bound = in_coarse_bins ? sonar::makeAbsorption(config).db_per_m * grid.bin_width : 0.01;
-    const bool told = !in_coarse_bins || tells(heard.plan.notices, "absorption changes within a bin");
-    return {heard.conditions,
+    const bool reported = !in_coarse_bins || reports(echoes.plan.notices, "absorption changes within a bin");
+    return {echoes.conditions,
             fmt::format("levels down to {:.1f} dB in bins of {:.3g} m, off by {:.2g} dB; may be {:.2g}{}", lowest,
-                        grid.bin_width, worst, bound, in_coarse_bins && told ? ", as the plan warns" : ""),
-            worst, heard.isSound() && told && worst <= bound ? Verdict::Pass : Verdict::Fail};
+                        grid.bin_width, worst, bound, in_coarse_bins && reported ? ", as the plan warns" : ""),
+            worst, echoes.isSound() && reported && worst <= bound ? Verdict::Pass : Verdict::Fail};
 }
 
 Outcome gainOf(double gain_db, double tolerance) {
     receiver::ReceiverConfig config;
     config.tvg = {.log_coefficient = 1000, .db_per_m = 1000, .max_db = gain_db};
-    const Probe heard = probe(fan(60, 40, 8, 20), lookingAt(sceneOf({levelGround(-5)})));
+    const Probe echoes = probe(fan(60, 40, 8, 20), lookingAt(sceneOf({levelGround(-5)})));
     receiver::Receiver receiver(config);
     types::Sonar ping;
-    receiver.receive(heard.ping, ping);
+    receiver.receive(echoes.ping, ping);
     const double factor = std::pow(10, gain_db / 10), ceiling = static_cast<double>(std::numeric_limits<float>::max());
     double worst = 0;
     for (size_t i = 0; i < ping.bins.size(); ++i)
         worst = std::max(
-            worst, off(ping.bins[i], std::min(heard.ping.bins[i] * factor, heard.ping.bins[i] > 0 ? ceiling : 0)));
+            worst, off(ping.bins[i], std::min(echoes.ping.bins[i] * factor, echoes.ping.bins[i] > 0 ? ceiling : 0)));
     return within(
-        tolerance, tells(receiver.notices(), "reaches its max_db") ? worst : INFINITY,
-        fmt::format("a gain of {} dB: clamped there, and reported; intensities at most the max float", gain_db), heard);
+        tolerance, reports(receiver.notices(), "reaches its max_db") ? worst : INFINITY,
+        fmt::format("a gain of {} dB: clamped there, and reported; intensities at most the max float", gain_db),
+        echoes);
 }
 
 Outcome weakAbsorption() {
@@ -112,15 +113,15 @@ Outcome weakAbsorption() {
     config.absorption->db_per_m = 1e-12;
     const double tiny = difference(probe(config, scene).ping, plain.ping);
     config.absorption->db_per_m = 1e-4;
-    const Probe heard = probe(config, scene);
+    const Probe echoes = probe(config, scene);
     double weak = 0;
-    for (size_t i = 0; i < heard.ping.bins.size(); ++i) {
-        const double r = heard.ping.binStart(static_cast<double>(i % heard.ping.bin_count) + 0.5);
-        weak = std::max(weak, off(heard.ping.bins[i], plain.ping.bins[i] * std::pow(10, -2e-4 * r / 10)));
+    for (size_t i = 0; i < echoes.ping.bins.size(); ++i) {
+        const double r = echoes.ping.binStart(static_cast<double>(i % echoes.ping.bin_count) + 0.5);
+        weak = std::max(weak, off(echoes.ping.bins[i], plain.ping.bins[i] * std::pow(10, -2e-4 * r / 10)));
     }
     return within(
         1e-6, zero > 0 ? INFINITY : std::max(tiny, weak),
-        fmt::format("0: bit-identical to none; 1e-12 dB/m off by {:.1e}; 1e-4 dB/m off by {:.1e}", tiny, weak), heard);
+        fmt::format("0: bit-identical to none; 1e-12 dB/m off by {:.1e}; 1e-4 dB/m off by {:.1e}", tiny, weak), echoes);
 }
 
 /** Renders a plate of a material in front of a wall. */
@@ -154,8 +155,8 @@ Outcome silentSurfaces() {
 Outcome fullReflectivity() {
     SonarConfig config = fan(2, 2, 1, 15);
     config.model = sonar::Model::Cerqueira2017;
-    const Probe heard = plateBeforeWall(config, 0, 1);
-    return within(1e-4, off(heard.ping.bins[50], 0.99753), "S(1) of a surface square to the beam", heard);
+    const Probe echoes = plateBeforeWall(config, 0, 1);
+    return within(1e-4, off(echoes.ping.bins[50], 0.99753), "S(1) of a surface square to the beam", echoes);
 }
 
 constexpr double plate_at = 8.05;  ///< [m]
@@ -182,22 +183,22 @@ double plateEnergy() {
     return 100 * sum * 4 / (cells * cells) / std::pow(plate_at, 4);
 }
 
-double energyOf(const Probe& heard, uint32_t first, uint32_t last) {
+double energyOf(const Probe& echoes, uint32_t first, uint32_t last) {
     double sum = 0;
-    for (uint32_t k = first; k < last; ++k) sum += heard.ping.bins[k];
+    for (uint32_t k = first; k < last; ++k) sum += echoes.ping.bins[k];
     return sum;
 }
 
-Outcome plateBesideBottom() {
+Outcome plateNextToBottom() {
     SonarConfig config = fan(40, 40, 1, 16);
     setSamples(config, 512, 512);  // the plate ends within a cell
-    const Probe heard = probe(config, lookingAt(plateOverBottom()));
+    const Probe echoes = probe(config, lookingAt(plateOverBottom()));
     // The bottom from the aperture's edge on is visible below the plate, except where the plate hides it.
     const Truth bottom = planeTruth({0, 0, -1}, 5);
-    const double plate = off(energyOf(heard, 80, 84), plateEnergy());
-    const double below = off(energyOf(heard, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
+    const double plate = off(energyOf(echoes, 80, 84), plateEnergy());
+    const double below = off(energyOf(echoes, 148, 160), 1e-8 * trueEnergy(config, 0, bottom, 14.8, 16));
     return within(0.01, std::max(plate, below),
-                  fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), heard);
+                  fmt::format("plate off by {:.1e}, the bottom from 14.8 to 16 m by {:.1e}", plate, below), echoes);
 }
 
 /** Makes a material that returns what it mirrors, and almost nothing else. */
@@ -214,17 +215,17 @@ Outcome mirrorAhead() {
     sonar::SonarConfig config = fan(20, 20, 1, 15);
     config.frequency_khz = 750;
     double worst = 0;
-    Probe heard;
+    Probe echoes;
     for (int rows : {16, 64, 256, 2048}) {
         setSamples(config, rows, rows);
-        heard = probe(config, lookingAt(geometry));
-        worst = std::max(worst, std::abs(10 * std::log10(heard.energy() * 1600)));
+        echoes = probe(config, lookingAt(geometry));
+        worst = std::max(worst, std::abs(10 * std::log10(echoes.energy() * 1600)));
     }
-    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and columns", heard);
+    return within(1, worst, "levels in dB off the image's with 16 to 2048 rows and columns", echoes);
 }
 
 /** Tests a plate whose lobe is +60 dB at its peak, over a bottom of -80 dB. */
-Outcome glintBesideBottom() {
+Outcome glintNextToBottom() {
     constexpr double ahead = 8.05;  // [m]
     const auto geometry = copyOf(sceneOf({levelGround(-5), quad({ahead, -1, -1}, {0, 2, 0}, {0, 0, 2})}));
     geometry->materials.push_back(geometry->materials[0]);
@@ -233,16 +234,16 @@ Outcome glintBesideBottom() {
     geometry->meshes[1].clusters[0].material = 1;
     sonar::SonarConfig config = fan(40, 40, 1, 16);
     setSamples(config, 512, 512);
-    const Probe heard = probe(config, lookingAt(geometry));
+    const Probe echoes = probe(config, lookingAt(geometry));
     const auto sumOf = [&](size_t first, size_t last) {
         double sum = 0;
-        for (size_t k = first; k < last; ++k) sum += heard.ping.bins[k];
+        for (size_t k = first; k < last; ++k) sum += echoes.ping.bins[k];
         return sum;
     };
     const double glint = std::abs(10 * std::log10(sumOf(80, 84) * 4 * ahead * ahead));
     const double below = off(sumOf(148, 160), 1e-8 * trueEnergy(config, 0, planeTruth({0, 0, -1}, 5), 14.8, 16));
     return within(0.01, std::max(glint / 100, below),
-                  fmt::format("glint off by {:.2g} dB, the bottom from 14.8 to 16 m by {:.1e}", glint, below), heard);
+                  fmt::format("glint off by {:.2g} dB, the bottom from 14.8 to 16 m by {:.1e}", glint, below), echoes);
 }
 
 }  // namespace
@@ -257,8 +258,8 @@ std::vector<StabilityCase> levelCases() {
             {35, "No and hardly any absorption", "continuous, to 1e-6", weakAbsorption},
             {36, "Reflectivity of 0", "no echo, but a shadow", silentSurfaces},
             {38, "Specular lobe of a mirror", "finite; level independent of resolution to 1 dB", mirrorAhead},
-            {39, "+20 dB plate next to a bottom of -80 dB", "both to 1 %", plateBesideBottom},
-            {39, "+60 dB glint next to a bottom of -80 dB", "glint to 1 dB, bottom to 1 %", glintBesideBottom},
+            {39, "+20 dB plate next to a bottom of -80 dB", "both to 1 %", plateNextToBottom},
+            {39, "+60 dB glint next to a bottom of -80 dB", "glint to 1 dB, bottom to 1 %", glintNextToBottom},
             {40, "Sigmoid at both ends", "S(1) = 0.99753 (S(0): case 36)", fullReflectivity}};
 }
 

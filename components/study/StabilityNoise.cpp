@@ -10,8 +10,8 @@
 namespace insonify::study {
 namespace {
 
-/** Returns a ping of ones. */
-types::Sonar ones(int64_t microseconds, uint32_t beams, uint32_t bins) {
+/** Returns a ping whose bins are all 1. */
+types::Sonar items(int64_t microseconds, uint32_t beams, uint32_t bins) {
     types::Sonar ping;
     ping.time.microseconds = microseconds;
     ping.beam_count = beams;
@@ -46,9 +46,9 @@ Outcome seeds() {
     config.speckle.emplace();
     for (const uint64_t seed : {uint64_t{0}, uint64_t{1}, ~uint64_t{0}}) {
         config.seed = seed;
-        const types::Sonar first = noisy(config, ones(5, 2, bins));
-        wrong += noisy(config, ones(5, 2, bins)).bins != first.bins;
-        wrong += noisy(config, ones(6, 2, bins)).bins == first.bins;
+        const types::Sonar first = noisy(config, items(5, 2, bins));
+        wrong += noisy(config, items(5, 2, bins)).bins != first.bins;
+        wrong += noisy(config, items(6, 2, bins)).bins == first.bins;
         worst = std::max(worst, std::abs(correlation(first)));
     }
     wrong += worst > 4 / std::sqrt(bins);
@@ -64,12 +64,12 @@ Outcome extremeShapes() {
     noise::NoiseConfig config;
     const auto drawn = [&](double shape) {
         config.speckle = {.law = noise::SpeckleLaw::K, .shape = shape};
-        return noisy(config, ones(7, 64, 1000)).bins;
+        return noisy(config, items(7, 64, 1000)).bins;
     };
     const std::vector<float> patchy = drawn(1e-3);
     std::vector<float> even = drawn(1e6);
     const bool finite = std::ranges::all_of(patchy, [](float bin) { return bin >= 0 && std::isfinite(bin); });
-    const float largest = std::ranges::max(patchy);
+    const float maximum = std::ranges::max(patchy);
     std::ranges::sort(even);
     double distance = 0;
     const auto count = static_cast<double>(even.size());
@@ -79,9 +79,9 @@ Outcome extremeShapes() {
     return {{{"samples", count}},
             fmt::format("shape 1e-3: finite, the largest of 64,000 is {:.0f} times the mean; 1e6: off the exponential "
                         "law by {:.1e} (bound {:.1e})",
-                        largest, distance, bound),
+                        maximum, distance, bound),
             distance,
-            finite && largest > 100 && distance < bound ? Verdict::Pass : Verdict::Fail};
+            finite && maximum > 100 && distance < bound ? Verdict::Pass : Verdict::Fail};
 }
 
 }  // namespace

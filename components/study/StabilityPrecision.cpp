@@ -30,18 +30,18 @@ Outcome tenCentimetresAndTwoKilometres() {
     sonar::SonarConfig config = fan(2, 2, 2, 2000);
     config.range_min = 0.05;
     setSamples(config, 256, 16);
-    const Probe heard = probe(config, lookingAt(geometry));
-    const double far = off(heard.energy(0), trueEnergy(config, 0, planeTruth({1, 0, 0}, 1999.85))),
-                 near = off(heard.energy(1), trueEnergy(config, 1, planeTruth({1, 0, 0}, 0.12)));
-    const bool placed = heard.firstReturn(1) == 1 && heard.firstReturn(0) == 19998;
+    const Probe received = probe(config, lookingAt(geometry));
+    const double far = off(received.energy(0), trueEnergy(config, 0, planeTruth({1, 0, 0}, 1999.85))),
+                 near = off(received.energy(1), trueEnergy(config, 1, planeTruth({1, 0, 0}, 0.12)));
+    const bool placed = received.firstReturn(1) == 1 && received.firstReturn(0) == 19998;
     return within(1e-3, placed ? std::max(near, far) : INFINITY,
                   fmt::format("first returns in bins {} and {}; energies off by {:.1e} and {:.1e}",
-                              heard.firstReturn(1), heard.firstReturn(0), near, far),
-                  heard);
+                              received.firstReturn(1), received.firstReturn(0), near, far),
+                  received);
 }
 
 /** Returns the energy that a loud plane loses to a weak plane 1e-4 r behind it, at a pitch of 40 deg. */
-double leak(double distance, bool hidden_first, Probe& heard) {
+double leak(double distance, bool hidden_first, Probe& received) {
     const glm::dvec3 normal(std::cos(radians(40)), 0, -std::sin(radians(40)));
     const auto plane = [&](double d) {
         const glm::vec3 up(std::sin(radians(40)) * d * 2, 0, std::cos(radians(40)) * d * 2), aside(0, d * 2, 0);
@@ -56,17 +56,18 @@ double leak(double distance, bool hidden_first, Probe& heard) {
     both->materials.push_back(both->materials[0]);
     both->materials[1].lambert_db = 20;
     both->meshes[hidden_first ? 0 : 1].clusters[0].material = 1;
-    heard = probe(config, lookingAt(both));
-    return difference(heard.ping, probe(config, lookingAt(alone)).ping);
+    received = probe(config, lookingAt(both));
+    return difference(received.ping, probe(config, lookingAt(alone)).ping);
 }
 
 Outcome planesCloseTogether() {
-    Probe heard;
+    Probe received;
     double worst = 0;
     for (const double distance : {0.01, 1.0, 600.0})
-        for (const bool hidden_first : {false, true}) worst = std::max(worst, leak(distance, hidden_first, heard));
+        for (const bool hidden_first : {false, true}) worst = std::max(worst, leak(distance, hidden_first, received));
     return within(1e-6, worst,
-                  "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, rasterised first or last", heard);
+                  "100 times louder plane hidden 1e-4 r behind, at 0.01, 1 and 600 m, rasterised first or last",
+                  received);
 }
 
 Outcome utmCoordinates() {
@@ -98,14 +99,15 @@ Outcome grazing(double incidence_deg) {
     const double height = 0.1, range = std::round(height / std::cos(radians(incidence_deg)));
     sonar::SonarConfig config = fan(10, 4, 4, std::ceil(1.1 * range));
     config.range_min = 0.05;
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-0.1f, 8000)})));
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-0.1f, 8000)})));
     const auto first = static_cast<uint32_t>(9 * range), last = static_cast<uint32_t>(11 * range);
     const Truth truth = planeTruth({0, 0, -1}, height);
     double energy = 0;
-    for (uint32_t k = first; k < last; ++k) energy += heard.ping.bins[k];
+    for (uint32_t k = first; k < last; ++k) energy += received.ping.bins[k];
     const double expected = truth({radians(-5), radians(-2.5), radians(2)}, first * 0.1, last * 0.1);
     return within(0.01, off(energy, expected),
-                  fmt::format("{:.0f} to {:.0f} m over a bottom {} m below", first * 0.1, last * 0.1, height), heard);
+                  fmt::format("{:.0f} to {:.0f} m over a bottom {} m below", first * 0.1, last * 0.1, height),
+                  received);
 }
 
 /** If range_min cuts through a pixel, the part beyond it is received exactly. */
@@ -115,39 +117,39 @@ Outcome blankingThroughAPixel() {
     open.range_min = 0.05;
     blanked.range_min = 51.55;
     const auto scene = lookingAt(sceneOf({levelGround(-0.1f, 8000)}));
-    const Probe heard = probe(blanked, scene), whole = probe(open, scene);
+    const Probe received = probe(blanked, scene), whole = probe(open, scene);
     const double row = 2 * std::tan(radians(2)) / 256;  // of elevation
     const auto clear = static_cast<uint32_t>(10 / (1 / blanked.range_min - row / height)) + 1;
     double worst = 0;
-    for (uint32_t k = 516; k < 700; ++k) worst = std::max(worst, off(heard.ping.bins[k], whole.ping.bins[k]));
+    for (uint32_t k = 516; k < 700; ++k) worst = std::max(worst, off(received.ping.bins[k], whole.ping.bins[k]));
     return within(1e-6, worst,
                   fmt::format("a bottom 0.1 m below, one row from 51.6 to {:.1f} m: every bin beyond range_min, one "
                               "row wide or farther, is what it is without",
                               0.1 * clear),
-                  heard);
+                  received);
 }
 
-Outcome wallThroughThreeSlabs() {
+Outcome wallThroughThreeFrusta() {
     const sonar::SonarConfig config = fan(160, 20, 160, 100);
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(5, 400)})));
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(5, 400)})));
     return within(
-        1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 5)),
-        fmt::format("worst of {} beams in {} frusta against the closed form", config.beam_count, heard.plan.slabs),
-        heard);
+        1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 5)),
+        fmt::format("worst of {} beams in {} frusta against the closed form", config.beam_count, received.plan.slabs),
+        received);
 }
 
 Outcome groundThroughTheEyePlane() {
     const sonar::SonarConfig config = fan(360, 40, 180, 50);
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
-                  "two triangles below and all around, worst of 180 beams against the closed form", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    return within(1e-3, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
+                  "two triangles below and all around, worst of 180 beams against the closed form", received);
 }
 
 Outcome hugeSeaFloor(float width) {
     const sonar::SonarConfig config = fan(130, 40, 64, 50);
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5, width)}), {}, 0.3));
-    return within(0.01, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
-                  "worst of 64 beams against the closed form", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5, width)}), {}, 0.3));
+    return within(0.01, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
+                  "worst of 64 beams against the closed form", received);
 }
 
 /** Tests a strip a tenth of a pixel wide, moved through a pixel in 40 steps. */
@@ -157,40 +159,41 @@ Outcome sliver() {
     const double pixel = 2 * std::tan(radians(10)) / 64 * 10;
     const auto geometry = sceneOf({quad({10, 0, -0.5f}, {0, static_cast<float>(pixel / 10), 0}, {0, 0, 1})});
     types::Snapshot snapshot = lookingAt(geometry);
-    Probe heard = probe(config, snapshot);
+    Probe received = probe(config, snapshot);
     sonar::SonarRenderer renderer(config, geometry);
-    double sum = 0, most = 0;
+    double sum = 0, maximum = 0;
     for (int step = 0; step < 40; ++step) {
         snapshot.sonar.position.y = (step + 0.5) / 40 * pixel;
-        renderer.render(snapshot, heard.ping);
-        sum += heard.energy() / 40;
-        most = std::max(most, heard.energy());
+        renderer.render(snapshot, received.ping);
+        sum += received.energy() / 40;
+        maximum = std::max(maximum, received.energy());
     }
     double truth = 0;  // of (1 + v^2)^-3 over the strip, on the axis
     for (int i = 0; i < 1000; ++i) truth += std::pow(1 + std::pow((i + 0.5) / 1e4 - 0.05, 2), -3) * 1e-4;
     truth *= 0.01 * pixel / 100;
-    heard.conditions.push_back({"aliasing", most / truth});
+    received.conditions.push_back({"aliasing", maximum / truth});
     return within(0.02, off(sum, truth),
-                  fmt::format("mean of 40 shifts; single pings have 0 to {:.1f} times the energy", most / truth),
-                  heard);
+                  fmt::format("mean of 40 shifts; single pings have 0 to {:.1f} times the energy", maximum / truth),
+                  received);
 }
 
 /** Tests walls that cross at the border of two frusta, each in front of the other on one side. */
-Outcome wallsThatCrossAtASlabBorder() {
+Outcome wallsCrossingAtFrustumBorder() {
     const double lean = radians(20);
     const glm::dvec3 one(std::cos(lean), std::sin(lean), 0), other(std::cos(lean), -std::sin(lean), 0);
     const auto turned = [](const glm::dvec3& n) {
         return quad(glm::vec3(20 * n.y, -20 * n.x, -20), {-40 * n.y, 40 * n.x, 0}, {0, 0, 40});
     };
     const sonar::SonarConfig config = fan(80, 20, 40, 30);
-    const Probe heard = probe(config, lookingAt(sceneOf({turned(one), turned(other)}, {{10, 0, 0}, {10, 0, 0}})));
+    const Probe received = probe(config, lookingAt(sceneOf({turned(one), turned(other)}, {{10, 0, 0}, {10, 0, 0}})));
     const double distance = 10 * std::cos(lean);
     double worst = 0;
     for (uint32_t beam = 0; beam < 40; ++beam)  // at positive azimuths the plane whose normal leans to port is nearer
         worst = std::max(
-            worst, off(heard.energy(beam), trueEnergy(config, beam, planeTruth(beam < 20 ? other : one, distance))));
-    return within(1e-3, worst, fmt::format("worst of 40 beams in {} frusta against the nearer plane", heard.plan.slabs),
-                  heard);
+            worst, off(received.energy(beam), trueEnergy(config, beam, planeTruth(beam < 20 ? other : one, distance))));
+    return within(1e-3, worst,
+                  fmt::format("worst of 40 beams in {} frusta against the nearer plane", received.plan.slabs),
+                  received);
 }
 
 }  // namespace
@@ -205,12 +208,12 @@ std::vector<StabilityCase> precisionCases() {
         {4, "Instances 1e6 m apart", "each as at the origin, to 1e-6", instancesFarApart},
         {7, "Grazing at 89.9 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.9); }},
         {7, "Grazing at 89.99 deg", "finite, energy to 1 % of the closed form", [] { return grazing(89.99); }},
-        {13, "A wall through three frusta", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeSlabs},
+        {13, "A wall through three frusta", "every beam to 1e-3 of the closed form: no seam", wallThroughThreeFrusta},
         {13, "Ground that crosses the eye plane", "every beam to 1e-3 of the closed form", groundThroughTheEyePlane},
         {14, "Sea-floor quad of 1e8 m", "every beam to 1 % of the closed form", [] { return hugeSeaFloor(1e8f); }},
         {15, "Slivers thinner than a pixel", "right on average over shifts, to 2 %; aliasing reported", sliver},
         {16, "Walls that cross at a frustum border", "every beam to 1e-3 of the closed form",
-         wallsThatCrossAtASlabBorder},
+         wallsCrossingAtFrustumBorder},
         {60, "Blanking that cuts through a pixel", "nothing beyond range_min is lost, to 1e-6", blankingThroughAPixel}};
 }
 

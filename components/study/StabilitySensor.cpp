@@ -59,23 +59,23 @@ Outcome wideFan(double fov_deg) {
 Outcome seams(double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 40, 360, 50);
     setSamples(config, 512);
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
     double worst = 0;
     for (uint32_t k = 0; k < 360; ++k)
-        worst = std::max(worst, beamDifference(heard.ping, k, heard.ping, (k + 1) % 360));
-    return within(
-        1e-3, worst,
-        fmt::format("neighbouring beams over level ground in {} frusta, the last next to the first", heard.plan.slabs),
-        heard);
+        worst = std::max(worst, beamDifference(received.ping, k, received.ping, (k + 1) % 360));
+    return within(1e-3, worst,
+                  fmt::format("neighbouring beams over level ground in {} frusta, the last next to the first",
+                              received.plan.slabs),
+                  received);
 }
 
 /** Tests a fan of `beams` in front of a wall. */
 Outcome beamsBeforeAWall(int beams, double fov_deg) {
     sonar::SonarConfig config = fan(fov_deg, 20, beams, 25);
     setSamples(config, 64, std::max(2, 64 / beams));
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
-                  fmt::format("worst of {} beams against the closed form", beams), heard);
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
+                  fmt::format("worst of {} beams against the closed form", beams), received);
 }
 
 Outcome moreBeamsThanColumns() {
@@ -84,23 +84,23 @@ Outcome moreBeamsThanColumns() {
     for (size_t k = 0; k < 1000; ++k) config.bearings_deg[k] = 0.01 * (static_cast<double>(k) - 500);
     config.beam_width_deg = 1;
     setSamples(config, 256, 1);
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
-                  "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
+                  "1000 beams 1 deg wide and 0.01 deg apart, one column per beam's width: none empty", received);
 }
 
 Outcome thinAperture() {
     const sonar::SonarConfig config = fan(20, 0.01, 20, 15);
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)), "0.01 deg on a wall", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(1e-3, worstBeam(received, config, planeTruth({1, 0, 0}, 10)), "0.01 deg on a wall", received);
 }
 
 Outcome oneRow() {
     sonar::SonarConfig config = fan(20, 10, 20, 15);
     setSamples(config, 1, 1);
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(0.01, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
-                  "10 deg on a wall by one row and one column per beam", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(0.01, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
+                  "10 deg on a wall by one row and one column per beam", received);
 }
 
 /** Tests a Gaussian beam, which has no sidelobes: its integral over azimuth is known. */
@@ -110,13 +110,13 @@ Outcome narrowBeam(double width_deg) {
     acoustics::BeamLaw& law = config.beam_pattern.emplace().receive.azimuth.emplace();
     law.weighting = acoustics::Weighting::Gaussian;
     law.width_deg = width_deg;
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5)})));
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5)})));
     const double integral = radians(width_deg) / 2 * std::sqrt(std::numbers::pi / std::numbers::ln2);
     const double truth = planeTruth({0, 0, -1}, 5)({-integral / 2, integral / 2, radians(20)}, 0, 25);
     double worst = 0;
-    for (uint32_t beam = 0; beam < 4; ++beam) worst = std::max(worst, off(heard.energy(beam), truth));
+    for (uint32_t beam = 0; beam < 4; ++beam) worst = std::max(worst, off(received.energy(beam), truth));
     return within(0.01, worst, fmt::format("beams of {:g} deg every 10 deg, one column each, over a bottom", width_deg),
-                  heard);
+                  received);
 }
 
 types::Sonar pulsed(double bins_long, bool whole) {
@@ -127,11 +127,11 @@ types::Sonar pulsed(double bins_long, bool whole) {
 
 /** Compares the sums of the bins with a pulse `bins_long` long and without a pulse. */
 Outcome pulseEnergy(double bins_long, double expected) {
-    const types::Sonar plain = pulsed(bins_long, false), heard = pulsed(bins_long, true);
+    const types::Sonar plain = pulsed(bins_long, false), received = pulsed(bins_long, true);
     const auto sum = [](const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); };
-    const double deviation = off(sum(heard), expected * sum(plain));
+    const double deviation = off(sum(received), expected * sum(plain));
     return {{},
-            fmt::format("a tone of {:g} bins: {:.6g} times what no pulse gives", bins_long, sum(heard) / sum(plain)),
+            fmt::format("a tone of {:g} bins: {:.6g} times what no pulse gives", bins_long, sum(received) / sum(plain)),
             deviation,
             deviation <= 1e-5 ? Verdict::Pass : Verdict::Fail};
 }
@@ -151,9 +151,9 @@ Outcome oneBin(const types::GeometryPtr& geometry, double pitch) {
 
 Outcome twentyThousandBins() {
     SonarConfig config = fan(20, 20, 20, 2000);
-    const Probe heard = probe(config, lookingAt(sceneOf({levelGround(-5, 8000)})));
-    return within(1e-3, worstBeam(heard, config, planeTruth({0, 0, -1}, 5)),
-                  "20 beams over a bottom 5 m below, to 2 km", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({levelGround(-5, 8000)})));
+    return within(1e-3, worstBeam(received, config, planeTruth({0, 0, -1}, 5)),
+                  "20 beams over a bottom 5 m below, to 2 km", received);
 }
 
 Outcome narrowBinsFarAway() {
@@ -162,11 +162,11 @@ Outcome narrowBinsFarAway() {
     config.range_rounding = sonar::RangeRounding::Exact;
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     const double distance = 1999.875;  // exact in float
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(static_cast<float>(distance))})));
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(static_cast<float>(distance))})));
     const int bin = static_cast<int>(distance / grid.bin_width);
     Outcome outcome = within(
-        0, std::abs(heard.firstReturn(0) - bin),
-        fmt::format("bins of {:.3g} m, the narrowest allowed at 2 km; deviation in bins", grid.bin_width), heard);
+        0, std::abs(received.firstReturn(0) - bin),
+        fmt::format("bins of {:.3g} m, the narrowest allowed at 2 km; deviation in bins", grid.bin_width), received);
     outcome.conditions.push_back({"ulps_per_bin", grid.bin_width / 1.2207e-4});
     return outcome;
 }
@@ -175,8 +175,9 @@ Outcome noBlanking() {
     SonarConfig config = fan(60, 40, 16, 10), blanked = config;
     config.range_min = 0;
     const auto geometry = sceneOf({levelGround(-2), facingWall(5)});
-    const Probe heard = probe(config, lookingAt(geometry)), plain = probe(blanked, lookingAt(geometry));
-    return within(1e-6, difference(heard.ping, plain.ping), "range_min 0 where nothing is nearer than 0.1 m", heard);
+    const Probe received = probe(config, lookingAt(geometry)), plain = probe(blanked, lookingAt(geometry));
+    return within(1e-6, difference(received.ping, plain.ping), "range_min 0 where nothing is nearer than 0.1 m",
+                  received);
 }
 
 }  // namespace

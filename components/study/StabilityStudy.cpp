@@ -52,7 +52,8 @@ std::string markdown(const StabilityRow& row) {
     for (const auto& [name, value] : row.outcome.conditions)
         conditions += fmt::format("{}{} {:.4g}", conditions.empty() ? "" : ", ", name, value);
     return fmt::format("| {} | {} | {} | {} | {} | {} |\n", cell(title(row)), cell(conditions), cell(row.expected),
-                       cell(row.outcome.got), isJudged(row.outcome) ? fmt::format("{:.2g}", row.outcome.deviation) : "",
+                       cell(row.outcome.got),
+                       isEvaluated(row.outcome) ? fmt::format("{:.2g}", row.outcome.deviation) : "",
                        nameOf(row.outcome.verdict));
 }
 
@@ -77,7 +78,9 @@ constexpr const char* legend =
 
 }  // namespace
 
-bool isJudged(const Outcome& outcome) { return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail; }
+bool isEvaluated(const Outcome& outcome) {
+    return outcome.verdict == Verdict::Pass || outcome.verdict == Verdict::Fail;
+}
 
 const char* nameOf(Verdict verdict) {
     switch (verdict) {

@@ -24,7 +24,7 @@ struct Outcome {
 };
 
 /** Returns whether the case was run and has a deviation. */
-bool isJudged(const Outcome& outcome);
+bool isEvaluated(const Outcome& outcome);
 
 /** A stiff or extreme case of ACOUSTICS.md 11. */
 struct StabilityCase {

@@ -20,9 +20,9 @@ Outcome manySamplesInABin() {
     SonarConfig config = fan(20, 20, 1, 12);
     config.bin_count = 1;
     setSamples(config, 4000, 2500);
-    const Probe heard = probe(config, lookingAt(sceneOf({facingWall(10)})));
-    return within(1e-6, worstBeam(heard, config, planeTruth({1, 0, 0}, 10)),
-                  "1e7 pixels of a wall in one bin, against the closed form", heard);
+    const Probe received = probe(config, lookingAt(sceneOf({facingWall(10)})));
+    return within(1e-6, worstBeam(received, config, planeTruth({1, 0, 0}, 10)),
+                  "1e7 pixels of a wall in one bin, against the closed form", received);
 }
 
 Outcome loudSamplesInABin() {
@@ -31,9 +31,9 @@ Outcome loudSamplesInABin() {
     setSamples(config, 2000, 1000);
     const auto geometry = copyOf(sceneOf({facingWall(10)}));
     geometry->materials[0].lambert_db = 20;
-    const Probe heard = probe(config, lookingAt(geometry));
-    return within(1e-6, std::abs(heard.energy() / trueEnergy(config, 0, planeTruth({1, 0, 0}, 10)) / 100 - 1),
-                  "2e6 pixels of the loudest material that a file may have, in one bin", heard);
+    const Probe received = probe(config, lookingAt(geometry));
+    return within(1e-6, std::abs(received.energy() / trueEnergy(config, 0, planeTruth({1, 0, 0}, 10)) / 100 - 1),
+                  "2e6 pixels of the loudest material that a file may have, in one bin", received);
 }
 
 /** Returns the relative difference of the bins that two pings share, without the edges of echoes. */
@@ -81,14 +81,14 @@ Outcome manyTriangles() {
     SonarConfig config = fan(10, 10, 1, 12);
     setSamples(config, 1, 1);
     const double start = seconds();
-    Probe heard = probe(config, lookingAt(geometry));
+    Probe received = probe(config, lookingAt(geometry));
     const double taken = seconds() - start;
-    heard.conditions.push_back({"triangles", static_cast<double>(geometry->triangleCount())});
-    heard.conditions.push_back({"seconds", taken});
-    const bool right = heard.firstReturn(0) >= 89 && heard.firstReturn(0) <= 90;
+    received.conditions.push_back({"triangles", static_cast<double>(geometry->triangleCount())});
+    received.conditions.push_back({"seconds", taken});
+    const bool right = received.firstReturn(0) >= 89 && received.firstReturn(0) <= 90;
     return within(60, right ? taken : INFINITY,
                   "500 balls in one place on one pixel; deviation is the time of set-up and ping, at most 60 s [s]",
-                  heard);
+                  received);
 }
 
 Outcome largeImage() {
@@ -98,10 +98,10 @@ Outcome largeImage() {
     triangle->meshes[0].indices.resize(3);
     triangle->meshes[0].clusters[0].index_count = 3;
     const double start = seconds();
-    Probe heard = probe(config, lookingAt(triangle));
-    heard.conditions.push_back({"seconds", seconds() - start});
-    const double deviation = heard.energy() > 0 ? worstBeam(heard, config, planeTruth({1, 0, 0}, 10)) : INFINITY;
-    return within(1e-4, deviation, "one triangle, 16384 rows and 64 columns", heard);
+    Probe received = probe(config, lookingAt(triangle));
+    received.conditions.push_back({"seconds", seconds() - start});
+    const double deviation = received.energy() > 0 ? worstBeam(received, config, planeTruth({1, 0, 0}, 10)) : INFINITY;
+    return within(1e-4, deviation, "one triangle, 16384 rows and 64 columns", received);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr double tilted_tolerance = 1;  ///< For means over sidelobes, which are
 Outcome errorOf(const Shape& shape, double length, std::initializer_list<double> numbers, double allowed = tolerance) {
     double worst = 0;
     std::string where;
-    Probe heard;
+    Probe received;
     for (const double frequency : {100., 300., 1000., 3000.})
         for (const int around : {32, 256, 2048})
             for (const double number : numbers) {
@@ -36,8 +36,8 @@ Outcome errorOf(const Shape& shape, double length, std::initializer_list<double>
                                         met.range);
                 }
             }
-    heard.ping.bins = {1};
-    return within(allowed, worst, "at most " + where, heard);
+    received.ping.bins = {1};
+    return within(allowed, worst, "at most " + where, received);
 }
 
 Outcome far(const Shape& shape, double length) { return errorOf(shape, length, {0.05, 0.1}); }

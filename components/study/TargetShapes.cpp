@@ -148,9 +148,9 @@ sonar::SonarConfig targetSonar(const Encounter& met, const Target& target, int s
 }
 
 double targetError(const Encounter& met, const Target& target, const sonar::SonarConfig& config) {
-    Probe heard;
-    sonar::SonarRenderer(config, target.scene).render(lookingAt(target.scene), heard.ping);
-    return decibels(heard.energy() * std::pow(met.range, 4)) - target.strength_db;
+    Probe received;
+    sonar::SonarRenderer(config, target.scene).render(lookingAt(target.scene), received.ping);
+    return decibels(received.energy() * std::pow(met.range, 4)) - target.strength_db;
 }
 
 }  // namespace insonify::study

@@ -159,7 +159,7 @@ void Publisher::publishAll() {
 }
 
 void Publisher::publishFresh(std::unique_lock<std::mutex>& lock) {
-    if (std::exchange(newcomers_, false)) told_.clear();
+    if (std::exchange(newcomers_, false)) reported_.clear();
     bool any = false;
     for (size_t i = 0; i < slots_.size() && !ending_; ++i) {
         if (!std::exchange(slots_[i].fresh, false)) continue;
@@ -171,10 +171,10 @@ void Publisher::publishFresh(std::unique_lock<std::mutex>& lock) {
         publish(i, slot);
         lock.lock();
     }
-    if (any) tellTime(now_);
+    if (any) sendTime(now_);
 }
 
-void Publisher::tellTime(types::Time now) {
+void Publisher::sendTime(types::Time now) {
     if (server_.foxglove() > 0) server_.timeToFoxglove(nanosecondsOf(now));
 }
 
@@ -228,8 +228,8 @@ void Publisher::showOnPages(size_t source, const Slot& slot) {
 void Publisher::showScene(size_t source, const types::GeometryPtr& geometry) {
     if (!geometry || geometry == geometries_[source]) return;
     geometries_[source] = geometry;
-    const auto most = static_cast<size_t>(config_.max_triangles);
-    const Bytes scene = bytesOf(sceneMessage(*geometry, most, sources_[source].name));
+    const auto maximum = static_cast<size_t>(config_.max_triangles);
+    const Bytes scene = bytesOf(sceneMessage(*geometry, maximum, sources_[source].name));
     {
         std::lock_guard lock(mutex_);
         scenes_[source] = scene;  // first, so that a new client receives it twice rather than never
@@ -243,7 +243,7 @@ void Publisher::showStatus() try {
     const auto status = host_.deployment ? host_.deployment->status() : types::DeploymentStatus{};
     if (to_pages) server_.toPages(status_stream, {"", bytesOf(statusText(status, counts())), true});
     if (!to_foxglove) return;
-    if (host_.deployment) tellTime(status.now);
+    if (host_.deployment) sendTime(status.now);
     showParameters(status);
 } catch (const std::exception& error) {
     std::lock_guard lock(mutex_);
@@ -251,11 +251,11 @@ void Publisher::showStatus() try {
 }
 
 void Publisher::showParameters(const types::DeploymentStatus& status) {
-    if (server_.parameterReaders() == 0) return told_.clear();  // a new client receives all
+    if (server_.parameterReaders() == 0) return reported_.clear();  // a new client receives all
     Parameters parameters = parametersOf(status), changed;
     for (const auto& one : parameters)
-        if (std::ranges::find(told_, one) == told_.end()) changed.push_back(one);
-    told_ = std::move(parameters);
+        if (std::ranges::find(reported_, one) == reported_.end()) changed.push_back(one);
+    reported_ = std::move(parameters);
     if (!changed.empty()) server_.parametersToFoxglove(std::move(changed));
 }
 
@@ -285,11 +285,11 @@ std::string Publisher::answer(const Request& request) const try {
 }
 
 void Publisher::parameters(uint64_t client, ParameterRequest request, bool may_set) {
-    const std::string lane = request.values.empty() ? "" : taskOf(request.values.front().first);
+    const std::string executor = request.values.empty() ? "" : taskOf(request.values.front().first);
     const auto work = [this, client, request, may_set] {
         server_.reply(client, answerParameters(client, request, may_set));
     };
-    if (!executors_.run(lane, work))
+    if (!executors_.run(executor, work))
         server_.reply(client, diagnosticText("too many requests are waiting; try again later"));
 }
 

@@ -76,7 +76,7 @@ private:
     void showScene(size_t source, const types::GeometryPtr& geometry);
     void showStatus();
     void showParameters(const types::DeploymentStatus& status);
-    void tellTime(types::Time now);
+    void sendTime(types::Time now);
     std::string answerParameters(uint64_t client, const ParameterRequest& request, bool may_set);
     std::string setParameter(const std::string& name, const std::string& yaml, bool may_set) const;
     std::string taskOf(const std::string& path) const;
@@ -96,7 +96,7 @@ private:
     std::string diagnostic_;
     types::Time now_;         ///< The time of the newest sample's offer().
     bool newcomers_ = false;  ///< A Foxglove client has received no parameters yet.
-    Parameters told_;         ///< Values that clients have received; for the publishing thread.
+    Parameters reported_;     ///< Values that clients have received; for the publishing thread.
     std::map<size_t, types::GeometryPtr> geometries_;  ///< The geometries of `scenes_`; for the publishing thread.
     std::map<size_t, Bytes> scenes_;                   ///< By source, for later pages, like interfaces_.
     const std::vector<types::TaskInterface> tasks_;

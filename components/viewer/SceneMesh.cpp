@@ -41,7 +41,7 @@ Json matrixOf(const glm::dmat4& m) {
 
 /** Returns the numbers of the objects to draw, in ascending order. Objects with more triangles are preferred, up to
  *  `most` triangles. */
-std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vector<Part>& parts, size_t most) {
+std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vector<Part>& parts, size_t maximum) {
     std::vector<size_t> order(geometry.objects.size()), shown;
     std::iota(order.begin(), order.end(), size_t{0});
     const auto triangles = [&](size_t object) {
@@ -50,7 +50,7 @@ std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vec
     std::ranges::stable_sort(order, [&](size_t a, size_t b) { return triangles(a) > triangles(b); });
     size_t sum = 0;
     for (const size_t object : order)
-        if (sum + triangles(object) <= most) {
+        if (sum + triangles(object) <= maximum) {
             sum += triangles(object);
             shown.push_back(object);
         }

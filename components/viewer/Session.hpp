@@ -114,7 +114,7 @@ private:
     Kind kind_ = Kind::None;
     SendQueue queue_;
     Frame sending_;
-    uint64_t told_dropped_ = 0;
+    uint64_t reported_dropped_ = 0;
     size_t rest_ = 0;  ///< Bytes read after the answer [B].
     bool asked_ = false, admitted_ = false, open_ = false, writing_ = false;
 };
@@ -297,7 +297,7 @@ inline void Session::takeFromFoxglove(const std::string& text) {
 
 inline void Session::put(uint64_t stream, Frame frame) {
     queue_.put(stream, std::move(frame));
-    context_.dropped += queue_.dropped() - std::exchange(told_dropped_, queue_.dropped());
+    context_.dropped += queue_.dropped() - std::exchange(reported_dropped_, queue_.dropped());
     send();
 }
 

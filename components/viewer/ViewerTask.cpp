@@ -21,15 +21,15 @@ std::string diagnosticOf(const T* sample) {
 /** Passes new samples to a source; returns what is wrong with one of them, or an empty text. */
 template <class Input>
 std::string drain(Input& input, Publisher& publisher, size_t source, types::Time now) {
-    std::string told;
+    std::string reported;
     for (typename Input::Carried sample{}; input.port.readNew(sample);) {
         const std::string diagnostic = diagnosticOf(types::carriedSample(sample));
         if (diagnostic.empty())
             publisher.offer(source, std::move(sample), now);
         else
-            told = input.port.path() + ": a sample " + diagnostic + "; it is not shown";
+            reported = input.port.path() + ": a sample " + diagnostic + "; it is not shown";
     }
-    return told;
+    return reported;
 }
 
 }  // namespace
@@ -61,9 +61,9 @@ bool ViewerTask::configureHook() {
     ViewerConfig whole = *config;
     if (!whole.token_file.empty()) whole.token = readToken();
     try {
-        const auto tell = [this](const std::string& text) { warn(text); };
+        const auto report = [this](const std::string& text) { warn(text); };
         publisher_ =
-            std::make_unique<Publisher>(whole, std::move(sources), Host{name(), environment().deployment, tell});
+            std::make_unique<Publisher>(whole, std::move(sources), Host{name(), environment().deployment, report});
     } catch (const ListenError& error) {
         throw types::ConfigError("", name() + "." + error.property, error.what());
     }
@@ -84,7 +84,8 @@ void ViewerTask::updateHook() {
     std::string diagnostic = publisher_->takeError();
     size_t source = 0;
     inputs_.forEach([&](auto& input) {
-        if (std::string told = drain(input, *publisher_, source++, now()); !told.empty()) diagnostic = std::move(told);
+        if (std::string reported = drain(input, *publisher_, source++, now()); !reported.empty())
+            diagnostic = std::move(reported);
     });
     if (!diagnostic.empty()) error(diagnostic);
 }

@@ -39,13 +39,13 @@ TEST(BackscatterTest, ALambertSphereEchoesAsTwoThirdsOfPiOfItsParameter) {
 
 TEST(BackscatterTest, TheLobeGivesASphereItsTargetStrengthWithAnySlope) {
     for (const double slope : {0.02, 0.1, 0.3}) {
-        const double heard = sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c); });
-        EXPECT_NEAR(heard, 0.81 * 4.0 / 4 * (1 + slope * slope / 2), 2e-3) << slope;
+        const double received = sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c); });
+        EXPECT_NEAR(received, 0.81 * 4.0 / 4 * (1 + slope * slope / 2), 2e-3) << slope;
         // Without sec^4 a rough sphere would have another strength.
         const double bare =
             sphereSection(2, [&](double c) { return objectSection(-300, 0.9, slope * slope, c) * std::pow(c, 4); });
         if (slope > 0.2) {
-            EXPECT_LT(bare, 0.95 * heard);
+            EXPECT_LT(bare, 0.95 * received);
         }
     }
 }
@@ -69,11 +69,11 @@ double ellipsoidSection(double a, double b, double c, const F& section) {
 }
 
 TEST(BackscatterTest, TheLobeGivesAnEllipsoidItsTargetStrength) {
-    const double slope = 0.05, heard = ellipsoidSection(2, 0.7, 0.4, [&](double cosine) {
+    const double slope = 0.05, received = ellipsoidSection(2, 0.7, 0.4, [&](double cosine) {
                                    return objectSection(-300, 1, slope * slope, cosine);
                                });
     const double urick = std::pow(0.7 * 0.4 / (2 * 2), 2);
-    EXPECT_NEAR(10 * std::log10(heard / urick), 0, 0.05);
+    EXPECT_NEAR(10 * std::log10(received / urick), 0, 0.05);
     // A sphere of the ellipsoid's length would have another strength.
     EXPECT_GT(10 * std::log10(1 / urick), 20);
 }

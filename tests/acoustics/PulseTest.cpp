@@ -83,8 +83,8 @@ TEST(PulseTest, ReverberationOfARangeDensityIsTheDensityTimesTheCellLength) {
     // A density that hardly changes over a cell: the intensity of a bin is the density times the integral of h.
     for (const Pulse& pulse : {tone(200), chirp(30, PulseWindow::Hann)}) {
         const auto density = [](double r) { return std::pow(r, -3); };
-        const double heard = integral([&](double r) { return density(r) * pulse.response(20 - r); }, 15, 25);
-        EXPECT_NEAR(heard, density(20) * pulse.cellLength(), 1e-3 * heard);
+        const double received = integral([&](double r) { return density(r) * pulse.response(20 - r); }, 15, 25);
+        EXPECT_NEAR(received, density(20) * pulse.cellLength(), 1e-3 * received);
     }
 }
 

@@ -203,7 +203,7 @@ TEST(WedgeTest, APlaneHasNoEdge) {
 
 TEST(WedgeTest, TheFringeIsFiniteAndContinuousEverywhere) {
     std::mt19937 random(6);
-    double most = 0, step = 0;
+    double maximum = 0, step = 0;
     for (int trial = 0; trial < 3000; ++trial) {
         const double exterior = std::uniform_real_distribution(pi, 2 * pi)(random);
         const double special[] = {0, pi / 2, pi, exterior - pi / 2, exterior - pi, exterior};
@@ -216,12 +216,12 @@ TEST(WedgeTest, TheFringeIsFiniteAndContinuousEverywhere) {
                 const double beside = std::clamp(angle + way * 1e-7, 0.0, exterior);
                 step = std::max(step, std::abs(wedgeEcho(faces, exterior, beside).fringe - at));
             }
-            most = std::max(most, std::abs(at));
+            maximum = std::max(maximum, std::abs(at));
         }
     }
-    EXPECT_LT(most, 1.01);
+    EXPECT_LT(maximum, 1.01);
     EXPECT_LT(step, 1e-6) << "within 1e-7 rad";
-    std::cout << "largest fringe " << most << ", largest step " << step << "\n";
+    std::cout << "largest fringe " << maximum << ", largest step " << step << "\n";
 }
 
 TEST(WedgeTest, FacesMayBeCountedFromEitherSide) {

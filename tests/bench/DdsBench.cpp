@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* topic = "/bench/sonar";
 
-void tell(std::vector<double> milliseconds) {
+void report(std::vector<double> milliseconds) {
     std::ranges::sort(milliseconds);
     const auto at = [&](double share) {
         return milliseconds.empty() ? 0 : milliseconds[static_cast<size_t>(share * double(milliseconds.size() - 1))];
@@ -49,7 +49,7 @@ void listen(double seconds) {
         }
         std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
-    tell(std::move(latencies));
+    report(std::move(latencies));
 }
 
 types::Sonar ping() {
@@ -90,7 +90,7 @@ void send(double seconds, double wait) {
         task.update();
         times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }
-    tell(std::move(times));
+    report(std::move(times));
     std::this_thread::sleep_for(std::chrono::seconds(1));
 }
 

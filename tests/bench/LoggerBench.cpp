@@ -15,8 +15,8 @@
 namespace insonify {
 namespace {
 
-constexpr double period = 0.025;            // [s]
-constexpr double write_p99_at_most = 1e-3;  // [s]
+constexpr double period = 0.025;           // [s]
+constexpr double write_p99_at_max = 1e-3;  // [s]
 
 double secondsSince(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -81,8 +81,8 @@ connections:
                "\n",
                result.samples, seconds / period, in_log, lost,
                static_cast<double>(std::filesystem::file_size(log)) / 1e6 / result.wall_s, timesOf(sonar, "write", 1e6),
-               write_p99_at_most * 1e6, timesOf(sonar, "interval", 1e3), deployment.task("log")->cycles().max() * 1e3);
-    const bool slow = sonar.stages().at("write").p99() > write_p99_at_most;
+               write_p99_at_max * 1e6, timesOf(sonar, "interval", 1e3), deployment.task("log")->cycles().max() * 1e3);
+    const bool slow = sonar.stages().at("write").p99() > write_p99_at_max;
     return result.failed() || in_log != result.samples || lost > 0 || slow ? 1 : 0;
 }
 

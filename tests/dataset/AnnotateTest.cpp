@@ -139,7 +139,7 @@ TEST_F(AnnotateTest, AShadowBelongsToTheObjectThatTheSoundJustPasses) {
                     truth_.elevation[size_t{beam} * bins + in_bins.last] - above;
         }
     };
-    hide({20, 24}, {60, 80}, 0.001f);  // it stands on the floor
+    hide({20, 24}, {60, 80}, 0.001f);  // its base is on the floor
     put(1, {30, 34}, {50, 60});
     hide({30, 34}, {75, 90}, 0.02f);   // it floats; the floor is visible between it and its shadow
     hide({50, 54}, {75, 90}, 0.001f);  // the floor's own

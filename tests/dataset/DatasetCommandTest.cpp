@@ -200,7 +200,7 @@ TEST_F(DatasetCommandTest, AKilledRunIsContinued) {
     for (const char* name : {"d.yml", "sweep.yml"}) fs::copy(folder_ / name, elsewhere / name);
     const Process killed(insonifyWords(words((folder_ / "out").string())), elsewhere.path());
     const auto aFewAreThere = [&] { return fs::exists(folder_ / "out") && namesOf(folder_ / "out").size() > 4; };
-    EXPECT_TRUE(insonify::test::comesTrue(aFewAreThere));
+    EXPECT_TRUE(insonify::test::becomesTrue(aFewAreThere));
     killed.signal(SIGKILL);
     killed.wait();
     writeFile(folder_ / "out/.part_00_1_left.png", "of a writer that is no more");

@@ -102,31 +102,31 @@ TEST(PlacementTest, ObjectsStandOnTheHighestGroundBelowTheirOrigin) {
     EXPECT_NEAR(*highestAt(slope, 1, 1), 1, 1e-12);
 }
 
-TEST(PlacementTest, AScaledObjectStandsOnTheGroundClearOfOthers) {
+TEST(PlacementTest, AScaledObjectIsOnTheGroundClearOfOthers) {
     Sweep sweep = sweepOf({1, 12}, {1, 12});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].scale = {0.5, 2};
     SceneParts scene = stones(8);
     scene.grounds["floor"] = {{glm::dvec3(-99, -99, -9), glm::dvec3(99, -99, -9), glm::dvec3(0, 200, -9)}};
-    double least = 2, most = 0.5;
+    double minimum = 2, maximum = 0.5;
     for (uint64_t pose = 0; pose < 30; ++pose) {
         const auto objects = placed(sweep, scene, 8, pose);
         for (size_t i = 0; i < objects.size(); ++i) {
             const double scale = objects[i].scale;
-            least = std::min(least, scale), most = std::max(most, scale);
+            minimum = std::min(minimum, scale), maximum = std::max(maximum, scale);
             EXPECT_NEAR(objects[i].at.position.z, -9 + 0.4 * scale, 2e-6);
             for (size_t k = 0; k < i; ++k)
                 EXPECT_GE(apart(objects[i].at.position, objects[k].at.position),
                           0.5 * (scale + objects[k].scale) + 0.1 - 1e-9);
         }
     }
-    EXPECT_GE(least, 0.5);
-    EXPECT_LT(least, 0.6);
-    EXPECT_LE(most, 2);
-    EXPECT_GT(most, 1.9);
+    EXPECT_GE(minimum, 0.5);
+    EXPECT_LT(minimum, 0.6);
+    EXPECT_LE(maximum, 2);
+    EXPECT_GT(maximum, 1.9);
 }
 
-TEST(PlacementTest, ATiltedObjectStandsOnTheGroundClearOfOthers) {
+TEST(PlacementTest, ATiltedObjectIsOnTheGroundClearOfOthers) {
     Sweep sweep = sweepOf({1, 30}, {1, 30});
     sweep.objects[0].ground = "floor";
     sweep.objects[0].roll_deg = {90, 90};
@@ -207,9 +207,9 @@ TEST(PlacementTest, ReportsTheNumberOfObjectsThatFit) {
         placed(sweep, stones(30), 30, 8);
         FAIL() << "30 stones of a metre on 4 m2";
     } catch (const types::ConfigError& error) {
-        const types::Diagnostic& told = error.diagnostics().front();
-        EXPECT_THAT(told.text(), HasSubstr("sweep.yml:4:5: objects[0]: has room for "));
-        EXPECT_THAT(told.text(), HasSubstr("of its 30 objects at pose 8"));
+        const types::Diagnostic& reported = error.diagnostics().front();
+        EXPECT_THAT(reported.text(), HasSubstr("sweep.yml:4:5: objects[0]: has room for "));
+        EXPECT_THAT(reported.text(), HasSubstr("of its 30 objects at pose 8"));
     }
 }
 

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 from pycocotools.coco import COCO
 
-LEAST = 0.99  # of an object's energy
+MIN_SHARE = 0.99  # of an object's energy
 
 
 def places(ping, width, height):
@@ -46,7 +46,7 @@ def main(coco_folder, npz_folder):
                 assert columns.min() >= left and columns.max() < left + width, annotation
                 boxes += 1
     print(json.dumps({"pictures": pictures, "boxes": boxes, "worst": worst}))
-    assert worst >= LEAST, worst
+    assert worst >= MIN_SHARE, worst
 
 
 main(*sys.argv[1:])

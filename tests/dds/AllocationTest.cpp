@@ -31,7 +31,7 @@ TEST_F(AllocationTest, AllocatesNothingAfterTheFirstPings) {
                 while (reader->take(bytes, sender)) ++taken;
         }
     };
-    ASSERT_TRUE(comesTrue([&] { return sendAll(1), taken > 12; }));
+    ASSERT_TRUE(becomesTrue([&] { return sendAll(1), taken > 12; }));
     EXPECT_THAT(test::allocationsOn(publishing.task, [&] { sendAll(50); }), testing::IsEmpty());
     EXPECT_GE(taken, 150u);
 }

@@ -84,7 +84,7 @@ TEST_F(DomainTest, AnnouncesANodeWithIdentifiersOf16Or24Bytes) {
     humble.announce();
     Bytes bytes;
     uint64_t sender = 0;
-    ASSERT_TRUE(comesTrue([&] { return reader.take(bytes, sender); }));
+    ASSERT_TRUE(becomesTrue([&] { return reader.take(bytes, sender); }));
     Info info;
     ros::decode(std::span<const char>(bytes), info);
     ASSERT_EQ(info.node_entities_info_seq.size(), 1u);

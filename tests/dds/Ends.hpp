@@ -66,7 +66,7 @@ struct Subscribing {
     /** Waits for the next pose. */
     std::optional<types::Pose> next() {
         types::Pose pose;
-        if (!comesTrue([&] { return reader.port.readNew(pose); })) return std::nullopt;
+        if (!becomesTrue([&] { return reader.port.readNew(pose); })) return std::nullopt;
         return pose;
     }
     /** Returns a peer's first pose after its greetings, which are at the origin. */

@@ -15,7 +15,7 @@
 
 namespace insonify::dds {
 
-using test::comesTrue;
+using test::becomesTrue;
 
 /** A DDS domain that no other test in this network uses during its lifetime. Its ports are below those that the system
  *  assigns. */
@@ -78,7 +78,7 @@ public:
     /** Sends greetings until a listener has received one; it then receives all that is sent. */
     template <class Greet>
     bool meets(Greet&& greet) const {
-        return comesTrue([&] { return greet(), hasSaid("met"); });
+        return becomesTrue([&] { return greet(), hasSaid("met"); });
     }
     /** Starts a sender, whose first greeting has arrived. */
     void begin() const { signal(SIGUSR1); }
@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    const bool ready_ = comesTrue([&] { return hasSaid("ready"); });
+    const bool ready_ = becomesTrue([&] { return hasSaid("ready"); });
 };
 
 /** For tests with a peer. */

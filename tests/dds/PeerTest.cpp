@@ -66,16 +66,16 @@ TEST_F(PeerTest, SendsImagesOfAMegabyteAt40HertzWithoutLoss) {
     Bytes bytes;
     uint64_t sender = 0;
     Image image;
-    const auto hear = [&] {
-        const bool came = comesTrue([&] { return reader.take(bytes, sender); });
+    const auto receive = [&] {
+        const bool came = becomesTrue([&] { return reader.take(bytes, sender); });
         if (came) ros::decode(std::span<const char>(bytes), image);
         return came;
     };
-    ASSERT_TRUE(hear()) << "a greeting";
+    ASSERT_TRUE(receive()) << "a greeting";
     peer.begin();
-    while (image.header.stamp == ros::Time{}) ASSERT_TRUE(hear());
+    while (image.header.stamp == ros::Time{}) ASSERT_TRUE(receive());
     for (int i = 0; i < 200; ++i) {
-        ASSERT_TRUE(i == 0 || hear()) << i;
+        ASSERT_TRUE(i == 0 || receive()) << i;
         latencies.push_back((framework::wallClock() - ros::fromRos(image.header.stamp)).seconds() * 1e3);
         ASSERT_EQ(image.image.data.size(), 1'024'000u);
         ASSERT_EQ(image.ranges.size(), 1000u);
@@ -138,7 +138,7 @@ TEST_F(PeerTest, ReadsEveryTypeThatIsSent) {
     for (const auto& [name, type] : types)
         peers.push_back(std::make_unique<Peer>(std::string("listen ") + name + " /" + name + " 240 1"));
     const types::SonarPtr ping = pingOf(16, 50);
-    ASSERT_TRUE(comesTrue([&] {
+    ASSERT_TRUE(becomesTrue([&] {
         publishing.send(ping);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         return std::ranges::all_of(peers, &Peer::hasEnded);
@@ -173,26 +173,26 @@ TEST_F(PeerTest, ReadsTheMeasurementsOfNavigationSensors) {
     Publishing<types::DvlPtr> dvls({topicOut("in", "/dvl", message_type<ros::Dvl>)});
     Peer imu_peer("listen Imu /imu 240 1"), pressure_peer("listen FluidPressure /pressure 240 1"),
         dvl_peer("listen Dvl /dvl 240 1");
-    ASSERT_TRUE(comesTrue([&] {
+    ASSERT_TRUE(becomesTrue([&] {
         imus.send(imu);
         pressures.send(pressure);
         dvls.send(dvl);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         return imu_peer.hasEnded() && pressure_peer.hasEnded() && dvl_peer.hasEnded();
     }));
-    const json felt = imu_peer.result()["first"], told = dvl_peer.result()["first"];
+    const json felt = imu_peer.result()["first"], reported = dvl_peer.result()["first"];
     EXPECT_EQ(felt["linear_acceleration"]["z"], 9.75);
     EXPECT_EQ(felt["angular_velocity"]["y"], -0.25);
     EXPECT_EQ(felt["linear_acceleration_covariance"][4], 0.25);
     EXPECT_NEAR(felt["orientation"]["z"], std::sqrt(0.5), 1e-12) << "north, in a world of x east";
     EXPECT_EQ(pressure_peer.result()["first"]["fluid_pressure"], 201'325.5);
-    EXPECT_EQ(told["velocity"]["y"], 0.25) << "to starboard";
-    EXPECT_EQ(told["num_good_beams"], 3);
-    EXPECT_EQ(told["beam_velocities_valid"], true);
-    EXPECT_EQ(told["beam_unit_vec"][1]["y"], -0.5);
-    EXPECT_EQ(told["range"][3], 13.5);
-    EXPECT_TRUE(told["range"][2].is_null()) << "NaN";
-    EXPECT_EQ(told["beam_velocity_covar"][2], -1);
+    EXPECT_EQ(reported["velocity"]["y"], 0.25) << "to starboard";
+    EXPECT_EQ(reported["num_good_beams"], 3);
+    EXPECT_EQ(reported["beam_velocities_valid"], true);
+    EXPECT_EQ(reported["beam_unit_vec"][1]["y"], -0.5);
+    EXPECT_EQ(reported["range"][3], 13.5);
+    EXPECT_TRUE(reported["range"][2].is_null()) << "NaN";
+    EXPECT_EQ(reported["beam_velocity_covar"][2], -1);
 }
 
 TEST_F(PeerTest, ReadsSoundingsAsPointsInTheWorldAndTheRangeOfAnAltimeter) {
@@ -207,7 +207,7 @@ TEST_F(PeerTest, ReadsSoundingsAsPointsInTheWorldAndTheRangeOfAnAltimeter) {
     Publishing<types::PointCloudPtr> points({topicOut("in", "/soundings", message_type<ros::PointCloud2>)});
     Publishing<types::Range> ranges({topicOut("in", "/altitude", message_type<ros::Range>)});
     Peer point_peer("listen PointCloud2 /soundings 240 1"), range_peer("listen Range /altitude 240 1");
-    ASSERT_TRUE(comesTrue([&] {
+    ASSERT_TRUE(becomesTrue([&] {
         points.send(soundings);
         ranges.send(range);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));

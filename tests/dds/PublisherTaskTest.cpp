@@ -23,12 +23,12 @@ protected:
 
     /** Returns the message that `send` causes on a topic, or fails. */
     template <class Message>
-    Message heard(const std::string& topic, const std::function<void()>& send) {
+    Message received(const std::string& topic, const std::function<void()>& send) {
         Reader reader(node, ddsTopic(topic), Message::type_name, "", {}, {});
         Bytes bytes;
         uint64_t sender = 0;
         Message message;
-        const bool came = comesTrue([&] { return send(), reader.take(bytes, sender); });
+        const bool came = becomesTrue([&] { return send(), reader.take(bytes, sender); });
         EXPECT_TRUE(came);
         if (came) ros::decode(std::span<const char>(bytes), message);
         return message;
@@ -74,7 +74,7 @@ TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
                                             topicOut("in", "/clock", message_type<ros::Clock>)});
     const types::SonarPtr ping = pingOf(16, 50);
     const auto send = [&] { publishing.send(ping); };
-    const auto image = heard<ros::ProjectedSonarImage>("/image", send);
+    const auto image = received<ros::ProjectedSonarImage>("/image", send);
     EXPECT_EQ(image.image.beam_count, 16u);
     EXPECT_EQ(image.ranges.size(), 50u);
     EXPECT_EQ(image.image.data.size(), 16u * 50 * 4);  // float32
@@ -84,11 +84,11 @@ TEST_F(PublisherTaskTest, SendsAPingAsEachMessageThatItCanBecome) {
     ros::SonarOptions options;
     ros::convert(*ping, options, expected);
     EXPECT_EQ(image, expected);
-    EXPECT_EQ(heard<ros::RawSonarImage>("/raw", send).samples_per_beam, 50u);
-    EXPECT_EQ(heard<ros::SonarRanges>("/ranges", send).ranges.size(), 16u);
-    EXPECT_GT(heard<ros::PointCloud2>("/points", send).width, 0u);
-    EXPECT_EQ(heard<ros::LaserScan>("/scan", send).ranges.size(), 16u);
-    EXPECT_EQ(ros::fromRos(heard<ros::Clock>("/clock", send).clock), ping->time);
+    EXPECT_EQ(received<ros::RawSonarImage>("/raw", send).samples_per_beam, 50u);
+    EXPECT_EQ(received<ros::SonarRanges>("/ranges", send).ranges.size(), 16u);
+    EXPECT_GT(received<ros::PointCloud2>("/points", send).width, 0u);
+    EXPECT_EQ(received<ros::LaserScan>("/scan", send).ranges.size(), 16u);
+    EXPECT_EQ(ros::fromRos(received<ros::Clock>("/clock", send).clock), ping->time);
 }
 
 TEST_F(PublisherTaskTest, ConvertsSoundingsToTheWorldFrameAndNamesIt) {
@@ -97,7 +97,7 @@ TEST_F(PublisherTaskTest, ConvertsSoundingsToTheWorldFrameAndNamesIt) {
     soundings->add({12.5, -3.25, -8}, 0.5);  // north, west, up
     Publishing<types::PointCloudPtr> publishing({topicOut("in", "/soundings", message_type<ros::PointCloud2>)},
                                                 [](PublisherConfig& config) { config.world_frame_id = "odom"; });
-    const auto cloud = heard<ros::PointCloud2>("/soundings", [&] { publishing.send(soundings); });
+    const auto cloud = received<ros::PointCloud2>("/soundings", [&] { publishing.send(soundings); });
     ASSERT_EQ(cloud.data.size(), 16u);
     float point[4];
     std::memcpy(point, cloud.data.data(), sizeof point);
@@ -114,7 +114,7 @@ TEST_F(PublisherTaskTest, ConvertsAPoseToTheWorldFrameAndNamesItsFrames) {
           std::pair{ros::WorldFrame::AsIs, ros::Point{3, 2, 1}}}) {
         Publishing<types::Pose> publishing({topicOut("in", "/odometry", message_type<ros::Odometry>)},
                                            [&](PublisherConfig& config) { config.node.world_frame = frame; });
-        const auto message = heard<ros::Odometry>("/odometry", [&] { publishing.send(pose); });
+        const auto message = received<ros::Odometry>("/odometry", [&] { publishing.send(pose); });
         EXPECT_EQ(message.pose.pose.position, expected);
         EXPECT_EQ(message.header.frame_id, "map");
         EXPECT_EQ(message.child_frame_id, "base_link");
@@ -126,7 +126,7 @@ TEST_F(PublisherTaskTest, SendsAPoseAsATransformOfItsFrames) {
     pose.time = framework::wallClock();
     pose.position = {3, 2, 1};  // north, west, up
     Publishing<types::Pose> publishing({topicOut("in", "/tf", message_type<ros::TFMessage>)});
-    const auto message = heard<ros::TFMessage>("/tf", [&] { publishing.send(pose); });
+    const auto message = received<ros::TFMessage>("/tf", [&] { publishing.send(pose); });
     ASSERT_EQ(message.transforms.size(), 1u);
     EXPECT_EQ(message.transforms[0].header.frame_id, "map");
     EXPECT_EQ(message.transforms[0].child_frame_id, "base_link");
@@ -151,7 +151,7 @@ TEST_F(PublisherTaskTest, PublishesTheMountToLateSubscribersAndTheFrequencyInPin
     Reader late(node, ddsTopic("/tf_static"), ros::TFMessage::type_name, "", latched, {});
     Bytes bytes;
     uint64_t sender = 0;
-    ASSERT_TRUE(comesTrue([&] { return late.take(bytes, sender); }));
+    ASSERT_TRUE(becomesTrue([&] { return late.take(bytes, sender); }));
     ros::TFMessage mounts;
     ros::decode(std::span<const char>(bytes), mounts);
     ASSERT_EQ(mounts.transforms.size(), 2u) << "a frame once";
@@ -166,34 +166,35 @@ TEST_F(PublisherTaskTest, PublishesTheMountToLateSubscribersAndTheFrequencyInPin
         sonar.ping.write(pingOf(4, 4));
         task.update();
     };
-    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/image", send).ping_info.frequency, 750e3f);
-    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/other", send).ping_info.frequency, 300e3f) << "the topic's own";
+    EXPECT_EQ(received<ros::ProjectedSonarImage>("/image", send).ping_info.frequency, 750e3f);
+    EXPECT_EQ(received<ros::ProjectedSonarImage>("/other", send).ping_info.frequency, 300e3f) << "the topic's own";
 }
 
 TEST_F(PublisherTaskTest, WarnsOnceOfAMessageThatFastDdsWouldLose) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/large", message_type<ros::ProjectedSonarImage>)});
-    std::vector<std::string> told;
-    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
-    heard<ros::ProjectedSonarImage>("/large", [&] { publishing.send(pingOf(16, 50)); });
-    EXPECT_THAT(told, testing::IsEmpty());
+    std::vector<std::string> reported;
+    publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
+    received<ros::ProjectedSonarImage>("/large", [&] { publishing.send(pingOf(16, 50)); });
+    EXPECT_THAT(reported, testing::IsEmpty());
     Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
-    EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(256, 500)), !told.empty(); }));
+    EXPECT_TRUE(becomesTrue([&] { return publishing.send(pingOf(256, 500)), !reported.empty(); }));
     publishing.send(pingOf(256, 500));
-    ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("/large: its messages of 520 kB are larger than Linux's receive buffers (213 kB)"));
-    EXPECT_THAT(told[0], HasSubstr("take dtype: uint8, or raise"));
+    ASSERT_EQ(reported.size(), 1u);
+    EXPECT_THAT(reported[0],
+                HasSubstr("/large: its messages of 520 kB are larger than Linux's receive buffers (213 kB)"));
+    EXPECT_THAT(reported[0], HasSubstr("take dtype: uint8, or raise"));
 }
 
 TEST_F(PublisherTaskTest, TheRemedyForALargeMessageDiffersFromThePresentSetting) {
     TopicOut small = topicOut("in", "/large", message_type<ros::ProjectedSonarImage>);
     small.sonar.dtype = ros::ImageType::Uint8;
     Publishing<types::SonarPtr> publishing({small});
-    std::vector<std::string> told;
-    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    std::vector<std::string> reported;
+    publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
     Reader reader(node, ddsTopic("/large"), ros::ProjectedSonarImage::type_name, "", {}, {});
-    EXPECT_TRUE(comesTrue([&] { return publishing.send(pingOf(512, 500)), !told.empty(); }));
-    ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], testing::AllOf(HasSubstr("lose most of them; raise"), testing::Not(HasSubstr("dtype"))));
+    EXPECT_TRUE(becomesTrue([&] { return publishing.send(pingOf(512, 500)), !reported.empty(); }));
+    ASSERT_EQ(reported.size(), 1u);
+    EXPECT_THAT(reported[0], testing::AllOf(HasSubstr("lose most of them; raise"), testing::Not(HasSubstr("dtype"))));
 }
 
 TEST_F(PublisherTaskTest, SendsAPictureAsAnImage) {
@@ -205,7 +206,7 @@ TEST_F(PublisherTaskTest, SendsAPictureAsAnImage) {
     picture->frame_status = types::ImageStatus::Valid;
     picture->image.assign(24, 9);
     Publishing<types::ImagePtr> publishing({topicOut("in", "/fan", message_type<ros::Image>)});
-    const auto message = heard<ros::Image>("/fan", [&] { publishing.send(picture); });
+    const auto message = received<ros::Image>("/fan", [&] { publishing.send(picture); });
     EXPECT_EQ(message.encoding, "bgr8");
     EXPECT_EQ(message.data, picture->image);
 }
@@ -221,21 +222,21 @@ TEST_F(PublisherTaskTest, MakesNoMessageForATopicWithoutReaders) {
 TEST_F(PublisherTaskTest, DropsAndCountsSamplesThatDoNotFitTheMessage) {
     Publishing<types::SonarPtr> publishing({topicOut("in", "/scan", message_type<ros::LaserScan>),
                                             topicOut("in", "/image", message_type<ros::RawSonarImage>)});
-    std::vector<std::string> told;
-    publishing.task.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    std::vector<std::string> reported;
+    publishing.task.environment().warn = [&](const std::string& text) { reported.push_back(text); };
     auto crooked = std::make_shared<types::Sonar>(*pingOf(4, 4));
     crooked->bearings[1] = types::Angle{0.1234};
     Reader reader(node, ddsTopic("/scan"), ros::LaserScan::type_name, "", {}, {});
-    ASSERT_TRUE(comesTrue([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
+    ASSERT_TRUE(becomesTrue([&] { return publishing.send(crooked), !publishing.task.notices().empty(); }));
     publishing.send(crooked);
     publishing.send(nullptr);
     EXPECT_EQ(publishing.task.state(), framework::TaskState::Running);
-    ASSERT_EQ(told.size(), 1u);
-    EXPECT_THAT(told[0], HasSubstr("publisher: 1 message dropped; the last: /scan: the beams are not at equal"));
+    ASSERT_EQ(reported.size(), 1u);
+    EXPECT_THAT(reported[0], HasSubstr("publisher: 1 message dropped; the last: /scan: the beams are not at equal"));
     EXPECT_THAT(publishing.task.notices(),
                 testing::UnorderedElementsAre(HasSubstr("2 messages dropped: /scan: the beams"),
                                               HasSubstr("1 message dropped: publisher.in: a sample is null")));
-    EXPECT_EQ(heard<ros::RawSonarImage>("/image", [&] { publishing.send(crooked); }).image.beam_count, 4u);
+    EXPECT_EQ(received<ros::RawSonarImage>("/image", [&] { publishing.send(crooked); }).image.beam_count, 4u);
 }
 
 TEST_F(PublisherTaskTest, ConfiguredFramesReplaceThoseOfThePose) {
@@ -249,13 +250,13 @@ TEST_F(PublisherTaskTest, ConfiguredFramesReplaceThoseOfThePose) {
     named.sonar.frame_id = "odom";
     Publishing<types::Pose> publishing({plain, named});
     const auto send = [&] { publishing.send(pose); };
-    EXPECT_EQ(heard<ros::Odometry>("/plain", send).header.frame_id, "world");
-    EXPECT_EQ(heard<ros::Odometry>("/plain", send).child_frame_id, "body");
-    EXPECT_EQ(heard<ros::Odometry>("/named", send).header.frame_id, "odom");
-    EXPECT_EQ(heard<ros::Odometry>("/named", send).child_frame_id, "auv");
+    EXPECT_EQ(received<ros::Odometry>("/plain", send).header.frame_id, "world");
+    EXPECT_EQ(received<ros::Odometry>("/plain", send).child_frame_id, "body");
+    EXPECT_EQ(received<ros::Odometry>("/named", send).header.frame_id, "odom");
+    EXPECT_EQ(received<ros::Odometry>("/named", send).child_frame_id, "auv");
     Publishing<types::Pose> mapped({topicOut("in", "/mapped", message_type<ros::PoseStamped>)},
                                    [](PublisherConfig& config) { config.world_frame_id = "map"; });
-    EXPECT_EQ(heard<ros::PoseStamped>("/mapped", [&] { mapped.send(pose); }).header.frame_id, "map");
+    EXPECT_EQ(received<ros::PoseStamped>("/mapped", [&] { mapped.send(pose); }).header.frame_id, "map");
 }
 
 TEST_F(PublisherTaskTest, ReportsAFrameWithTwoKindsOfAxes) {
@@ -314,25 +315,25 @@ TEST_F(PublisherTaskTest, TopicsAndFramesGetTheNamespaceOfTheVehicle) {
                                             topicOut("in", "/tf", message_type<ros::TFMessage>)},
                                            {}, names);
         const auto send = [&] { publishing.send(pose); };
-        const auto odometry = heard<ros::Odometry>("/auv1/odometry", send);
+        const auto odometry = received<ros::Odometry>("/auv1/odometry", send);
         EXPECT_EQ(odometry.header.frame_id, "map");
         EXPECT_EQ(odometry.child_frame_id, "auv1/base_link");
-        EXPECT_EQ(heard<ros::PoseStamped>("/remapped", send).header.frame_id, "map");
-        const auto transforms = heard<ros::TFMessage>("/tf", send);
+        EXPECT_EQ(received<ros::PoseStamped>("/remapped", send).header.frame_id, "map");
+        const auto transforms = received<ros::TFMessage>("/tf", send);
         ASSERT_EQ(transforms.transforms.size(), 1u);
         EXPECT_EQ(transforms.transforms[0].header.frame_id, "map");
         EXPECT_EQ(transforms.transforms[0].child_frame_id, "auv1/base_link");
         EXPECT_THAT(publishing.task.notices(), testing::IsEmpty()) << "/tf is shared";
         pose.source_frame = "auv1/hull";  // from a sender that has added the prefix already
-        EXPECT_EQ(heard<ros::Odometry>("/auv1/odometry", send).child_frame_id, "auv1/hull");
+        EXPECT_EQ(received<ros::Odometry>("/auv1/odometry", send).child_frame_id, "auv1/hull");
     }
     Publishing<types::SonarPtr> publishing(
         {topicOut("in", "sonar", message_type<ros::ProjectedSonarImage>),
          topicOut("in", "/scan", message_type<ros::LaserScan>)},
         [](PublisherConfig& config) { config.frame_id = "fls"; }, names);
     const auto send = [&] { publishing.send(pingOf(16, 50)); };
-    EXPECT_EQ(heard<ros::ProjectedSonarImage>("/auv1/sonar", send).header.frame_id, "auv1/fls");
-    EXPECT_EQ(heard<ros::LaserScan>("/scan", send).header.frame_id, "auv1/fls");
+    EXPECT_EQ(received<ros::ProjectedSonarImage>("/auv1/sonar", send).header.frame_id, "auv1/fls");
+    EXPECT_EQ(received<ros::LaserScan>("/scan", send).header.frame_id, "auv1/fls");
     EXPECT_THAT(publishing.task.notices(),
                 testing::Contains("not in the namespace /auv1, because their names begin with a slash: /scan"));
 }
@@ -364,7 +365,7 @@ TEST_F(PublisherTaskTest, PublishesTheMountBetweenPrefixedFrames) {
     Reader reader(node, "rt/tf_static", ros::TFMessage::type_name, "", latched, {});
     Bytes bytes;
     uint64_t sender = 0;
-    ASSERT_TRUE(comesTrue([&] { return reader.take(bytes, sender); }));
+    ASSERT_TRUE(becomesTrue([&] { return reader.take(bytes, sender); }));
     ros::TFMessage message;
     ros::decode(std::span<const char>(bytes), message);
     ASSERT_EQ(message.transforms.size(), 1u);

@@ -23,7 +23,7 @@ protected:
     Bytes sent(size_t size) {
         Bytes bytes(size);
         std::iota(bytes.begin(), bytes.end(), char{7});
-        EXPECT_TRUE(comesTrue([&] { return writer.hasReaders(); }));
+        EXPECT_TRUE(becomesTrue([&] { return writer.hasReaders(); }));
         EXPECT_TRUE(writer.write(bytes)) << writer.failure();
         return bytes;
     }
@@ -35,10 +35,10 @@ TEST_F(RawTypeTest, ReturnsBytesOfAnySizePaddedToWholeWords) {
     for (const size_t size : {4u, 5u, 7u, 8u, 1000u, 100'001u, 3'000'000u}) {
         Bytes bytes = sent(size), received;
         uint64_t sender = 0;
-        ASSERT_TRUE(comesTrue([&] { return reader.take(received, sender); })) << size;
+        ASSERT_TRUE(becomesTrue([&] { return reader.take(received, sender); })) << size;
         bytes.resize((size + 3) / 4 * 4);
         EXPECT_EQ(received, bytes);
-        EXPECT_TRUE(reader.hears(sender));
+        EXPECT_TRUE(reader.receives(sender));
     }
 }
 
@@ -56,13 +56,13 @@ TEST_F(RawTypeTest, AReaderOfAnotherTypeReceivesNothing) {
     sent(8);
     Bytes received;
     uint64_t sender = 0;
-    ASSERT_TRUE(comesTrue([&] { return reader.take(received, sender); }));
+    ASSERT_TRUE(becomesTrue([&] { return reader.take(received, sender); }));
     EXPECT_FALSE(other.take(received, sender));
 }
 
 TEST_F(RawTypeTest, NotifiesAListenerOfArrivals) {
-    std::atomic<int> told = 0;
-    Reader listening(node, "rt/bytes", "test_msgs/msg/Bytes", "", {}, [&] { ++told; });
+    std::atomic<int> reported = 0;
+    Reader listening(node, "rt/bytes", "test_msgs/msg/Bytes", "", {}, [&] { ++reported; });
     sent(8);
-    EXPECT_TRUE(comesTrue([&] { return told == 1; }));
+    EXPECT_TRUE(becomesTrue([&] { return reported == 1; }));
 }

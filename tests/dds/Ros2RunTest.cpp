@@ -37,13 +37,13 @@ protected:
     }
     /** Returns the first message that arrives on a topic. */
     template <class Message>
-    Message heard(const std::string& topic) {
+    Message received(const std::string& topic) {
         Node node(domainId({}), "listener", 16);
         Reader reader(node, ddsTopic(topic), Message::type_name, "", {}, {});
         Bytes bytes;
         uint64_t sender = 0;
         Message message;
-        const bool came = comesTrue([&] { return reader.take(bytes, sender); });
+        const bool came = becomesTrue([&] { return reader.take(bytes, sender); });
         EXPECT_TRUE(came) << topic;
         if (came) ros::decode(std::span<const char>(bytes), message);
         return message;
@@ -85,10 +85,10 @@ TEST_F(Ros2RunTest, PosesOfAVehicleBecomePingsOfTheSonar) {
     ros::ProjectedSonarImage message;
     Bytes bytes;
     uint64_t sender = 0;
-    const bool heard = comesTrue([&] { return reader.take(bytes, sender); });
+    const bool received = becomesTrue([&] { return reader.take(bytes, sender); });
     for (const Process* process : {&poses, &sonar})
-        if (!heard) process->signal(SIGKILL);
-    ASSERT_TRUE(heard);
+        if (!received) process->signal(SIGKILL);
+    ASSERT_TRUE(received);
     ros::decode(std::span<const char>(bytes), message);
     EXPECT_EQ(message.image.beam_count, 256u);
     EXPECT_EQ(message.image.data.size(), 256u * 500);
@@ -114,7 +114,7 @@ TEST_F(Ros2RunTest, ReportsDroppedPosesAtOnceAndAtTheEnd) {
 
 TEST_F(Ros2RunTest, ReportsThatItWaitsForPoses) {
     Process waiting(insonifyWords({"run", fls, "--out", "out"}), folder.path());
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         return readFile(folder / "stderr.txt").find("warning: scene: scene.pose: waits for the first pose") !=
                std::string::npos;
     })) << readFile(folder / "stderr.txt");
@@ -130,7 +130,7 @@ TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
         insonifyWords({"run", tf, "--out", "out", "--pings", "10", "--summary", "summary.json", "--set", patience}),
         folder.path());
     const Peer peer("transforms 0.5");
-    if (!comesTrue([&] { return fs::exists(folder / "summary.json"); })) sonar.signal(SIGKILL);
+    if (!becomesTrue([&] { return fs::exists(folder / "summary.json"); })) sonar.signal(SIGKILL);
     const Outcome outcome = sonar.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 10);
@@ -193,11 +193,11 @@ TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveSeparateTopicsAndFrames) {
         running.emplace_back(insonifyWords(words), folders[2 * i + 1].path());
     }
     for (const std::string name : {"auv1", "auv2"}) {
-        EXPECT_EQ(heard<ros::ProjectedSonarImage>("/" + name + "/sonar").header.frame_id, name + "/sonar_z_forward");
-        EXPECT_EQ(heard<ros::LaserScan>("/" + name + "/sonar/scan").header.frame_id, name + "/sonar");
+        EXPECT_EQ(received<ros::ProjectedSonarImage>("/" + name + "/sonar").header.frame_id, name + "/sonar_z_forward");
+        EXPECT_EQ(received<ros::LaserScan>("/" + name + "/sonar/scan").header.frame_id, name + "/sonar");
     }
-    heard<ros::Clock>("/clock");
-    heard<ros::Clock>("/auv2/clock");
+    received<ros::Clock>("/clock");
+    received<ros::Clock>("/auv2/clock");
     for (const Process& process : running) process.signal(SIGINT);
     for (const Process& process : running) {
         const Outcome outcome = process.wait();
@@ -228,7 +228,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
     ASSERT_EQ(commands.size(), 1u);
     commands[0].erase(commands[0].begin());
     const Process replay(insonifyWords(commands[0]), folder.path());
-    const auto image = heard<ros::ProjectedSonarImage>("/auv3/sonar");
+    const auto image = received<ros::ProjectedSonarImage>("/auv3/sonar");
     EXPECT_EQ(image.image.beam_count, 16u);
     replay.signal(SIGINT);
     const Outcome outcome = replay.wait();
@@ -246,7 +246,7 @@ TEST_F(Ros2RunTest, NamesNodesByTheArguments) {
     std::set<std::string> names;
     Bytes bytes;
     uint64_t sender = 0;
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         Info info;
         while (reader.take(bytes, sender)) {
             ros::decode(std::span<const char>(bytes), info);
@@ -330,7 +330,7 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
     {  // an invalid request gets no response and stops nothing
         Node node(domainId({}), "stranger", 16);
         Writer writer(node, "rq/auv/ros/set_parametersRequest", "rcl_interfaces/srv/SetParameters_Request", "", {});
-        EXPECT_TRUE(comesTrue([&] { return writer.hasReaders(); }));
+        EXPECT_TRUE(becomesTrue([&] { return writer.hasReaders(); }));
         std::mt19937 random(1);
         for (size_t size = 4; size < 200; ++size) {
             Bytes bytes{0, 1, 0, 0};

@@ -31,9 +31,9 @@ TEST_F(SlowReaderTest, APeerThatHangsBlocksNothing) {
             std::this_thread::sleep_for(std::chrono::milliseconds(25));
         }
     });
-    const bool goes_on = test::reaches(sent, 120);
-    EXPECT_TRUE(goes_on) << "ping " << sent << " waits for a peer that hangs";
-    if (!goes_on) hanging.signal(SIGKILL);
+    const bool continues = test::reaches(sent, 120);
+    EXPECT_TRUE(continues) << "ping " << sent << " waits for a peer that hangs";
+    if (!continues) hanging.signal(SIGKILL);
     all.get();
     EXPECT_EQ(good.result()["count"], 120);
     EXPECT_THAT(publishing.task.notices(), testing::IsEmpty());

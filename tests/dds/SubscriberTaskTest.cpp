@@ -23,7 +23,7 @@ types::Pose somewhere(double x) {
 /** Sends until both have found each other. */
 void meet(Publishing<types::Pose>& publishing, Subscribing& subscribing, const types::Pose& pose) {
     types::Pose came;
-    ASSERT_TRUE(comesTrue([&] { return publishing.send(pose), subscribing.reader.port.readNew(came); }));
+    ASSERT_TRUE(becomesTrue([&] { return publishing.send(pose), subscribing.reader.port.readNew(came); }));
     subscribing.reader.port.clear();
 }
 
@@ -40,7 +40,7 @@ TEST_F(SubscriberTaskTest, APoseReturnsUnchangedInAnyFrame) {
             const types::Pose sent = somewhere(1);
             publishing.send(sent);
             std::optional<types::Pose> came;
-            ASSERT_TRUE(comesTrue([&] {
+            ASSERT_TRUE(becomesTrue([&] {
                 publishing.send(sent);
                 came.emplace();
                 return subscribing.reader.port.readNew(*came);
@@ -105,7 +105,7 @@ TEST_F(SubscriberTaskTest, InvalidMessagesDoNotDisplaceAGoodPose) {
     lost.position.x = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < 50; ++i) publishing.send(lost);
     types::Pose pose;
-    ASSERT_TRUE(comesTrue([&] { return subscribing.task.update(), subscribing.reader.port.readNew(pose); }));
+    ASSERT_TRUE(becomesTrue([&] { return subscribing.task.update(), subscribing.reader.port.readNew(pose); }));
     EXPECT_EQ(pose.position.x, 7);
 }
 
@@ -130,7 +130,7 @@ TEST_F(SubscriberTaskTest, ReportsATopicWithoutAPoseTogetherWithTheDomainsTopics
         types::ThrottledWarning drops{"message", "dropped"}, odd{"pose", "made of unit length"};
         const Subscription subscription(node, config, in, drops, odd, {});
         std::string text;
-        comesTrue([&] {
+        becomesTrue([&] {
             text = subscription.absence(node);
             return node.published().size() >= 2 && text.find("none of whose") == text.npos;
         });

@@ -36,7 +36,7 @@ struct SubscriptionTest : Loopback {
 
     std::optional<Writer> newWriter() {
         std::optional<Writer> made(std::in_place, node, "rt/judged", ros::Odometry::type_name, "", Quality{});
-        EXPECT_TRUE(comesTrue([&] { return made->hasReaders(); }));
+        EXPECT_TRUE(becomesTrue([&] { return made->hasReaders(); }));
         return made;
     }
     void send(const ros::Odometry& message) {
@@ -125,7 +125,7 @@ TEST_F(SubscriptionTest, DropsStampsThatGoBackUntilTheirSenderIsGone) {
     writer.reset();
     writer = newWriter();  // a restarted simulator
     send(at(1, 4));
-    ASSERT_TRUE(comesTrue([&] { return take(); }));
+    ASSERT_TRUE(becomesTrue([&] { return take(); }));
     EXPECT_EQ(pose.position.x, 4);
     EXPECT_EQ(drops(), 1u);
 }
@@ -163,7 +163,7 @@ TEST_F(SubscriptionTest, DoesNotTakeAMessageFarTooLarge) {
     writer->write(Bytes(3 << 20, 'x'));
     writer->write(Bytes((64 << 10) + 4, 'x'));
     send(at(1, 1));
-    ASSERT_TRUE(comesTrue([&] { return take(); }));
+    ASSERT_TRUE(becomesTrue([&] { return take(); }));
     EXPECT_EQ(pose.position.x, 1);
     EXPECT_FALSE(take());
     EXPECT_EQ(drops(), 2u);
@@ -184,7 +184,7 @@ TEST_F(SubscriptionTest, CanStampAPoseWithItsArrival) {
     strange.stamp = StampFrom::Arrival;
     Subscription other(node, config, strange, dropped, odd, {});
     send(at(1, 1));
-    ASSERT_TRUE(comesTrue([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
+    ASSERT_TRUE(becomesTrue([&] { return other.take(arrival, pose); }) || (send(at(2, 2)), other.take(arrival, pose)));
     EXPECT_EQ(pose.time, arrival);
 }
 

@@ -71,13 +71,13 @@ TEST_F(TransformTaskTest, ReportsTheLinkThatInterruptsAChain) {
     if (!Peer::available()) GTEST_SKIP() << "PyPI's cyclonedds is not in " << python();
     startWith({{"pose", "base_link"}});
     const Peer peer("transforms 2 0");
-    EXPECT_TRUE(tells("missing: pose: no transforms lead from base_link to map, only to odom"));
+    EXPECT_TRUE(reports("missing: pose: no transforms lead from base_link to map, only to odom"));
     Sender sender;
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         sender.send({Sender::place("map", "odom", 5)});
         return readers[0].port.readNewest(*std::make_unique<types::Pose>()) == framework::FlowStatus::NewData;
     }));
-    EXPECT_TRUE(tells("missing: pose: odom in map was not published for a second"));
+    EXPECT_TRUE(reports("missing: pose: odom in map was not published for a second"));
 }
 
 TEST_F(TransformTaskTest, SendsAStaticChainTenTimesASecond) {
@@ -97,7 +97,7 @@ TEST_F(TransformTaskTest, CountsRefusedTransformsAndContinues) {
     auto lost = Sender::place("map", "other", 1);
     lost.transform.translation.x = std::numeric_limits<double>::quiet_NaN();
     std::optional<types::Pose> pose;
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         sender.writer.write(Bytes(10, 'x'));
         sender.send({lost, Sender::place("map", "base_link", 3)});
         types::Pose came;
@@ -105,8 +105,8 @@ TEST_F(TransformTaskTest, CountsRefusedTransformsAndContinues) {
         return pose.has_value();
     }));
     EXPECT_EQ(pose.value_or(types::Pose{}).position, glm::dvec3(3, 0, 0));
-    EXPECT_TRUE(tells("dropped: other: translation and rotation are not finite"));
-    EXPECT_TRUE(tells("dropped: a message is not of its type"));
+    EXPECT_TRUE(reports("dropped: other: translation and rotation are not finite"));
+    EXPECT_TRUE(reports("dropped: a message is not of its type"));
 }
 
 TEST_F(TransformTaskTest, CanStampTransformsWithTheirArrival) {
@@ -116,7 +116,7 @@ TEST_F(TransformTaskTest, CanStampTransformsWithTheirArrival) {
     old.header.stamp = {5, 0};  // of a simulation's time
     std::optional<types::Pose> pose;
     const types::Time before = framework::wallClock();
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         sender.send({old});
         types::Pose came;
         if (readers[0].port.readNew(came)) pose = came;

@@ -87,9 +87,9 @@ protected:
     }
     void expectStraight(const std::string& picture) const {
         const output::SideScanPictureConfig config;
-        const auto [least, greatest] = brightestColumns(folder_ / picture, config);
+        const auto [minimum, greatest] = brightestColumns(folder_ / picture, config);
         const double column = output::SideScanImage(config).water().width / 2.0 * ground_range / 30;
-        EXPECT_NEAR(least, column, 3);
+        EXPECT_NEAR(minimum, column, 3);
         EXPECT_NEAR(greatest, column, 3);
     }
 
@@ -102,8 +102,8 @@ TEST_F(AltitudeRunTest, AReplayHasTheAltitudesOfTheRecording) {
     const Outcome outcome = callInsonify(folder_, {"replay", "wire.0.log", "side.yml", "--out", "out"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     expectStraight("out/ground_000001.png");
-    const auto [least, greatest] = brightestColumns(folder_ / "out/fixed_000001.png", {});
-    EXPECT_GT(greatest - least, 30) << "a fixed altitude bends the wire";
+    const auto [minimum, greatest] = brightestColumns(folder_ / "out/fixed_000001.png", {});
+    EXPECT_GT(greatest - minimum, 30) << "a fixed altitude bends the wire";
 }
 
 TEST_F(AltitudeRunTest, AnXtfFileOfAReplayHasTheAltitudesOfTheRecording) {
@@ -124,7 +124,7 @@ TEST_F(AltitudeRunTest, AnExportAlongTheGroundHasTheAltitudesOfTheRecording) {
     EXPECT_EQ(to("ground.png", "--ground").out, "ground_000000.png\n");
     expectStraight("ground_000000.png");
     ASSERT_EQ(to("slant.png", "").code, 0);
-    const auto [least, greatest] = brightestColumns(folder_ / "slant_000000.png", {});
-    EXPECT_GT(greatest - least, 30) << "slant ranges";
+    const auto [minimum, greatest] = brightestColumns(folder_ / "slant_000000.png", {});
+    EXPECT_GT(greatest - minimum, 30) << "slant ranges";
     EXPECT_THAT(to("ground.npz", "--ground").err, HasSubstr("--ground: is for pictures"));
 }

@@ -16,16 +16,16 @@ TEST(CheckCommandTest, AValidDeploymentIsPrintedAsAGraph) {
 
 TEST(CheckCommandTest, JsonHasTasksAndConnections) {
     const WallFolder folder;
-    const json told = json::parse(callInsonify(folder, {"check", "wall.yml", "--json"}).out);
-    EXPECT_TRUE(told["valid"]);
-    EXPECT_EQ(told["errors"], json::array());
-    EXPECT_EQ(told["warnings"], json::array());
-    EXPECT_EQ(told["tasks"].size(), 5u);
-    EXPECT_EQ(told["tasks"][2]["name"], "sonar");
-    EXPECT_EQ(told["tasks"][2]["type"], "sonar::SonarTask");
-    EXPECT_EQ(told["connections"][4]["from"], "noise.noisy");
-    EXPECT_EQ(told["connections"][4]["to"], "log.noisy");
-    EXPECT_EQ(told["connections"][4]["policy"]["size"], 64);
+    const json reported = json::parse(callInsonify(folder, {"check", "wall.yml", "--json"}).out);
+    EXPECT_TRUE(reported["valid"]);
+    EXPECT_EQ(reported["errors"], json::array());
+    EXPECT_EQ(reported["warnings"], json::array());
+    EXPECT_EQ(reported["tasks"].size(), 5u);
+    EXPECT_EQ(reported["tasks"][2]["name"], "sonar");
+    EXPECT_EQ(reported["tasks"][2]["type"], "sonar::SonarTask");
+    EXPECT_EQ(reported["connections"][4]["from"], "noise.noisy");
+    EXPECT_EQ(reported["connections"][4]["to"], "log.noisy");
+    EXPECT_EQ(reported["connections"][4]["policy"]["size"], 64);
 }
 
 TEST(CheckCommandTest, WarnsOfKeysThatTheScheduleIgnores) {
@@ -44,10 +44,10 @@ TEST(CheckCommandTest, JsonHasEveryErrorWithItsPlace) {
     const WallFolder folder(replaced(wall_deployment, "range: 20", "range: -20"));
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml", "--json"});
     EXPECT_EQ(outcome.code, 2);
-    const json told = json::parse(outcome.out);
-    EXPECT_FALSE(told["valid"]);
-    ASSERT_EQ(told["errors"].size(), 1u);
-    const json& error = told["errors"][0];
+    const json reported = json::parse(outcome.out);
+    EXPECT_FALSE(reported["valid"]);
+    ASSERT_EQ(reported["errors"].size(), 1u);
+    const json& error = reported["errors"][0];
     EXPECT_EQ(error["file"], "wall.yml");
     EXPECT_EQ(error["line"], 16);
     EXPECT_EQ(error["column"], 14);

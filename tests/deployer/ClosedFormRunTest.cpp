@@ -84,7 +84,7 @@ TEST(ClosedFormRunTest, Form7TwoObjectsAtOneRangeDoubleTheEnergyButNotThePublish
 }
 
 TEST(ClosedFormRunTest, Form8AShadowEndsWhereTheRayOverTheTopMeetsTheBottom) {
-    // A screen 2 m high stands on the bottom, 5 m below the sonar, at a horizontal distance of 15 m.
+    // A screen 2 m high is on the bottom, 5 m below the sonar, at a horizontal distance of 15 m.
     const GeometryPtr scene = sceneOf({ground(-5), quad({15, -50, -5}, {0, 100, 0}, {0, 0, 2})});
     const Sonar ping = loggedPing(*scene, R"({speed_of_sound: 1000, range: 40, bin_count: 400, beam_count: 1,
         field_of_view_deg: 1, beam_height_deg: 60, quality: {rows: 512, columns_per_beam: 64}})");

@@ -88,7 +88,7 @@ inline json jsonOf(const TestFolder& folder, std::vector<std::string> arguments)
 
 /** Waits until a program has written something to its error output. */
 inline bool says(const TestFolder& folder, const std::string& text) {
-    return test::comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
+    return test::becomesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
 }
 
 /** Runs a program in Debian's Python, which has numpy; returns its output. */

@@ -47,7 +47,7 @@ protected:
     const TestFolder folder_;
 };
 
-std::map<size_t, float> heard(const Sonar& ping) {
+std::map<size_t, float> received(const Sonar& ping) {
     std::map<size_t, float> bins;
     for (size_t k = 0; k < ping.bins.size(); ++k)
         if (ping.bins[k] > 0) bins[k] = ping.bins[k];
@@ -64,7 +64,7 @@ TEST_F(CrosstalkRunTest, PulsesOfTheOtherSonarArriveAtTheRightTimeAndLevel) {
     ASSERT_GE(two.size(), 6u);
     for (size_t i = 0; i < 6; ++i) {
         const size_t late = 100 + 20 * i, early = 100 - 20 * i;  // 10 m, and 2 m for each ping
-        const auto of_one = heard(one[i]), of_two = heard(two[i]);
+        const auto of_one = received(one[i]), of_two = received(two[i]);
         if (late < 200) {
             ASSERT_EQ(of_one.size(), 1u) << i;
             EXPECT_EQ(of_one.begin()->first, late) << i;
@@ -81,7 +81,7 @@ TEST_F(CrosstalkRunTest, PulsesOfTheOtherSonarArriveAtTheRightTimeAndLevel) {
 TEST_F(CrosstalkRunTest, PingsWithoutAPulseEqualThoseWithoutCrosstalk) {
     const std::string looking = replaced(pair, "yaw_deg: 90}", "yaw_deg: 0}");  // one looks at the wall
     ASSERT_EQ(run(looking, {"--pings", "4"}).code, 0);
-    const std::vector<Sonar> hearing = logged("one");
+    const std::vector<Sonar> receiving = logged("one");
     std::string deaf = replaced(looking, "crosstalk: {}", "range_min: 0.1");
     deaf = replaced(
         deaf, "  - {from: one_sonar.transmission, to: two_sonar.others, policy: {type: circular_buffer, size: 8}}\n",
@@ -91,10 +91,10 @@ TEST_F(CrosstalkRunTest, PingsWithoutAPulseEqualThoseWithoutCrosstalk) {
         "");
     ASSERT_EQ(run(deaf, {"--pings", "4"}).code, 0);
     const std::vector<Sonar> alone = logged("one");
-    ASSERT_FALSE(heard(alone[0]).empty());
+    ASSERT_FALSE(received(alone[0]).empty());
     for (size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(hearing[i].time, alone[i].time);
-        EXPECT_EQ(hearing[i].bins, alone[i].bins);
+        EXPECT_EQ(receiving[i].time, alone[i].time);
+        EXPECT_EQ(receiving[i].bins, alone[i].bins);
     }
 }
 
@@ -103,13 +103,13 @@ TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const std::vector<Sonar> one = logged("one");
     EXPECT_GE(one.size(), 15u);
-    size_t hears = 0;
+    size_t receives = 0;
     for (const Sonar& ping : one)
-        for (const auto& [bin, level] : heard(ping)) {
+        for (const auto& [bin, level] : received(ping)) {
             EXPECT_NEAR(level, 1.0 / 400, 1e-6);
-            ++hears;
+            ++receives;
         }
-    EXPECT_GE(hears, 2u);  // a pulse is received in a third of 20 pings
+    EXPECT_GE(receives, 2u);  // a pulse is received in a third of 20 pings
 }
 
 TEST_F(CrosstalkRunTest, RefusesWrongConnections) {

@@ -39,7 +39,7 @@ TEST(DeviceCommandTest, AProbeIdentifiesTheDevice) {
     EXPECT_TRUE(says(folder, "listens on serial line"));
     const std::string line = folder / "out/line";
     Outcome outcome;
-    insonify::test::comesTrue([&] {  // as soon as the task runs
+    insonify::test::becomesTrue([&] {  // as soon as the task runs
         outcome = callInsonify(asking, {"device", "probe", line, "--timeout", "5"});
         return outcome.code == 0;
     });

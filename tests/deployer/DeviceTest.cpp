@@ -104,8 +104,8 @@ TEST(DeviceTest, ChecksADeploymentWithoutRequestingADevice) {
         EXPECT_EQ(refused.code, 2);
         EXPECT_FALSE(asked_for_refused) << "the error is found before";
     }
-    const WallFolder drawn(replaced(wall_deployment, "range: 20", "visibility: gl\n      range: 20"));
-    const auto [outcome, asked] = witnessed(drawn, {"run", "wall.yml", "--pings", "1"});
+    const WallFolder rasterised(replaced(wall_deployment, "range: 20", "visibility: gl\n      range: 20"));
+    const auto [outcome, asked] = witnessed(rasterised, {"run", "wall.yml", "--pings", "1"});
     EXPECT_TRUE(asked) << "the witness works";
     EXPECT_EQ(outcome.code, 1) << "it is not a device";
 }

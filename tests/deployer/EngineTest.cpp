@@ -135,7 +135,7 @@ TEST_P(WorkersTest, AWorkerThatDiesLosesAndDoublesNothing) {
     const auto isAtIt = [&] {
         return fs::exists(folder_ / "first/pids") && linesOf(readFile(folder_ / "stdout.txt"), "done\n") > 0;
     };
-    for (int times = 0; times < 10 && !isAtIt(); ++times) insonify::test::comesTrue(isAtIt);
+    for (int times = 0; times < 10 && !isAtIt(); ++times) insonify::test::becomesTrue(isAtIt);
     ASSERT_TRUE(isAtIt()) << readFile(folder_ / "stderr.txt");
     killStalled();
     const Outcome outcome = engine.wait();

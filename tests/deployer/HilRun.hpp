@@ -29,11 +29,11 @@ public:
     int port() const {
         std::smatch found;
         std::string text;
-        const bool told = test::comesTrue([&] {
+        const bool reported = test::becomesTrue([&] {
             text = readFile(folder_ / "stderr.txt");
             return std::regex_search(text, found, std::regex(R"(listens on TCP [^ ]*:(\d+))"));
         });
-        return told ? std::stoi(found[1]) : 0;
+        return reported ? std::stoi(found[1]) : 0;
     }
     Outcome stop() {
         running_ = false;

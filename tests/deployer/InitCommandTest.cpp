@@ -18,7 +18,7 @@ std::vector<std::string> quietly(std::vector<std::string> words, const std::stri
 
 /** Returns, for one ping of the deployment of `init` for this sonar, the number of bins or beams with an echo, before
  *  noise. */
-size_t echoesHeard(const TestFolder& folder, const std::string& sonar) {
+size_t echoesReceived(const TestFolder& folder, const std::string& sonar) {
     const Outcome made = callInsonify(folder, {"init", sonar, "--sonar", sonar});
     EXPECT_EQ(made.code, 0) << made.err;
     const Outcome ran = callInsonify(folder, quietly({"run", sonar, "--pings", "1", "--out", sonar + "/out"}, sonar));
@@ -70,7 +70,7 @@ std::vector<std::string> presetNames() {
 
 TEST_P(InitPresetTest, IsValidRunsAtOnceAndReceivesEchoes) {
     const TestFolder folder;
-    EXPECT_GT(echoesHeard(folder, GetParam()), 100u);
+    EXPECT_GT(echoesReceived(folder, GetParam()), 100u);
     const Outcome checked = callInsonify(folder, {"check", GetParam()});
     EXPECT_EQ(checked.code, 0) << checked.err;
     EXPECT_THAT(checked.out, testing::Not(HasSubstr("warning")));
@@ -81,8 +81,8 @@ TEST_P(InitPresetTest, MakesAPictureOfTheScene) {
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     const SonarPreset& preset = sonarPreset(GetParam());
     const int empty = brightPixels(folder, GetParam(), almostNothing(preset)),
-              drawn = brightPixels(folder, GetParam(), "sonar.range_min=" + std::to_string(preset.range_min));
-    EXPECT_GT(drawn, empty + (preset.isFan() || preset.isGrid() ? 5000 : 50));
+              rasterised = brightPixels(folder, GetParam(), "sonar.range_min=" + std::to_string(preset.range_min));
+    EXPECT_GT(rasterised, empty + (preset.isFan() || preset.isGrid() ? 5000 : 50));
 }
 
 TEST_P(InitPresetTest, HasTheBeamWidthOfItsDataSheetAndAPulse) {

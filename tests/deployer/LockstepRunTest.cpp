@@ -17,14 +17,14 @@ public:
         writeFile(*this / "x.yml", replaced(readFile(deploy / name), what, with));
     }
     /** Returns the log `name` of a run, which must have more than `least` bytes. */
-    std::string logOf(const std::string& out, const std::string& name, size_t least,
+    std::string logOf(const std::string& out, const std::string& name, size_t minimum,
                       const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words = {"run", "x.yml", "--out", out, "--pings", "6"};
         words.insert(words.end(), more.begin(), more.end());
         const Outcome outcome = callInsonify(*this, words);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         const std::string log = readFile(path() / out / name);
-        EXPECT_GT(log.size(), least);
+        EXPECT_GT(log.size(), minimum);
         return log;
     }
 };

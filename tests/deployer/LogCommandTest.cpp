@@ -44,7 +44,7 @@ TEST_F(LogCommandTest, ATruncatedLogIsReadUpToItsEnd) {
 
 TEST_F(LogCommandTest, ExportsPingsToNumpyWithTheWallAtItsRange) {
     ASSERT_EQ(exportTo("sonar.ping", "ping.npz").out, "ping.npz\n");
-    const Outcome told = python(folder, R"(
+    const Outcome reported = python(folder, R"(
 import numpy
 ping = numpy.load('ping.npz')
 for name in ('bins', 'bearings', 'time', 'bin_duration', 'speed_of_sound'):
@@ -52,10 +52,10 @@ for name in ('bins', 'bearings', 'time', 'bin_duration', 'speed_of_sound'):
 spacing = ping['bin_duration'][0] * ping['speed_of_sound'][0]
 print(abs(numpy.argmax(ping['bins'][0, 8]) * spacing - 10) < 2 * spacing)
 print(ping['bearings'][0, 0] < 0 < ping['bearings'][0, -1]))");
-    EXPECT_EQ(told.out,
+    EXPECT_EQ(reported.out,
               "bins (3, 16, 50) float32\nbearings (3, 16) float64\ntime (3,) float64\nbin_duration (3,) float64\n"
               "speed_of_sound (3,) float64\nTrue\nTrue\n")
-        << told.err;
+        << reported.err;
 }
 
 TEST_F(LogCommandTest, ExportsToAFolder) {
@@ -118,11 +118,11 @@ TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {
     EXPECT_EQ(checked.code, 2);
     EXPECT_THAT(checked.err, testing::MatchesRegex("out/wall.0.log: byte [0-9]+: the file ends within a block: it has "
                                                    "[0-9]+ bytes, [0-9]+ are left\n"));
-    const json told = json::parse(callInsonify(folder, {"log", "check", log, "--json"}).out);
-    EXPECT_FALSE(told["valid"]);
-    EXPECT_EQ(told["samples"], 8);
-    EXPECT_EQ(told["wrong"]["file"], log);
-    EXPECT_GT(told["wrong"]["byte"], 0);
+    const json reported = json::parse(callInsonify(folder, {"log", "check", log, "--json"}).out);
+    EXPECT_FALSE(reported["valid"]);
+    EXPECT_EQ(reported["samples"], 8);
+    EXPECT_EQ(reported["wrong"]["file"], log);
+    EXPECT_GT(reported["wrong"]["byte"], 0);
 
     const Outcome repaired = callInsonify(folder, {"log", "repair", log, "--to", "whole.0.log"});
     EXPECT_EQ(repaired.code, 0);

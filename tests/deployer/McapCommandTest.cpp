@@ -19,12 +19,12 @@ protected:
         ASSERT_EQ(call({"log", "export", a, "--stream", "noise.noisy", "--to", "a.npz"}).code, 0);
         const Outcome outcome = call({"log", "export", b, "--stream", stream_of_b, "--to", "b.npz"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
-        const Outcome told = python(folder, R"(
+        const Outcome reported = python(folder, R"(
 import numpy
 a, b = numpy.load('a.npz'), numpy.load('b.npz')
 same = all(a[k].tobytes() == b[k].tobytes() for k in ('bins', 'time', 'bin_duration', 'speed_of_sound'))
 print(a['bins'].shape, same, abs(a['bearings'] - b['bearings']).max() < 1e-15))");
-        EXPECT_EQ(told.out, "(3, 16, 50) True True\n") << told.err;
+        EXPECT_EQ(reported.out, "(3, 16, 50) True True\n") << reported.err;
     }
     const WallFolder folder;
 };
@@ -35,10 +35,10 @@ TEST_F(McapCommandTest, ARunLogsWhatAPocologRunLogs) {
     ASSERT_EQ(call({"run", "wall.yml", "--out", "m", "--pings", "3", "--set", "log.file=wall.0.mcap"}).code, 0);
     expectSamePings("out/wall.0.log", "m/wall.0.mcap");
     const Outcome info = call({"log", "info", "m/wall.0.mcap", "--json"});
-    const json told = json::parse(info.out);
-    EXPECT_TRUE(told["complete"]);
-    ASSERT_EQ(told["streams"].size(), 3u);
-    for (const json& stream : told["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
+    const json reported = json::parse(info.out);
+    EXPECT_TRUE(reported["complete"]);
+    ASSERT_EQ(reported["streams"].size(), 3u);
+    for (const json& stream : reported["streams"]) EXPECT_EQ(stream["count"], 3) << stream;
     EXPECT_EQ(call({"log", "check", "m/wall.0.mcap"}).out, "m/wall.0.mcap: valid, 3 streams, 9 samples\n");
 }
 

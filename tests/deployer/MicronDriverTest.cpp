@@ -47,7 +47,7 @@ double strongestRange(const MicronDriver::Beam& beam) {
 }
 
 MicronDriver driverOn(const Wire& wire) {
-    return {[&wire](const Bytes& bytes) { wire.say(bytes); }, [&wire] { return wire.hear(); }};
+    return {[&wire](const Bytes& bytes) { wire.say(bytes); }, [&wire] { return wire.receive(); }};
 }
 
 class MicronDriverTest : public ::testing::Test {
@@ -64,7 +64,7 @@ protected:
                           .step = 2 * std::numbers::pi / 100,
                           .low_resolution = low_resolution,
                           .continuous = false});
-        double worst = 0, least = 0, most = 0;
+        double worst = 0, minimum = 0, maximum = 0;
         for (int i = 0; i < 40; ++i) {
             driver.request();
             const MicronDriver::Beam beam = driver.beam();
@@ -72,13 +72,13 @@ protected:
             const int unit = low_resolution ? 17 : 1;
             EXPECT_TRUE(std::ranges::all_of(beam.bins, [&](uint8_t bin) { return bin % unit == 0; }));
             worst = std::max(worst, std::abs(strongestRange(beam) * std::cos(beam.bearing) - 6));
-            least = std::min(least, beam.bearing);
-            most = std::max(most, beam.bearing);
+            minimum = std::min(minimum, beam.bearing);
+            maximum = std::max(maximum, beam.bearing);
         }
         std::cout << "a wall at 6 m is at most " << worst << " m off, bins of 0.05 m\n";
         EXPECT_LT(worst, 0.2) << "the width of the beam slants it";
-        EXPECT_NEAR(most, limit, 0.003);
-        EXPECT_NEAR(least, -limit, 0.003);
+        EXPECT_NEAR(maximum, limit, 0.003);
+        EXPECT_NEAR(minimum, -limit, 0.003);
     }
 
     const TestFolder folder_;

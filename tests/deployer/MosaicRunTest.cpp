@@ -64,16 +64,16 @@ TEST_F(MosaicRunTest, WallsAreStraightWithinOneBinWhereEachPingHasItsPose) {
 }
 
 TEST_F(MosaicRunTest, OnAPolarDiscWallsBendByMoreThanTenBins) {
-    std::vector<cv::Point2d> heard;
+    std::vector<cv::Point2d> received;
     for (double bearing = -155; bearing < -83; bearing += 0.9)
         for (double range = 3; range < 23; range += 0.05) {
             const double length = range / layout_.range() * layout_.radius(), angle = types::radians(bearing);
             const cv::Point2d at = layout_.origin() - length * cv::Point2d(std::sin(angle), std::cos(angle));
             if (picture_.at<uint8_t>(cvRound(at.y), cvRound(at.x)) < 150) continue;
-            heard.push_back(at);
+            received.push_back(at);
             break;
         }
-    const test::LineFit fit(heard);
+    const test::LineFit fit(received);
     RecordProperty("disc_bins", std::to_string(fit.farthest / pixelsPerBin()));
     EXPECT_GT(fit.farthest, 10 * pixelsPerBin());
 }

@@ -32,9 +32,9 @@ protected:
     json read(const std::string& out) const {
         const std::string answer = pythonSays(
             test::sourceFile("tests/deployer/read_navigation.py ") + (folder_ / out).string(), folder_ / "answer");
-        const json told = json::parse(answer, nullptr, false);
-        EXPECT_FALSE(told.is_discarded()) << answer;
-        return told;
+        const json reported = json::parse(answer, nullptr, false);
+        EXPECT_FALSE(reported.is_discarded()) << answer;
+        return reported;
     }
     std::string exported(const std::string& log, const std::string& stream) const {
         const Outcome outcome =

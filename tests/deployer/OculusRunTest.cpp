@@ -27,8 +27,8 @@ protected:
     uint16_t port() const {
         const std::string words = "listens on TCP 127.0.0.1:";
         if (!says(folder_, words)) throw std::runtime_error("it does not listen");
-        const std::string told = readFile(folder_ / "stderr.txt");
-        return static_cast<uint16_t>(std::stoi(told.substr(told.find(words) + words.size())));
+        const std::string reported = readFile(folder_ / "stderr.txt");
+        return static_cast<uint16_t>(std::stoi(reported.substr(reported.find(words) + words.size())));
     }
     /** Returns the max code of a bin. */
     static int loudest(const device::OculusResult& ping, size_t bin) {

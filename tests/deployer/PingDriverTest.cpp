@@ -10,7 +10,7 @@
 #include "tests/support/Python.hpp"
 
 using namespace insonify::deployer;
-using insonify::test::comesTrue;
+using insonify::test::becomesTrue;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -66,16 +66,16 @@ protected:
 };
 
 /** Returns the range where the echoes of an angle first are about as strong as its strongest [m]. */
-double firstReturn(const json& told, double range) {
-    const auto data = told["data"].get<std::vector<int>>();
+double firstReturn(const json& reported, double range) {
+    const auto data = reported["data"].get<std::vector<int>>();
     const int strong = *std::ranges::max_element(data) - 40;
     const auto first = std::ranges::find_if(data, [&](int code) { return code >= strong; });
     return (static_cast<double>(first - data.begin()) + 0.5) * range / static_cast<double>(data.size());
 }
 
 /** Returns the range that a driver computes for its samples, with sound at 1500 m/s. */
-double rangeOf(const json& told) {
-    return told["number_of_samples"].get<double>() * told["sample_period"].get<double>() * 25e-9 * 1500 / 2;
+double rangeOf(const json& reported) {
+    return reported["number_of_samples"].get<double>() * reported["sample_period"].get<double>() * 25e-9 * 1500 / 2;
 }
 
 /** Returns the distance from the sonar to the quay's wall along a bearing, by the scene's script and the deployment
@@ -100,11 +100,11 @@ double bottomBelow() {
 }  // namespace
 
 TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
-    const json told = driven("ping360 " + udpPortOf("ping360"));
-    EXPECT_EQ(told["information"]["device_type"], 2);
-    ASSERT_EQ(told["scan"].size(), 400u);
+    const json reported = driven("ping360 " + udpPortOf("ping360"));
+    EXPECT_EQ(reported["information"]["device_type"], 2);
+    ASSERT_EQ(reported["scan"].size(), 400u);
     int compared = 0;
-    for (const json& echoes : told["scan"]) {
+    for (const json& echoes : reported["scan"]) {
         const double angle = echoes["angle"];
         const double off = std::abs(angle - 100);  // the wall is abeam to port, behind a ladder and between piles
         EXPECT_EQ(echoes["number_of_samples"], 800);
@@ -115,37 +115,38 @@ TEST_F(PingDriverTest, AScanOfAllAnglesByUdpHasTheWallAtItsRange) {
         ++compared;
     }
     EXPECT_EQ(compared, 22);
-    EXPECT_EQ(told["coarser"]["data"].size(), 400u);
-    EXPECT_NEAR(firstReturn(told["coarser"], rangeOf(told["coarser"])), wallAt(90), 0.1) << "with other samples";
-    EXPECT_EQ(told["refusals"][0]["id"], 2601);
-    EXPECT_EQ(told["refusals"][0]["text"], "angle is 400; must be 0 to 399");
-    EXPECT_EQ(told["refusals"][1]["text"], "number_of_samples is 5000; must be 200 to 1200");
-    const auto angles = told["automatic"]["angles"].get<std::vector<int>>();
+    EXPECT_EQ(reported["coarser"]["data"].size(), 400u);
+    EXPECT_NEAR(firstReturn(reported["coarser"], rangeOf(reported["coarser"])), wallAt(90), 0.1)
+        << "with other samples";
+    EXPECT_EQ(reported["refusals"][0]["id"], 2601);
+    EXPECT_EQ(reported["refusals"][0]["text"], "angle is 400; must be 0 to 399");
+    EXPECT_EQ(reported["refusals"][1]["text"], "number_of_samples is 5000; must be 200 to 1200");
+    const auto angles = reported["automatic"]["angles"].get<std::vector<int>>();
     ASSERT_EQ(angles.size(), 8u);
     for (const int angle : angles) EXPECT_TRUE(angle >= 95 && angle <= 99) << angle;
-    EXPECT_EQ(told["automatic"]["stopped"], 2903);
+    EXPECT_EQ(reported["automatic"]["stopped"], 2903);
 }
 
 TEST_F(PingDriverTest, TheSerialLineGivesTheSame) {
-    const json told = driven("ping360 " + lineOf("ping360") + " 90 110 20");
-    for (const json& echoes : told["scan"])
+    const json reported = driven("ping360 " + lineOf("ping360") + " 90 110 20");
+    for (const json& echoes : reported["scan"])
         EXPECT_NEAR(firstReturn(echoes, rangeOf(echoes)), wallAt(echoes["angle"]), 0.1) << echoes["angle"];
-    EXPECT_EQ(told["scan"].size(), 2u);
-    EXPECT_EQ(told["automatic"]["angles"].size(), 8u);
+    EXPECT_EQ(reported["scan"].size(), 2u);
+    EXPECT_EQ(reported["automatic"]["angles"].size(), 8u);
 }
 
 TEST_F(PingDriverTest, AnEchoSounderFindsTheBottomByUdpAndBySerialLine) {
     const double bottom = bottomBelow();
     for (const std::string& line : {udpPortOf("ping1d"), lineOf("ping1d")}) {
-        const json told = driven("ping1d " + line);
-        EXPECT_EQ(told["information"]["device_type"], 1) << line;
-        EXPECT_EQ(told["range"]["scan_length"], 6000) << line;
-        EXPECT_EQ(told["profile"]["profile_data"].size(), 200u) << line;
-        EXPECT_NEAR(told["profile"]["distance"].get<double>() / 1000, bottom, 0.1) << line;
-        EXPECT_EQ(told["distance"]["distance"], told["profile"]["distance"]) << "nothing has moved";
-        EXPECT_EQ(told["simple"]["distance"], told["profile"]["distance"]) << line;
-        EXPECT_GT(told["simple"]["confidence"], 80) << line;
-        const auto pings = told["streamed"].get<std::vector<int>>();
+        const json reported = driven("ping1d " + line);
+        EXPECT_EQ(reported["information"]["device_type"], 1) << line;
+        EXPECT_EQ(reported["range"]["scan_length"], 6000) << line;
+        EXPECT_EQ(reported["profile"]["profile_data"].size(), 200u) << line;
+        EXPECT_NEAR(reported["profile"]["distance"].get<double>() / 1000, bottom, 0.1) << line;
+        EXPECT_EQ(reported["distance"]["distance"], reported["profile"]["distance"]) << "nothing has moved";
+        EXPECT_EQ(reported["simple"]["distance"], reported["profile"]["distance"]) << line;
+        EXPECT_GT(reported["simple"]["confidence"], 80) << line;
+        const auto pings = reported["streamed"].get<std::vector<int>>();
         EXPECT_TRUE(std::ranges::is_sorted(pings)) << line;
         EXPECT_EQ(pings.size(), 5u) << line;
     }

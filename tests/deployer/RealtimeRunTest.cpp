@@ -60,7 +60,7 @@ TEST(RealtimeRunTest, StalePosesAreReportedAndPingsContinueWithNewPoses) {
     const WallFolder folder(withPosesEach("1"));
     const Process process(insonifyWords({"run", "wall.yml", "--out", "out", "--summary", "summary.json"}),
                           folder.path());
-    EXPECT_TRUE(insonify::test::comesTrue([&] {
+    EXPECT_TRUE(insonify::test::becomesTrue([&] {
         return countIn(readFile(folder / "stderr.txt"), "scene: has recovered") >= 2 &&
                flushedSamples(folder / "out/wall.0.log", "sonar.ping") >= 3;
     }));

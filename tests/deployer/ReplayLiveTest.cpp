@@ -37,24 +37,24 @@ protected:
                       [](log::Writer& to, size_t range) { to.write(range, {1'200'000}, 15.0); });
     }
     /** A log of four pings, with a changed property in the last two.
-     *  @param tell writes the change to the property log, given its stream of the property. */
+     *  @param report writes the change to the property log, given its stream of the property. */
     void recordAChange(const std::string& first, const std::string& second,
-                       const std::function<void(log::Writer&, size_t)>& tell) const {
+                       const std::function<void(log::Writer&, size_t)>& report) const {
         ASSERT_EQ(call({"run", "wall.yml", "--out", "out", "--pings", "4", "--set", first}).code, 0);
         ASSERT_EQ(call({"run", "wall.yml", "--out", "other", "--pings", "4", "--set", second}).code, 0);
         ASSERT_EQ(call({"log", "cut", "out/wall.0.log", "--until", "0.15", "--to", "a.0.log"}).code, 0);
         ASSERT_EQ(call({"log", "cut", "other/wall.0.log", "--from", "0.15", "--to", "b.0.log"}).code, 0);
         fs::create_directory(folder_ / "changed");
         log::copyLog({folder_ / "a.0.log", folder_ / "b.0.log"}, folder_ / "changed/wall.0.log");
-        writeProperties(first.substr(0, first.find('=')), tell);
+        writeProperties(first.substr(0, first.find('=')), report);
     }
-    void writeProperties(const std::string& property, const std::function<void(log::Writer&, size_t)>& tell) const {
+    void writeProperties(const std::string& property, const std::function<void(log::Writer&, size_t)>& report) const {
         const auto from = log::openLog(folder_ / "out/properties.0.log");
         log::pocolog::Writer to(folder_ / "changed/properties.0.log");
         for (size_t i = 0; i < from->streams().size(); ++i) to.addLike(*from, i);
         for (const log::SampleRef& at : from->samples()) to.copy(at.stream, *from, at);
         const log::Stream* const stream = from->find(property);
-        tell(to, stream ? from->indexOf(property) : 0);
+        report(to, stream ? from->indexOf(property) : 0);
         to.close();
     }
 

@@ -136,8 +136,8 @@ connections:
   - {from: replay.vehicle.pose, to: log.pose, policy: {type: buffer, size: 64}}
 )");
     const Process process(insonifyWords({"run", "realtime.yml", "--out", "again"}), folder_.path());
-    EXPECT_TRUE(
-        insonify::test::comesTrue([&] { return flushedSamples(folder_ / "again/again.0.log", "vehicle.pose") >= 4; }));
+    EXPECT_TRUE(insonify::test::becomesTrue(
+        [&] { return flushedSamples(folder_ / "again/again.0.log", "vehicle.pose") >= 4; }));
     process.signal(SIGINT);
     const Outcome outcome = process.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;

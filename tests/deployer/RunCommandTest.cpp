@@ -160,11 +160,11 @@ TEST(RunCommandTest, AnotherSeedGivesOtherNoise) {
                                             "--to", std::string(stream) + seed + ".npz"})
                           .code,
                       0);
-    const Outcome told = python(folder, R"(
+    const Outcome reported = python(folder, R"(
 import numpy
 same = lambda stream: (numpy.load(f'{stream}3.npz')['bins'] == numpy.load(f'{stream}4.npz')['bins']).all()
 print(same('sonar.ping'), same('noise.noisy')))");
-    EXPECT_EQ(told.out, "True False\n") << told.err;
+    EXPECT_EQ(reported.out, "True False\n") << reported.err;
 }
 
 class SignalTest : public testing::TestWithParam<int> {};
@@ -173,7 +173,7 @@ TEST_P(SignalTest, StopsCleanlyAndClosesTheLog) {
     const WallFolder folder(realtimeWall());
     const Process process(insonifyWords({"run", "wall.yml", "--out", "out"}), folder.path());
     EXPECT_TRUE(
-        insonify::test::comesTrue([&] { return flushedSamples(folder / "out/wall.0.log", "sonar.ping") >= 2; }));
+        insonify::test::becomesTrue([&] { return flushedSamples(folder / "out/wall.0.log", "sonar.ping") >= 2; }));
     process.signal(GetParam());
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -36,9 +36,9 @@ TEST(RunFailureTest, AFullDiskIsExitCode1AndFlushedSamplesAreKept) {
     const Outcome outcome = Process({"bash", "-c", "ulimit -f 1536; exec " + run}, folder.path()).wait();
     EXPECT_EQ(outcome.code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("log: "));
-    const Outcome told = callInsonify(folder, {"log", "info", "out/wall.0.log", "--json"});
-    EXPECT_EQ(told.code, 0) << told.err;
-    EXPECT_GT(json::parse(told.out)["streams"][0]["count"], 100);
+    const Outcome reported = callInsonify(folder, {"log", "info", "out/wall.0.log", "--json"});
+    EXPECT_EQ(reported.code, 0) << reported.err;
+    EXPECT_GT(json::parse(reported.out)["streams"][0]["count"], 100);
 }
 
 /** Log and pictures are written to a disk that is full for the first second. */

@@ -173,11 +173,11 @@ TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
         EXPECT_NE(device, plan.npos) << plan;
         return plan.substr(device, plan.find(',', device) - device);
     };
-    const std::string rays = deviceOf("\n      visibility: cpu"), drawn = deviceOf("\n      visibility: gl");
-    EXPECT_NE(rays, drawn);
+    const std::string rays = deviceOf("\n      visibility: cpu"), rasterised = deviceOf("\n      visibility: gl");
+    EXPECT_NE(rays, rasterised);
     EXPECT_EQ(deviceOf(""), rays);
     EXPECT_EQ(deviceOf("\n      visibility: auto"), rays);
-    EXPECT_EQ(deviceOf("\n      deposit: gpu"), drawn) << "which needs rasterisation";
+    EXPECT_EQ(deviceOf("\n      deposit: gpu"), rasterised) << "which needs rasterisation";
 }
 
 TEST(ShardRunTest, HeadsAndNodesContinueAtTheirPlacesOfTheWholeRun) {
@@ -300,7 +300,7 @@ std::string partOf(const fs::path& out) {
 
 /** Waits until a shard has written a picture. */
 void awaitPicture(const fs::path& out) {
-    ASSERT_TRUE(insonify::test::comesTrue([&] {
+    ASSERT_TRUE(insonify::test::becomesTrue([&] {
         const std::string part = partOf(out);
         return !part.empty() && fs::exists(part + "/fan_003.png");
     }));

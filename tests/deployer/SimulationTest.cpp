@@ -46,7 +46,7 @@ TEST_P(RestartTest, ItsPingsEqualThoseOfANewSimulation) {
     }
     const auto again = pingsOf(kept, 9, 0.2), first = pingsOf(fresh, 9, 0.2);
     ASSERT_EQ(again.size(), first.size());
-    size_t heard = 0;
+    size_t received = 0;
     for (size_t i = 0; i < first.size(); ++i) {
         ASSERT_EQ(again[i].ping == nullptr, first[i].ping == nullptr) << i;
         if (!first[i].ping) continue;
@@ -54,11 +54,11 @@ TEST_P(RestartTest, ItsPingsEqualThoseOfANewSimulation) {
         EXPECT_EQ(again[i].ping->time.microseconds, first[i].ping->time.microseconds) << i;
         for (size_t beam = 0; beam < first[i].ping->bearings.size(); ++beam)
             EXPECT_EQ(again[i].ping->bearings[beam].rad, first[i].ping->bearings[beam].rad) << i;
-        ++heard;
+        ++received;
         ASSERT_TRUE(again[i].truth && first[i].truth) << i;
         EXPECT_EQ(again[i].truth->object, first[i].truth->object) << i;
     }
-    EXPECT_GT(heard, 0u);
+    EXPECT_GT(received, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(

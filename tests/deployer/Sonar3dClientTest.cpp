@@ -61,40 +61,40 @@ TEST_P(Sonar3dClientTest, TheMakersClientSetsItAndReceivesTheWallAndTheBall) {
     const std::string said = pythonSays(script + std::to_string(port) + " " + (unicast ? "unicast" : group_port) + " " +
                                             (folder / "voxels.npz").string(),
                                         folder / "said.json");
-    const json told = json::parse(said, nullptr, false);
-    ASSERT_FALSE(told.is_discarded()) << said << readFile(run.folder() / "stderr.txt");
-    if (told.contains("no_multicast")) GTEST_SKIP() << "no multicast on this machine: " << told["no_multicast"];
-    std::cout << "wall " << told["wall"] << ", ball " << told["ball"] << "\n";
-    EXPECT_EQ(told["about"], "Sonar 3D-15");
-    EXPECT_EQ(told["ready"], true);
-    EXPECT_EQ(told["temperature"], 12.0);
-    EXPECT_EQ(told["enabled_at_first"], false);
-    EXPECT_EQ(told["kept"], json::parse(R"([1500.0, [0.3, 8.0], "low-frequency", "fresh", true, "10.0.0.1"])"));
-    for (const json& refusal : told["refused"]) EXPECT_EQ(refusal[0], 400) << refusal;
-    EXPECT_THAT(told["refused"][0][1].get<std::string>(), HasSubstr("must be 0 <= min < max <= 15"));
-    EXPECT_EQ(told["udp"], unicast ? "unicast" : "multicast");
-    EXPECT_EQ(told["size"], json({128, 64, 128, 64}));
-    EXPECT_NEAR(told["view"][0], 90.0 * 256 / 255 * 127 / 128, 1e-4) << "between the outermost of 128 columns";
-    EXPECT_NEAR(told["view"][1], 40.0 * 63 / 64, 1e-4);
-    EXPECT_EQ(told["frequency"], 1'200'000);
-    EXPECT_EQ(told["speed"], 1500.0);
-    EXPECT_EQ(told["strongest"], 10644) << "255 on the device's scale";
-    EXPECT_EQ(told["same_pixels"], true);
-    EXPECT_GT(told["age"], 0);
+    const json reported = json::parse(said, nullptr, false);
+    ASSERT_FALSE(reported.is_discarded()) << said << readFile(run.folder() / "stderr.txt");
+    if (reported.contains("no_multicast")) GTEST_SKIP() << "no multicast on this machine: " << reported["no_multicast"];
+    std::cout << "wall " << reported["wall"] << ", ball " << reported["ball"] << "\n";
+    EXPECT_EQ(reported["about"], "Sonar 3D-15");
+    EXPECT_EQ(reported["ready"], true);
+    EXPECT_EQ(reported["temperature"], 12.0);
+    EXPECT_EQ(reported["enabled_at_first"], false);
+    EXPECT_EQ(reported["kept"], json::parse(R"([1500.0, [0.3, 8.0], "low-frequency", "fresh", true, "10.0.0.1"])"));
+    for (const json& refusal : reported["refused"]) EXPECT_EQ(refusal[0], 400) << refusal;
+    EXPECT_THAT(reported["refused"][0][1].get<std::string>(), HasSubstr("must be 0 <= min < max <= 15"));
+    EXPECT_EQ(reported["udp"], unicast ? "unicast" : "multicast");
+    EXPECT_EQ(reported["size"], json({128, 64, 128, 64}));
+    EXPECT_NEAR(reported["view"][0], 90.0 * 256 / 255 * 127 / 128, 1e-4) << "between the outermost of 128 columns";
+    EXPECT_NEAR(reported["view"][1], 40.0 * 63 / 64, 1e-4);
+    EXPECT_EQ(reported["frequency"], 1'200'000);
+    EXPECT_EQ(reported["speed"], 1500.0);
+    EXPECT_EQ(reported["strongest"], 10644) << "255 on the device's scale";
+    EXPECT_EQ(reported["same_pixels"], true);
+    EXPECT_GT(reported["age"], 0);
 
-    EXPECT_GT(told["wall"]["voxels"], 5000);
-    EXPECT_NEAR(told["wall"]["mean"], 5, 0.002);
-    EXPECT_LT(told["wall"]["worst"], 0.01) << "every voxel of a flat wall at 5 m";
-    EXPECT_LT(told["wall"]["worst_beside_ball"], 0.03) << "including beams partly hidden by the ball";
-    EXPECT_GT(told["ball"]["voxels"], 300);
-    EXPECT_NEAR(told["ball"]["radius"], ball_radius, 0.01);
-    EXPECT_NEAR(told["ball"]["centre"][0], 3.5, 0.01) << "ahead";
-    EXPECT_NEAR(told["ball"]["centre"][1], -1.0, 0.01) << "to port, where the client counts to starboard";
-    EXPECT_NEAR(told["ball"]["centre"][2], -0.6, 0.01) << "above, where the client counts down";
-    EXPECT_EQ(told["high"][0], 2'400'000);
-    EXPECT_NEAR(told["high"][1], 40.0 * 256 / 255 * 127 / 128, 1e-4);
-    EXPECT_NEAR(told["high_wall"], 5, 0.002);
-    EXPECT_EQ(told["synchronised"], true);
+    EXPECT_GT(reported["wall"]["voxels"], 5000);
+    EXPECT_NEAR(reported["wall"]["mean"], 5, 0.002);
+    EXPECT_LT(reported["wall"]["worst"], 0.01) << "every voxel of a flat wall at 5 m";
+    EXPECT_LT(reported["wall"]["worst_beside_ball"], 0.03) << "including beams partly hidden by the ball";
+    EXPECT_GT(reported["ball"]["voxels"], 300);
+    EXPECT_NEAR(reported["ball"]["radius"], ball_radius, 0.01);
+    EXPECT_NEAR(reported["ball"]["centre"][0], 3.5, 0.01) << "ahead";
+    EXPECT_NEAR(reported["ball"]["centre"][1], -1.0, 0.01) << "to port, where the client counts to starboard";
+    EXPECT_NEAR(reported["ball"]["centre"][2], -0.6, 0.01) << "above, where the client counts down";
+    EXPECT_EQ(reported["high"][0], 2'400'000);
+    EXPECT_NEAR(reported["high"][1], 40.0 * 256 / 255 * 127 / 128, 1e-4);
+    EXPECT_NEAR(reported["high_wall"], 5, 0.002);
+    EXPECT_EQ(reported["synchronised"], true);
     const Outcome outcome = run.stop();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
@@ -120,11 +120,11 @@ TEST(Sonar3dReconnectTest, SurvivesAThousandReconnectsAndAClientThatDoesNotRead)
     }
     const Wire last(Wire::connected(port));
     last.say(about);
-    Bytes heard;
-    const auto text = [&] { return std::string(heard.begin(), heard.end()); };
+    Bytes received;
+    const auto text = [&] { return std::string(received.begin(), received.end()); };
     while (text().find("is_ready") == std::string::npos) {
-        const Bytes more = last.hear();
-        heard.insert(heard.end(), more.begin(), more.end());
+        const Bytes more = last.receive();
+        received.insert(received.end(), more.begin(), more.end());
     }
     EXPECT_THAT(text(), HasSubstr("HTTP/1.1 200 OK"));
     const Outcome outcome = run.stop();

@@ -29,15 +29,15 @@ protected:
         now_ = now_ + types::Time::fromSeconds(seconds);
         emulator_.tick(now_);
     }
-    void hear() {
+    void nextBytes() {
         ping_.time = now_;
-        emulator_.heard(ping_);
+        emulator_.takePing(ping_);
     }
     /** Advances to the next due time; the sonar answers at once. */
     void wait() {
         emulator_.tick(now_);
         if (answers_ && !asked_.empty()) {
-            hear();
+            nextBytes();
             asked_.pop_back();
         }
         if (const auto due = emulator_.tick(now_)) now_ = std::max(now_, *due);
@@ -127,7 +127,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     driver_.request();
     advance(0);
     ASSERT_EQ(asked_.size(), 1u);
-    hear();
+    nextBytes();
     advance(listening - 1e-4);
     EXPECT_TRUE(sent_[client].empty()) << "sound is not back";
     advance(1e-4);
@@ -141,7 +141,7 @@ TEST_F(MicronEmulatorTest, ALineIsAnsweredOnceSoundIsBackAndTheMotorHasArrived) 
     ASSERT_EQ(asked_.size(), 2u);
     advance(2 * listening);
     EXPECT_TRUE(sent_[client].empty()) << "the ping has not arrived";
-    hear();
+    nextBytes();
     advance(0);
     EXPECT_FALSE(sent_[client].empty());
 }
@@ -227,7 +227,7 @@ TEST_F(MicronEmulatorTest, RefusesImpossibleCommands) {
     ASSERT_EQ(asked_.size(), 1u);
     EXPECT_FALSE(configured([](auto& command) { command.bins = 0; }));
     sent_.clear();
-    hear();
+    nextBytes();
     advance(0.5);
     EXPECT_TRUE(sent_[client].empty()) << "the earlier line is dropped";
     EXPECT_FALSE(configured([](auto& command) { command.bins = 1501; }));
@@ -257,7 +257,7 @@ TEST_F(MicronEmulatorTest, TwoClientsShareOneHead) {
     driver_.request();
     advance(0);
     emulator_.closed(client);  // during a ping
-    hear();
+    nextBytes();
     advance(1);
     EXPECT_TRUE(sent_[client].empty());
     second.request();
@@ -270,7 +270,7 @@ TEST_F(MicronEmulatorTest, ARebootDuringAPingRestartsTheHead) {
     advance(0);
     ASSERT_EQ(asked_.size(), 1u);
     driver_.reboot();
-    hear();
+    nextBytes();
     advance(0.1);
     EXPECT_TRUE(sent_[client].empty()) << "the line is dropped";
     driver_.configure({});
@@ -338,11 +338,11 @@ TEST_F(MicronEmulatorTest, RequestsAMissingPingAgainAndAnswersTheLineLate) {
         EXPECT_THAT(warnings_.back(), HasSubstr("a requested ping did not arrive"));
         sent_.clear();
         ping_.time = asked_.front().time - types::Time{1};
-        emulator_.heard(ping_);
+        emulator_.takePing(ping_);
         emulator_.tick(now_);
         EXPECT_THAT(sent_[client], IsEmpty()) << "an earlier ping has another bearing";
         ping_.time = asked_.front().time;
-        emulator_.heard(ping_);
+        emulator_.takePing(ping_);
         EXPECT_EQ(driver_.beam().bins.size(), 200u) << "the first requested ping, late";
         answers_ = true;
         driver_.request();
@@ -370,16 +370,16 @@ TEST_F(MicronEmulatorTest, ACommandEndsALineThatIsNotAnswered) {
 }
 
 TEST_F(MicronEmulatorTest, SendsAliveUntilStopAlive) {
-    const auto heard = [&] {
+    const auto takePing = [&] {
         const size_t size = sent_[client].size();
         sent_.clear();
         return size / 22;
     };
     for (int i = 0; i < 3; ++i) advance(1);
-    EXPECT_EQ(heard(), 3u);
+    EXPECT_EQ(takePing(), 3u);
     emulator_.received(client, seaNetRequest(SeaNetType::StopAlive).packet(), now_);
     for (int i = 0; i < 3; ++i) advance(1);
-    EXPECT_EQ(heard(), 0u);
+    EXPECT_EQ(takePing(), 0u);
 }
 
 TEST_F(MicronEmulatorTest, IgnoresNoiseAndOtherNodes) {

@@ -44,7 +44,7 @@ public:
     Peer& operator=(const Peer&) = delete;
     void say(const Bytes& bytes) const { EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size())); }
     /** Reads `count` bytes, or fewer if the end closes or falls silent. */
-    Bytes hear(size_t count) const {
+    Bytes nextBytes(size_t count) const {
         Bytes bytes;
         for (pollfd ready{file_, POLLIN, 0}; bytes.size() < count && poll(&ready, 1, 5000) == 1;) {
             Bytes part(count - bytes.size());
@@ -91,7 +91,7 @@ TEST_F(NetworkTest, TransfersBytesByConnectionDatagramAndLine) {
         const NetworkEvent got = await(Kind::Received).back();
         EXPECT_THAT(got.bytes, testing::ElementsAre(1, 2, 3));
         network_.send(got.client, {9, 8});
-        EXPECT_THAT(peer->hear(2), testing::ElementsAre(9, 8));
+        EXPECT_THAT(peer->nextBytes(2), testing::ElementsAre(9, 8));
     }
     EXPECT_GE(woken_, 3);
     EXPECT_THAT(network_.names(),
@@ -127,10 +127,10 @@ TEST_F(NetworkTest, ADriverThatOpensALineReadsFewOldBytesAndTheNewest) {
     const Peer driver(folder / "line");
     size_t past = 0;
     Bytes next;
-    while (past <= little && !(next = driver.hear(1)).empty() && next[0] != 255) ++past;
+    while (past <= little && !(next = driver.nextBytes(1)).empty() && next[0] != 255) ++past;
     EXPECT_LE(past, little) << "of " << packets * size;
     EXPECT_THAT(next, testing::ElementsAre(255));
-    EXPECT_EQ(driver.hear(size - 1), Bytes(size - 1, 255));
+    EXPECT_EQ(driver.nextBytes(size - 1), Bytes(size - 1, 255));
 }
 
 TEST_F(NetworkTest, AThousandReconnectsLeakNoClientAndNoFile) {
@@ -162,7 +162,7 @@ TEST_F(NetworkTest, AClientThatDoesNotReadLosesStreamedMessagesAndDelaysNoOther)
     const Client reads = await(Kind::Opened).back().client;
     for (int i = 0; i < 200; ++i) network_.send(never, Bytes(1 << 20, 7), Network::Kind::Stream);
     network_.send(reads, {5});
-    EXPECT_THAT(other.hear(1), testing::ElementsAre(5));
+    EXPECT_THAT(other.nextBytes(1), testing::ElementsAre(5));
     EXPECT_GT(network_.dropped(), 100u);
     for (int i = 0; i < 30; ++i) network_.send(never, Bytes(1 << 20, 7));
     const NetworkEvent closed = await(Kind::Closed).back();
@@ -174,19 +174,19 @@ TEST_F(NetworkTest, AnEndlessSenderIsReadAtTheSpeedOfTheTask) {
     const Peer peer(SOCK_STREAM, network_.portOf(end));
     std::thread sender([&] { peer.say(Bytes(size_t{16} << 20, 3)); });
     std::this_thread::sleep_for(200ms);
-    size_t largest = 0, total = 0;
+    size_t maximum = 0, total = 0;
     const auto deadline = std::chrono::steady_clock::now() + 60s;
     while (total < size_t{16} << 20 && std::chrono::steady_clock::now() < deadline) {
         size_t part = 0;
         for (const NetworkEvent& event : network_.take()) part += event.bytes.size();
-        largest = std::max(largest, part);
+        maximum = std::max(maximum, part);
         total += part;
         std::this_thread::sleep_for(1ms);
     }
     EXPECT_EQ(total, size_t{16} << 20);
     peer.hangUp();
     sender.join();
-    EXPECT_LE(largest, Network::max_received + 65536);
+    EXPECT_LE(maximum, Network::max_received + 65536);
 }
 
 TEST_F(NetworkTest, AClosedClientReceivesEarlierMessages) {
@@ -195,7 +195,7 @@ TEST_F(NetworkTest, AClosedClientReceivesEarlierMessages) {
     const Client client = await(Kind::Opened).back().client;
     network_.send(client, Bytes(100'000, 4));
     network_.close(client);
-    EXPECT_EQ(peer.hear(100'001).size(), 100'000u);
+    EXPECT_EQ(peer.nextBytes(100'001).size(), 100'000u);
     EXPECT_EQ(await(Kind::Closed).back().client, client);
 }
 
@@ -216,11 +216,11 @@ TEST_F(NetworkTest, ANewConnectionReplacesTheOneSilentForLongest) {
     ASSERT_GE(events.size(), 2u);
     EXPECT_EQ(events.front().kind, Kind::Closed);
     EXPECT_EQ(events.front().client, clients[5]) << "it has never sent anything";
-    EXPECT_TRUE(peers[5]->hear(1).empty());
+    EXPECT_TRUE(peers[5]->nextBytes(1).empty());
     network_.send(events.back().client, {7});
-    EXPECT_THAT(newer.hear(1), testing::ElementsAre(7));
+    EXPECT_THAT(newer.nextBytes(1), testing::ElementsAre(7));
     network_.send(clients[0], {8});
-    EXPECT_THAT(peers[0]->hear(1), testing::ElementsAre(8));
+    EXPECT_THAT(peers[0]->nextBytes(1), testing::ElementsAre(8));
     EXPECT_EQ(network_.displaced(), 1u);
 }
 
@@ -267,7 +267,7 @@ TEST_F(NetworkTest, ForgetsTheDatagramClientSilentForLongest) {
     }
     EXPECT_THAT(gone, testing::ElementsAre(Client{stays.end, stays.number + 1})) << "the first of the others";
     network_.send(stays, {7});
-    EXPECT_THAT(talks.hear(1), testing::ElementsAre(7));
+    EXPECT_THAT(talks.nextBytes(1), testing::ElementsAre(7));
 }
 
 TEST_F(NetworkTest, EmptyDatagramsAreBounded) {

@@ -30,7 +30,7 @@ protected:
     void connect() { emulator_.opened(1); }
     void fire(const OculusFire& settings) { emulator_.received(1, bytesOf(settings)); }
     /** Returns the sonar's answer to a request. */
-    types::Sonar heard(const types::SonarSettings& asked) const {
+    types::Sonar echoes(const types::SonarSettings& asked) const {
         types::Sonar ping;
         ping.time = asked.time + Time{20'000};
         ping.speed_of_sound = std::isnan(asked.speed_of_sound) ? 1480.f : static_cast<float>(asked.speed_of_sound);
@@ -47,7 +47,7 @@ protected:
         fire(settings);
         const Due due = after(1);
         if (!due.ask) return {};
-        return oculusResult(emulator_.ping(heard(*due.ask))).value();
+        return oculusResult(emulator_.ping(echoes(*due.ask))).value();
     }
     types::SonarSettings asked(const OculusFire& settings) {
         fire(settings);
@@ -96,7 +96,7 @@ TEST_F(OculusEmulatorTest, IsInStandbyUntilAFireMessageAndOnRequest) {
     fire(metres(10));
     EXPECT_TRUE(after(5).ask);
     emulator_.closed(1);
-    EXPECT_TRUE(emulator_.standsBy());
+    EXPECT_TRUE(emulator_.inStandby());
     connect();
     EXPECT_FALSE(after(5).ask) << "a new client must send a fire message again";
 }
@@ -110,7 +110,7 @@ TEST_F(OculusEmulatorTest, EveryRateIsKept) {
         for (int i = 0; i < 4000; ++i)  // the task runs every millisecond, up to a millisecond late
             if (const Due due = after(0.001); due.ask) {
                 ++pings;
-                EXPECT_FALSE(emulator_.ping(heard(*due.ask)).empty());
+                EXPECT_FALSE(emulator_.ping(echoes(*due.ask)).empty());
             }
         EXPECT_NEAR(pings, 4 * rates[rate], 1.01) << int(rate);
     }
@@ -121,7 +121,7 @@ TEST_F(OculusEmulatorTest, RequestsTheNextCycleWhenSomethingIsDue) {
     fire(metres(1, 2));
     Due due = after(0);
     for (int i = 0; i < 40; ++i) {
-        if (due.ask) emulator_.ping(heard(*due.ask));
+        if (due.ask) emulator_.ping(echoes(*due.ask));
         due = after(0);
         ASSERT_GT(due.next, now_);
         ASSERT_LE((due.next - now_).seconds(), 0.025);
@@ -220,17 +220,17 @@ TEST_F(OculusEmulatorTest, PingsAreNumberedAndTimedByTheDevicesClock) {
 
 TEST_F(OculusEmulatorTest, SendsOnlyRequestedPings) {
     connect();
-    EXPECT_TRUE(emulator_.ping(heard(asked(metres(5)))).size() > 256 * 1000u);
+    EXPECT_TRUE(emulator_.ping(echoes(asked(metres(5)))).size() > 256 * 1000u);
     const types::SonarSettings before = asked(metres(6));
     EXPECT_FALSE(after(1).ask) << "one is in progress";
-    types::Sonar early = heard(before);
+    types::Sonar early = echoes(before);
     early.time = before.time - Time{1};
     EXPECT_TRUE(emulator_.ping(early).empty()) << "older than the request";
-    types::Sonar shapeless = heard(before);
+    types::Sonar shapeless = echoes(before);
     shapeless.bins.pop_back();
     EXPECT_TRUE(emulator_.ping(shapeless).empty());
-    EXPECT_FALSE(emulator_.ping(heard(before)).empty());
-    EXPECT_TRUE(emulator_.ping(heard(before)).empty()) << "once";
+    EXPECT_FALSE(emulator_.ping(echoes(before)).empty());
+    EXPECT_TRUE(emulator_.ping(echoes(before)).empty()) << "once";
 }
 
 TEST_F(OculusEmulatorTest, RequestsAMissingPingAgainAndSendsALatePing) {
@@ -242,9 +242,9 @@ TEST_F(OculusEmulatorTest, RequestsAMissingPingAgainAndSendsALatePing) {
     ASSERT_TRUE(second);
     EXPECT_EQ(emulator_.lost(), 1u);
     EXPECT_FALSE(after(3.9).ask) << "with more patience";
-    types::Sonar late = heard(first);
+    types::Sonar late = echoes(first);
     EXPECT_EQ(oculusResult(emulator_.ping(late)).value().fire.range, 120) << "with its own settings";
-    EXPECT_EQ(oculusResult(emulator_.ping(heard(*second))).value().fire.range, 60);
+    EXPECT_EQ(oculusResult(emulator_.ping(echoes(*second))).value().fire.range, 60);
     EXPECT_TRUE(after(0).ask);
     for (int i = 0; i < 10; ++i) after(100);
     EXPECT_EQ(emulator_.lost(), 11u) << "it continues to request";
@@ -254,9 +254,9 @@ TEST_F(OculusEmulatorTest, AClientThatLeavesDuringAPingLeavesNoState) {
     connect();
     const types::SonarSettings ask = asked(metres(5));
     emulator_.closed(1);
-    EXPECT_TRUE(emulator_.ping(heard(ask)).empty());
+    EXPECT_TRUE(emulator_.ping(echoes(ask)).empty());
     emulator_.received(1, bytesOf(metres(5)));
-    EXPECT_TRUE(emulator_.standsBy()) << "bytes of a client that is gone";
+    EXPECT_TRUE(emulator_.inStandby()) << "bytes of a client that is gone";
     for (int i = 0; i < 1000; ++i) {
         emulator_.opened(static_cast<uint64_t>(i));
         emulator_.received(static_cast<uint64_t>(i), bytesOf(metres(5)));
@@ -272,7 +272,7 @@ TEST_F(OculusEmulatorTest, TheLastFireMessageOfAllClientsApplies) {
     emulator_.received(2, bytesOf(metres(8)));
     EXPECT_EQ(after(1).ask.value().range, 8);
     emulator_.closed(2);
-    EXPECT_FALSE(emulator_.standsBy()) << "the other is still connected";
+    EXPECT_FALSE(emulator_.inStandby()) << "the other is still connected";
     Bytes half = bytesOf(metres(9)), rest(half.begin() + 20, half.end());
     half.resize(20);
     emulator_.received(1, half);

@@ -55,7 +55,7 @@ TEST(OculusEncoderTest, CodesOfEveryWidthAreTheSameFractionOfTheMax) {
         EXPECT_NEAR(ping.bearings[0], types::radians(30), 1e-9) << "port is first";
         const double shares[] = {0.25, 0.5, 1 / 65535., 0, 0.1, 1};
         for (size_t i = 0; i < 6; ++i)
-            EXPECT_NEAR(ping.codes[i] / ping.largestCode(), shares[i], 0.5 / ping.largestCode() + 1e-5) << i;
+            EXPECT_NEAR(ping.codes[i] / ping.maxCode(), shares[i], 0.5 / ping.maxCode() + 1e-5) << i;
     }
 }
 

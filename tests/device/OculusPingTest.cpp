@@ -39,7 +39,7 @@ TEST(OculusPingTest, APingIsReadInEveryVersionAndWidth) {
         }
     const OculusPing wide = oculusPings(Sent{.code_bytes = 2}.bytes()).at(0);
     EXPECT_THAT(wide.codes, ElementsAre(256, 257, 266, 267, 276, 277));
-    EXPECT_EQ(wide.largestCode(), 65535);
+    EXPECT_EQ(wide.maxCode(), 65535);
 }
 
 TEST(OculusPingTest, AMissingSpeedOfSoundIs1500) {

@@ -150,11 +150,11 @@ TEST_F(OculusTaskTest, TheDriverOfTheUniversityOfWashingtonReads32BitsOf512Beams
 TEST_F(OculusTaskTest, RecordsSentPings) {
     const Folder folder;
     start({"device.record=" + (folder / "dive.oculus").string()});
-    std::vector<Bytes> heard;
+    std::vector<Bytes> echoes;
     {
         OculusDriver driver(port_);
         driver.send(bytesOf({.rate = 2, .range = 10}));
-        for (int i = 0; i < 3; ++i) heard.push_back(bytesOf(driver.nextPing()));
+        for (int i = 0; i < 3; ++i) echoes.push_back(bytesOf(driver.nextPing()));
     }
     stop_ = true;
     thread_.join();
@@ -165,7 +165,7 @@ TEST_F(OculusTaskTest, RecordsSentPings) {
         recorded.push_back(bytesOf(ping->ping));
     }
     EXPECT_EQ(pings.diagnostic(), "");
-    for (const Bytes& ping : heard) EXPECT_THAT(recorded, ::testing::Contains(ping));
+    for (const Bytes& ping : echoes) EXPECT_THAT(recorded, ::testing::Contains(ping));
 }
 
 TEST_F(OculusTaskTest, AClientThatDoesNotReadDelaysNoOther) {
@@ -209,7 +209,7 @@ TEST_F(OculusTaskTest, SurvivesAThousandDriversThatLeaveDuringAPing) {
         }
         return false;
     };
-    EXPECT_TRUE(test::comesTrue(pings));
+    EXPECT_TRUE(test::becomesTrue(pings));
 }
 
 TEST_F(OculusTaskTest, RefusesImpossiblePropertiesWithTheirKeys) {

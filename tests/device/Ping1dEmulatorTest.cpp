@@ -34,7 +34,7 @@ protected:
         bench_.say(PingGeneralRequest{Message::message});
         const auto asked = bench_.asked();
         EXPECT_TRUE(asked.has_value());
-        if (asked) device_.hear(pingWithEcho(*asked, range, code), bench_.now());
+        if (asked) device_.takePing(pingWithEcho(*asked, range, code), bench_.now());
         bench_.waitForNext();
         return bench_.only<Message>();
     }
@@ -59,10 +59,10 @@ TEST_F(Ping1dEmulatorTest, ReportsDeviceInformation) {
 TEST_F(Ping1dEmulatorTest, AMessageWithoutPayloadIsARequest) {
     for (const uint16_t message : {4, 5, 1200, 1204, 1210}) {
         bench_.give(PingFrame{message, 0, 0, {}}.bytes());
-        const auto heard = bench_.heard();
-        ASSERT_EQ(heard.size(), 1u) << message;
-        EXPECT_EQ(heard[0].message, message);
-        EXPECT_FALSE(heard[0].payload.empty());
+        const auto received = bench_.received();
+        ASSERT_EQ(received.size(), 1u) << message;
+        EXPECT_EQ(received[0].message, message);
+        EXPECT_FALSE(received[0].payload.empty());
     }
     bench_.give(PingFrame{1300, 0, 0, {}}.bytes());
     EXPECT_TRUE(bench_.asked());
@@ -115,8 +115,8 @@ TEST_F(Ping1dEmulatorTest, AMeasurementRequestsAPingOfItsScanAndReportsItsTarget
     EXPECT_NEAR(asked->range, 15, 1e-6);
     EXPECT_EQ(asked->bin_count, 300u) << "of which the last 200 are the scan";
     EXPECT_NEAR(asked->gain_db, 20 * std::log10(5.5), 1e-12);
-    device_.hear(pingWithEcho(*asked, 8.02), bench_.now());
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the sound is not back yet";
+    device_.takePing(pingWithEcho(*asked, 8.02), bench_.now());
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "the sound is not back yet";
     EXPECT_GE(bench_.waitForNext(), 2 * 15 / 1500.0);
     const auto profile = bench_.only<Ping1dProfile>();
     EXPECT_NEAR(profile.measurement.distance, 8020, 25) << "half a sample";
@@ -143,11 +143,11 @@ TEST_F(Ping1dEmulatorTest, SilenceHasNoDistance) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     auto ping = pingFor(*bench_.asked());
     std::ranges::fill(ping->bins, 0.0f);
-    device_.hear(ping, bench_.now());
+    device_.takePing(ping, bench_.now());
     bench_.wait(1);
-    const auto told = bench_.only<Ping1dDistanceSimple>();
-    EXPECT_EQ(told.distance, 0u);
-    EXPECT_EQ(told.confidence, 0);
+    const auto reported = bench_.only<Ping1dDistanceSimple>();
+    EXPECT_EQ(reported.distance, 0u);
+    EXPECT_EQ(reported.confidence, 0);
 }
 
 TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
@@ -157,7 +157,7 @@ TEST_F(Ping1dEmulatorTest, AWrongSpeedOfSoundMakesDistancesWrongInItsRatio) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     const auto asked = bench_.asked();
     EXPECT_NEAR(asked->range, 10, 1e-6) << "the true range is half of the device's";
-    device_.hear(pingWithEcho(*asked, 5), bench_.now());
+    device_.takePing(pingWithEcho(*asked, 5), bench_.now());
     bench_.wait(1);
     EXPECT_NEAR(bench_.only<Ping1dDistanceSimple>().distance, 10'000, 100);
 }
@@ -176,14 +176,14 @@ TEST_F(Ping1dEmulatorTest, AStreamKeepsItsIntervalUntilStopped) {
             bench_.answer(*asked);
         }
         bench_.waitForNext();
-        for (const PingFrame& frame : bench_.heard()) profiles += frame.message == Ping1dProfile::message;
+        for (const PingFrame& frame : bench_.received()) profiles += frame.message == Ping1dProfile::message;
     }
     EXPECT_EQ(profiles, 5);
     bench_.say(Ping1dContinuousStop{Ping1dProfile::message});
-    bench_.heard();
+    bench_.received();
     if (const auto asked = bench_.asked()) bench_.answer(*asked);
     bench_.wait(5);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_FALSE(device_.wakeAt());
 }
 
@@ -223,7 +223,7 @@ TEST_F(Ping1dEmulatorTest, WhenOffItSendsNoSoundAndReportsTheLastDistance) {
     measure<Ping1dDistance>(42);
     set(Ping1dSetPingEnable{0});
     bench_.say(Ping1dContinuousStart{Ping1dProfile::message});
-    bench_.heard();
+    bench_.received();
     EXPECT_EQ(request<Ping1dDistance>().measurement.ping_number, 1u);
     EXPECT_FALSE(bench_.asked());
     EXPECT_FALSE(device_.wakeAt());
@@ -238,7 +238,7 @@ TEST_F(Ping1dEmulatorTest, AutomaticModeFollowsItsTarget) {
     bench_.say(PingGeneralRequest{Ping1dDistanceSimple::message});
     auto silent = pingFor(*bench_.asked());
     std::ranges::fill(silent->bins, 0.0f);
-    device_.hear(silent, bench_.now());
+    device_.takePing(silent, bench_.now());
     bench_.wait(1);
     EXPECT_EQ(bench_.only<Ping1dDistanceSimple>().confidence, 0);
     EXPECT_GT(request<Ping1dRange>().length, 15'000u) << "its scan is longer";
@@ -267,7 +267,7 @@ TEST_F(Ping1dEmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
 
 TEST_F(Ping1dEmulatorTest, RefusesTooManyRequests) {
     for (int i = 0; i < 64; ++i) bench_.say(PingGeneralRequest{Ping1dProfile::message});
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     bench_.say(PingGeneralRequest{Ping1dProfile::message});
     EXPECT_EQ(bench_.only<PingNack>().text, "too many requests wait already");
 }

@@ -21,7 +21,7 @@ protected:
         for (int i = 0; i < 4 * pings && static_cast<int>(angles.size()) < pings; ++i) {
             if (const auto asked = bench_.asked()) bench_.answer(*asked);
             bench_.waitForNext();
-            for (const PingFrame& frame : bench_.heard())
+            for (const PingFrame& frame : bench_.received())
                 if (const auto data = pingMessage<Ping360AutoDeviceData>(frame)) angles.push_back(data->angle);
         }
         return angles;
@@ -30,7 +30,7 @@ protected:
         bench_.say(Ping360AutoTransmit{1, acoustics, sector});
         const auto angles = anglesOf(pings);
         bench_.say(Ping360MotorOff{});
-        bench_.heard();
+        bench_.received();
         return angles;
     }
 
@@ -82,10 +82,10 @@ TEST_F(Ping360EmulatorTest, AnAnswerTakesTheTimeOfHeadSoundAndDevice) {
     const auto asked = bench_.asked();
     ASSERT_TRUE(asked);
     bench_.answer(*asked);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "even if the sonar's ping is early";
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "even if the sonar's ping is early";
     const double takes = 50e-6 + listened + config.overhead;
     bench_.wait(takes - 1e-6);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     bench_.wait(1e-6);
     const auto data = bench_.only<Ping360DeviceData>();
     EXPECT_EQ(data.angle, 300);
@@ -101,7 +101,7 @@ TEST_F(Ping360EmulatorTest, ALatePingIsSentOnArrival) {
     bench_.say(transmitAt(0));
     const auto asked = bench_.asked();
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     bench_.answer(*asked);
     EXPECT_EQ(bench_.only<Ping360DeviceData>().data.size(), 600u);
 }
@@ -110,7 +110,7 @@ TEST_F(Ping360EmulatorTest, WithoutTransmitTheAnswerHasNoData) {
     Ping360Transducer turn = transmitAt(50);
     turn.transmit = 0;
     bench_.say(turn);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the head turns";
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "the head turns";
     bench_.waitForNext();
     const auto data = bench_.only<Ping360DeviceData>();
     EXPECT_EQ(data.angle, 50);
@@ -205,7 +205,7 @@ TEST_F(Ping360EmulatorTest, MotorOffEndsAScanAndIsAcknowledged) {
     EXPECT_EQ(bench_.only<PingAck>().acked, 2903);
     bench_.answer(*asked);
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_FALSE(bench_.asked());
     EXPECT_FALSE(device_.wakeAt());
 }
@@ -226,7 +226,7 @@ TEST_F(Ping360EmulatorTest, TwoClientsGetTheirOwnAnswersOneAfterTheOther) {
     bench_.answer(*first);
     bench_.wait(0.05);
     EXPECT_EQ(bench_.only<Ping360DeviceData>(1).angle, 0);
-    EXPECT_THAT(bench_.heard(2), IsEmpty());
+    EXPECT_THAT(bench_.received(2), IsEmpty());
     bench_.waitForNext();
     const auto second = bench_.asked();
     ASSERT_TRUE(second);
@@ -234,12 +234,12 @@ TEST_F(Ping360EmulatorTest, TwoClientsGetTheirOwnAnswersOneAfterTheOther) {
     bench_.answer(*second);
     bench_.wait(0.05);
     EXPECT_EQ(bench_.only<Ping360DeviceData>(2).angle, 10);
-    EXPECT_THAT(bench_.heard(1), IsEmpty());
+    EXPECT_THAT(bench_.received(1), IsEmpty());
 }
 
 TEST_F(Ping360EmulatorTest, RefusesTooManyCommands) {
     for (int i = 0; i < 16; ++i) bench_.say(transmitAt(0));
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_EQ(bench_.refusalOf(transmitAt(0)), "too many commands wait already");
 }
 
@@ -250,7 +250,7 @@ TEST_F(Ping360EmulatorTest, ADisconnectDuringAPingLeavesNoState) {
     device_.close(1);
     bench_.answer(*asked);
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(1), IsEmpty());
+    EXPECT_THAT(bench_.received(1), IsEmpty());
     EXPECT_FALSE(bench_.asked()) << "its second command is gone as well";
     EXPECT_FALSE(device_.wakeAt());
     bench_.say(Ping360AutoTransmit{1, acoustics, {0, 399, 1, 0}}, 2);
@@ -263,7 +263,7 @@ TEST_F(Ping360EmulatorTest, AMissingPingIsRefusedAndWarnedOfOnce) {
         bench_.say(transmitAt(0));
         EXPECT_TRUE(bench_.asked());
         bench_.wait(1.9);
-        EXPECT_THAT(bench_.heard(), IsEmpty());
+        EXPECT_THAT(bench_.received(), IsEmpty());
         bench_.wait(0.2);
         EXPECT_EQ(bench_.only<PingNack>().nacked, 2601);
         EXPECT_EQ(device_.takeWarnings().size(), i == 0 ? 1u : 0u);
@@ -279,7 +279,7 @@ TEST_F(Ping360EmulatorTest, IgnoresPingsOfEarlierRequestsOrOfOtherBins) {
     asked.bin_count = 500;
     bench_.answer(asked);
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     EXPECT_THAT(device_.takeWarnings(),
                 ElementsAre(HasSubstr("1 beams of 500 bins where the driver asked for one of 600")));
     asked.bin_count = 600;
@@ -306,12 +306,12 @@ TEST_F(Ping360EmulatorTest, AnswersHaveANewIdAndFramesForOthersAreIgnored) {
     EXPECT_EQ(bench_.only<PingAck>().acked, 2000);
     const PingGeneralRequest request{PingProtocolVersion::message};
     bench_.say(request, 1, 9);
-    EXPECT_EQ(bench_.heard().at(0).source, 9);
+    EXPECT_EQ(bench_.received().at(0).source, 9);
     bench_.say(request, 1, 8);
-    EXPECT_THAT(bench_.heard(), IsEmpty());
+    EXPECT_THAT(bench_.received(), IsEmpty());
     bench_.say(PingNack{5, "no"});
     bench_.say(PingAck{5});
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "answers are not answered";
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "answers are not answered";
 }
 
 TEST_F(Ping360EmulatorTest, AResetRestoresTheBootState) {
@@ -319,16 +319,16 @@ TEST_F(Ping360EmulatorTest, AResetRestoresTheBootState) {
     bench_.say(Ping360Reset{0, 0});
     EXPECT_EQ(bench_.only<PingAck>().acked, 2600);
     bench_.wait(1);
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the command in progress is dropped";
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "the command in progress is dropped";
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
     EXPECT_EQ(bench_.only<Ping360DeviceData>().angle, 0);
     bench_.say(Ping360Reset{1, 0});
-    bench_.heard();
+    bench_.received();
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
-    EXPECT_THAT(bench_.heard(), IsEmpty()) << "the bootloader waits five seconds";
+    EXPECT_THAT(bench_.received(), IsEmpty()) << "the bootloader waits five seconds";
     bench_.wait(5);
     bench_.say(PingGeneralRequest{Ping360DeviceData::message});
-    EXPECT_EQ(bench_.heard().size(), 1u);
+    EXPECT_EQ(bench_.received().size(), 1u);
 }
 
 TEST_F(Ping360EmulatorTest, ANoisySerialLineLosesOnlyDamagedFrames) {

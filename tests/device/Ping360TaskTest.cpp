@@ -38,7 +38,7 @@ public:
     void say(const Message& message) const {
         give(pingBytes(message));
     }
-    std::vector<PingFrame> heard() {
+    std::vector<PingFrame> received() {
         reader_.add(line_.receive(std::chrono::milliseconds(1)));
         std::vector<PingFrame> frames;
         while (auto frame = reader_.next()) frames.push_back(std::move(*frame));
@@ -78,9 +78,9 @@ protected:
     template <class Message>
     Message next(Driver& driver) {
         std::optional<Message> found;
-        EXPECT_TRUE(test::comesTrue([&] {
+        EXPECT_TRUE(test::becomesTrue([&] {
             cycle();
-            for (const PingFrame& frame : driver.heard())
+            for (const PingFrame& frame : driver.received())
                 if (!found) found = pingMessage<Message>(frame);
             return found.has_value();
         })) << Message::message;
@@ -141,7 +141,7 @@ TEST_F(Ping360TaskTest, AThousandReconnectsLeakNothing) {
         driver.say(PingGeneralRequest{PingProtocolVersion::message});
         ASSERT_EQ(next<PingProtocolVersion>(driver).minor, 1) << i;
     }
-    EXPECT_TRUE(test::comesTrue([&] {
+    EXPECT_TRUE(test::becomesTrue([&] {
         cycle();
         return openFiles() == before;
     })) << openFiles()
@@ -177,7 +177,7 @@ TEST_F(Ping360TaskTest, AnswersDiscovery) {
     const std::string question = "Discovery";
     finder.send({reinterpret_cast<const uint8_t*>(question.data()), question.size()});
     Bytes answer;
-    EXPECT_TRUE(test::comesTrue([&] {
+    EXPECT_TRUE(test::becomesTrue([&] {
         cycle();
         answer = finder.receive(std::chrono::milliseconds(1));
         return !answer.empty();
@@ -212,7 +212,7 @@ TEST_F(Ping360TaskTest, TheCommandRecognisesIt) {
         outcomes = probe(address, std::chrono::seconds(20));
         done = true;
     });
-    EXPECT_TRUE(test::comesTrue([&] {
+    EXPECT_TRUE(test::becomesTrue([&] {
         cycle();
         return done.load();
     }));
@@ -231,9 +231,9 @@ TEST(Ping1dTaskTest, AnswersByDatagram) {
     Driver driver(DriverLine::udp("127.0.0.1", task.portOf(PingDeviceTask::udp)));
     driver.say(PingGeneralRequest{PingDeviceInformation::message});
     std::optional<PingDeviceInformation> about;
-    EXPECT_TRUE(test::comesTrue([&] {
+    EXPECT_TRUE(test::becomesTrue([&] {
         task.update();
-        for (const PingFrame& frame : driver.heard()) about = pingMessage<PingDeviceInformation>(frame);
+        for (const PingFrame& frame : driver.received()) about = pingMessage<PingDeviceInformation>(frame);
         return about.has_value();
     }));
     EXPECT_EQ(about->type, 1);

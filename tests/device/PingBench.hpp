@@ -50,10 +50,10 @@ public:
     }
     std::optional<types::SonarSettings> asked() { return device_.takeAsked(); }
     void answer(const types::SonarSettings& asked, float speed_of_sound = 1500) {
-        device_.hear(pingFor(asked, speed_of_sound), now_);
+        device_.takePing(pingFor(asked, speed_of_sound), now_);
     }
     /** Returns the bytes sent to a client since the last call. */
-    std::vector<PingFrame> heard(PingClient client = 1) {
+    std::vector<PingFrame> received(PingClient client = 1) {
         for (const PingOutgoing& out : device_.takeOutgoing())
             for (PingFrame& frame : pingFrames(out.bytes, 4096)) inbox_[out.client].push_back(std::move(frame));
         return std::exchange(inbox_[client], {});
@@ -61,7 +61,7 @@ public:
     /** Returns the only message sent to a client. */
     template <class Message>
     Message only(PingClient client = 1) {
-        const auto frames = heard(client);
+        const auto frames = received(client);
         EXPECT_EQ(frames.size(), 1u) << Message::message;
         if (frames.size() != 1) return {};
         EXPECT_EQ(frames[0].message, Message::message);

@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr size_t largest = 2048;
+constexpr size_t maximum = 2048;
 
 std::vector<uint16_t> messagesIn(PingFrameReader& reader) {
     std::vector<uint16_t> found;
@@ -22,7 +22,7 @@ std::vector<uint16_t> messagesIn(PingFrameReader& reader) {
 }
 
 std::vector<uint16_t> messagesIn(const Bytes& bytes) {
-    PingFrameReader reader(largest);
+    PingFrameReader reader(maximum);
     reader.add(bytes);
     return messagesIn(reader);
 }
@@ -30,7 +30,7 @@ std::vector<uint16_t> messagesIn(const Bytes& bytes) {
 /** Returns the message read from a written message. */
 template <class Message>
 Message there(const Message& message) {
-    const auto frames = pingFrames(pingBytes(message, 2, 7), largest);
+    const auto frames = pingFrames(pingBytes(message, 2, 7), maximum);
     EXPECT_EQ(frames.size(), 1u);
     EXPECT_EQ(frames.at(0).source, 2);
     EXPECT_EQ(frames.at(0).destination, 7);
@@ -47,7 +47,7 @@ TEST(PingProtocolTest, AProfileHasTheKnownBytes) {
     const Bytes known = {0x42, 0x52, 0x24, 0, 0x14, 5,    56, 45, 0xe8, 3,    0, 0, 93,   0, 0x3f, 8,
                          0x1c, 0x2b, 0xa6, 2, 0xa0, 0x0f, 0,  0,  0xb8, 0x88, 0, 0, 4,    0, 0,    0,
                          10,   0,    0,    1, 2,    3,    4,  5,  6,    7,    8, 9, 0xde, 5};
-    const auto profile = pingMessage<Ping1dProfile>(pingFrames(known, largest).at(0));
+    const auto profile = pingMessage<Ping1dProfile>(pingFrames(known, maximum).at(0));
     ASSERT_TRUE(profile);
     EXPECT_EQ(profile->measurement.distance, 1000u);
     EXPECT_EQ(profile->measurement.confidence, 93);

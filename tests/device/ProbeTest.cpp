@@ -134,18 +134,18 @@ private:
 TEST(ProbeTest, AcceptsBroadcastsOfTheProbedDeviceOnly) {
     const uint16_t port = test::OculusListener().port();
     const Probe question{"Oculus status", Probe::Line::Broadcast, port, {}, oculusIn, "silence"};
-    const auto heardOf = [&](const char* host, int patience_ms) {
+    const auto receivedOf = [&](const char* host, int patience_ms) {
         return ask(question, {host, "", 0}, std::chrono::milliseconds(patience_ms)).device;
     };
     const StatusSender other("127.0.0.2", port, {.part = 1042, .address = {192, 168, 2, 3}});
-    EXPECT_THAT(heardOf("127.0.0.2", 10000), HasSubstr("M1200d")) << "by its sender";
-    EXPECT_THAT(heardOf("192.168.2.3", 10000), HasSubstr("M1200d")) << "by its own address";
-    EXPECT_EQ(heardOf("127.0.0.1", 100), "");
-    EXPECT_EQ(heardOf("::1", 100), "");
-    EXPECT_EQ(heardOf("192.168.2.4", 100), "");
+    EXPECT_THAT(receivedOf("127.0.0.2", 10000), HasSubstr("M1200d")) << "by its sender";
+    EXPECT_THAT(receivedOf("192.168.2.3", 10000), HasSubstr("M1200d")) << "by its own address";
+    EXPECT_EQ(receivedOf("127.0.0.1", 100), "");
+    EXPECT_EQ(receivedOf("::1", 100), "");
+    EXPECT_EQ(receivedOf("192.168.2.4", 100), "");
     const StatusSender own("127.0.0.1", port, {.part = 1032});
-    EXPECT_THAT(heardOf("127.0.0.1", 10000), HasSubstr("M750d"));
-    EXPECT_THAT(heardOf("::1", 10000), HasSubstr("M750d"));
+    EXPECT_THAT(receivedOf("127.0.0.1", 10000), HasSubstr("M750d"));
+    EXPECT_THAT(receivedOf("::1", 10000), HasSubstr("M750d"));
 }
 
 TEST(ProbeTest, ANegativePatienceDoesNotWait) {

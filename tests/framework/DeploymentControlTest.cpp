@@ -77,7 +77,7 @@ TEST(DeploymentControlTest, TimeIsPausedWhenPauseReturns) {
     const auto now = [&] { return deployment.status().now.microseconds; };
     for (int i = 0; i < 5; ++i) {
         const int64_t before = now();
-        ASSERT_TRUE(test::comesTrue([&] { return now() > before; }));
+        ASSERT_TRUE(test::becomesTrue([&] { return now() > before; }));
         deployment.pause(true);
         const int64_t paused = now();
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -97,7 +97,7 @@ TEST(DeploymentControlTest, APausedRunCanBeSteppedAndStopped) {
     std::atomic<int> instants{0};
     std::thread running([&] { deployment.run({.duration_s = 100}, stop, [&](const Progress&) { ++instants; }); });
     const auto become = [&](int expected) {
-        test::comesTrue([&] { return instants == expected; });
+        test::becomesTrue([&] { return instants == expected; });
         std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a further instant would run now
         return instants == expected;
     };

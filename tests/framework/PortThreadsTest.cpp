@@ -10,7 +10,7 @@
 namespace insonify::framework {
 namespace {
 
-using test::comesTrue;
+using test::becomesTrue;
 
 /** Reads one sample per cycle on its own thread until destroyed, and checks their order. */
 class Listener : public TaskContext {
@@ -65,7 +65,7 @@ TEST(PortThreadsTest, EverySampleOfABurstRunsATriggeredTask) {
     Listener listener;
     writer.port.connectTo(listener.in, ConnPolicy::buffer(300));
     for (int64_t i = 1; i <= 300; ++i) writer.port.write(i);
-    EXPECT_TRUE(comesTrue([&] { return listener.samples == 300; })) << listener.samples;
+    EXPECT_TRUE(becomesTrue([&] { return listener.samples == 300; })) << listener.samples;
     EXPECT_EQ(listener.disordered, 0);
 }
 
@@ -77,15 +77,15 @@ TEST(PortThreadsTest, ASampleFromBeforeTheReleaseRunsTheTask) {
     writer.port.write(1);
     EXPECT_EQ(listener.samples, 0);
     listener.activity().release();
-    EXPECT_TRUE(comesTrue([&] { return listener.samples == 1; }));
+    EXPECT_TRUE(becomesTrue([&] { return listener.samples == 1; }));
 }
 
 TEST(PortThreadsTest, AHangingReaderDoesNotDelayItsWriter) {
     test::Writer<int64_t> writer;
     Listener listener;
     std::promise<void> hanging, let_go;
-    listener.during = [&, done = let_go.get_future().share(), told = false]() mutable {
-        if (!std::exchange(told, true)) hanging.set_value();
+    listener.during = [&, done = let_go.get_future().share(), reported = false]() mutable {
+        if (!std::exchange(reported, true)) hanging.set_value();
         done.wait();
     };
     writer.port.connectTo(listener.in, ConnPolicy::circularBuffer(2));
@@ -95,7 +95,7 @@ TEST(PortThreadsTest, AHangingReaderDoesNotDelayItsWriter) {
     EXPECT_EQ(listener.samples, 0);
     EXPECT_EQ(listener.in.channels().front()->lost(), 9998u);
     let_go.set_value();
-    EXPECT_TRUE(comesTrue([&] { return listener.samples == 3; }));
+    EXPECT_TRUE(becomesTrue([&] { return listener.samples == 3; }));
 }
 
 TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
@@ -112,8 +112,8 @@ TEST(PortThreadsTest, PortsConnectAndDisconnectUnderLoad) {
         one.port().connectTo(first.in, i % 2 ? ConnPolicy::data() : ConnPolicy::buffer(5));
         EXPECT_TRUE(first.in.connected());
         const int before = first.samples;
-        const auto heard = [&] { return i % 20 != 0 || first.samples > before; };
-        EXPECT_TRUE(comesTrue(heard));
+        const auto received = [&] { return i % 20 != 0 || first.samples > before; };
+        EXPECT_TRUE(becomesTrue(received));
         one.port().disconnect(first.in);
         EXPECT_FALSE(first.in.connected());
         EXPECT_FALSE(first.in.hasNew());
@@ -130,7 +130,7 @@ TEST(PortThreadsTest, ADestroyedTaskDisconnectsWhileOthersWrite) {
     for (int i = 0; i < 50; ++i) {
         Listener listener;
         chatter.port().connectTo(listener.in, ConnPolicy::circularBuffer(2));
-        EXPECT_TRUE(comesTrue([&] { return listener.samples > 0; }));
+        EXPECT_TRUE(becomesTrue([&] { return listener.samples > 0; }));
     }
     EXPECT_FALSE(chatter.port().connected());
 }

@@ -54,7 +54,7 @@ TEST(StreamNamesTest, ReportsAliasesOfPropertiesWithTheirTargets) {
     EXPECT_EQ(aliases[0].task + "." + aliases[0].property, "s.last");
 }
 
-TEST(UpstreamTest, AValueComesFromTheNearestTaskThatHasIt) {
+TEST(UpstreamTest, TakesAValueFromTheNearestTaskThatHasIt) {
     const Deployed chain(
         "tasks:\n"
         "  s: {type: test::Source, activity: {period: 1}, properties: {last: 7}}\n"

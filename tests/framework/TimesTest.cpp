@@ -138,7 +138,7 @@ TEST(TimesTest, AnEventFromOutsideRunsACycle) {
     task.activity().release();
     for (int rings = 1; rings <= 3; ++rings) {
         std::thread([&] { task.rung.raise(); }).join();
-        EXPECT_TRUE(test::comesTrue([&] { return task.answered == rings; }));
+        EXPECT_TRUE(test::becomesTrue([&] { return task.answered == rings; }));
     }
     task.activity().hold();
     task.stop();
@@ -148,13 +148,13 @@ TEST(TimesTest, AnEventFromOutsideRunsACycle) {
 struct Latest : TaskContext {
     using TaskContext::TaskContext;
     InputPort<double> in{this, "in", "of the source"};
-    std::atomic<bool> goes_on{false};
+    std::atomic<bool> continues{false};
     std::vector<double> taken;
     void updateHook() override {
         double sample = 0;
         if (!in.takeNext(sample)) return;
         taken.push_back(sample);
-        while (!goes_on) std::this_thread::sleep_for(milliseconds(1));
+        while (!continues) std::this_thread::sleep_for(milliseconds(1));
     }
 };
 
@@ -173,7 +173,7 @@ connections: [{from: source.value, to: latest.in, policy: {type: buffer, size: 1
     const OutputPortBase& value = *deployment.task("source")->output("value");
     std::atomic<bool> stop{false};
     deployment.run({}, stop, [&](const Progress&) {
-        latest.goes_on = latest.goes_on || value.written() >= 20;
+        latest.continues = latest.continues || value.written() >= 20;
         stop = value.written() >= 40;
     });
     const uint64_t passed_over = deployment.passedOver().at("source.value>latest.in");

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::MatchesRegex;
 
 /** The deployment's warnings so far; the tasks of these tests wait for them. */
-struct Told {
+struct Reported {
     std::mutex mutex;
     std::vector<std::string> texts;
     void add(const std::string& text) {
@@ -24,13 +24,13 @@ struct Told {
         return texts.size();
     }
 };
-Told* told = nullptr;
+Reported* reported = nullptr;
 
 /** Its first cycle ends once it has been reported. */
 struct Hanging : TaskContext {
     using TaskContext::TaskContext;
     void updateHook() override {
-        while (told->count() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (reported->count() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 };
 
@@ -38,16 +38,16 @@ struct Hanging : TaskContext {
 struct Ill : TaskContext {
     using TaskContext::TaskContext;
     void updateHook() override {
-        if (told->count() == 0) error("has a cold");
+        if (reported->count() == 0) error("has a cold");
     }
     void errorHook() override {
-        if (told->count() > 0) recover();
+        if (reported->count() > 0) recover();
     }
 };
 
 /** Runs one task until there were two warnings. */
 struct WatchdogTest : testing::Test {
-    WatchdogTest() { told = &told_; }
+    WatchdogTest() { reported = &reported_; }
     RunResult run(const std::string& yaml) {
         Registry registry;
         registry.add<Hanging>("test::Hanging", "hangs");
@@ -55,11 +55,11 @@ struct WatchdogTest : testing::Test {
         deployment_ =
             std::make_unique<Deployment>(DeploymentSpec::parse("schedule: realtime\n" + yaml, "a.yml"), registry);
         deployment_->configure();
-        deployment_->onWarning([this](const std::string& text) { told_.add(text); });
+        deployment_->onWarning([this](const std::string& text) { reported_.add(text); });
         std::atomic<bool> stop{false};
-        return deployment_->run({}, stop, [&](const Progress&) { stop = told_.count() >= 2; });
+        return deployment_->run({}, stop, [&](const Progress&) { stop = reported_.count() >= 2; });
     }
-    Told told_;
+    Reported reported_;
     std::unique_ptr<Deployment> deployment_;
 };
 
@@ -69,7 +69,7 @@ TEST_F(WatchdogTest, ReportsAHangingCycleOnceAndItsEnd) {
     ASSERT_GE(result.warnings.size(), 2u);
     EXPECT_EQ(result.warnings[0], "slug: hangs: a cycle has run for 0.3 s");
     EXPECT_THAT(result.warnings[1], MatchesRegex("slug: is back after 0\\.[3-9].* s|slug: is back after [1-9].* s"));
-    EXPECT_EQ(result.warnings, told_.texts);
+    EXPECT_EQ(result.warnings, reported_.texts);
     EXPECT_GE(deployment_->task("slug")->timing().hangs, 1u);
 }
 

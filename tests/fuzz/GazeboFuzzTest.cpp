@@ -21,10 +21,10 @@ void enterScene(const std::string& bytes, const std::filesystem::path& folder) t
 }
 
 void enterGazebo(const Input& input) {
-    gazebo::Heard heard("/pose/info");
-    const auto announcement = gazebo::readDatagram(input.bytes(), "ours", heard);
+    gazebo::Received received("/pose/info");
+    const auto announcement = gazebo::readDatagram(input.bytes(), "ours", received);
     EXPECT_FALSE(announcement && announcement->process.empty());
-    EXPECT_FALSE(heard.text().empty());
+    EXPECT_FALSE(received.text().empty());
     gazebo::WorldWatch watch({});
     for (const auto frame : {types::WorldFrame::AsIs, types::WorldFrame::Enu}) {
         if (const auto message = gazebo::readPoses(input.bytes(), frame)) {

@@ -14,9 +14,9 @@ using types::Time;
 
 /** Expects that the checksum of a found frame is correct, in either version. */
 void expectSound(const mavlink::Frame& frame) {
-    const auto kind = std::ranges::find(mavlink::heard_kinds, frame.message, &mavlink::Kind::message);
-    ASSERT_NE(kind, mavlink::heard_kinds.end());
-    const auto again = mavlink::readDatagram(frame.bytes(kind->crc_extra), mavlink::heard_kinds);
+    const auto kind = std::ranges::find(mavlink::received_kinds, frame.message, &mavlink::Kind::message);
+    ASSERT_NE(kind, mavlink::received_kinds.end());
+    const auto again = mavlink::readDatagram(frame.bytes(kind->crc_extra), mavlink::received_kinds);
     ASSERT_EQ(again.frames.size(), 1u);
     EXPECT_EQ(again.frames[0].message, frame.message);
     EXPECT_EQ(again.frames[0].system, frame.system);
@@ -28,7 +28,7 @@ void enterMavlink(const Input& input) {
     Time now = Time::fromSeconds(1e9);
     for (size_t at = 0; at < bytes.size(); at += 400) {
         const auto datagram =
-            mavlink::readDatagram(bytes.subspan(at, std::min<size_t>(400, bytes.size() - at)), mavlink::heard_kinds);
+            mavlink::readDatagram(bytes.subspan(at, std::min<size_t>(400, bytes.size() - at)), mavlink::received_kinds);
         for (const mavlink::Frame& frame : datagram.frames) {
             expectSound(frame);
             for (mavlink::Body& body : bodies) {

@@ -16,7 +16,7 @@ namespace {
 void expectSound(const device::OculusPing& ping) {
     EXPECT_EQ(ping.codes.size(), size_t{ping.beamCount()} * ping.bin_count);
     EXPECT_TRUE(ping.row_gains.empty() || ping.row_gains.size() == ping.bin_count);
-    EXPECT_TRUE(std::ranges::all_of(ping.codes, [&](uint32_t code) { return code <= ping.largestCode(); }));
+    EXPECT_TRUE(std::ranges::all_of(ping.codes, [&](uint32_t code) { return code <= ping.maxCode(); }));
     EXPECT_TRUE(std::isfinite(ping.frequency_hz) && ping.frequency_hz >= 0) << ping.frequency_hz;
     EXPECT_TRUE(std::isfinite(ping.speed_of_sound) && ping.speed_of_sound >= 0) << ping.speed_of_sound;
     EXPECT_GT(ping.range_resolution, 0);

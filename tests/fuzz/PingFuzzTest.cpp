@@ -55,7 +55,7 @@ void expectSound(device::PingDevice& emulator, types::Time now) {
     ping->time = now;
     ping->resize(asked->bin_count, 1);
     std::ranges::fill(ping->bins, 7.0f);
-    emulator.hear(ping, now);
+    emulator.takePing(ping, now);
 }
 
 void drive(device::PingDevice&& emulator, std::span<const uint8_t> bytes) {

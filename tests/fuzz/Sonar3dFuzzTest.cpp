@@ -38,7 +38,7 @@ void readSonar3d(const Input& input) {
             sonar.tick(now);
             types::DepthMap silence;
             silence.time = now;
-            sonar.heard(silence);
+            sonar.takePing(silence);
         }
     }
     EXPECT_TRUE(!reader.refusal() || reader.refusal()->status >= 400);

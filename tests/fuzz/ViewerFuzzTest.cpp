@@ -24,12 +24,12 @@ void ask(const Input& input) {
     } catch (const std::invalid_argument& error) {
         expectOurWords(viewer::refusalText(request.id, error.what()));
     }
-    const bool is_told =
+    const bool is_known =
         viewer::tokenIn(input.bytes()) == "secret" || input.bytes().find("secret") != std::string::npos;
     const viewer::AccessPolicy access{"secret"};
     for (const auto use :
          {viewer::AccessPolicy::Use::Page, viewer::AccessPolicy::Use::Read, viewer::AccessPolicy::Use::Control})
-        EXPECT_TRUE(is_told || access.decide({input.bytes(), input.bytes(), input.bytes(), input.bytes()}, use));
+        EXPECT_TRUE(is_known || access.decide({input.bytes(), input.bytes(), input.bytes(), input.bytes()}, use));
 }
 
 TEST(ViewerFuzzTest, EveryMessageIsAnsweredOrRefused) {

@@ -69,10 +69,10 @@ void expectSameScene(const scene::Scene& a, const scene::Scene& b) {
     ASSERT_EQ(a.nodes.size(), b.nodes.size());
     ASSERT_EQ(a.geometry->objects.size(), b.geometry->objects.size());
     const auto differenceOf = [](const glm::dmat4& left, const glm::dmat4& right) {
-        double largest = 0;
+        double maximum = 0;
         for (int c = 0; c < 4; ++c)
-            for (int r = 0; r < 4; ++r) largest = std::max(largest, std::abs(left[c][r] - right[c][r]));
-        return largest;
+            for (int r = 0; r < 4; ++r) maximum = std::max(maximum, std::abs(left[c][r] - right[c][r]));
+        return maximum;
     };
     for (const scene::Node& node : a.nodes) EXPECT_GE(scene::findNode(b, node.name), 0) << node.name;
     for (size_t i = 0; i < a.geometry->objects.size(); ++i) {

@@ -34,7 +34,7 @@ protected:
         return Process(insonifyWords(words), folder.path());
     }
     bool says(const std::string& text) const {
-        return gazebo::comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
+        return gazebo::becomesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
     }
     TestFolder folder;
 };
@@ -50,8 +50,8 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
         world->publish(0.02 * sent, 0.01 * sent);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
-    const bool pings = gazebo::comesTrue([&] { return publish(), fs::exists(folder / "out/fan_000000.png"); });
-    const bool ended = pings && gazebo::comesTrue([&] { return publish(), fs::exists(folder / "summary.json"); });
+    const bool pings = gazebo::becomesTrue([&] { return publish(), fs::exists(folder / "out/fan_000000.png"); });
+    const bool ended = pings && gazebo::becomesTrue([&] { return publish(), fs::exists(folder / "summary.json"); });
     if (!ended) sonar.signal(SIGKILL);
     EXPECT_TRUE(ended);
     const Outcome outcome = sonar.wait();
@@ -63,20 +63,20 @@ TEST_F(GazeboRunTest, PingsStopAndResumeWithTheWorld) {
     const auto world = makeWorld();
     const Process sonar = run({"--set", "scene.pose_timeout=2", "--set", "fan.every=1"});
     int sent = 0;
-    const auto publish = [&](bool goes_on) {
-        sent += goes_on ? 1 : 0;
+    const auto publish = [&](bool continues) {
+        sent += continues ? 1 : 0;
         world->publish(0.02 * sent, 0.01 * sent);
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     };
     const auto pictures = [&] {
         return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});
     };
-    EXPECT_TRUE(gazebo::comesTrue([&] { return publish(true), fs::exists(folder / "out/fan_000003.png"); }));
-    EXPECT_TRUE(gazebo::comesTrue([&] {
+    EXPECT_TRUE(gazebo::becomesTrue([&] { return publish(true), fs::exists(folder / "out/fan_000003.png"); }));
+    EXPECT_TRUE(gazebo::becomesTrue([&] {
         publish(false);
         return readFile(folder / "stderr.txt").find("no pose in the last 2 s (pose_timeout)") != std::string::npos;
     }));
-    EXPECT_TRUE(gazebo::comesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
+    EXPECT_TRUE(gazebo::becomesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);
     const Outcome outcome = sonar.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -68,7 +68,7 @@ TEST_F(HarmonicTest, PosesOfAWorldAreRead) {
     follow("rov");
     HarmonicWorld world({});
     types::Pose read;
-    ASSERT_TRUE(comesTrue([&] {  // the first may be sent before its receiver is connected
+    ASSERT_TRUE(becomesTrue([&] {  // the first may be sent before its receiver is connected
         world.publish(recording("poses"));
         task.update();
         return readers[0].port.readNew(read);
@@ -84,7 +84,7 @@ TEST_F(HarmonicTest, FindsARestartedWorld) {
         HarmonicWorld world({});
         double seconds = x;
         types::Pose pose;
-        ASSERT_TRUE(comesTrue([&] {
+        ASSERT_TRUE(becomesTrue([&] {
             world.publish(poses(seconds += 0.02, {"rov"}, x));
             task.update();
             return readers[0].port.readNew(pose) && pose.position.x == x;
@@ -97,23 +97,23 @@ TEST_F(HarmonicTest, InformsAPublisherWhenItsMessagesAreNoLongerReceived) {
     {
         const Subscriber subscriber(TransportOptions::fromEnvironment(""),
                                     {{"/world/sea/pose/info", [](const std::string&, std::string_view) {}}});
-        EXPECT_TRUE(comesTrue([&] { return world.takers() == 1; }));
-        EXPECT_TRUE(comesTrue([&] { return subscriber.hasPublisher(0); }));
+        EXPECT_TRUE(becomesTrue([&] { return world.takers() == 1; }));
+        EXPECT_TRUE(becomesTrue([&] { return subscriber.hasPublisher(0); }));
     }
-    EXPECT_TRUE(comesTrue([&] { return world.takers() == 0; }));
+    EXPECT_TRUE(becomesTrue([&] { return world.takers() == 0; }));
 }
 
 TEST_F(HarmonicTest, DropsAndReportsDamagedMessagesAndWrongTypes) {
     follow("rov");
     {
         HarmonicWorld world({.type = "gz.msgs.Image"});
-        EXPECT_TRUE(comesTrue([&] {
+        EXPECT_TRUE(becomesTrue([&] {
             world.publish("x");
             return isDropped("/world/sea/pose/info: messages of type Image, not Pose_V");
         }));
     }
     HarmonicWorld world({});
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         world.publish("no message");
         return isDropped("/world/sea/pose/info: bytes that are no Pose_V");
     }));
@@ -122,7 +122,7 @@ TEST_F(HarmonicTest, DropsAndReportsDamagedMessagesAndWrongTypes) {
 TEST_F(HarmonicTest, ListsAvailableTopicsWhenATopicIsMissing) {
     HarmonicWorld other({.world = "harbour"});
     follow("rov");
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         task.update();
         return isWarned("nobody publishes /world/sea/pose/info in partition " + partition + "; available are ") &&
                isWarned("/world/harbour/pose/info in partition " + partition);
@@ -141,7 +141,7 @@ TEST_F(HarmonicTest, ReportsModelsThatAppearOrDisappear) {
     follow("rov");
     double seconds = 1;
     const auto isSaid = [&](const std::vector<std::string>& names, const std::string& text) {
-        return comesTrue([&] {
+        return becomesTrue([&] {
             gazebo.publish(poses(seconds += 0.02, names, 1));
             task.update();
             return isWarned(text);
@@ -181,7 +181,7 @@ TEST_F(HarmonicTest, TheErrorForAMissingWorldListsTheAvailableWorlds) {
                                     partition + " within 0.3 s (timeout); "));
     HarmonicWorld other({.world = "harbour"});
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("/world/harbour/scene/info in partition " + partition));
-    HarmonicWorld unheard({.version = statistics_version});
+    HarmonicWorld silent({.version = statistics_version});
     EXPECT_THAT(diagnosticOf(world("sea", 2)), HasSubstr("GZ_TRANSPORT_TOPIC_STATISTICS"));
 }
 

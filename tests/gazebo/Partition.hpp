@@ -11,7 +11,7 @@
 
 namespace insonify::gazebo {
 
-using test::comesTrue;
+using test::becomesTrue;
 
 /** A private partition of the test, on this machine only. */
 class OwnPartition : public testing::Test {

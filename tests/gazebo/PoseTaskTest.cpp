@@ -30,7 +30,7 @@ protected:
     }
     /** Waits until a message has arrived, and discards it. */
     void meet(double seconds = 1) {
-        ASSERT_TRUE(comesTrue([&] {
+        ASSERT_TRUE(becomesTrue([&] {
             world.publish(seconds, 0);
             task.update();
             types::Pose pose;
@@ -104,7 +104,7 @@ TEST_F(PoseTaskTest, AMessageWakesTheTask) {
     task.activity().release();
     int sent = 0;
     types::Pose pose;
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         ++sent;
         world.publish(1 + 0.01 * sent, sent);
         return readers[0].port.readNew(pose);
@@ -118,7 +118,7 @@ TEST_F(PoseTaskTest, OdometryIsFollowedWithItsVelocities) {
     message.mutable_twist()->mutable_linear()->set_x(0.5);
     std::optional<types::Pose> pose;
     double seconds = 5;
-    ASSERT_TRUE(comesTrue([&] {
+    ASSERT_TRUE(becomesTrue([&] {
         setStamp(*message.mutable_header(), seconds += 0.02);
         world.send(message);
         task.update();
@@ -137,7 +137,7 @@ TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
     world.publish(100.02, 2);
     EXPECT_EQ(next().value_or(types::Pose{}).position.x, 2);
     double stamp = 100.02;
-    const auto is_told = [&] {  // in pairs, because any stamp is valid after a second of silence
+    const auto is_known = [&] {  // in pairs, because any stamp is valid after a second of silence
         world.publish(stamp += 0.1, 2);
         world.publish(stamp - 0.05, 3);  // from another publisher, or out of order
         task.update();
@@ -146,7 +146,7 @@ TEST_F(PoseTaskTest, APausedWorldGivesNoPoseAndAResetWorldBeginsAnew) {
             return line.find("dropped: /world/sea/pose/info: the stamp is before") != std::string::npos;
         });
     };
-    EXPECT_TRUE(comesTrue(is_told));
+    EXPECT_TRUE(becomesTrue(is_known));
     world.publish(0, 4);
     auto pose = next();
     while (pose && pose->position.x != 4) pose = next();
@@ -161,8 +161,8 @@ TEST_F(PoseTaskTest, DropsAndReportsPosesThatAreNotFiniteAndMissingEntities) {
     setStamp(*message.mutable_header(), 2);
     setPose(*message.add_pose(), "red", std::numeric_limits<double>::quiet_NaN(), 0, 0, 0);
     world.send(message);
-    EXPECT_TRUE(tells("dropped: red: position and orientation are not finite"));
-    EXPECT_TRUE(tells("dropped: auv: no entity of that name"));
+    EXPECT_TRUE(reports("dropped: red: position and orientation are not finite"));
+    EXPECT_TRUE(reports("dropped: auv: no entity of that name"));
     setStamp(*message.mutable_header(), 2.1);
     setPose(*message.mutable_pose(0), "red", 1, 0, 0, 0);
     message.mutable_pose(0)->mutable_orientation()->set_w(0);

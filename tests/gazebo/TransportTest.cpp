@@ -85,8 +85,8 @@ TEST_F(TransportTest, TypesAreTheSameByBothNames) {
 }
 
 TEST_F(TransportTest, DatagramsOfHarmonicAreRead) {
-    Heard heard("/pose/info");
-    const auto topic = readDatagram(recording("offer_topic"), "ours", heard);
+    Received received("/pose/info");
+    const auto topic = readDatagram(recording("offer_topic"), "ours", received);
     ASSERT_TRUE(topic);
     EXPECT_EQ(topic->kind, Announcement::Kind::Offer);
     EXPECT_EQ(topic->process, "11111111-2222-3333-4444-555555555555");
@@ -95,48 +95,48 @@ TEST_F(TransportTest, DatagramsOfHarmonicAreRead) {
     EXPECT_EQ(topic->publication.address, "tcp://127.0.0.1:40123");
     EXPECT_EQ(topic->publication.type, "gz.msgs.Pose_V");
     EXPECT_FALSE(topic->publication.is_service);
-    const auto service = readDatagram(recording("offer_service"), "ours", heard);
+    const auto service = readDatagram(recording("offer_service"), "ours", received);
     ASSERT_TRUE(service);
     EXPECT_TRUE(service->publication.is_service);
     EXPECT_EQ(service->publication.type, "gz.msgs.Empty");
     EXPECT_EQ(service->publication.reply_type, "gz.msgs.Scene");
     EXPECT_EQ(service->publication.socket, "99999999-8888-7777-6666-555555555555");
-    EXPECT_EQ(readDatagram(recording("alive"), "ours", heard)->kind, Announcement::Kind::Alive);
-    EXPECT_EQ(readDatagram(recording("goodbye"), "ours", heard)->kind, Announcement::Kind::Goodbye);
-    EXPECT_EQ(heard.text(), "available are /world/sea/pose/info in partition auv");
+    EXPECT_EQ(readDatagram(recording("alive"), "ours", received)->kind, Announcement::Kind::Alive);
+    EXPECT_EQ(readDatagram(recording("goodbye"), "ours", received)->kind, Announcement::Kind::Goodbye);
+    EXPECT_EQ(received.text(), "available are /world/sea/pose/info in partition auv");
 }
 
 TEST_F(TransportTest, DatagramsOfOtherVersionsAreNotReadAndAreReported) {
-    Heard heard("/pose/info");
-    EXPECT_THAT(heard.text(), StartsWith("no program of Gazebo is found"));
-    EXPECT_FALSE(readDatagram(recording("alive_with_statistics"), "ours", heard).has_value());
-    EXPECT_THAT(heard.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are running"));
-    EXPECT_TRUE(readDatagram(recording("offer_topic"), "ours", heard).has_value());
-    EXPECT_THAT(heard.text(),
+    Received received("/pose/info");
+    EXPECT_THAT(received.text(), StartsWith("no program of Gazebo is found"));
+    EXPECT_FALSE(readDatagram(recording("alive_with_statistics"), "ours", received).has_value());
+    EXPECT_THAT(received.text(), StartsWith("programs with GZ_TRANSPORT_TOPIC_STATISTICS are running"));
+    EXPECT_TRUE(readDatagram(recording("offer_topic"), "ours", received).has_value());
+    EXPECT_THAT(received.text(),
                 StartsWith("available are /world/sea/pose/info in partition auv; programs with GZ_TRANSPORT"));
-    Heard other("/pose/info");
+    Received other("/pose/info");
     std::string datagram = recording("alive");
     datagram[3] = 77;  // after the key of the field
     EXPECT_FALSE(readDatagram(datagram, "ours", other).has_value());
     EXPECT_EQ(other.text(), "programs with version 77 of Gazebo's discovery are running; version 10 is supported");
-    Heard nothing("/pose/info");
+    Received nothing("/pose/info");
     EXPECT_TRUE(readDatagram(recording("alive"), "ours", nothing).has_value());
     EXPECT_EQ(nothing.text(), "no name that ends in /pose/info is offered");
-    Heard own("/pose/info");
+    Received own("/pose/info");
     EXPECT_FALSE(readDatagram(aliveDatagram("ours"), "ours", own).has_value());
     EXPECT_THAT(own.text(), StartsWith("no program of Gazebo is found")) << "except this program";
 }
 
 TEST_F(TransportTest, DamagedDatagramsAreDropped) {
-    Heard heard("/pose/info");
+    Received received("/pose/info");
     const std::string whole = recording("offer_topic");
     for (size_t size = 0; size < whole.size(); ++size)
-        EXPECT_FALSE(readDatagram(whole.substr(0, size), "ours", heard).has_value()) << size;
-    EXPECT_FALSE(readDatagram(whole + "x", "ours", heard).has_value());
+        EXPECT_FALSE(readDatagram(whole.substr(0, size), "ours", received).has_value()) << size;
+    EXPECT_FALSE(readDatagram(whole + "x", "ours", received).has_value());
     std::string other = whole;
     other.replace(other.find("tcp://"), 6, "ipc://");
-    EXPECT_FALSE(readDatagram(other, "ours", heard).has_value()) << "an address of another kind";
-    EXPECT_FALSE(readDatagram(std::string(2, '\0'), "ours", heard).has_value()) << "nobody's";
+    EXPECT_FALSE(readDatagram(other, "ours", received).has_value()) << "an address of another kind";
+    EXPECT_FALSE(readDatagram(std::string(2, '\0'), "ours", received).has_value()) << "nobody's";
 }
 
 }  // namespace

@@ -220,13 +220,13 @@ TEST(EglContextTest, UnrelatedContextsShareNothing) {
 TEST(EglContextTest, TheSoftwareRendererRasterisesConcurrentlyAndTransfersExclusively) {
     const EglContext context("software");
     auto drawing = context.drawing();
-    std::atomic<bool> drawn = false, transferred = false;
+    std::atomic<bool> rasterised = false, transferred = false;
     std::thread beside([&] {
         const auto another = context.drawing();
-        drawn = true;
+        rasterised = true;
     });
     beside.join();
-    EXPECT_TRUE(drawn);
+    EXPECT_TRUE(rasterised);
     std::thread alone([&] {
         const auto transfer = context.transferring();
         transferred = true;

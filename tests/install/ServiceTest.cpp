@@ -31,7 +31,7 @@ std::map<std::string, std::string> settingsOf(const std::string& text) {
 
 }  // namespace
 
-TEST(ServiceTest, StopsWithSigintComesBackAfterAFailureAndMayUseRealtime) {
+TEST(ServiceTest, StopsWithSigintRestartsAfterAFailureAndMayUseRealtime) {
     const auto settings = settingsOf(readFile(unit));
     const std::map<std::string, std::string> expected = {
         {"[Service]KillSignal", "SIGINT"},          {"[Service]Restart", "on-failure"},

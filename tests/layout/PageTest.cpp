@@ -151,7 +151,7 @@ TEST(PageTest, EveryPageIsReachedFromTheReadme) {
     for (const Page& page : allPages()) EXPECT_TRUE(reached.contains(page.path())) << page.path();
 }
 
-TEST(PageTest, EveryPageBesideTheCodeLeadsBackToTheReadme) {
+TEST(PageTest, EveryPageNextToCodeLinksBackToTheReadme) {
     for (const Page& page : allPages()) {
         if (page.path() == "README.md" || page.path() == "CHANGELOG.md" || fs::path(page.path()).stem() == "ACOUSTICS")
             continue;

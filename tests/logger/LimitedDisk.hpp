@@ -43,8 +43,8 @@ template <class Text>
     task.configure();
     task.start();
     logUntilFailure(task, source, text);
-    const bool told = task.lastError().find(words) != std::string::npos;
-    std::_Exit(task.state() == framework::TaskState::Exception && told ? 0 : 1);
+    const bool reported = task.lastError().find(words) != std::string::npos;
+    std::_Exit(task.state() == framework::TaskState::Exception && reported ? 0 : 1);
 }
 
 }  // namespace insonify::logger

@@ -207,7 +207,7 @@ TEST(LoggerTaskTest, LoggedSamplesAreInTheFileWithinTheFlushPeriod) {
         const bool has_prologue = std::filesystem::file_size(bench.path()) >= 16;
         return has_prologue && log::pocolog::Reader(bench.path()).samples().size() == 1;
     };
-    EXPECT_TRUE(test::comesTrue(logged)) << "while the task is still running";
+    EXPECT_TRUE(test::becomesTrue(logged)) << "while the task is still running";
     bench.finish();
 }
 

@@ -102,21 +102,21 @@ TEST_F(BodyTest, AnAttitudeWithoutAPositionIsNoPose) {
 }
 
 TEST_F(BodyTest, ReportsAMissingHalfAfterAWhile) {
-    std::string told;
+    std::string reported;
     for (int i = 0; i < 30; ++i) {
         const auto taken = take(AttitudeQuaternion{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i);
         EXPECT_EQ(taken.diagnostic.empty(), i < 20) << i;
-        told = taken.diagnostic;
+        reported = taken.diagnostic;
     }
-    EXPECT_EQ(told, "ATTITUDE_QUATERNION arrives without LOCAL_POSITION_NED: the vehicle must stream both");
+    EXPECT_EQ(reported, "ATTITUDE_QUATERNION arrives without LOCAL_POSITION_NED: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(53)), testing::ElementsAre(LocalPositionNed::kind.message));
 }
 
 TEST_F(BodyTest, ReportsPositionsWithoutAnAttitudeToo) {
-    std::string told;
+    std::string reported;
     for (int i = 0; i < 50; ++i)
-        told = take(LocalPositionNed{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i).diagnostic;
-    EXPECT_EQ(told, "LOCAL_POSITION_NED arrives without ATTITUDE_QUATERNION: the vehicle must stream both");
+        reported = take(LocalPositionNed{.time_boot_ms = static_cast<uint32_t>(100 * i)}, 50 + 0.1 * i).diagnostic;
+    EXPECT_EQ(reported, "LOCAL_POSITION_NED arrives without ATTITUDE_QUATERNION: the vehicle must stream both");
     EXPECT_THAT(body.missing(Time::fromSeconds(55)), testing::ElementsAre(AttitudeQuaternion::kind.message));
 }
 

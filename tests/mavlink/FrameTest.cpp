@@ -11,7 +11,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-Datagram read(const Bytes& bytes) { return readDatagram(bytes, heard_kinds); }
+Datagram read(const Bytes& bytes) { return readDatagram(bytes, received_kinds); }
 
 template <class Message>
 Message only(const Bytes& bytes) {

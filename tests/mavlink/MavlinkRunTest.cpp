@@ -11,7 +11,7 @@
 
 using namespace insonify;
 using namespace insonify::deployer;
-using test::comesTrue;
+using test::becomesTrue;
 using testing::HasSubstr;
 
 namespace {
@@ -30,14 +30,14 @@ protected:
     int port() const {
         std::smatch found;
         std::string text;
-        const bool told = comesTrue([&] {
+        const bool reported = becomesTrue([&] {
             text = readFile(folder / "stderr.txt");
             return std::regex_search(text, found, std::regex(R"(listens on UDP [^ ]*:(\d+))"));
         });
-        return told ? std::stoi(found[1]) : 0;
+        return reported ? std::stoi(found[1]) : 0;
     }
     bool says(const std::string& text) const {
-        return comesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
+        return becomesTrue([&] { return readFile(folder / "stderr.txt").find(text) != std::string::npos; });
     }
     TestFolder folder;
 };
@@ -52,7 +52,7 @@ TEST_F(MavlinkRunTest, RequestsPosesOfTwoVehiclesForPings) {
     if (listening == 0) run.signal(SIGKILL);
     ASSERT_NE(listening, 0);
     const mavlink::Vehicle red(listening, "heartbeat 1"), blue(listening, "heartbeat 2 12");
-    const bool pings = comesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); });
+    const bool pings = becomesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); });
     if (!pings) run.signal(SIGKILL);
     const Outcome outcome = run.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -79,14 +79,14 @@ TEST_F(MavlinkRunTest, PingsStopAndResumeWithAVehicle) {
                          std::make_unique<mavlink::Vehicle>(listening, "poses2 2 12")};
     };
     auto vehicles = fly();
-    EXPECT_TRUE(comesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); }));
+    EXPECT_TRUE(becomesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); }));
     vehicles = {};
     EXPECT_TRUE(says("no pose in the last 2 s (pose_timeout)"));
     vehicles = fly();
     const auto pictures = [&] {
         return std::distance(fs::directory_iterator(folder / "out"), fs::directory_iterator{});
     };
-    EXPECT_TRUE(comesTrue([&, before = pictures()] { return pictures() > before + 1; }));
+    EXPECT_TRUE(becomesTrue([&, before = pictures()] { return pictures() > before + 1; }));
     run.signal(SIGINT);
     const Outcome outcome = run.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -11,7 +11,7 @@
 
 using namespace insonify;
 using namespace insonify::mavlink;
-using test::comesTrue;
+using test::becomesTrue;
 using testing::HasSubstr;
 
 namespace {
@@ -89,7 +89,7 @@ TEST_F(PoseTaskTest, ReportsDamageAndReadsTheFramesBetween) {
 TEST_F(PoseTaskTest, ReportsMessagesOfAnotherSystemWithItsNumber) {
     startWith();
     const Vehicle vehicle(task.port(), "poses2 9");
-    EXPECT_TRUE(comesTrue([&] {
+    EXPECT_TRUE(becomesTrue([&] {
         const std::vector<std::string> all = task.notices();
         return std::ranges::any_of(all, [](const std::string& line) {
             return line.find("of others ignored: ATTITUDE_QUATERNION of system 9, component 1") != std::string::npos;

@@ -47,10 +47,10 @@ TEST(DeadReckoningTest, VelocitiesAndAttitudesLeadBackToTheStart) {
     glm::dvec3 place = motions[0].position, before{0};
     double farthest = 0;
     for (size_t i = 0; i < motions.size(); ++i) {
-        types::Dvl told;
-        log.measure(motions[i], bottom, told);
-        ASSERT_TRUE(told.hasBottomLock());
-        const glm::dvec3 velocity = unit.measure(motions[i]).orientation * told.velocity;
+        types::Dvl reported;
+        log.measure(motions[i], bottom, reported);
+        ASSERT_TRUE(reported.hasBottomLock());
+        const glm::dvec3 velocity = unit.measure(motions[i]).orientation * reported.velocity;
         if (i > 0) place += 0.005 * (before + velocity);
         before = velocity;
         farthest = std::max(farthest, glm::distance(place, motions[i].position));
@@ -68,7 +68,7 @@ TEST(DeadReckoningTest, AccelerationsAndRatesLeadBackToTheStart) {
     glm::dquat attitude = motions[0].orientation;
     glm::dvec3 place = motions[0].position, velocity = motions[0].velocity;
     types::Imu before = unit.measure(motions[0]);
-    double most = 0;
+    double maximum = 0;
     for (size_t i = 1; i < motions.size(); ++i) {
         const types::Imu now = unit.measure(motions[i]);
         const glm::dvec3 turn = 0.005 * (before.angular_velocity + now.angular_velocity);
@@ -79,12 +79,12 @@ TEST(DeadReckoningTest, AccelerationsAndRatesLeadBackToTheStart) {
         place += 0.01 * velocity + 0.5e-4 * acceleration;
         velocity += 0.01 * acceleration;
         before = now;
-        most = std::max(most, glm::distance(place, motions[i].position));
+        maximum = std::max(maximum, glm::distance(place, motions[i].position));
     }
     const double misalignment = 2 * std::acos(std::min(1.0, std::abs(glm::dot(attitude, motions.back().orientation))));
-    std::cout << "inertial: at most " << most << " m off, attitude " << misalignment << " rad\n";
+    std::cout << "inertial: at most " << maximum << " m off, attitude " << misalignment << " rad\n";
     EXPECT_LT(misalignment, 1e-4);
-    EXPECT_LT(most, 1) << "two minutes without any aid";
+    EXPECT_LT(maximum, 1) << "two minutes without any aid";
 }
 
 TEST(DeadReckoningTest, PressuresMatchTheDepthOfThePath) {

@@ -15,7 +15,7 @@ protected:
     void connectScene() { scene_.port.connectTo(task_.snapshot, {}); }
     void show(types::Snapshot snapshot) { scene_.port.write(std::make_shared<types::Snapshot>(std::move(snapshot))); }
     /** Returns the measurement at the middle of three poses a tenth of a second apart, the last at `time`. */
-    types::DvlPtr told(double time, const Path& path) {
+    types::DvlPtr reported(double time, const Path& path) {
         answerTo(path(time - 0.2));
         answerTo(path(time - 0.1));
         return answerTo(path(time));
@@ -26,7 +26,7 @@ protected:
 
 TEST_F(DvlTaskTest, MeasuresOverALevelBottomWithoutAScene) {
     startWith({.bottom_height = -17.0});
-    const types::DvlPtr dvl = told(1, ahead_);
+    const types::DvlPtr dvl = reported(1, ahead_);
     ASSERT_TRUE(dvl);
     EXPECT_EQ(dvl->time, types::Time::fromSeconds(0.9));
     EXPECT_LT(glm::distance(dvl->velocity, {1.5, 0, 0}), 1e-9);
@@ -44,7 +44,7 @@ TEST_F(DvlTaskTest, MeasuresOverTheFloorOfASceneFromItsPlaceInTheBody) {
     connectScene();
     startWith({.sensor = {.mount = {.position = {0.5, 0, -1}, .yaw_deg = 90}}});
     show(test::snapshotOf(test::sceneOf({test::ground(-17)})));
-    const types::DvlPtr dvl = told(1, ahead_);
+    const types::DvlPtr dvl = reported(1, ahead_);
     ASSERT_TRUE(dvl);
     EXPECT_LT(glm::distance(dvl->velocity, {0, -1.5, 0}), 1e-9) << "its x axis looks to port";
     EXPECT_NEAR(dvl->altitude, 11, 1e-9);
@@ -53,21 +53,21 @@ TEST_F(DvlTaskTest, MeasuresOverTheFloorOfASceneFromItsPlaceInTheBody) {
 TEST_F(DvlTaskTest, BeforeTheFirstSnapshotAndAboveTheSurfaceThereIsNoBottomLock) {
     connectScene();
     startWith({});
-    EXPECT_FALSE(told(1, ahead_)->hasBottomLock());
+    EXPECT_FALSE(reported(1, ahead_)->hasBottomLock());
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-17)}));
     snapshot.water_surface = -6;
     show(snapshot);
-    EXPECT_FALSE(told(2, ahead_)->hasBottomLock());
+    EXPECT_FALSE(reported(2, ahead_)->hasBottomLock());
     snapshot.water_surface = 0;
     show(snapshot);
-    EXPECT_TRUE(told(3, ahead_)->hasBottomLock());
+    EXPECT_TRUE(reported(3, ahead_)->hasBottomLock());
 }
 
 TEST_F(DvlTaskTest, WritesTheVelocityAsRocksTypeToo) {
     test::Reader<types::Pose> reader;
     task_.velocity_samples.connectTo(reader.port, framework::ConnPolicy::buffer(4));
     startWith({.bottom_height = -17.0, .errors = {.velocity_noise = 0.01}});
-    const types::DvlPtr dvl = told(1, ahead_);
+    const types::DvlPtr dvl = reported(1, ahead_);
     types::Pose sample;
     ASSERT_TRUE(dvl && reader.port.readNew(sample));
     EXPECT_EQ(sample.velocity, dvl->velocity);
@@ -94,7 +94,7 @@ TEST_F(DvlTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
     startWith({.bottom_height = -17.0});
     EXPECT_FALSE(answerTo(poseAt(1, glm::dvec3(INFINITY))));
     EXPECT_EQ(task_.state(), framework::TaskState::RunTimeError);
-    EXPECT_TRUE(told(2, ahead_));
+    EXPECT_TRUE(reported(2, ahead_));
     EXPECT_EQ(task_.state(), framework::TaskState::Running);
 }
 

@@ -8,9 +8,9 @@ namespace insonify::nav {
 namespace {
 
 types::Dvl ping(const Dvl& log, const Motion& motion, const Bottom& bottom) {
-    types::Dvl told;
-    log.measure(motion, bottom, told);
-    return told;
+    types::Dvl reported;
+    log.measure(motion, bottom, reported);
+    return reported;
 }
 
 Motion moving(glm::dvec3 velocity, glm::dquat orientation = {1, 0, 0, 0}, double height = 0) {
@@ -38,21 +38,22 @@ TEST(DvlTest, IsExactWithoutErrorsOverALevelBottomInAnyAttitude) {
     for (const glm::dquat& orientation : {turned(0), turned(40, 10, -15), turned(-160, -20, 5)})
         for (const DvlConfig& config : {DvlConfig{}, DvlConfig{.slant_deg = 22.5, .beam_azimuth_deg = 0}}) {
             const glm::dvec3 velocity(1.2, -0.4, 0.3);
-            const types::Dvl told = ping(Dvl(config), moving(velocity, orientation), bottom);
-            EXPECT_LT(glm::distance(orientation * told.velocity, velocity), 1e-9);
-            EXPECT_EQ(told.goodBeams(), 4u);
+            const types::Dvl reported = ping(Dvl(config), moving(velocity, orientation), bottom);
+            EXPECT_LT(glm::distance(orientation * reported.velocity, velocity), 1e-9);
+            EXPECT_EQ(reported.goodBeams(), 4u);
             for (size_t i = 0; i < beam_count; ++i) {
-                const glm::dvec3 beam = orientation * told.beam_directions[i];
-                EXPECT_NEAR(told.beam_ranges[i], -12 / beam.z, 1e-9);
-                EXPECT_NEAR(told.beam_velocities[i], glm::dot(beam, velocity), 1e-12) << "positive towards the bottom";
+                const glm::dvec3 beam = orientation * reported.beam_directions[i];
+                EXPECT_NEAR(reported.beam_ranges[i], -12 / beam.z, 1e-9);
+                EXPECT_NEAR(reported.beam_velocities[i], glm::dot(beam, velocity), 1e-12)
+                    << "positive towards the bottom";
             }
         }
 }
 
 TEST(DvlTest, TheAltitudeOfALevelLogIsItsHeight) {
-    const types::Dvl told = ping(Dvl({}), moving({}, turned(30)), Bottom(-12.0));
-    EXPECT_NEAR(told.altitude, 12, 1e-12);
-    EXPECT_EQ(told.diagnostic(), nullptr);
+    const types::Dvl reported = ping(Dvl({}), moving({}, turned(30)), Bottom(-12.0));
+    EXPECT_NEAR(reported.altitude, 12, 1e-12);
+    EXPECT_EQ(reported.diagnostic(), nullptr);
 }
 
 /** Returns the covariance of the velocities of many pings. */
@@ -75,11 +76,11 @@ TEST(DvlTest, NoiseHasTheCovarianceOfJanus) {
         const double across = noise * noise / (2 * sine * sine), along = noise * noise / (4 * cosine * cosine);
         const Dvl log({.slant_deg = slant, .errors = {.velocity_noise = noise}});
         const Motion motion = moving({1, 0.5, -0.1});
-        const glm::dmat3 told = ping(log, motion, Bottom(-12.0)).cov_velocity, found = spreadOf(log, motion, count);
-        EXPECT_NEAR(told[0][0] / across, 1, 1e-12);
-        EXPECT_NEAR(told[1][1] / across, 1, 1e-12);
-        EXPECT_NEAR(told[2][2] / along, 1, 1e-12);
-        EXPECT_NEAR(told[0][1], 0, 1e-18);
+        const glm::dmat3 reported = ping(log, motion, Bottom(-12.0)).cov_velocity, found = spreadOf(log, motion, count);
+        EXPECT_NEAR(reported[0][0] / across, 1, 1e-12);
+        EXPECT_NEAR(reported[1][1] / across, 1, 1e-12);
+        EXPECT_NEAR(reported[2][2] / along, 1, 1e-12);
+        EXPECT_NEAR(reported[0][1], 0, 1e-18);
         const double bound = 5 * std::sqrt(2.0 / count);
         EXPECT_NEAR(found[0][0] / across, 1, bound);
         EXPECT_NEAR(found[1][1] / across, 1, bound);
@@ -108,9 +109,9 @@ TEST(DvlTest, ThreeBeamsOverALevelBottomAreExact) {
     // Rolled until the bottom is out of reach for one beam.
     const DvlConfig config{.beam_azimuth_deg = 0, .max_altitude = 14};
     const glm::dquat orientation = turned(0, 0, 25);
-    const types::Dvl told = ping(Dvl(config), moving({1, 0.5, 0}, orientation), Bottom(-10.0));
-    EXPECT_EQ(told.goodBeams(), 3u);
-    EXPECT_LT(glm::distance(orientation * told.velocity, {1, 0.5, 0}), 1e-9);
+    const types::Dvl reported = ping(Dvl(config), moving({1, 0.5, 0}, orientation), Bottom(-10.0));
+    EXPECT_EQ(reported.goodBeams(), 3u);
+    EXPECT_LT(glm::distance(orientation * reported.velocity, {1, 0.5, 0}), 1e-9);
 }
 
 TEST(DvlTest, HasNoBottomLockOutOfReach) {
@@ -133,14 +134,14 @@ TEST(DvlTest, RangesHaveTheirNoiseAndAreNeverNegative) {
     Motion motion = moving({});
     const Dvl noisy({.errors = {.range_noise = 0.05}}), wild({.errors = {.range_noise = 1000}});
     constexpr int count = 20'000;
-    double squares = 0, least = 1;
+    double squares = 0, minimum = 1;
     for (int i = 0; i < count; ++i) {
         motion.time = motion.time + types::Time{125'000};
         squares += std::pow(ping(noisy, motion, Bottom(-10.0)).beam_ranges[2] - 10 / std::cos(types::radians(30)), 2);
-        least = std::min(least, ping(wild, motion, Bottom(-10.0)).beam_ranges[2]);
+        minimum = std::min(minimum, ping(wild, motion, Bottom(-10.0)).beam_ranges[2]);
     }
     EXPECT_NEAR(squares / count / (0.05 * 0.05), 1, 5 * std::sqrt(2.0 / count));
-    EXPECT_EQ(least, 0);
+    EXPECT_EQ(minimum, 0);
 }
 
 TEST(DvlTest, AShareOfBeamsIsLost) {
@@ -150,9 +151,9 @@ TEST(DvlTest, AShareOfBeamsIsLost) {
     int good = 0, locked = 0;
     for (int i = 0; i < count; ++i) {
         motion.time = motion.time + types::Time{125'000};
-        const types::Dvl told = ping(log, motion, Bottom(-10.0));
-        good += static_cast<int>(told.goodBeams());
-        locked += told.hasBottomLock();
+        const types::Dvl reported = ping(log, motion, Bottom(-10.0));
+        good += static_cast<int>(reported.goodBeams());
+        locked += reported.hasBottomLock();
     }
     EXPECT_NEAR(good / (4.0 * count), 0.8, 5 * std::sqrt(0.16 / (4 * count)));
     EXPECT_NEAR(locked / double{count}, std::pow(0.8, 4) + 4 * 0.2 * std::pow(0.8, 3), 5 * std::sqrt(0.15 / count));

@@ -104,7 +104,7 @@ TEST(ErrorModelTest, TheVarianceMatchesTheReadings) {
     constexpr size_t count = 100'000;
     constexpr double step = 0.02, truth = 0.35;
     double squares = 0;
-    for (const double told : seriesOf(axis, count, step, truth)) squares += std::pow(told - truth, 2);
+    for (const double reported : seriesOf(axis, count, step, truth)) squares += std::pow(reported - truth, 2);
     EXPECT_NEAR(squares / count / varianceOf(errors, step), 1, 0.03);
 }
 

@@ -20,7 +20,7 @@ protected:
         return config;
     }
     /** Returns the measurements of a second on a circle, with stamps from `first` on. */
-    std::vector<types::Imu> told(double first = 0) {
+    std::vector<types::Imu> reported(double first = 0) {
         std::vector<types::Imu> all;
         for (int i = 0; i < 100; ++i) {
             const double time = 1 + i * 0.01;
@@ -41,13 +41,13 @@ TEST_F(ImuTaskTest, MeasuresEachPoseWhenTheNextHasArrived) {
 }
 
 TEST_F(ImuTaskTest, WarnsThatPosesAreTooFarApart) {
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     const auto environment = std::make_shared<framework::Environment>();
-    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    environment->warn = [&](const std::string& text) { reported.push_back(text); };
     task_.setEnvironment(environment);
     startWith({});
     for (const double time : {1, 3, 5, 7}) EXPECT_TRUE(answerTo(poseAt(time, {})).time.isNull());
-    EXPECT_THAT(told, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart give no motion")));
+    EXPECT_THAT(reported, testing::ElementsAre(testing::StartsWith("task: poses 2 s apart give no motion")));
 }
 
 TEST_F(ImuTaskTest, RocksSamplesHaveTheSameValues) {
@@ -72,10 +72,10 @@ TEST_F(ImuTaskTest, RocksSamplesHaveTheSameValues) {
 
 TEST_F(ImuTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
     startWith(noisy());
-    const std::vector<types::Imu> first = told();
+    const std::vector<types::Imu> first = reported();
     ASSERT_EQ(first.size(), 98u);
     ASSERT_TRUE(task_.stop() && task_.start());
-    const std::vector<types::Imu> again = told();
+    const std::vector<types::Imu> again = reported();
     ASSERT_EQ(again.size(), first.size());
     for (size_t i = 0; i < first.size(); ++i) {
         EXPECT_EQ(again[i].angular_velocity, first[i].angular_velocity);
@@ -86,23 +86,23 @@ TEST_F(ImuTaskTest, TheSameSeedAndPosesGiveTheSameBits) {
     other.sensor.seed = 2;
     task_.stop();
     startWith(other);
-    EXPECT_NE(told()[0].angular_velocity, first[0].angular_velocity);
+    EXPECT_NE(reported()[0].angular_velocity, first[0].angular_velocity);
 }
 
 TEST_F(ImuTaskTest, NoiseWithoutBiasesDependsOnlyOnTheStamp) {
     ImuConfig config;
     config.gyroscope.noise_density = 1e-3;
     startWith(config);
-    const types::Imu last = told().back();
+    const types::Imu last = reported().back();
     ASSERT_TRUE(task_.stop() && task_.start());
-    EXPECT_EQ(told(1.5).back().angular_velocity, last.angular_velocity);
+    EXPECT_EQ(reported(1.5).back().angular_velocity, last.angular_velocity);
 }
 
 TEST_F(ImuTaskTest, APeriodGivesFewerSamples) {
     ImuConfig config;
     config.sensor.period = 0.05;
     startWith(config);
-    EXPECT_EQ(told().size(), 20u);
+    EXPECT_EQ(reported().size(), 20u);
 }
 
 TEST_F(ImuTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {

@@ -14,9 +14,9 @@ protected:
 
 TEST_F(PressureTaskTest, MeasuresEachPoseAtOnceAtItsPlaceInTheBody) {
     startWith({.sensor = {.mount = {.position = {0, 0, -0.5}}}, .density = 1000});
-    const types::Pressure told = answerTo(poseAt(3, {1, 2, -10}, turned(0, 0, 180)));
-    EXPECT_EQ(told.time, types::Time::fromSeconds(3));
-    EXPECT_EQ(told.pascal, static_cast<float>(pressureAt(9.5, {.density = 1000}))) << "upside down it is on top";
+    const types::Pressure reported = answerTo(poseAt(3, {1, 2, -10}, turned(0, 0, 180)));
+    EXPECT_EQ(reported.time, types::Time::fromSeconds(3));
+    EXPECT_EQ(reported.pascal, static_cast<float>(pressureAt(9.5, {.density = 1000}))) << "upside down it is on top";
 }
 
 TEST_F(PressureTaskTest, WritesTheDepthAsRocksTypeToo) {

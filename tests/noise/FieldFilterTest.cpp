@@ -143,19 +143,20 @@ TEST(FieldFilterTest, NaNStaysAndNoBinBecomesNegative) {
         EXPECT_TRUE(i == 7 ? std::isnan(ping.bins[i]) : ping.bins[i] >= 0) << i;
 }
 
-std::string complaintOf(const NoiseConfig& config) {
+std::string diagnosticOf(const NoiseConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     return diagnostics.empty() ? "" : diagnostics[0].path + " " + diagnostics[0].message;
 }
 
 TEST(FieldFilterTest, RejectsAFilterWithoutNoiseOrWithoutAField) {
-    EXPECT_EQ(complaintOf(filtered({4, 1, {}})), "");
-    EXPECT_EQ(complaintOf({}), "");
-    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, {})), "filter has nothing to filter; give speckle, ambient or additive");
-    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
+    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}})), "");
+    EXPECT_EQ(diagnosticOf({}), "");
+    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, {})),
+              "filter has nothing to filter; give speckle, ambient or additive");
+    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
               "filter is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages");
-    EXPECT_EQ(complaintOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gaussian})),
+    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gaussian})),
               "filter is given with speckle.law: gaussian, which is no field; give rayleigh or k");
 }
 

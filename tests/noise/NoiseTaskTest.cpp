@@ -94,45 +94,45 @@ AmbientConfig ambientOf(double level_db) {
 }
 
 TEST_F(NoiseTaskTest, WarnsOnceAboutEchoesBelowTheNoiseAndAgainAfterLouderEchoes) {
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     const auto environment = std::make_shared<framework::Environment>();
-    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    environment->warn = [&](const std::string& text) { reported.push_back(text); };
     task_.setEnvironment(environment);
     startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
     int64_t time = 0;
-    const auto hear = [&](float loudest, int pings) {
+    const auto receive = [&](float loudest, int pings) {
         for (int i = 0; i < pings; ++i) {
             types::Sonar ping = test::pingOf(2, 100, 1e-9f, ++time);
             ping.bins[100 + 25] = loudest;
             answerTo(test::shared(ping));
         }
     };
-    hear(1e-3f, 3);
-    EXPECT_TRUE(told.empty()) << "30 dB above";
-    hear(1e-6f, 5);
-    ASSERT_EQ(told.size(), 1u);
-    EXPECT_EQ(told[0],
+    receive(1e-3f, 3);
+    EXPECT_TRUE(reported.empty()) << "30 dB above";
+    receive(1e-6f, 5);
+    ASSERT_EQ(reported.size(), 1u);
+    EXPECT_EQ(reported[0],
               "task: the echoes are below the noise: the loudest, -60 dB at 2.55 m in beam 1, is 20 dB below the mean "
               "of the noise, -40 dB; raise the source level, or lower the noise");
-    hear(1e-3f, 9);
-    hear(1e-6f, 1);
-    EXPECT_EQ(told.size(), 1u) << "not right for long enough";
-    hear(1e-3f, 10);
-    hear(1e-6f, 2);
-    EXPECT_EQ(told.size(), 2u);
+    receive(1e-3f, 9);
+    receive(1e-6f, 1);
+    EXPECT_EQ(reported.size(), 1u) << "not right for long enough";
+    receive(1e-3f, 10);
+    receive(1e-6f, 2);
+    EXPECT_EQ(reported.size(), 2u);
 }
 
 TEST_F(NoiseTaskTest, DoesNotWarnAboutAnEmptyPingOrWithoutBackground) {
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     const auto environment = std::make_shared<framework::Environment>();
-    environment->warn = [&](const std::string& text) { told.push_back(text); };
+    environment->warn = [&](const std::string& text) { reported.push_back(text); };
     task_.setEnvironment(environment);
     startWith({.seed = 1, .speckle = {}, .ambient = ambientOf(-40), .additive = {}});
     answerTo(test::shared(test::pingOf(2, 100, 0)));
     ASSERT_TRUE(task_.stop() && task_.cleanup());
     startWith({.seed = 1, .speckle = SpeckleConfig{}, .ambient = {}, .additive = {}});
     answerTo(test::shared(test::pingOf(2, 100, 1e-30f)));
-    EXPECT_TRUE(told.empty());
+    EXPECT_TRUE(reported.empty());
 }
 
 }  // namespace

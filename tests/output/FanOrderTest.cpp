@@ -124,7 +124,7 @@ TEST(FanOrderTest, ATruthPictureEqualsThatOfTheBeamsInAscendingOrder) {
             truth.object[i] = static_cast<int32_t>(ping.bins[i] * 1e4f) % 3;
         std::ranges::fill(truth.shadow, uint8_t{0});
         TruthImage painter(wholeFan());
-        painter.regard(truth);
+        painter.setTruth(truth);
         types::Image picture;
         painter.paint(ping, picture);
         return picture.image;

@@ -8,12 +8,12 @@
 
 namespace insonify::test {
 
-template <class Task, class Beside>
+template <class Task, class Second>
 class PictureBench : public ::testing::Test {
 protected:
-    explicit PictureBench(framework::InputPort<Beside> Task::*beside) {
+    explicit PictureBench(framework::InputPort<Second> Task::*second) {
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
-        beside_.port.connectTo(task_.*beside, framework::ConnPolicy::buffer(100));
+        second_.port.connectTo(task_.*second, framework::ConnPolicy::buffer(100));
         task_.image.connectTo(out_.port, framework::ConnPolicy::buffer(100));
     }
     void start() {
@@ -24,8 +24,8 @@ protected:
         pings_.port.write(std::make_shared<const types::Sonar>(ping));
         task_.update();
     }
-    void giveBeside(const Beside& sample) {
-        beside_.port.write(sample);
+    void giveSecond(const Second& sample) {
+        second_.port.write(sample);
         task_.update();
     }
     /** Returns the number of pictures since the last call; the newest is `last_`. */
@@ -37,7 +37,7 @@ protected:
 
     Task task_{"pictures"};
     Writer<types::SonarPtr> pings_;
-    Writer<Beside> beside_;
+    Writer<Second> second_;
     Reader<types::ImagePtr> out_;
     types::ImagePtr last_;
 };

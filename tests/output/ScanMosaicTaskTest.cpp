@@ -28,7 +28,7 @@ protected:
         pose.time = types::Time::fromSeconds(seconds);
         pose.position.x = north;
         pose.orientation = glm::angleAxis(types::radians(yaw_deg), glm::dvec3(0, 0, 1));
-        giveBeside(pose);
+        giveSecond(pose);
     }
     void givePing(double seconds) {
         types::Sonar ping = test::withEcho(test::emptyPing(4, 1), 0, 20);

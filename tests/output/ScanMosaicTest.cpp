@@ -35,7 +35,7 @@ protected:
     /** Returns the footprint of a beam along a wall 14 m away that it meets at 45 degrees [px]. */
     int footprint() const { return cvRound(14 * types::radians(0.9) / 0.5 / test::room_bin * pixelsPerBin()); }
     /** Returns the echoes of one wall on the disc, at bearings that see only that wall. */
-    std::vector<cv::Point2d> heardOnDisc(double from_deg, double to_deg) const {
+    std::vector<cv::Point2d> receivedOnDisc(double from_deg, double to_deg) const {
         std::vector<cv::Point2d> points;
         for (double bearing = from_deg; bearing < to_deg; bearing += 0.9)
             for (double range = 3; range < 23; range += 0.05) {
@@ -81,7 +81,7 @@ TEST_F(ScanMosaicTest, WallsAreStraightOnTheMapWithinOneBinAndAtTheirPlace) {
 TEST_F(ScanMosaicTest, TheSameWallsBendByMoreThanTenBinsOnTheDisc) {
     turnInRoom();
     // The head sees the western wall again at the end of its turn, from -83 degrees on.
-    const test::LineFit fit(heardOnDisc(-155, -83));
+    const test::LineFit fit(receivedOnDisc(-155, -83));
     RecordProperty("disc_bins", std::to_string(fit.farthest / pixelsPerBin()));
     EXPECT_GT(fit.farthest, 10 * pixelsPerBin());
 }
@@ -91,7 +91,7 @@ TEST_F(ScanMosaicTest, APingWithoutAPoseIsOnlyOnTheDisc) {
     EXPECT_TRUE(mosaic_.place(std::nullopt));
     mosaic_.paint(test::pingInRoom(room_, 300), picture);
     show(picture);
-    EXPECT_EQ(heardOnDisc(-90.4, -89.6).size(), 1u);
+    EXPECT_EQ(receivedOnDisc(-90.4, -89.6).size(), 1u);
     EXPECT_EQ(brightOnMap(), 0u);
     EXPECT_TRUE(mosaic_.place(types::Pose{}));
     mosaic_.paint(test::pingInRoom(room_, 300), picture);

@@ -42,7 +42,7 @@ protected:
         task_.config.set(config);
     }
     void givePing(double seconds) { give(truthAt(seconds)); }
-    void giveTruth(double seconds) { giveBeside(std::make_shared<const types::SonarTruth>(truthOf(truthAt(seconds)))); }
+    void giveTruth(double seconds) { giveSecond(std::make_shared<const types::SonarTruth>(truthOf(truthAt(seconds)))); }
 };
 
 TEST_F(TruthImageTaskTest, ShowsObjectsInTheirColoursNextToTheFan) {
@@ -105,7 +105,7 @@ TEST_F(TruthImageTaskTest, RefusesTheTruthOfAnotherSonar) {
     start();
     types::Sonar other = truthAt(1);
     other.resize(50, 60);
-    beside_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
+    second_.port.write(std::make_shared<const types::SonarTruth>(truthOf(other)));
     givePing(1);
     EXPECT_EQ(task_.state(), framework::TaskState::Exception);
     EXPECT_THAT(task_.lastError(), HasSubstr("a ping of 60 x 100 bins does not fit a truth of 60 x 50"));
@@ -123,7 +123,7 @@ TEST_F(TruthImageTaskTest, TwoPicturesTake512Pixels) {
 TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {
     start();
     const auto cycle = [&](const types::SonarPtr& ping, const types::SonarTruthPtr& truth) {
-        beside_.port.write(truth);
+        second_.port.write(truth);
         pings_.port.write(ping);
         task_.update();
         pictures();

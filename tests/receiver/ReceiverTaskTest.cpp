@@ -89,7 +89,7 @@ class FlawTest : public ReceiverTaskTest {
 protected:
     FlawTest() {
         const auto environment = std::make_shared<framework::Environment>();
-        environment->warn = [this](const std::string& text) { told_.push_back(text); };
+        environment->warn = [this](const std::string& text) { reported_.push_back(text); };
         task_.setEnvironment(environment);
         config_.output = Output::Code;
         config_.code = CodeConfig{.bits = 8, .law = CodeLaw::Log, .full_scale_db = -20, .dynamic_range_db = 60};
@@ -105,29 +105,29 @@ protected:
     }
 
     ReceiverConfig config_;
-    std::vector<std::string> told_;
+    std::vector<std::string> reported_;
 };
 
 TEST_F(FlawTest, WarnsOnceAboutSaturatedCodesAndAgainAfterGoodPings) {
     startWith(config_);
     receive(20, 1);
-    EXPECT_TRUE(told_.empty()) << "a tenth";
+    EXPECT_TRUE(reported_.empty()) << "a tenth";
     receive(74, 2, 5);
-    ASSERT_EQ(told_.size(), 1u);
-    EXPECT_EQ(told_[0],
+    ASSERT_EQ(reported_.size(), 1u);
+    EXPECT_EQ(reported_[0],
               "task: saturates: 37 % of the codes are 255, and the loudest bin is 23 dB above full_scale_db, -20 dB; "
               "lower gain_db, or raise full_scale_db");
     receive(1, 1, 10);
     receive(74, 2);
-    EXPECT_EQ(told_.size(), 2u);
+    EXPECT_EQ(reported_.size(), 2u);
 }
 
 TEST_F(FlawTest, WarnsAboutCodesOfZeroWithTheDistanceOfTheLoudestBin) {
     config_.gain_db = -50;
     startWith(config_);
     receive(1, 1e-4f, 3);
-    ASSERT_EQ(told_.size(), 1u);
-    EXPECT_EQ(told_[0],
+    ASSERT_EQ(reported_.size(), 1u);
+    EXPECT_EQ(reported_[0],
               "task: gives code 0 in every bin: the loudest is 70 dB below full_scale_db, -20 dB, and codes begin 59.9 "
               "dB below it; raise gain_db, or lower full_scale_db");
 }
@@ -150,7 +150,7 @@ TEST_F(FlawTest, LinearAndRootCodesBeginAtTheLevelOfTheirLaw) {
 TEST_F(FlawTest, AnEmptyPingHasCodesOfZeroAndNoFlaw) {
     startWith(config_);
     answerTo(test::shared(test::pingOf(2, 100, 0)));
-    EXPECT_TRUE(told_.empty());
+    EXPECT_TRUE(reported_.empty());
 }
 
 TEST_F(FlawTest, WarnsAboutBlankingBeyondTheRangeWithAnyOutput) {
@@ -159,8 +159,8 @@ TEST_F(FlawTest, WarnsAboutBlankingBeyondTheRangeWithAnyOutput) {
     config_.blanking = BlankingConfig{12};
     startWith(config_);
     receive(1, 1, 3);
-    ASSERT_EQ(told_.size(), 1u);
-    EXPECT_EQ(told_[0], "task: silences everything: blanking.range_min is 12 m, the range ends at 10 m");
+    ASSERT_EQ(reported_.size(), 1u);
+    EXPECT_EQ(reported_[0], "task: silences everything: blanking.range_min is 12 m, the range ends at 10 m");
 }
 
 TEST_F(FlawTest, BlankingSilencesARingDown) {
@@ -169,9 +169,9 @@ TEST_F(FlawTest, BlankingSilencesARingDown) {
     startWith(config_);
     types::Sonar ping = test::pingOf(1, 100, 1e-9f);
     for (size_t k = 0; k < 5; ++k) ping.bins[k] = 1;
-    const types::SonarPtr heard = answerTo(test::shared(ping));
-    EXPECT_EQ(*std::ranges::max_element(heard->bins), 1e-9f);
-    EXPECT_TRUE(told_.empty());
+    const types::SonarPtr echoes = answerTo(test::shared(ping));
+    EXPECT_EQ(*std::ranges::max_element(echoes->bins), 1e-9f);
+    EXPECT_TRUE(reported_.empty());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 using testing::Each;
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float largest = std::numeric_limits<float>::max();
+constexpr float maximum = std::numeric_limits<float>::max();
 
 types::Sonar received(const ReceiverConfig& config, const types::Sonar& intensities) {
     types::Sonar ping;
@@ -88,9 +88,9 @@ TEST(ReceiverTest, NoBinOverflowsAndNoEchoStaysZero) {
     config.tvg = TvgConfig{.log_coefficient = 0, .db_per_m = 1000, .max_db = 1000};
     const auto bins = received(config, beamOf({0, 1e-30f, 1, nan, std::numeric_limits<float>::infinity()})).bins;
     EXPECT_EQ(bins[0], 0);
-    EXPECT_EQ(bins[2], largest);
+    EXPECT_EQ(bins[2], maximum);
     EXPECT_TRUE(std::isnan(bins[3])) << "unknown stays unknown";
-    EXPECT_EQ(bins[4], largest);
+    EXPECT_EQ(bins[4], maximum);
     EXPECT_TRUE(std::isfinite(bins[1]));
 }
 

@@ -34,7 +34,7 @@ TEST(ReplayTaskTest, PublishesSamplesInFileOrderWhenDue) {
     EXPECT_EQ(bench.task.nextTime(), std::nullopt);
 }
 
-TEST(ReplayTaskTest, SamplesAreTheRecordedOnes) {
+TEST(ReplayTaskTest, ReplaysTheRecordedSamples) {
     Bench bench;
     test::Reader<types::SonarPtr> pings;
     bench.start("sonar.ping", pings);

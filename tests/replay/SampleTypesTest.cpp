@@ -271,14 +271,14 @@ struct Names {
 };
 TYPED_TEST_SUITE(SampleTypesTest, Listed<types::SampleTypes>::type, Names);
 
-TYPED_TEST(SampleTypesTest, ComesBackFromPocologAndIsReplayedUnchanged) {
+TYPED_TEST(SampleTypesTest, RoundTripsThroughPocologAndReplaysUnchanged) {
     this->write("x.0.log");
     EXPECT_EQ(marshalled(readOnly<TypeParam>(this->folder / "x.0.log")), marshalled(this->sample));
     EXPECT_EQ(marshalled(replayed<typename TestFixture::Read>(this->folder, "x.0.log")),
               marshalled(this->asRead(this->sample)));
 }
 
-TYPED_TEST(SampleTypesTest, ComesBackFromMcapAndIsReplayedUnchanged) {
+TYPED_TEST(SampleTypesTest, RoundTripsThroughMcapAndReplaysUnchanged) {
     this->write("x.0.mcap");
     const auto expected = marshalled(this->asRead(this->sample));
     EXPECT_EQ(marshalled(readOnly<typename TestFixture::Read>(this->folder / "x.0.mcap")), expected);

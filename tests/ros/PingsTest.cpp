@@ -37,7 +37,7 @@ std::vector<float> floatsOf(const std::vector<uint8_t>& bytes) {
     return numbers;
 }
 
-std::string complaintOf(const types::Sonar& ping) {
+std::string diagnosticOf(const types::Sonar& ping) {
     try {
         messageOf<LaserScan>(ping);
         return "";
@@ -46,7 +46,7 @@ std::string complaintOf(const types::Sonar& ping) {
     }
 }
 
-std::string complaintOf(const ProjectedSonarImage& message) {
+std::string diagnosticOf(const ProjectedSonarImage& message) {
     try {
         types::Sonar ping;
         convert(message, {}, ping);
@@ -235,16 +235,16 @@ TEST(PingsTest, AScanOfARandomFanHasEachBeamAtItsAngleOrIsRefused) {
 TEST(PingsTest, RefusesPingsThatAMessageCannotRepresent) {
     types::Sonar ping = smallPing();
     ping.bins.pop_back();
-    EXPECT_EQ(complaintOf(ping), "the lists of the ping are not as long as its counts say");
+    EXPECT_EQ(diagnosticOf(ping), "the lists of the ping are not as long as its counts say");
     ping = smallPing();
     ping.resize(3, 3);
     ping.bearings[2] = {-0.6};
-    EXPECT_EQ(complaintOf(ping),
+    EXPECT_EQ(diagnosticOf(ping),
               "the beams are not at equal angles from one another, nor at multiples of the smallest angle, as a "
               "LaserScan needs; send them as PointCloud2 or SonarRanges");
     ping = smallPing();
     ping.time = types::Time::fromSeconds(3e9);
-    EXPECT_EQ(complaintOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
+    EXPECT_EQ(diagnosticOf(ping), "ROS holds no time of 3000000000 s: from -2147483648 s to 2147483647 s");
 }
 
 TEST(PingsTest, RestoresAPingFromAFloatImage) {
@@ -301,26 +301,26 @@ TEST(PingsTest, DividesIntegersByTheirMaxValue) {
 TEST(PingsTest, RefusesInvalidImages) {
     ProjectedSonarImage message = smallImage();
     message.image.data.pop_back();
-    EXPECT_EQ(complaintOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 5 bytes of data for 2 beams, 3 ranges and 1 bytes a number");
     message = smallImage();
     message.beam_directions.pop_back();
-    EXPECT_EQ(complaintOf(message), "sonar image: 1 directions for 2 beams");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 1 directions for 2 beams");
     message = smallImage();
     message.image.dtype = 7;
-    EXPECT_EQ(complaintOf(message), "sonar image: dtype 7 is not read, only uint8, uint16, uint32, float32, float64");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: dtype 7 is not read, only uint8, uint16, uint32, float32, float64");
     message = smallImage();
     message.ranges[1] = 1;
-    EXPECT_EQ(complaintOf(message),
+    EXPECT_EQ(diagnosticOf(message),
               "sonar image: range 1 is 1.000000 m; the ranges must be the centres of equal bins from 0 on");
     message = smallImage();
     message.ping_info.sound_speed = 0;
-    EXPECT_EQ(complaintOf(message), "sonar image: a speed of sound of 0.000000 m/s");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: a speed of sound of 0.000000 m/s");
 }
 
 TEST(PingsTest, RefusesCountsWhoseProductOverflows) {
     ProjectedSonarImage message = smallImage();
     message.image.beam_count = 0xffffffff;
-    EXPECT_EQ(complaintOf(message), "sonar image: 2 directions for 4294967295 beams");
+    EXPECT_EQ(diagnosticOf(message), "sonar image: 2 directions for 4294967295 beams");
 }
 
 }  // namespace

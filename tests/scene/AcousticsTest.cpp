@@ -116,11 +116,11 @@ TEST(AcousticsTest, ALambertSphereOfMatterHasTheTargetStrengthOfItsReflection) {
 }
 
 TEST(AcousticsTest, NoSurfaceOfTheTablesCreatesEnergy) {
-    const double most = 10 * std::log10(1 / M_PI) + 0.03;  // mu <= 1/pi; the table clips rough rock to -5 dB
-    for (size_t i = 0; i < std::size(types::EnumNames<Matter>::names); ++i) EXPECT_LT(lambertDb(Matter(i)), most);
+    const double maximum = 10 * std::log10(1 / M_PI) + 0.03;  // mu <= 1/pi; the table clips rough rock to -5 dB
+    for (size_t i = 0; i < std::size(types::EnumNames<Matter>::names); ++i) EXPECT_LT(lambertDb(Matter(i)), maximum);
     for (size_t i = 0; i < std::size(types::EnumNames<Sediment>::names); ++i) {
         if (Sediment(i) == Sediment::Rock) continue;  // -3.7 dB in the table: its Lambert fit is not physical
-        EXPECT_LT(lambertDb(Sediment(i)), most);
+        EXPECT_LT(lambertDb(Sediment(i)), maximum);
     }
 }
 

@@ -30,7 +30,7 @@ types::Mesh grid(uint32_t n) {
     return mesh;
 }
 
-/** Corners of each triangle with its material, each turned so that the smallest corner comes first. */
+/** Corners of each triangle with its material, each turned so that the smallest corner is first. */
 std::multiset<std::array<float, 7>> triangles(const types::Mesh& mesh) {
     std::multiset<std::array<float, 7>> all;
     for (const types::Cluster& cluster : mesh.clusters)

@@ -47,7 +47,7 @@ TEST_F(GltfShapesTest, IndicesMayHaveOneTwoOrFourBytes) {
         EXPECT_DOUBLE_EQ(signedArea(*geometry), -1);
 }
 
-TEST_F(GltfShapesTest, TheLargestIndexRestartsAStripButIsOutOfRangeInAList) {
+TEST_F(GltfShapesTest, MaxIndexRestartsAStripButIsOutOfRangeInAList) {
     const auto restarted = squareOf(5, bytesOf<uint16_t>({0, 1, 2, 0xffff, 2, 1, 3}), 5123, 7);
     EXPECT_EQ(restarted->triangleCount(), 2u);
     EXPECT_DOUBLE_EQ(signedArea(*restarted), -1);

@@ -63,14 +63,14 @@ TEST_F(PoseTimeoutTest, MissingPosesAreAnErrorUntilTheyReturn) {
 }
 
 TEST_F(PoseTimeoutTest, WaitingForTheFirstPoseIsReportedOnceAndIsNoError) {
-    std::vector<std::string> told;
-    task_.environment().warn = [&](const std::string& text) { told.push_back(text); };
+    std::vector<std::string> reported;
+    task_.environment().warn = [&](const std::string& text) { reported.push_back(text); };
     start(0.5);
     EXPECT_FALSE(cycle(10.4));
-    EXPECT_THAT(told, testing::IsEmpty());
+    EXPECT_THAT(reported, testing::IsEmpty());
     EXPECT_FALSE(cycle(10.6));
     EXPECT_FALSE(cycle(1000));
-    EXPECT_THAT(told, testing::ElementsAre("scene: scene.pose: waits for the first pose"));
+    EXPECT_THAT(reported, testing::ElementsAre("scene: scene.pose: waits for the first pose"));
     EXPECT_EQ(task_.state(), TaskState::Running);
     EXPECT_EQ(task_.timing().errors, 0u);
     EXPECT_FALSE(task_.waits()) << "in error: nobody was ever there";
@@ -143,8 +143,8 @@ TEST_F(PoseTimeoutTest, TheSonarMovesWithTheBodyAndIsExtrapolatedOnRequest) {
     pose.time = types::Time::fromSeconds(10);
     pose.velocity = {2, 0, 0};
     pose.angular_velocity = {0, 0, 0.5};
-    const auto snapshot_of = [&](std::optional<double> most) {
-        config_.extrapolate = most;
+    const auto snapshot_of = [&](std::optional<double> maximum) {
+        config_.extrapolate = maximum;
         config_.mount.position = {1, 0, 0};
         config_.mount.pitch_deg = 90;  // looks down: its x is the body's -z
         task_.stop();
@@ -168,8 +168,8 @@ TEST(CarriedOnTest, ExtrapolatesAPoseByItsVelocitiesUpToTheLimit) {
     pose.time = types::Time::fromSeconds(10);
     pose.velocity = {2, 0, 0};
     pose.angular_velocity = {0, 0, std::numbers::pi / 2};  // a quarter turn a second
-    const auto at = [&](double now, double most) {
-        return types::extrapolatePose(pose, types::Time::fromSeconds(now), most);
+    const auto at = [&](double now, double maximum) {
+        return types::extrapolatePose(pose, types::Time::fromSeconds(now), maximum);
     };
     EXPECT_EQ(at(10.5, 1).position, glm::dvec3(1, 0, 0));
     EXPECT_EQ(at(10.5, 1).time.seconds(), 10.5);

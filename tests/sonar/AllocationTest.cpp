@@ -65,29 +65,29 @@ int pingsThatAllocate(const SonarConfig& config, int count) {
     return allocating;
 }
 
-enum class Truth { Unheard, Heard };
+enum class Truth { NotRead, Received };
 
 /** A reader of a task's other outputs. */
 template <class Task>
-struct Beside {
-    explicit Beside(Task&) {}
+struct Second {
+    explicit Second(Task&) {}
 };
 template <class Task>
 requires requires(Task& task) { task.soundings; }
-struct Beside<Task> {
-    explicit Beside(Task& task) { task.soundings.connectTo(reader.port, framework::ConnPolicy::data()); }
+struct Second<Task> {
+    explicit Second(Task& task) { task.soundings.connectTo(reader.port, framework::ConnPolicy::data()); }
     test::Reader<types::PointCloudPtr> reader;
 };
 
 template <class Task, class Config>
-void expectNoAllocation(const Config& config, Truth truth = Truth::Unheard) {
+void expectNoAllocation(const Config& config, Truth truth = Truth::NotRead) {
     Task task("sonar");
-    const Beside<Task> beside(task);
+    const Second<Task> beside(task);
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
     test::Reader<types::SonarTruthPtr> truths{"truths"};
     test::Reader<types::SonarReturnsPtr> returns{"returns"};
-    if (truth == Truth::Heard) {
+    if (truth == Truth::Received) {
         task.truth.connectTo(truths.port, framework::ConnPolicy::data());
         task.returns.connectTo(returns.port, framework::ConnPolicy::data());
     }
@@ -107,7 +107,7 @@ void expectNoAllocation(const Config& config, Truth truth = Truth::Unheard) {
     });
     EXPECT_THAT(allocations, testing::IsEmpty());
     EXPECT_EQ(task.ping.written(), snapshots.size()) << task.lastError();
-    EXPECT_EQ(task.truth.written(), truth == Truth::Heard ? snapshots.size() : 0);
+    EXPECT_EQ(task.truth.written(), truth == Truth::Received ? snapshots.size() : 0);
 }
 
 SonarConfig fan() {
@@ -146,16 +146,16 @@ TEST(AllocationTest, PatternsAndAPulseAllocateNothing) {
 
 TEST(AllocationTest, TruthAllocatesNothing) {
     SonarConfig config = fan();
-    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    expectNoAllocation<SonarTask>(config, Truth::Received);
     config.deposit = Deposit::Gpu;
-    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    expectNoAllocation<SonarTask>(config, Truth::Received);
     config.visibility = Visibility::Cpu;
     config.device.clear();
-    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    expectNoAllocation<SonarTask>(config, Truth::Received);
     acoustics::BeamLaw law;
     law.width_deg = 3;
     config.beam_pattern.emplace().receive.azimuth = law;
-    expectNoAllocation<SonarTask>(config, Truth::Heard);
+    expectNoAllocation<SonarTask>(config, Truth::Received);
 }
 
 TEST(AllocationTest, TheDepositOnTheDeviceAllocatesNothing) {

@@ -71,18 +71,18 @@ TEST_F(AltimeterTaskTest, MeasuresTheFootOfThePerpendicularOverASlope) {
         types::Snapshot snapshot =
             test::snapshotOf(sceneOf({test::quad(-500.f * u - 500.f * v, 1000.f * u, 1000.f * v)}), {0, 0, height});
         snapshot.sonar.orientation = glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
-        const types::Range told = answerTo(std::make_shared<types::Snapshot>(snapshot));
-        EXPECT_NEAR(told.range, height * std::cos(t), bin) << tilt;
+        const types::Range reported = answerTo(std::make_shared<types::Snapshot>(snapshot));
+        EXPECT_NEAR(reported.range, height * std::cos(t), bin) << tilt;
     }
 }
 
 TEST_F(AltimeterTaskTest, ReportsItsMinAndMaxRangeAndTime) {
     startWide(25);
-    const types::Range told = rangeAt(10);
-    EXPECT_EQ(told.time, types::Time{1'000'000});
-    EXPECT_NEAR(told.range_max, 30, 1e-6);
-    EXPECT_NEAR(told.range_min, 0.1, 1e-9);
-    EXPECT_NEAR(told.field_of_view.deg(), 25, 1e-6);
+    const types::Range reported = rangeAt(10);
+    EXPECT_EQ(reported.time, types::Time{1'000'000});
+    EXPECT_NEAR(reported.range_max, 30, 1e-6);
+    EXPECT_NEAR(reported.range_min, 0.1, 1e-9);
+    EXPECT_NEAR(reported.field_of_view.deg(), 25, 1e-6);
 }
 
 TEST_F(AltimeterTaskTest, TheRangeIsUnknownWithoutAReturn) {

@@ -70,7 +70,7 @@ std::vector<float> beamOf(const types::Sonar& ping, uint32_t k) {
 }
 
 /** Relative L2 of their difference. */
-double largestDifference(const std::vector<float>& a, const std::vector<float>& b) {
+double maxDifference(const std::vector<float>& a, const std::vector<float>& b) {
     double error = 0, norm = 0;
     for (size_t i = 0; i < a.size(); ++i) {
         error += std::pow(double{a[i]} - b[i], 2);
@@ -181,9 +181,10 @@ TEST(BeamFanTest, ConicalBoundariesAreHyperbolasInTheImage) {
             for (size_t k = 0; k < beams.size(); ++k) {
                 if (parts[k].empty() || parts[k].back().to > frustum.extent_u * (1 - 1e-9))
                     continue;  // continues in the next frustum
-                const double in_slab = std::atan(parts[k].back().to);
-                const double elevation = std::atan(frustum.v(row + 0.5) * std::cos(in_slab));
-                EXPECT_NEAR(std::sin(frustum.azimuth + in_slab) * std::cos(elevation), std::sin(beams[k].high), 1e-6);
+                const double in_frustum = std::atan(parts[k].back().to);
+                const double elevation = std::atan(frustum.v(row + 0.5) * std::cos(in_frustum));
+                EXPECT_NEAR(std::sin(frustum.azimuth + in_frustum) * std::cos(elevation), std::sin(beams[k].high),
+                            1e-6);
                 ++checked;
             }
         }
@@ -213,8 +214,7 @@ TEST(BeamFanTest, ABeamOfAFullTurnIsThatOfASonarOfTenDegrees) {
     for (int first : {0, 55, 117, 175, 236, 350}) {
         const auto few = plainPing(narrow, room(radians(first + 5 - 180)));
         for (uint32_t k = 0; k < 10; ++k)
-            EXPECT_LT(largestDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3)
-                << first + k;
+            EXPECT_LT(maxDifference(beamOf(all, static_cast<uint32_t>(first) + k), beamOf(few, k)), 1e-3) << first + k;
     }
 }
 
@@ -226,14 +226,14 @@ TEST(BeamFanTest, AWallThroughThreeFrustaHasNoSeam) {
     const auto straight = plainPing(config, test::snapshotOf(wall));
     const auto turned = plainPing(config, test::snapshotOf(wall, {}, radians(10)));
     for (uint32_t k = 10; k < 140; ++k)
-        EXPECT_LT(largestDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
+        EXPECT_LT(maxDifference(beamOf(straight, k), beamOf(turned, k - 10)), 1e-3) << k;
 }
 
 TEST(BeamFanTest, LevelGroundIsTheSameInEveryBeamOfThreeFrusta) {
     SonarConfig config = plainFan(150, 150, 4);
     config.quality.rows = 512;
     const auto ping = plainPing(config, test::snapshotOf(test::sceneOf({test::ground(-5)})));
-    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(largestDifference(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
+    for (uint32_t k = 0; k < 150; ++k) EXPECT_LT(maxDifference(beamOf(ping, k), beamOf(ping, 75)), 1e-3) << k;
 }
 
 }  // namespace insonify::sonar

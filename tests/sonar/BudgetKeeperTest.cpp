@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double least = 32768, most = 4e6;
+constexpr double minimum = 32768, maximum = 4e6;
 
 /** A machine on which a ping takes a constant time plus a time per sample, and a ladder with rungs of 9 %. */
 struct Machine {
@@ -18,8 +18,8 @@ struct Machine {
     std::minstd_rand random{7};
 
     static double rung(double limit) {
-        const double steps = std::floor(8 * std::log2(std::max(limit, least) / least) + 1e-9);
-        return std::min(most, least * std::exp2(steps / 8));
+        const double steps = std::floor(8 * std::log2(std::max(limit, minimum) / minimum) + 1e-9);
+        return std::min(maximum, minimum * std::exp2(steps / 8));
     }
     double ms(double samples) {
         const double noise = 2 * static_cast<double>(random()) / std::minstd_rand::max() - 1;
@@ -46,7 +46,7 @@ TEST(BudgetKeeperTest, UsesAtLeastFourFifthsOfTheBudgetAndDoesNotExceedIt) {
     for (const double fixed_ms : {0.1, 1.0, 5.0})
         for (const double budget : {10.0, 33.0, 80.0}) {
             Machine machine{fixed_ms, 4e-5, 0.03};
-            BudgetKeeper keeper(budget, least);
+            BudgetKeeper keeper(budget, minimum);
             machine.run(keeper, 60);
             const std::vector<double> times = machine.run(keeper, 200);
             EXPECT_GE(median(times), 0.8 * budget) << fixed_ms << " ms and more";
@@ -65,7 +65,7 @@ TEST(BudgetKeeperTest, TwoLatePingsInTwentyLowerTheQualityAndOneDoesNot) {
 
 TEST(BudgetKeeperTest, TheQualityFallsOnABusyMachineAndRecoversInSomeTensOfPings) {
     Machine machine;
-    BudgetKeeper keeper(33, least);
+    BudgetKeeper keeper(33, minimum);
     machine.run(keeper, 100);
     const double before = keeper.limit();
     machine.ms_per_sample *= 3;
@@ -80,7 +80,7 @@ TEST(BudgetKeeperTest, TheQualityFallsOnABusyMachineAndRecoversInSomeTensOfPings
 TEST(BudgetKeeperTest, DoesNotOscillateBetweenTwoQualities) {
     Machine machine;
     machine.jitter = 0.12;
-    BudgetKeeper keeper(33, least);
+    BudgetKeeper keeper(33, minimum);
     int moves = 0;
     for (int i = 0; i < 2000; ++i) {
         const double samples = Machine::rung(keeper.limit());
@@ -91,14 +91,14 @@ TEST(BudgetKeeperTest, DoesNotOscillateBetweenTwoQualities) {
 
 TEST(BudgetKeeperTest, DoesNotExceedTheQualityThatAPingNeeds) {
     BudgetKeeper keeper(33);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, least));
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(keeper.note(1, minimum));
     BudgetKeeper limited(33, 1e6);
-    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, least)) << "the budget is not used up";
+    for (int i = 0; i < 200; ++i) EXPECT_FALSE(limited.note(10, minimum)) << "the budget is not used up";
 }
 
 TEST(BudgetKeeperTest, AChangedBudgetAppliesAtOnce) {
     Machine machine;
-    BudgetKeeper keeper(33, least);
+    BudgetKeeper keeper(33, minimum);
     machine.run(keeper, 100);
     keeper.setBudget(10);
     machine.run(keeper, 20);

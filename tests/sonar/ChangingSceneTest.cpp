@@ -105,7 +105,7 @@ TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
         std::unique_ptr<SonarRenderer> kept;
         types::GeometryPtr before;
         int changes = 0;
-        double heard = 0;
+        double received = 0;
         for (double way = 40; way < 660; way += 3) {
             types::Snapshot snapshot = test::snapshotOf(floor->about({way, -60, -4}, rest), {way, -60, -4}, 0, 0.5);
             snapshot.ahead = floor->ahead();
@@ -115,7 +115,7 @@ TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
             changes += changed;
             EXPECT_FALSE(kept->setGeometry(snapshot.geometry)) << "the plan is the same";
             const std::vector<float> bins = binsWith(*kept, snapshot);
-            for (const float bin : bins) heard += static_cast<double>(bin);
+            for (const float bin : bins) received += static_cast<double>(bin);
             if (!changed || changes % 7 != 1) continue;
             snapshot.geometry = fresh_floor->about({way, -60, -4}, rest);
             snapshot.ahead = nullptr;
@@ -123,7 +123,7 @@ TEST(ChangingSceneTest, AMissionOverTilesMatchesNewRenderersForEachTile) {
             ASSERT_EQ(bins, binsWith(anew, snapshot)) << name << " at " << way;
         }
         EXPECT_GT(changes, 100) << name;
-        EXPECT_GT(heard, 0) << name;
+        EXPECT_GT(received, 0) << name;
     }
 }
 

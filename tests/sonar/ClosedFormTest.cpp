@@ -128,7 +128,7 @@ struct RandomSphere {
         config.visibility = Visibility::Cpu;
     }
     /** Energies of all beams together by bin. */
-    std::vector<double> hear(types::Sonar& ping) const {
+    std::vector<double> receive(types::Sonar& ping) const {
         auto geometry = std::make_shared<types::Geometry>(*test::sceneOf({mesh}));
         geometry->objects[0].world_from_object = place;
         ping = pingOf(config, test::snapshotOf(geometry));
@@ -163,7 +163,7 @@ TEST(ClosedFormTest, NoEchoIsBeforeASphereOrBehindItsLimb) {
         for (const auto& [rows, columns] : {std::pair{64, 2}, {128, 2}, {256, 4}, {512, 8}}) {
             RandomSphere sphere(random, rings, rows, columns);
             types::Sonar ping;
-            const std::vector<double> sums = sphere.hear(ping);
+            const std::vector<double> sums = sphere.receive(ping);
             const test::Form form = test::sphereEcho(sphere.radius, sphere.distance);
             const double limb = std::sqrt(std::pow(sphere.distance, 2) - std::pow(sphere.radius, 2));
             const double end = std::max(sphere.meshLimb(), limb), peak = *std::ranges::max_element(sums);
@@ -180,7 +180,7 @@ TEST(ClosedFormTest, NoEchoIsBeforeASphereOrBehindItsLimb) {
             }
             sphere.mesh.indices.resize(sphere.mesh.indices.size() - 3);  // open, and so of planes
             sphere.mesh = study::meshOf(sphere.mesh.positions, sphere.mesh.indices);
-            const std::vector<double> planes = sphere.hear(ping);
+            const std::vector<double> planes = sphere.receive(ping);
             for (uint32_t k = 0; k < ping.bin_count; ++k)
                 if (ping.binStart(k) >= end) behind_planes = std::max(behind_planes, planes[k] / peak);
         }
@@ -194,13 +194,13 @@ TEST(ClosedFormTest, FacetsBendAsTheSmoothClosedBodyDoes) {
         const auto curves = facetCurves(ball, glm::dmat3(1)), twice = facetCurves(ball, glm::dmat3(2));
         ASSERT_EQ(curves.size(), ball.indices.size() / 3);
         const vec4 bend = curves[curves.size() / 2].bend, wide = twice[twice.size() / 2].bend;
-        const double least = static_cast<double>(bend.w), more = glm::dot(glm::dvec3(bend), glm::dvec3(bend));
-        EXPECT_NEAR(least, 1 / radius, 0.05 / radius) << rings;
-        EXPECT_NEAR(least + more, 1 / radius, 0.05 / radius) << rings;
-        EXPECT_NEAR(static_cast<double>(wide.w), least / 2, 0.01 * least) << rings;
+        const double minimum = static_cast<double>(bend.w), more = glm::dot(glm::dvec3(bend), glm::dvec3(bend));
+        EXPECT_NEAR(minimum, 1 / radius, 0.05 / radius) << rings;
+        EXPECT_NEAR(minimum + more, 1 / radius, 0.05 / radius) << rings;
+        EXPECT_NEAR(static_cast<double>(wide.w), minimum / 2, 0.01 * minimum) << rings;
         for (size_t i = 0; i < ball.indices.size(); i += 3) std::swap(ball.indices[i], ball.indices[i + 1]);
-        EXPECT_NEAR(static_cast<double>(facetCurves(ball, glm::dmat3(1))[curves.size() / 2].bend.w), least,
-                    0.01 * least)
+        EXPECT_NEAR(static_cast<double>(facetCurves(ball, glm::dmat3(1))[curves.size() / 2].bend.w), minimum,
+                    0.01 * minimum)
             << "wound the other way round";
         types::Mesh doubled = ball;
         doubled.indices.insert(doubled.indices.end(), ball.indices.rbegin(), ball.indices.rend());

@@ -44,7 +44,7 @@ types::TransmissionPtr sentFrom(
     return sent;
 }
 
-SonarConfig hearing(SonarConfig config, bool echoes = false) {
+SonarConfig receiving(SonarConfig config, bool echoes = false) {
     config.visibility = Visibility::Cpu;
     config.crosstalk.emplace().echoes = echoes;
     return config;
@@ -70,7 +70,7 @@ types::Snapshot openWaterWith(types::TransmissionPtr sent) {
 SonarConfig randomFan(std::mt19937& random) {
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     SonarConfig config =
-        hearing(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
+        receiving(test::sonarOf({.beams = 16, .width_deg = 90, .height_deg = 30, .bins = 400, .rows = 8}));
     if (between(0, 1) < 0.5) {
         config.field_of_view_deg.reset();
         config.beam_width_deg = 5;
@@ -91,7 +91,7 @@ SonarConfig randomFan(std::mt19937& random) {
 TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
     std::mt19937 random(5);
     const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
-    int heard = 0;
+    int received = 0;
     for (int trial = 0; trial < 60; ++trial) {
         const SonarConfig config = randomFan(random);
         const double azimuth = between(-0.7, 0.7), elevation = between(-0.2, 0.2), distance = between(3, 60);
@@ -117,16 +117,16 @@ TEST(CrosstalkTest, ADirectPulseFollowsTheOneWaySonarEquation) {
                                     decibelsOf(power) - 20 * std::log10(distance) -
                                     *config.absorption->db_per_m * distance;
             EXPECT_NEAR(decibelsOf(double{ping.bins[beam * ping.bin_count + bin]}), expected, 0.01) << trial;
-            ++heard;
+            ++received;
         }
         for (size_t i = 0; i < ping.bins.size(); ++i)  // in that bin alone
             ASSERT_TRUE(i % ping.bin_count == bin || ping.bins[i] == 0) << trial << " " << i;
     }
-    EXPECT_GT(heard, 200);
+    EXPECT_GT(received, 200);
 }
 
 TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
-    SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
+    SonarConfig config = receiving(test::sonarOf({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 2;
     config.pulse->window = acoustics::PulseWindow::Hann;
@@ -139,28 +139,28 @@ TEST(CrosstalkTest, APulseOfTheSameKindHasTheShapeOfAnEcho) {
 }
 
 TEST(CrosstalkTest, NoPulseArrivesBehindAWallTooEarlyTooLateOrOutsideOfFanAndAperture) {
-    const SonarConfig config = hearing(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
-    const auto heardFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
+    const SonarConfig config = receiving(test::sonarOf({.width_deg = 60, .bins = 300, .rows = 8}));
+    const auto receivedFrom = [&](glm::dvec3 place, double delay, types::GeometryPtr scene = openWater()) {
         types::Snapshot snapshot = test::snapshotOf(scene);
         const double alone = totalOf(pingOf(config, snapshot));
         snapshot.transmissions = {sentFrom(place, delay)};
         return totalOf(pingOf(config, snapshot)) - alone;
     };
-    EXPECT_NEAR(heardFrom({20, 0, 0}, 0), 1.0 / 400, 1e-6);
-    EXPECT_EQ(heardFrom({20, 0, 0}, 0, test::sceneOf({test::wall(10)})), 0);
-    EXPECT_NEAR(heardFrom({20, 0, 0}, 0, test::sceneOf({test::wall(25)})), 1.0 / 400, 1e-6);
-    EXPECT_EQ(heardFrom({20, 0, 0}, -0.021), 0);  // it has passed
-    EXPECT_EQ(heardFrom({20, 0, 0}, 0.041), 0);   // the sonar no longer listens
-    EXPECT_GT(heardFrom({20, 0, 0}, 0.039), 0);
-    EXPECT_EQ(heardFrom({-20, 0, 0}, 0), 0);
-    EXPECT_EQ(heardFrom({0, 20, 0}, 0), 0);
-    EXPECT_EQ(heardFrom({20, 0, 8}, 0), 0);
+    EXPECT_NEAR(receivedFrom({20, 0, 0}, 0), 1.0 / 400, 1e-6);
+    EXPECT_EQ(receivedFrom({20, 0, 0}, 0, test::sceneOf({test::wall(10)})), 0);
+    EXPECT_NEAR(receivedFrom({20, 0, 0}, 0, test::sceneOf({test::wall(25)})), 1.0 / 400, 1e-6);
+    EXPECT_EQ(receivedFrom({20, 0, 0}, -0.021), 0);  // it has passed
+    EXPECT_EQ(receivedFrom({20, 0, 0}, 0.041), 0);   // the sonar no longer listens
+    EXPECT_GT(receivedFrom({20, 0, 0}, 0.039), 0);
+    EXPECT_EQ(receivedFrom({-20, 0, 0}, 0), 0);
+    EXPECT_EQ(receivedFrom({0, 20, 0}, 0), 0);
+    EXPECT_EQ(receivedFrom({20, 0, 8}, 0), 0);
 }
 
 /** The surface's image of the sender, 6 m above it. */
 TEST(CrosstalkTest, ThePulseArrivesByTheSurfaceToo) {
     SonarConfig config = test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64});
-    config = hearing(config);
+    config = receiving(config);
     config.multipath.emplace().surface.emplace();
     types::Snapshot snapshot = openWaterWith(sentFrom({16, 0, 0}, 0.01, [](const glm::dvec3& to) {
         return to.z > 0.1 ? 0.5 : 1.0;  // weaker towards the surface
@@ -213,17 +213,17 @@ TEST(CrosstalkTest, AMatchedFilterPassesTheShareOfAnotherChirpByMismatchOf) {
 }
 
 TEST(CrosstalkTest, AnotherSonarsPulseFillsTheBinsOfItsDuration) {
-    SonarConfig config = hearing(test::sonarOf({.bins = 300, .rows = 8}));
+    SonarConfig config = receiving(test::sonarOf({.bins = 300, .rows = 8}));
     config.frequency_khz = 700;
     config.pulse.emplace().bandwidth_khz = 50;  // without chirp_us it lasts 1 ms
     auto sent = std::make_shared<types::Transmission>(*sentFrom({20, 0, 0}, 0));
     sent->frequency_khz = 725, sent->bandwidth_khz = 50, sent->duration = 2e-3;
     const auto ping = pingOf(config, openWaterWith(sent));
-    std::vector<size_t> heard;
+    std::vector<size_t> received;
     for (size_t k = 0; k < ping.bin_count; ++k)
-        if (ping.bins[k] > 0) heard.push_back(k);
-    ASSERT_EQ(heard.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
-    EXPECT_EQ(heard.front(), 92u);
+        if (ping.bins[k] > 0) received.push_back(k);
+    ASSERT_EQ(received.size(), 16u);  // c (1 + 2 ms) / 2 = 1.5 m, about 10 m
+    EXPECT_EQ(received.front(), 92u);
     // Half of the pulse's band passes, with twice the energy, as a box of 1.5 m instead of a pulse of c / 2 B.
     EXPECT_NEAR(double{ping.bins[100]} * 400 / (0.5 * 2 * acoustics::Pulse(*config.pulse, 1000).cellLength() / 1.5), 1,
                 1e-4);
@@ -271,7 +271,7 @@ TEST(CrosstalkTest, ATwinAtTheSonarsPlaceDoublesEveryEcho) {
 
 /** Level ground of Lambert's law, by an integral over its points. */
 TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGround) {
-    SonarConfig config = hearing(
+    SonarConfig config = receiving(
         test::sonarOf({.beams = 1, .width_deg = 60, .height_deg = 120, .bins = 300, .rows = 2048, .columns = 64}),
         true);
     const auto scene = test::sceneOf({test::ground(-4, 400)}, -20);
@@ -307,7 +307,7 @@ TEST(CrosstalkTest, EchoesOfAnotherSonarsPulseAreTheBistaticIntegralOverTheGroun
 
 TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
     const SonarConfig config =
-        hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+        receiving(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
     const auto alone = pingOf(config, snapshot);
     snapshot.transmissions = {sentFrom({5, 0, -6}, 0)};
@@ -321,7 +321,7 @@ TEST(CrosstalkTest, ASenderBehindASurfaceInsonifiesNothing) {
 /** Senders at extreme places and times give finite echoes. */
 TEST(CrosstalkTest, ExtremeSendersLeaveFiniteBins) {
     const SonarConfig config =
-        hearing(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
+        receiving(test::sonarOf({.width_deg = 60, .height_deg = 120, .bins = 300, .rows = 64}), true);
     types::Snapshot snapshot = test::snapshotOf(test::sceneOf({test::ground(-4, 400)}));
     for (const glm::dvec3 place : {glm::dvec3(0), glm::dvec3(1e-9, 0, 0), glm::dvec3(1e9, 0, 0), glm::dvec3(5, 0, -4),
                                    glm::dvec3(5, 0, -4 + 1e-6)})

@@ -49,7 +49,7 @@ bool triangleSeen(const ViewFrustum& frustum, const glm::dvec3 (&corner)[3], dou
 }
 
 /** Returns for each triangle of each object whether it is in a run. */
-std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std::vector<Culler::DrawRange>& runs) {
+std::vector<std::vector<bool>> rasterised(const types::Geometry& geometry, const std::vector<Culler::DrawRange>& runs) {
     std::vector<std::vector<bool>> marks;
     for (const types::Object& object : geometry.objects)
         marks.emplace_back(geometry.meshes[static_cast<size_t>(object.mesh)].indices.size() / 3);
@@ -62,7 +62,7 @@ std::vector<std::vector<bool>> drawn(const types::Geometry& geometry, const std:
 }
 
 struct Count {
-    size_t seen = 0, missed = 0, drawn = 0, all = 0;
+    size_t seen = 0, missed = 0, rasterised = 0, all = 0;
 };
 
 /** Compares the runs of all frusta with the triangles that are in view. */
@@ -75,7 +75,7 @@ Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
     for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config))) {
         culler.visible(frustum, runs);
         EXPECT_LE(runs.size(), culler.drawRangeLimit());
-        const auto marks = drawn(*snapshot.geometry, runs);
+        const auto marks = rasterised(*snapshot.geometry, runs);
         for (size_t i = 0; i < marks.size(); ++i) {
             const types::Object& object = snapshot.geometry->objects[i];
             glm::dmat4 place = object.world_from_object;
@@ -89,7 +89,7 @@ Count compare(const SonarConfig& config, const types::Snapshot& snapshot) {
                 const bool seen = triangleSeen(frustum, corner, config.range);
                 count.seen += seen;
                 count.missed += seen && !marks[i][t];
-                count.drawn += marks[i][t];
+                count.rasterised += marks[i][t];
                 ++count.all;
             }
         }
@@ -148,12 +148,12 @@ TEST(CullerTest, CullsNothingInViewOfAFrustum) {
             const Count count = compare(fan(degrees), snapshot);
             EXPECT_EQ(count.missed, 0u) << "round " << round << ", " << degrees << " deg";
             total.seen += count.seen;
-            total.drawn += count.drawn;
+            total.rasterised += count.rasterised;
             total.all += count.all;
         }
     }
     EXPECT_GT(total.seen, 8'000u);
-    EXPECT_LT(total.drawn, total.all / 2) << "most of the scene is out of view";
+    EXPECT_LT(total.rasterised, total.all / 2) << "most of the scene is out of view";
 }
 
 TEST(CullerTest, CullsNoTriangleOfAClusterInView) {
@@ -168,7 +168,7 @@ TEST(CullerTest, CullsNoTriangleOfAClusterInView) {
         for (const types::GeometryPtr& scene : {types::GeometryPtr(geometry), types::GeometryPtr(turned)}) {
             const Count count = compare(fan(130), randomSnapshot(random, scene));
             EXPECT_EQ(count.missed, 0u) << round;
-            EXPECT_LT(count.drawn, count.all);
+            EXPECT_LT(count.rasterised, count.all);
         }
     }
 }
@@ -221,10 +221,10 @@ TEST(CullerTest, ThePingOfClustersCulledByViewMatchesTheWholeScene) {
 TEST(CullerTest, CullingByRangeRemovesOnlyEchoesThatPixelsBeyondItSmearBack) {
     const auto clustered = clusteredHarbour();
     const auto culled = pings(fan(100), clustered), all = pings(fan(100), withoutCulling(*clustered));
-    const float most = *std::ranges::max_element(all);
+    const float maximum = *std::ranges::max_element(all);
     for (size_t i = 0; i < all.size(); ++i) {
         EXPECT_LE(culled[i], all[i]) << i;
-        EXPECT_NEAR(culled[i], all[i], 1e-5 * most) << i;
+        EXPECT_NEAR(culled[i], all[i], 1e-5 * maximum) << i;
     }
 }
 

@@ -189,7 +189,7 @@ TEST_F(DeformingMeshTest, APointTargetIsHiddenWhereTheMeshBendsBeforeIt) {
         SonarRenderer renderer(config, snapshot.geometry);
         types::Sonar ping;
         renderer.render(snapshot, ping);
-        echoes.push_back(static_cast<double>(renderer.othersHeard()));
+        echoes.push_back(static_cast<double>(renderer.othersReceived()));
     }
     EXPECT_EQ(echoes[0] + echoes[1], 1) << echoes[0];
 }
@@ -310,13 +310,14 @@ TEST_F(DeformingMeshTest, EachTriangleDriftsAsItsCornersDo) {
 
 TEST_F(DeformingMeshTest, APlanSaysWhatDeforms) {
     const auto scene = read(eelText(tube_));
-    EXPECT_EQ(makeRenderPlan(eelFan(), *scene->geometry).leftOut("deforming meshes"), nullptr);
-    SonarConfig drawn = eelFan();
-    drawn.visibility = Visibility::Gl;
-    const RenderPlan plan = makeRenderPlan(drawn, *scene->geometry);
-    ASSERT_NE(plan.leftOut("deforming meshes"), nullptr);
-    EXPECT_EQ(plan.leftOut("deforming meshes")->reason, Reason::Lacking);
-    EXPECT_EQ(makeRenderPlan(eelFan(), *test::openWater()).leftOut("deforming meshes")->reason, Reason::NoneInScene);
+    EXPECT_EQ(makeRenderPlan(eelFan(), *scene->geometry).findOmitted("deforming meshes"), nullptr);
+    SonarConfig rasterised = eelFan();
+    rasterised.visibility = Visibility::Gl;
+    const RenderPlan plan = makeRenderPlan(rasterised, *scene->geometry);
+    ASSERT_NE(plan.findOmitted("deforming meshes"), nullptr);
+    EXPECT_EQ(plan.findOmitted("deforming meshes")->reason, Reason::Lacking);
+    EXPECT_EQ(makeRenderPlan(eelFan(), *test::openWater()).findOmitted("deforming meshes")->reason,
+              Reason::NoneInScene);
 }
 
 TEST_F(DeformingMeshTest, SnapshotsThatDoNotFitAreFound) {

@@ -17,14 +17,14 @@ namespace {
 size_t drawnBy(const SonarConfig& config, const types::Snapshot& snapshot) {
     Culler culler(*snapshot.geometry, {0, {config.range}});
     culler.place(snapshot);
-    size_t drawn = 0;
+    size_t rasterised = 0;
     std::vector<Culler::DrawRange> runs;
     for (const ViewFrustum& frustum : makeFrusta(config, makeBeams(config))) {
         culler.visible(frustum, runs);
         EXPECT_LE(runs.size(), culler.drawRangeLimit());
-        for (const Culler::DrawRange& run : runs) drawn += run.index_count / 3;
+        for (const Culler::DrawRange& run : runs) rasterised += run.index_count / 3;
     }
-    return drawn;
+    return rasterised;
 }
 
 /** rel_l2_tvg: relative L2 of energies times the fifth power of their range. */
@@ -63,7 +63,7 @@ struct Look {
     double yaw, pitch_deg, range;
 };
 
-types::Sonar heardOf(const types::GeometryPtr& geometry, const Look& look) {
+types::Sonar receivedOf(const types::GeometryPtr& geometry, const Look& look) {
     SonarConfig config;
     config.speed_of_sound = 1000;
     config.beam_count = 128;
@@ -113,12 +113,12 @@ TEST(DetailCullTest, ARoughFloorEchoesTheSameInOneMeshAndInManySmallMeshes) {
     ASSERT_TRUE(floors.tiles->meshes[0].cluster_nodes.empty());
     for (const Look& look : {Look{{0, 0, 3}, 0, 8, 40}, Look{{0, 0, 3}, 0, 8, 15}, Look{{0, 0, 8}, 0.3, 25, 40},
                              Look{{10, 5, 1.5}, -0.4, 2, 30}}) {
-        const types::Sonar one = heardOf(floors.one, look), tiles = heardOf(floors.tiles, look);
+        const types::Sonar one = receivedOf(floors.one, look), tiles = receivedOf(floors.tiles, look);
         const double error = relativeError(one, tiles);
         RecordProperty(fmt::format("rel_l2_tvg {:g} m above, to {:g} m", look.position.z, look.range),
                        fmt::format("{:.5f}", error));
         EXPECT_LT(error, 0.005) << look.position.z << " m above, to " << look.range << " m";
-        EXPECT_GT(relativeError(heardOf(floors.outline, look), tiles), 0.05) << "fewer triangles are another floor";
+        EXPECT_GT(relativeError(receivedOf(floors.outline, look), tiles), 0.05) << "fewer triangles are another floor";
     }
 }
 
@@ -132,7 +132,7 @@ TEST(DetailCullTest, DrawAllRasterisesTheWholeSceneWithTheSameEchoes) {
     SonarRenderer renderer(config, geometry);
     types::Sonar ping;
     renderer.render(test::snapshotOf(geometry), ping);
-    for (const LeftOut& what : renderer.leftOut()) EXPECT_NE(what.reason, Reason::OutOfView) << what.effect;
+    for (const Omitted& what : renderer.omissions()) EXPECT_NE(what.reason, Reason::OutOfView) << what.effect;
 }
 
 }  // namespace insonify::sonar

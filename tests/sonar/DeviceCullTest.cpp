@@ -35,13 +35,13 @@ struct Result {
 
 std::vector<Result> rendered(const SonarConfig& config, const std::vector<types::Snapshot>& snapshots) {
     SonarRenderer renderer(config, snapshots.front().geometry);
-    EXPECT_TRUE(renderer.leftOut().empty()) << "no ping yet";
+    EXPECT_TRUE(renderer.omissions().empty()) << "no ping yet";
     std::vector<Result> results;
     for (const types::Snapshot& snapshot : snapshots) {
         types::Sonar ping;
         renderer.render(snapshot, ping);
         Result& result = results.emplace_back(Result{ping.bins, {}});
-        for (const LeftOut& what : renderer.leftOut())
+        for (const Omitted& what : renderer.omissions())
             if (what.reason == Reason::OutOfView) result.culled.emplace_back(what.effect, what.value, what.bound);
         EXPECT_EQ(renderer.hasEchoes(), *std::ranges::max_element(ping.bins) > 0);
     }

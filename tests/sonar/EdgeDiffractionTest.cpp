@@ -134,8 +134,8 @@ double decibels(double x) { return 10 * std::log10(x); }
 /** 1 / (1 / L^2 + 2 / (lambda r)) [m^2]. */
 double coherentSquare(double length, double range) { return 1 / (1 / (length * length) + 2 / (wavelength * range)); }
 
-std::optional<LeftOut> omitted(const SonarRenderer& renderer) {
-    for (const LeftOut& what : renderer.leftOut())
+std::optional<Omitted> omitted(const SonarRenderer& renderer) {
+    for (const Omitted& what : renderer.omissions())
         if (what.effect == "edge diffraction") return what;
     return {};
 }
@@ -286,7 +286,7 @@ TEST(EdgeDiffractionTest, HiddenEdgesAreSilent) {
     types::Sonar ping;
     types::Snapshot snapshot = test::snapshotOf(smooth({block}, {far}));
     renderer.render(snapshot, ping);
-    EXPECT_EQ(renderer.othersHeard(), 9u) << "of twelve edges three are behind the block";
+    EXPECT_EQ(renderer.othersReceived(), 9u) << "of twelve edges three are behind the block";
     const auto left = omitted(renderer);
     ASSERT_TRUE(left);
     EXPECT_EQ(left->reason, Reason::OutOfView);
@@ -313,8 +313,8 @@ TEST(EdgeDiffractionTest, ASceneWithoutEdgesKeepsItsBitsAndReportsWhy) {
         EXPECT_EQ(ping.bins, test::pingOf(without(edgeSonar()), test::snapshotOf(scene)).bins);
         EXPECT_GT(sumOf(ping), 0);
         const auto left = omitted(renderer);
-        const LeftOut* planned = renderer.renderPlan().leftOut("edge diffraction");
-        const LeftOut what = left ? *left : planned ? *planned : LeftOut{};
+        const Omitted* planned = renderer.renderPlan().findOmitted("edge diffraction");
+        const Omitted what = left ? *left : planned ? *planned : Omitted{};
         EXPECT_EQ(what.reason, Reason::NoneInScene);
         ASSERT_TRUE(what.words);
         EXPECT_THAT(what.words(what, {}), HasSubstr(words));

@@ -47,13 +47,13 @@ types::Snapshot twoTargets() {
     return test::snapshotOf(test::sceneOf({test::ground(-2), test::sphere(0.5, 32)}, 0, {{}, {6, 1, -1.5}}));
 }
 
-struct Heard {
+struct Received {
     types::Sonar ping;
     types::SonarElements signals;
 };
 
-Heard heard(const SonarConfig& config) {
-    Heard result;
+Received received(const SonarConfig& config) {
+    Received result;
     const types::Snapshot snapshot = twoTargets();
     SonarRenderer renderer(config, snapshot.geometry);
     renderer.render(snapshot, result.ping);
@@ -63,17 +63,17 @@ Heard heard(const SonarConfig& config) {
 
 /** Returns the bins of beams at the bearings of the ping.
  *  @param turn -1: with port and starboard exchanged */
-std::vector<double> beamformed(const Heard& heard, const acoustics::Taper& taper, double turn = 1) {
-    const types::SonarElements& signals = heard.signals;
+std::vector<double> beamformed(const Received& received, const acoustics::Taper& taper, double turn = 1) {
+    const types::SonarElements& signals = received.signals;
     const size_t count = signals.positions.size();
     const LineArray array(count, signals.positions[1] - signals.positions[0], signals.wavelength, taper);
     ComplexRows rows(count, signals.sample_count);
     for (size_t i = 0; i < rows.values.size(); ++i) rows.values[i] = {signals.in_phase[i], signals.quadrature[i]};
     std::vector<double> sines;
-    for (const types::Angle& bearing : heard.ping.bearings) sines.push_back(turn * std::sin(bearing.rad));
+    for (const types::Angle& bearing : received.ping.bearings) sines.push_back(turn * std::sin(bearing.rad));
     const ComplexRows beams = array.form(rows, sines);
-    const size_t per_bin = signals.sample_count / heard.ping.bin_count;
-    std::vector<double> bins(heard.ping.bins.size());
+    const size_t per_bin = signals.sample_count / received.ping.bin_count;
+    std::vector<double> bins(received.ping.bins.size());
     for (size_t i = 0; i < beams.values.size(); ++i)
         bins[i / per_bin] += std::norm(std::complex<double>(beams.values[i])) / static_cast<double>(per_bin);
     return bins;
@@ -85,7 +85,7 @@ struct Off {
     double share = 0, energy_db = 0;
 };
 
-Off off(const types::Sonar& ping, const std::vector<double>& bins, double least = 1e-3) {
+Off off(const types::Sonar& ping, const std::vector<double>& bins, double minimum = 1e-3) {
     double count = 0, wrong = 0, sum = 0, own_sum = 0;
     for (size_t k = 0; k < ping.bin_count; ++k) {
         double mean = 0;
@@ -93,7 +93,7 @@ Off off(const types::Sonar& ping, const std::vector<double>& bins, double least 
             mean += static_cast<double>(ping.bins[beam * ping.bin_count + k]) / ping.beam_count;
         for (size_t i = k; i < bins.size(); i += ping.bin_count) {
             const auto own = static_cast<double>(ping.bins[i]);
-            if (own < least * mean || own == 0) continue;
+            if (own < minimum * mean || own == 0) continue;
             count += 1, sum += bins[i], own_sum += own;
             wrong += std::abs(10 * std::log10(bins[i] / own)) > 0.5;
         }
@@ -111,7 +111,7 @@ TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
     for (const auto& [weighting, above_mean, all] :
          {Bound{Weighting::Uniform, 0.03, 0.15}, Bound{Weighting::Hann, 0.002, 0.01},
           Bound{Weighting::Taylor, 0.002, 0.03}}) {
-        const Heard both = heard(arrayOf(weighting));
+        const Received both = received(arrayOf(weighting));
         const std::vector<double> bins = beamformed(both, acoustics::Taper(weighting));
         EXPECT_LT(off(both.ping, bins, 1).share, above_mean) << static_cast<int>(weighting);
         EXPECT_LT(off(both.ping, bins, 1e-2).share, all) << static_cast<int>(weighting);
@@ -123,7 +123,7 @@ TEST(ElementSignalsTest, BeamsFormedFromTheElementsMatchThePingsBins) {
 }
 
 TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
-    const Heard both = heard(arrayOf(Weighting::Uniform));
+    const Received both = received(arrayOf(Weighting::Uniform));
     const types::SonarElements& signals = both.signals;
     EXPECT_EQ(signals.diagnostic(), nullptr);
     EXPECT_EQ(signals.time, both.ping.time);
@@ -140,7 +140,7 @@ TEST(ElementSignalsTest, HavePositionsOfElementsAndRangesOfSamples) {
 TEST(ElementSignalsTest, FewerElementsAreFartherApartAndReceiveTheSamePlaces) {
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
-    const types::SonarElements sparse = heard(config).signals, dense = heard(arrayOf(Weighting::Uniform)).signals;
+    const types::SonarElements sparse = received(config).signals, dense = received(arrayOf(Weighting::Uniform)).signals;
     EXPECT_EQ(sparse.positions.size(), 20u);
     EXPECT_NEAR(20 * (sparse.positions[1] - sparse.positions[0]),
                 static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
@@ -190,7 +190,7 @@ TEST_F(ElementPortTest, ThePortWritesTheElementsOfEachPing) {
     const types::SonarPtr ping = answerTo(std::make_shared<const types::Snapshot>(twoTargets()));
     types::SonarElementsPtr signals;
     ASSERT_TRUE(ping && signals_.port.readNew(signals));
-    const Heard expected = heard(arrayOf(Weighting::Uniform));
+    const Received expected = received(arrayOf(Weighting::Uniform));
     EXPECT_EQ(ping->bins, expected.ping.bins) << "with or without the port";
     EXPECT_EQ(signals->in_phase, expected.signals.in_phase);
     EXPECT_EQ(signals->time, ping->time);

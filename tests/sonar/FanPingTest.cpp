@@ -19,11 +19,11 @@ using types::radians;
 struct FanEffect {
     const char* name;
     std::function<void(SonarConfig&)> ask;
-    bool drawn = true;         ///< The rasterised path supports it.
-    bool stands_alone = true;  ///< A beam's echoes do not depend on the other beams of the fan.
-    double alone = 0.03;       ///< Max error of a beam alone, in relative L2 [1].
-    bool turns = true;         ///< Samples are at the same places in beams of any bearing.
-    double agree = 0.05;       ///< Max difference of rays and pictures, in relative L2 [1].
+    bool rasterised = true;   ///< The rasterised path supports it.
+    bool independent = true;  ///< A beam's echoes do not depend on the other beams of the fan.
+    double alone = 0.03;      ///< Max error of a beam alone, in relative L2 [1].
+    bool turns = true;        ///< Samples are at the same places in beams of any bearing.
+    double agree = 0.05;      ///< Max difference of rays and pictures, in relative L2 [1].
 };
 
 BeamPatternConfig pattern() {
@@ -194,7 +194,7 @@ protected:
 TEST_P(FanPingTest, AnyOrderOfTheTableGivesTheSameRows) {
     forTables(2, [&](const test::Table& table, std::mt19937& random) {
         for (const Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
-            if (visibility == Visibility::Gl && !GetParam().drawn) continue;
+            if (visibility == Visibility::Gl && !GetParam().rasterised) continue;
             const Shown ascending = shownOf(sonar(table, GetParam(), visibility), scene());
             std::vector<size_t> rows(table.bearings_deg.size());
             for (size_t i = 0; i < rows.size(); ++i) rows[i] = rows.size() - 1 - i;
@@ -227,7 +227,7 @@ TEST_P(FanPingTest, AFanIsTheSameAnywhereAboutTheSeam) {
 }
 
 TEST_P(FanPingTest, EachBeamIsTheSameAlone) {
-    if (!GetParam().stands_alone) return;
+    if (!GetParam().independent) return;
     forTables(1, [&](const test::Table& table, std::mt19937&) {
         const auto fine = [&](SonarConfig config) {
             config.quality.rows = 256;
@@ -261,18 +261,18 @@ types::Snapshot withoutLimbs(types::Snapshot snapshot) {
 }
 
 TEST_P(FanPingTest, RaysAndPicturesAgree) {
-    if (!GetParam().drawn) return;
+    if (!GetParam().rasterised) return;
     forTables(1, [&](const test::Table& table, std::mt19937&) {
         const auto fine = [&](SonarConfig config) {
             config.quality.rows = 384;
             config.quality.columns_per_beam = 8;
             return config;
         };
-        const Shown cast = shownOf(fine(sonar(table, GetParam())), withoutLimbs(scene()));
+        const Shown traced = shownOf(fine(sonar(table, GetParam())), withoutLimbs(scene()));
         SonarConfig pictures = fine(sonar(table, GetParam(), Visibility::Gl));
         if (pictures.beam_pattern) pictures.quality.rows = 2048;  // of 150 deg, even in their tangent
-        const Shown drawn = shownOf(pictures, withoutLimbs(scene()));
-        EXPECT_LT(difference(drawn.ping.bins, cast.ping.bins), GetParam().agree);
+        const Shown rasterised = shownOf(pictures, withoutLimbs(scene()));
+        EXPECT_LT(difference(rasterised.ping.bins, traced.ping.bins), GetParam().agree);
     });
 }
 

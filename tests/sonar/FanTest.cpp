@@ -90,8 +90,8 @@ TEST(FanTest, GapsAndOverlapsDoNotJoin) {
     EXPECT_FALSE(fanOf({-10, 0, 10}, 9).joins());
     EXPECT_FALSE(fanOf({-10, 0, 10}, 11).joins());
     EXPECT_TRUE(fanOf({-10, 0, 10}, 10).joins());
-    EXPECT_NEAR(degrees(fanOf({-10, 0, 0, 4}, 1).smallestSpacing()), 4, 1e-9) << "equal bearings have no spacing";
-    EXPECT_NEAR(degrees(fanOf({-170, 175}, 1).smallestSpacing()), 15, 1e-9);
+    EXPECT_NEAR(degrees(fanOf({-10, 0, 0, 4}, 1).minSpacing()), 4, 1e-9) << "equal bearings have no spacing";
+    EXPECT_NEAR(degrees(fanOf({-170, 175}, 1).minSpacing()), 15, 1e-9);
 }
 
 TEST(FanTest, HalfwaysAreBetweenNeighboursAndTheSameDistanceBeyondTheEnds) {

@@ -41,7 +41,7 @@ protected:
     /** Waits for the next ping. */
     types::SonarPtr receive() {
         types::SonarPtr ping;
-        test::comesTrue([&] { return out_.port.readNew(ping); });
+        test::becomesTrue([&] { return out_.port.readNew(ping); });
         return ping;
     }
 
@@ -79,20 +79,20 @@ TEST_F(LastEchoTest, PingsDoNotOverlapAndTheNewestSnapshotCounts) {
     setClock({10'000'000});
     start(150);
     const types::Time first_sent = send();
-    ASSERT_TRUE(test::comesTrue([&] { return !task_.snapshot.hasNew(); }));
+    ASSERT_TRUE(test::becomesTrue([&] { return !task_.snapshot.hasNew(); }));
     types::Time last;
     for (int i = 0; i < 10; ++i) {  // all while it listens
         clock_ += 10'000;
         last = send();
     }
-    for (const auto& [sent, heard] : {std::pair(first_sent, 10'200'000), {last, 10'400'000}}) {
+    for (const auto& [sent, last_echo] : {std::pair(first_sent, 10'200'000), {last, 10'400'000}}) {
         types::SonarPtr ping;
-        ASSERT_TRUE(test::comesTrue([&] {
+        ASSERT_TRUE(test::becomesTrue([&] {
             clock_ += 1000;
             return out_.port.readNew(ping);
         }));
         EXPECT_EQ(ping->time, sent);
-        EXPECT_GE(clock_, heard);
+        EXPECT_GE(clock_, last_echo);
     }
 }
 
@@ -128,7 +128,7 @@ TEST_F(LastEchoTest, AStopDoesNotWaitForTheLastEchoAndWritesNoPing) {
 TEST_F(LastEchoTest, RejectsASnapshotFromTheFuture) {
     start(15);
     send(3600);
-    EXPECT_TRUE(test::comesTrue([&] { return task_.state() == framework::TaskState::RunTimeError; }));
+    EXPECT_TRUE(test::becomesTrue([&] { return task_.state() == framework::TaskState::RunTimeError; }));
     EXPECT_NE(task_.lastError().find("ahead of the clock"), std::string::npos);
     send();
     EXPECT_TRUE(receive());

@@ -42,18 +42,18 @@ Cells speckled(size_t cells, size_t samples) {
 }
 
 /** Returns the power of one echo of unit amplitude in a beam. */
-double heardPower(const LineArray& array, double from, double looking) {
+double receivedPower(const LineArray& array, double from, double looking) {
     ComplexRows echo(1, 1);
     echo.values[0] = 1;
     return std::norm(
-        Complex(array.form(array.hear(echo, std::vector{Cone{from, from}}), std::vector{looking}).values[0]));
+        Complex(array.form(array.elementSignals(echo, std::vector{Cone{from, from}}), std::vector{looking}).values[0]));
 }
 
 TEST(LineArrayTest, ElementsReceiveTheSumOfEchoesWithThePhasesOfTheirPaths) {
     const LineArray array = halfWave(16);
     const Cells cells = speckled(50, 7);
-    const ComplexRows heard = array.hear(cells.field, cells.cones);
-    ASSERT_EQ(heard.rowCount(), 16u);
+    const ComplexRows received = array.elementSignals(cells.field, cells.cones);
+    ASSERT_EQ(received.rowCount(), 16u);
     for (size_t m = 0; m < 16; ++m)
         for (size_t i = 0; i < 7; ++i) {
             Complex sum;
@@ -61,7 +61,7 @@ TEST(LineArrayTest, ElementsReceiveTheSumOfEchoesWithThePhasesOfTheirPaths) {
             for (size_t cell = 0; cell < 50; ++cell)
                 sum += Complex(cells.field.row(cell)[i]) *
                        std::polar(1.0, 2 * pi / wavelength * place * cells.cones[cell].low);
-            EXPECT_NEAR(std::abs(Complex(heard.row(m)[i]) - sum), 0, 1e-4) << m << " " << i;
+            EXPECT_NEAR(std::abs(Complex(received.row(m)[i]) - sum), 0, 1e-4) << m << " " << i;
         }
 }
 
@@ -72,7 +72,8 @@ TEST(LineArrayTest, AWideCellEchoesAsManyNarrowCells) {
     std::ranges::fill(many.values, std::complex<float>(1e-3f));
     std::vector<Cone> narrow;
     for (int i = 0; i < 1000; ++i) narrow.push_back({0.2 + i * 5e-5, 0.2 + (i + 1) * 5e-5});
-    const ComplexRows wide = array.hear(one, std::vector{Cone{0.2, 0.25}}), fine = array.hear(many, narrow);
+    const ComplexRows wide = array.elementSignals(one, std::vector{Cone{0.2, 0.25}}),
+                      fine = array.elementSignals(many, narrow);
     for (size_t m = 0; m < 32; ++m) EXPECT_NEAR(std::abs(wide.row(m)[0] - fine.row(m)[0]), 0, 1e-4) << m;
 }
 
@@ -80,16 +81,16 @@ TEST(LineArrayTest, BeamsByTheTransformMatchTheSumsOverTheElements) {
     for (const size_t count : {17u, 64u}) {
         const LineArray array = halfWave(count, Taper(Weighting::Taylor));
         const Cells cells = speckled(80, 5);
-        const ComplexRows heard = array.hear(cells.field, cells.cones);
+        const ComplexRows received = array.elementSignals(cells.field, cells.cones);
         std::vector<double> looking;
         for (double sine = -0.95; sine < 0.96; sine += 0.0171) looking.push_back(sine);
-        const ComplexRows beams = array.form(heard, looking);
+        const ComplexRows beams = array.form(received, looking);
         double worst = 0, mean = 0;
         for (size_t k = 0; k < looking.size(); ++k)
             for (size_t i = 0; i < 5; ++i) {
                 Complex sum;
                 for (size_t m = 0; m < count; ++m)
-                    sum += array.weights()[m] * Complex(heard.row(m)[i]) *
+                    sum += array.weights()[m] * Complex(received.row(m)[i]) *
                            std::polar(1.0, -2 * pi / wavelength * array.position(m) * looking[k]);
                 worst = std::max(worst, std::abs(Complex(beams.row(k)[i]) - sum));
                 mean += std::abs(sum) / static_cast<double>(looking.size() * 5);
@@ -105,7 +106,7 @@ TEST(LineArrayTest, AUniformArrayHasThePatternOfItsClosedForm) {
         for (double from = -0.9; from < 0.9; from += 0.0137) {
             const double x = pi * 0.5 * (from - looking);
             const double expected = std::pow(std::sin(count * x) / (count * std::sin(x)), 2);
-            EXPECT_NEAR(heardPower(array, from, looking), expected, 0.012 * std::sqrt(expected) + 1e-5)
+            EXPECT_NEAR(receivedPower(array, from, looking), expected, 0.012 * std::sqrt(expected) + 1e-5)
                 << from << " from " << looking;
         }
 }
@@ -120,8 +121,8 @@ TEST(LineArrayTest, WeightsMakeThePatternOfTheBeamLaw) {
         for (const double weight : array.weights()) sum += weight;
         EXPECT_NEAR(sum, 1, 1e-6);
         for (double u = 0; u < 6; u += 0.11) {  // u = L / wavelength sine: as far as the fifth sidelobe
-            const double heard = std::sqrt(heardPower(array, u / (0.5 * count), 0));
-            EXPECT_NEAR(heard, std::abs(taper.amplitude(u)), 6e-3) << u;
+            const double received = std::sqrt(receivedPower(array, u / (0.5 * count), 0));
+            EXPECT_NEAR(received, std::abs(taper.amplitude(u)), 6e-3) << u;
         }
     }
 }
@@ -135,20 +136,20 @@ TEST(LineArrayTest, HannsWeightsAreARaisedCosine) {
 TEST(LineArrayTest, AnArrayCannotMakeAGaussian) {
     const Taper gaussian(Weighting::Gaussian);
     const LineArray array = halfWave(96, gaussian);
-    EXPECT_GT(std::abs(std::sqrt(heardPower(array, 0.6 / 48, 0)) - gaussian.amplitude(0.6)), 0.03);
+    EXPECT_GT(std::abs(std::sqrt(receivedPower(array, 0.6 / 48, 0)) - gaussian.amplitude(0.6)), 0.03);
 }
 
 TEST(LineArrayTest, ElementsFartherApartThanHalfAWaveHaveGratingLobes) {
     const LineArray sparse(32, 1.25 * wavelength, wavelength, uniform), dense(80, wavelength / 2, wavelength, uniform);
     const double grating = 0.1 + 1 / 1.25;  // path difference of one wavelength between neighbours
-    EXPECT_NEAR(heardPower(sparse, grating, 0.1), 1, 0.01) << "as loud as the axis";
-    EXPECT_NEAR(heardPower(sparse, 0.1, 0.1), 1, 0.01);
-    EXPECT_LT(heardPower(dense, grating, 0.1), 1e-3) << "the same aperture, filled";
+    EXPECT_NEAR(receivedPower(sparse, grating, 0.1), 1, 0.01) << "as loud as the axis";
+    EXPECT_NEAR(receivedPower(sparse, 0.1, 0.1), 1, 0.01);
+    EXPECT_LT(receivedPower(dense, grating, 0.1), 1e-3) << "the same aperture, filled";
 }
 
 TEST(LineArrayTest, RejectsWrongNumbersOfRows) {
     const LineArray array = halfWave(4);
-    EXPECT_THROW(array.hear(ComplexRows(3, 2), std::vector<Cone>(2)), std::invalid_argument);
+    EXPECT_THROW(array.elementSignals(ComplexRows(3, 2), std::vector<Cone>(2)), std::invalid_argument);
     EXPECT_THROW(array.form(ComplexRows(3, 2), std::vector{0.0}), std::invalid_argument);
 }
 

@@ -81,7 +81,7 @@ types::Sonar pingOfMoving(const SonarConfig& config, const types::GeometryPtr& g
 
 /** Returns the slant range and the direction of a point's echo: |p(t1) - s(0)| = c t1, |s(t2) - p(t1)| = c (t2 - t1),
  *  solved by bisection. */
-struct HeardAt {
+struct ReceivedAt {
     double range;
     glm::dvec3 direction;
 };
@@ -93,7 +93,7 @@ double rootOf(const F& f, double low, double high) {
     }
     return low;
 }
-HeardAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
+ReceivedAt exactly(glm::dvec3 point, glm::dvec3 point_velocity, glm::dvec3 sonar_velocity) {
     const double out = rootOf([&](double t) { return c * t - glm::length(point + point_velocity * t); }, 0,
                               4 * glm::length(point) / c);
     const glm::dvec3 met = point + point_velocity * out;
@@ -111,7 +111,7 @@ TEST(MotionTest, APointEchoesAtTheRangeOfTheExactTwoWayPath) {
           Case{{250, -40, 3}, {10, 12, 0}, {25, -3, 0.5}}, Case{{80, 10, 0}, {30, 0, 0}, {-20, 0, 0}}}) {
         const types::Sonar ping =
             pingOfMoving(movingFan(), test::sceneOf({facingPlate()}), moving.place, moving.velocity, moving.sonar);
-        const HeardAt exact = exactly(moving.place, moving.velocity, moving.sonar);
+        const ReceivedAt exact = exactly(moving.place, moving.velocity, moving.sonar);
         const Loudest loudest = loudestOf(ping);
         EXPECT_NEAR(loudest.range, exact.range, 0.11);
         EXPECT_NEAR(loudest.bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.6));
@@ -173,7 +173,7 @@ TEST(MotionTest, APointTargetEchoesAtTheRangeOfTheExactPath) {
         snapshot.targets = {{place - ago * velocity, 0}};
         renderer.render(snapshot, ping);
     }
-    const HeardAt exact = exactly(place, velocity, sonar);
+    const ReceivedAt exact = exactly(place, velocity, sonar);
     EXPECT_NEAR(loudestOf(ping).range, exact.range, 0.051) << "its own bin";
     EXPECT_NEAR(loudestOf(ping).bearing, std::atan2(exact.direction.y, exact.direction.x), radians(0.51));
     EXPECT_GT(std::abs(exact.range - glm::length(place)), 4);
@@ -193,14 +193,14 @@ TEST(MotionTest, ASonarOfOneBeamShiftsByHalfBecauseItAlsoTransmitsWithTheBeam) {
     SonarConfig one = movingFan();
     one.beam_count = 1;
     one.field_of_view_deg = 2;
-    const auto heardAt = [&](double bearing) {
+    const auto receivedAt = [&](double bearing) {
         const auto geometry =
             test::sceneOf({facingPlate(3)}, 0, {{200 * std::cos(bearing), 200 * std::sin(bearing), 0}});
         return loudestOf(pingOf(one, movingSonar(geometry, {}, {0, 0, turn}))).intensity;
     };
-    EXPECT_GT(heardAt(turn * flight / 2), 0);
-    EXPECT_EQ(heardAt(0), 0);
-    EXPECT_EQ(heardAt(turn * flight), 0);
+    EXPECT_GT(receivedAt(turn * flight / 2), 0);
+    EXPECT_EQ(receivedAt(0), 0);
+    EXPECT_EQ(receivedAt(turn * flight), 0);
 }
 
 TEST(MotionTest, AChirpShiftsMovingTargetsByRangeDopplerCoupling) {
@@ -212,7 +212,7 @@ TEST(MotionTest, AChirpShiftsMovingTargetsByRangeDopplerCoupling) {
     EXPECT_DOUBLE_EQ(dopplerCoupling(config), seconds);
     const auto geometry = test::sceneOf({facingPlate()});
     for (const double away : {speed, -speed}) {
-        const HeardAt exact = exactly({150, 1, 0}, {away, 0, 0}, {});
+        const ReceivedAt exact = exactly({150, 1, 0}, {away, 0, 0}, {});
         EXPECT_NEAR(loudestOf(pingOfMoving(config, geometry, {150, 1, 0}, {away, 0, 0})).range,
                     exact.range + away * seconds, 0.11);
     }
@@ -238,16 +238,16 @@ TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     const auto geometry = test::sceneOf({test::ground(-10)});
     const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
     EXPECT_TRUE(plan.hasFeature("motion_in_ping"));
-    EXPECT_FALSE(plan.leftOut("motion within a ping"));
+    EXPECT_FALSE(plan.findOmitted("motion within a ping"));
     EXPECT_THAT(report(plan, *geometry).notices,
                 testing::Contains(HasSubstr("motion within a ping is simulated from 0.12 m/s or 1.2 deg/s")));
     SonarConfig without = movingFan();
     without.motion_in_ping = false;
-    EXPECT_TRUE(makeRenderPlan(without, *geometry).leftOut("motion within a ping"));
+    EXPECT_TRUE(makeRenderPlan(without, *geometry).findOmitted("motion within a ping"));
 }
 
 /** Returns the errors of a configuration, joined. */
-std::string complaintOf(const SonarConfig& config) {
+std::string diagnosticOf(const SonarConfig& config) {
     types::Diagnostics diagnostics;
     config.check(diagnostics);
     std::string all;
@@ -256,17 +256,17 @@ std::string complaintOf(const SonarConfig& config) {
 }
 
 TEST(MotionTest, ReportsMissingRequirements) {
-    EXPECT_EQ(complaintOf(movingFan()), "");
+    EXPECT_EQ(diagnosticOf(movingFan()), "");
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
-    EXPECT_TRUE(config.castsRays()) << "on any device";
+    EXPECT_TRUE(config.tracesRays()) << "on any device";
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(complaintOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
+    EXPECT_THAT(diagnosticOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
     config = movingFan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
-    EXPECT_THAT(complaintOf(config),
+    EXPECT_THAT(diagnosticOf(config),
                 HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
     types::Diagnostics diagnostics;
     acoustics::PulseConfig tone;
@@ -384,7 +384,7 @@ protected:
         startWith(config);
     }
     /** Returns the max of the ping at a time, for a plate at 200 m and a bearing in the body. */
-    Loudest heardAt(double seconds, double bearing_deg) {
+    Loudest receivedAt(double seconds, double bearing_deg) {
         types::Snapshot snapshot = test::snapshotOf(nullptr);
         const double bearing = radians(bearing_deg);
         auto geometry =
@@ -400,10 +400,10 @@ TEST_F(SweepTest, ASweepingHeadReceivesHalfWayToItsBearingOnArrival) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;  // of steps of 10 deg in 0.5 s
     EXPECT_GT(behind, 2.5) << "more than the beam of 2 deg";
     start(true);
-    heardAt(1, 180);
-    EXPECT_GT(heardAt(1.5, 170 - behind).intensity, 0);
-    EXPECT_EQ(heardAt(2, 160).intensity, 0);
-    const Loudest last = heardAt(2.5, 150 - behind);
+    receivedAt(1, 180);
+    EXPECT_GT(receivedAt(1.5, 170 - behind).intensity, 0);
+    EXPECT_EQ(receivedAt(2, 160).intensity, 0);
+    const Loudest last = receivedAt(2.5, 150 - behind);
     EXPECT_GT(last.intensity, 0);
     EXPECT_NEAR(last.range, 198.5, 0.5);
 }
@@ -411,9 +411,9 @@ TEST_F(SweepTest, ASweepingHeadReceivesHalfWayToItsBearingOnArrival) {
 TEST_F(SweepTest, ASteppingHeadReceivesAtItsBearing) {
     const double behind = 10 / 0.5 * (2 * 200 / c) / 2;
     start(false);
-    heardAt(1, 180);
-    EXPECT_GT(heardAt(1.5, 170).intensity, 0);
-    EXPECT_EQ(heardAt(2, 160 - behind).intensity, 0);
+    receivedAt(1, 180);
+    EXPECT_GT(receivedAt(1.5, 170).intensity, 0);
+    EXPECT_EQ(receivedAt(2, 160 - behind).intensity, 0);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ std::vector<double> difference(const types::Sonar& with, const types::Sonar& wit
 }
 
 /** Returns the bins of a beam that are not 0. */
-std::vector<size_t> heardBins(const types::Sonar& ping, uint32_t beam = 0) {
+std::vector<size_t> receivedBins(const types::Sonar& ping, uint32_t beam = 0) {
     std::vector<size_t> bins;
     for (size_t k = 0; k < ping.bin_count; ++k)
         if (ping.bins[beam * ping.bin_count + k] > 0) bins.push_back(k);
@@ -69,14 +69,14 @@ TEST(MultipathTest, APointTargetUnderAFlatSurfaceHasThreeReturns) {
     const double r1 = std::hypot(12, 1), r2 = std::hypot(12, 7);
     const std::vector<double> ranges{r1, (r1 + r2) / 2, r2};
     const std::vector<double> expected{std::pow(r1, -4), 2 / (r1 * r1 * r2 * r2), std::pow(r2, -4)};
-    const auto heard = heardBins(ping);
-    ASSERT_EQ(heard.size(), 3u);
+    const auto received = receivedBins(ping);
+    ASSERT_EQ(received.size(), 3u);
     for (size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR((static_cast<double>(heard[i]) + 0.5) * 0.1, ranges[i], 0.05 + 1e-9);
-        EXPECT_NEAR(decibels(ping.bins[heard[i]] / expected[i]), 0, 0.01) << i;
+        EXPECT_NEAR((static_cast<double>(received[i]) + 0.5) * 0.1, ranges[i], 0.05 + 1e-9);
+        EXPECT_NEAR(decibels(ping.bins[received[i]] / expected[i]), 0, 0.01) << i;
     }
     // Counting the mixed path once for both directions would give 3 dB less.
-    EXPECT_GT(decibels(ping.bins[heard[1]] / (expected[1] / 2)), 2.9);
+    EXPECT_GT(decibels(ping.bins[received[1]] / (expected[1] / 2)), 2.9);
 }
 
 TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
@@ -87,15 +87,15 @@ TEST(MultipathTest, TheDirectEchoOfATargetIsTheSameBitForBit) {
         if (without.bins[i] > 0) {
             EXPECT_EQ(with.bins[i], without.bins[i]);
         }
-    EXPECT_EQ(heardBins(without, 2).size(), 1u);
-    EXPECT_EQ(heardBins(with, 2).size(), 3u);
+    EXPECT_EQ(receivedBins(without, 2).size(), 1u);
+    EXPECT_EQ(receivedBins(with, 2).size(), 3u);
 }
 
 /** Returns the number of returns of a target with a plate at a place. */
 size_t returnsWith(types::Mesh plate) {
     auto config = mirrored(surfaceSonar(20, 1));
     auto scene = test::sceneOf({std::move(plate)}, -200);
-    return heardBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
+    return receivedBins(pingOf(config, withTarget(3, {12, 0, -1}, scene))).size();
 }
 
 TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
@@ -113,15 +113,15 @@ TEST(MultipathTest, EachLegOfATargetsPathsIsHiddenSeparately) {
 TEST(MultipathTest, DirectionsOutsideOfTheApertureAreNeitherSentNorReceived) {
     auto config = mirrored(surfaceSonar(40, 1));
     config.beam_height_deg = 50;  // the path by the surface rises by 30.3 deg
-    EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
+    EXPECT_EQ(receivedBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 1u);
     config.beam_height_deg = 62;
-    EXPECT_EQ(heardBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 3u);
+    EXPECT_EQ(receivedBins(pingOf(config, withTarget(3, {12, 0, -1}))).size(), 3u);
 }
 
 TEST(MultipathTest, ATargetAboveTheSurfaceHasNoEcho) {
     const auto snapshot = withTarget(3, {12, 0, 4});
-    EXPECT_EQ(heardBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
-    EXPECT_EQ(heardBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
+    EXPECT_EQ(receivedBins(pingOf(mirrored(surfaceSonar(40, 1)), snapshot)).size(), 0u);
+    EXPECT_EQ(receivedBins(pingOf(surfaceSonar(40, 1), snapshot)).size(), 1u);
 }
 
 TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
@@ -145,9 +145,9 @@ TEST(MultipathTest, TransmitAndReceivePatternsApplyToTheirOwnPaths) {
     const double product = 2 *
                            std::sqrt(power(narrow, down) * power(wide, up) * power(narrow, up) * power(wide, down)) /
                            (r1 * r1 * r2 * r2);
-    const double heard = ping.bins[static_cast<size_t>((r1 + r2) / 2 / 0.1)];
-    EXPECT_NEAR(decibels(heard / expected), 0, 0.01);
-    EXPECT_GT(std::abs(decibels(heard / product)), 1) << "the root of both two-way patterns differs";
+    const double received = ping.bins[static_cast<size_t>((r1 + r2) / 2 / 0.1)];
+    EXPECT_NEAR(decibels(received / expected), 0, 0.01);
+    EXPECT_GT(std::abs(decibels(received / product)), 1) << "the root of both two-way patterns differs";
 }
 
 /** Energies of a flat bottom 4 m below by a surface 2 m above, in coarse bins of 2 m, by a sum over the bottom. */
@@ -174,11 +174,11 @@ TEST(MultipathTest, ABottomByTheSurfaceIsTheSumOverItsArea) {
     const auto ghosts = difference(pingOf(mirrored(config), under(2, scene)), pingOf(config, under(2, scene)));
     const Bottom expected(120, radians(8));
     for (size_t k = 4; k < 15; ++k) {
-        double heard = 0;
+        double received = 0;
         for (size_t beam = 0; beam < 4; ++beam)
-            for (size_t i = 20 * k; i < 20 * k + 20; ++i) heard += ghosts[beam * 300 + i];
-        EXPECT_NEAR(decibels(heard / (expected.once[k] + expected.twice[k])), 0, 0.05) << k;
-        EXPECT_GT(std::abs(decibels(heard / (expected.once[k] / 2 + expected.twice[k]))), 1) << k;
+            for (size_t i = 20 * k; i < 20 * k + 20; ++i) received += ghosts[beam * 300 + i];
+        EXPECT_NEAR(decibels(received / (expected.once[k] + expected.twice[k])), 0, 0.05) << k;
+        EXPECT_GT(std::abs(decibels(received / (expected.once[k] / 2 + expected.twice[k]))), 1) << k;
     }
 }
 
@@ -208,8 +208,8 @@ TEST(MultipathTest, ObjectsAboveTheSurfaceHaveNoEcho) {
     for (size_t k = 0; k < 300; ++k) dry += ping.bins[k];
     EXPECT_GT(std::abs(dry / all - 1), 0.01);
     const auto beyond = under(2, test::sceneOf({test::quad({10, -5, 3}, {0, 10, 0}, {0, 0, 3})}));
-    EXPECT_TRUE(heardBins(pingOf(mirrored(surfaceSonar(8, 1)), beyond)).empty());
-    EXPECT_FALSE(heardBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
+    EXPECT_TRUE(receivedBins(pingOf(mirrored(surfaceSonar(8, 1)), beyond)).empty());
+    EXPECT_FALSE(receivedBins(pingOf(surfaceSonar(8, 1), beyond)).empty());
 }
 
 TEST(MultipathTest, NoBinChangesWithoutBouncesOrReflectors) {
@@ -290,13 +290,13 @@ TEST(MultipathTest, AMirrorShowsATargetByItsReflection) {
     };
     const auto half = returns(wallToPort(), -0.5f);
     const auto at = [&](double range) { return double{half.bins[static_cast<size_t>(range / 0.1)]}; };
-    ASSERT_EQ(heardBins(half).size(), 3u);
+    ASSERT_EQ(receivedBins(half).size(), 3u);
     EXPECT_NEAR(decibels(at((r1 + r2) / 2) / (2 * 0.25 / (r1 * r1 * r2 * r2))), 0, 0.01);
     EXPECT_NEAR(decibels(at(r2) / (0.0625 / std::pow(r2, 4))), 0, 0.01);
-    EXPECT_EQ(heardBins(returns(wallToPort(), 0)).size(), 3u) << "without a number all of the sound is reflected";
+    EXPECT_EQ(receivedBins(returns(wallToPort(), 0)).size(), 3u) << "without a number all of the sound is reflected";
     const float met = 12 * 4.0f / 7;
-    EXPECT_EQ(heardBins(returns(wallToPort(-50, met - 0.1f), 1)).size(), 1u) << "the mirror ends before";
-    EXPECT_EQ(heardBins(returns(wallToPort(met - 0.1f, met + 0.1f), 1)).size(), 3u);
+    EXPECT_EQ(receivedBins(returns(wallToPort(-50, met - 0.1f), 1)).size(), 1u) << "the mirror ends before";
+    EXPECT_EQ(receivedBins(returns(wallToPort(met - 0.1f, met + 0.1f), 1)).size(), 3u);
 }
 
 /** Sum of a beam's bins between two ranges. */
@@ -527,11 +527,11 @@ TEST(MultipathTest, TheTruthNamesThePathOfMostOfABinsEnergy) {
     EXPECT_EQ(path(r1), 0);
     EXPECT_EQ(path((r1 + r2) / 2), 1);
     EXPECT_EQ(path(r2), 2);
-    for (const auto& [range, heard_from] : {std::pair((r1 + r2) / 2, 0.0), {r2, std::asin(6 / r2)}}) {
+    for (const auto& [range, received_from] : {std::pair((r1 + r2) / 2, 0.0), {r2, std::asin(6 / r2)}}) {
         const size_t at = 300 + static_cast<size_t>(range / 0.1);
         EXPECT_EQ(truth.object[at], 0) << "a ghost is of the object seen in the mirror";
         EXPECT_FLOAT_EQ(truth.share[at], 1);
-        EXPECT_NEAR(truth.elevation[at], heard_from > 0 ? heard_from : truth.elevation[at], 0.1);
+        EXPECT_NEAR(truth.elevation[at], received_from > 0 ? received_from : truth.elevation[at], 0.1);
     }
     types::SonarReturns returns;
     returns.take(ping, truth);

@@ -58,9 +58,9 @@ types::GeometryPtr measured() {
 }
 
 /** Returns the numbers in the reason for omitting an effect; none when it is not omitted. */
-std::optional<LeftOut> leftOut(const SonarConfig& config, std::string_view effect) {
+std::optional<Omitted> findOmitted(const SonarConfig& config, std::string_view effect) {
     const RenderPlan plan = makeRenderPlan(config, *unmapped());
-    const LeftOut* found = plan.leftOut(effect);
+    const Omitted* found = plan.findOmitted(effect);
     return found ? std::optional(*found) : std::nullopt;
 }
 
@@ -116,7 +116,7 @@ TEST(OmissionTest, EveryOmittedEffectIsTestedHere) {
     absorbing.field_of_view_deg = 50;
     published.published = true;
     for (const SonarConfig& config : {plainSonar(), plainSonar(Model::Cerqueira2017), absorbing, published})
-        for (const LeftOut& what : makeRenderPlan(config, *unmapped()).left_out)
+        for (const Omitted& what : makeRenderPlan(config, *unmapped()).omitted)
             EXPECT_TRUE(tested.contains(what.effect)) << describe(what, {}).name;
 }
 
@@ -134,7 +134,7 @@ TEST(OmissionTest, AbsorptionInsideABinIsWithinTheStatedBound) {
     SonarConfig coarse = plainSonar();
     coarse.absorption.emplace().db_per_m = 1;
     const double bound = makeAbsorption(coarse).intensityPerMetre() * 0.1 / 2;
-    EXPECT_NEAR(leftOut(coarse, "absorption inside a bin")->value, bound, 1e-12 * bound);
+    EXPECT_NEAR(findOmitted(coarse, "absorption inside a bin")->value, bound, 1e-12 * bound);
     SonarConfig fine = coarse;
     fine.bin_count = 4000;
     const Bins whole = binsOf(coarse), tenths = binsOf(fine);
@@ -204,8 +204,8 @@ TEST(OmissionTest, OneFrustumMatchesSeveral) {
     one.quality.rows = two.quality.rows = 512;
     one.field_of_view_deg = one.beam_count = 60;
     two.field_of_view_deg = two.beam_count = 62;
-    EXPECT_EQ(leftOut(one, "further slabs")->value, 60);
-    EXPECT_FALSE(leftOut(two, "further slabs"));
+    EXPECT_EQ(findOmitted(one, "further slabs")->value, 60);
+    EXPECT_FALSE(findOmitted(two, "further slabs"));
     const auto floor = test::sceneOf({test::ground(-5)});
     const Bins narrow = binsOf(one, floor), wide = binsOf(two, floor);
     EXPECT_LT(difference(narrow, {wide.begin() + 400, wide.end() - 400}), 1e-3) << "beams 1 to 60 of 62";
@@ -224,7 +224,7 @@ TEST(OmissionTest, AheadConesAreNearlyPlanes) {
 }
 
 TEST(OmissionTest, RefractionIsOmittedByItsBound) {
-    const auto refraction = leftOut(plainSonar(), "refraction");
+    const auto refraction = findOmitted(plainSonar(), "refraction");
     ASSERT_TRUE(refraction);
     EXPECT_DOUBLE_EQ(refraction->value, 0.1 * 40 * 40 / (2 * 1000)) << "a gradient of 0.1 1/s";
     EXPECT_DOUBLE_EQ(refraction->bound, 0.1 * 40 * types::radians(40)) << "a tenth of the aperture's height";
@@ -232,12 +232,12 @@ TEST(OmissionTest, RefractionIsOmittedByItsBound) {
     SonarConfig far = plainSonar();
     far.range = 4000;
     far.beam_height_deg = 2;
-    EXPECT_FALSE(leftOut(far, "refraction"));
+    EXPECT_FALSE(findOmitted(far, "refraction"));
     EXPECT_THAT(configNotices(far), testing::Contains(HasSubstr("rays are straight")));
 }
 
 TEST(OmissionTest, MotionWithinAPingIsOmittedBelowASpeed) {
-    const auto motion = leftOut(plainSonar(), "motion within a ping");
+    const auto motion = findOmitted(plainSonar(), "motion within a ping");
     ASSERT_TRUE(motion);
     const double travel_time = 2 * 40 / 1000.0;  // [s]
     EXPECT_DOUBLE_EQ(motion->value * travel_time, 0.1 / 2) << "half a bin [m]";
@@ -308,7 +308,7 @@ TEST(OmissionTest, EachFeatureRendersByItsPlan) {
             const RenderPlan& plan = renderer.renderPlan();
             for (const std::string& name : plan.featureNames()) seen.insert(name);
             const bool drew = std::ranges::count(plan.passes, Pass::Surface) == 1;
-            EXPECT_NE(drew, plan.casts_rays);
+            EXPECT_NE(drew, plan.traces_rays);
             EXPECT_EQ(renderer.device().find("rays") == std::string::npos, drew);
             for (StageOf stage : {CullStage, DrawStage, DepositStage, BeamStage})
                 EXPECT_GT(renderer.stages()[stage].seconds, 0) << stage;

@@ -46,8 +46,8 @@ TEST(PairTest, ArithmeticHas44Bits) {
     RandomPairs pairs;
     for (int i = 0; i < 10000; ++i) {
         const Pair a = RandomPairs::pairOf(pairs.number()), b = RandomPairs::pairOf(pairs.number());
-        const double x = valueOf(a), y = valueOf(b), most = std::max(std::abs(x), std::abs(y));
-        EXPECT_NEAR(valueOf(sumOf(a, b)), x + y, most * 0x1p-44);
+        const double x = valueOf(a), y = valueOf(b), maximum = std::max(std::abs(x), std::abs(y));
+        EXPECT_NEAR(valueOf(sumOf(a, b)), x + y, maximum * 0x1p-44);
         EXPECT_NEAR(valueOf(productOf(a, b)), x * y, std::abs(x * y) * 0x1p-44);
         EXPECT_NEAR(valueOf(quotientOf(a, b)), x / y, std::abs(x / y) * 0x1p-44);
         EXPECT_EQ(valueOf(negative(a)), -x);

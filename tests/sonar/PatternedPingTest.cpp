@@ -44,10 +44,10 @@ TEST(PatternedPingTest, ABottomEchoesByThePatternInElevation) {
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 20);
     config.beam_pattern->floor_db = -80;
     const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
-        heard(*config.beam_pattern->receive.elevation);
+        received(*config.beam_pattern->receive.elevation);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-2.5f)}));
     const double delta = radians(60.0 / 16);
-    const auto right = weightedBottom(2.5, delta, [&](double e) { return sent.power(e) * heard.power(e); });
+    const auto right = weightedBottom(2.5, delta, [&](double e) { return sent.power(e) * received.power(e); });
     const auto one_way = weightedBottom(2.5, delta, [&](double e) { return sent.power(e); });
     for (const SonarConfig& way : everyWay(config)) {
         const types::Sonar ping = pingOf(way, snapshot);
@@ -78,11 +78,11 @@ TEST(PatternedPingTest, APitchedBottomEchoesByThePatternInElevation) {
     config.beam_pattern->receive.elevation = lawOf(Weighting::Gaussian, 16);
     config.beam_pattern->floor_db = -80;
     const acoustics::BeamPattern sent(*config.beam_pattern->transmit.elevation),
-        heard(*config.beam_pattern->receive.elevation);
+        received(*config.beam_pattern->receive.elevation);
     const double pitch = radians(20), delta = radians(1);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-4)}), {}, 0, pitch);
     const auto formOf = [&](double tilt, const auto& share) { return weightedPitchedBottom(4, tilt, delta, share); };
-    const auto both_ways = [&](double e) { return sent.power(e) * heard.power(e); };
+    const auto both_ways = [&](double e) { return sent.power(e) * received.power(e); };
     const auto right = formOf(pitch, both_ways);
     const auto one_way = formOf(pitch, [&](double e) { return sent.power(e); });
     const auto none = formOf(pitch, [](double) { return 1.0; });
@@ -102,10 +102,10 @@ TEST(PatternedPingTest, ABottomEchoesByThePatternsWholeWidthInAzimuth) {
     config.beam_height_deg = 40;
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
     config.beam_pattern->floor_db = -90;
-    const acoustics::BeamPattern heard(*config.beam_pattern->receive.azimuth);
+    const acoustics::BeamPattern received(*config.beam_pattern->receive.azimuth);
     double delta = 0;
     for (double azimuth = -std::numbers::pi / 2; azimuth < std::numbers::pi / 2; azimuth += 1e-5)
-        delta += 1e-5 * heard.power(azimuth);
+        delta += 1e-5 * received.power(azimuth);
     const auto snapshot = test::snapshotOf(test::sceneOf({test::ground(-5)}));
     for (const SonarConfig& way : everyWay(config))
         expectForm(pingOf(way, snapshot), test::flatBottom(5, radians(20), delta),
@@ -130,21 +130,21 @@ TEST(PatternedPingTest, ThePlanStatesBeamFormingAndPulseSpreading) {
     const RenderPlan plain = makeRenderPlan(config, *geometry);
     EXPECT_FALSE(plain.has(Pass::Beamform) || plain.has(Pass::Pulse));
     for (const char* const effect : {"azimuth beam pattern", "elevation beam pattern", "range point-spread"}) {
-        ASSERT_TRUE(plain.leftOut(effect));
-        EXPECT_EQ(plain.leftOut(effect)->reason, Reason::NotConfigured);
+        ASSERT_TRUE(plain.findOmitted(effect));
+        EXPECT_EQ(plain.findOmitted(effect)->reason, Reason::NotConfigured);
     }
     EXPECT_EQ(plain.cells.size(), plain.beams.size());
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Hann, 3);
     config.pulse.emplace().duration_us = 90;  // resolves 0.045 m, in bins of 0.1 m
     const RenderPlan formed = makeRenderPlan(config, *geometry);
     EXPECT_TRUE(formed.has(Pass::Beamform));
-    EXPECT_FALSE(formed.leftOut("azimuth beam pattern"));
-    EXPECT_TRUE(formed.leftOut("elevation beam pattern"));
+    EXPECT_FALSE(formed.findOmitted("azimuth beam pattern"));
+    EXPECT_TRUE(formed.findOmitted("elevation beam pattern"));
     EXPECT_GT(formed.cells.size(), 2 * formed.beams.size());
     EXPECT_FALSE(formed.has(Pass::Pulse));
-    ASSERT_TRUE(formed.leftOut("range point-spread"));
-    EXPECT_EQ(formed.leftOut("range point-spread")->reason, Reason::BelowBound);
-    EXPECT_DOUBLE_EQ(formed.leftOut("range point-spread")->value, 0.045);
+    ASSERT_TRUE(formed.findOmitted("range point-spread"));
+    EXPECT_EQ(formed.findOmitted("range point-spread")->reason, Reason::BelowBound);
+    EXPECT_DOUBLE_EQ(formed.findOmitted("range point-spread")->value, 0.045);
     config.pulse->duration_us = 300;
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::Pulse));
 }

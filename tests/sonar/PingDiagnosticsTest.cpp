@@ -18,7 +18,7 @@ class PingDiagnosticsTest : public testing::Test {
 protected:
     PingDiagnosticsTest() {
         const auto environment = std::make_shared<framework::Environment>();
-        environment->warn = [this](const std::string& text) { told_.push_back(text); };
+        environment->warn = [this](const std::string& text) { reported_.push_back(text); };
         task_.setEnvironment(environment);
         in_.port.connectTo(task_.snapshot, framework::ConnPolicy::buffer(4));
         SonarConfig config = smallSonar();
@@ -41,35 +41,35 @@ protected:
 
     SonarTask task_{"sonar"};
     test::Writer<types::SnapshotPtr> in_;
-    std::vector<std::string> told_;
+    std::vector<std::string> reported_;
     int pings_ = 0;
 };
 
 TEST_F(PingDiagnosticsTest, WarnsOnceAboutSilenceAndAgainAfterEnoughEchoes) {
     const auto wall = wallAt(5);
     ping(wall, 0, 2);
-    EXPECT_THAT(told_, IsEmpty());
+    EXPECT_THAT(reported_, IsEmpty());
     ping(wall, 180, 5);
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("sonar: receives no echo")));
+    EXPECT_THAT(reported_, ElementsAre(HasSubstr("sonar: receives no echo")));
     ping(wall, 0, 3);
     ping(wall, 180, 5);
-    EXPECT_EQ(told_.size(), 1u) << "only three pings with echoes";
+    EXPECT_EQ(reported_.size(), 1u) << "only three pings with echoes";
     ping(wall, 0, types::RecurringDiagnostic::well_after);
     ping(wall, 180, 5);
-    EXPECT_EQ(told_.size(), 2u);
+    EXPECT_EQ(reported_.size(), 2u);
 }
 
 TEST_F(PingDiagnosticsTest, ATargetAloneIsAnEcho) {
     ping(wallAt(-50), 0, 3, {{{5, 0, 0}, 0}});
-    EXPECT_THAT(told_, IsEmpty());
+    EXPECT_THAT(reported_, IsEmpty());
     ping(wallAt(-50), 0, 1, {{{-5, 0, 0}, 0}});
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
+    EXPECT_THAT(reported_, ElementsAre(HasSubstr("; its nearest target 5 m away at [-5, 0, 0]")));
 }
 
 TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
     const auto hull = test::sceneOf({test::sphere(0.05f, 12)});  // nearer than range_min
     ping(hull, 0, 40);
-    EXPECT_THAT(told_,
+    EXPECT_THAT(reported_,
                 ElementsAre(HasSubstr("is inside of object_0, which has its faces outward: the sonar is at [0, 0, "
                                       "0], its nearest surface 0.04")));
 }

@@ -33,8 +33,8 @@ public:
         seen.truth_began = start.truth;
     }
     bool followsRays() const override { return true; }
-    void followRays(const CastPing& ping, std::span<const CastTile> tiles) override {
-        for (const CastTile& tile : tiles)
+    void followRays(const TracedPing& ping, std::span<const TracedTile> tiles) override {
+        for (const TracedTile& tile : tiles)
             for (int i = 0; i < tile_samples; ++i) {
                 const TileShape::Extent at = ping.view.shape.at[i];
                 const int column = tile.first_column + at.columns, row = tile.first_row + at.rows;
@@ -43,12 +43,12 @@ public:
                 if (hides_) tile.hits->command[i] = TileHits::nothing;
             }
     }
-    bool addEnergies(const CastPing&, size_t cell, std::span<float> bins) override {
+    bool addEnergies(const TracedPing&, size_t cell, std::span<float> bins) override {
         ++seen.cells.at(cell);
         for (float& bin : bins) bin += added;
         return true;
     }
-    void addToTruth(const CastPing&, types::SonarTruth&) override { ++seen.truths; }
+    void addToTruth(const TracedPing&, types::SonarTruth&) override { ++seen.truths; }
 
 private:
     const RenderPlan& plan_;

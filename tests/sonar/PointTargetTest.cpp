@@ -82,9 +82,9 @@ std::vector<double> shapeOf(const SonarConfig& config, const types::Sonar& ping,
         if (std::abs(grid.centre(k) - r) < 1.2)
             shares[static_cast<size_t>(k)] = shareOf(config, grid, k, r) * std::pow(10, -0.2 * alpha * r);
     for (size_t beam = 0; beam < ping.beam_count; ++beam) {
-        const double heard = patternOf(config, ping.bearings[beam].rad, std::atan2(at.y, at.x), std::asin(at.z / r));
-        if (10 * std::log10(heard) < config.beam_pattern->floor_db) continue;
-        for (size_t k = 0; k < ping.bin_count; ++k) shape[beam * ping.bin_count + k] = heard * shares[k];
+        const double received = patternOf(config, ping.bearings[beam].rad, std::atan2(at.y, at.x), std::asin(at.z / r));
+        if (10 * std::log10(received) < config.beam_pattern->floor_db) continue;
+        for (size_t k = 0; k < ping.bin_count; ++k) shape[beam * ping.bin_count + k] = received * shares[k];
     }
     return shape;
 }
@@ -142,7 +142,7 @@ std::vector<glm::dvec3> places() {
 }
 
 TEST(PointTargetTest, HasTheLevelOfTheSonarEquationAtAnyPlaceInTheBeam) {
-    double most = 0;
+    double maximum = 0;
     for (const Law& pattern : patterns)
         for (const Law& pulse : pulses)
             for (const double absorption : {0.0, 0.35}) {
@@ -164,9 +164,9 @@ TEST(PointTargetTest, HasTheLevelOfTheSonarEquationAtAnyPlaceInTheBeam) {
                     EXPECT_GT(worstOf(ping, shape, -17.5 - 2 * distance_db), 10) << "spread one way alone";
                 }
                 EXPECT_LT(worst, 0.05) << pattern.name << ", " << pulse.name << ", " << absorption << " dB/m";
-                most = std::max(most, worst);
+                maximum = std::max(maximum, worst);
             }
-    RecordProperty("largest difference", std::to_string(most) + " dB");
+    RecordProperty("largest difference", std::to_string(maximum) + " dB");
 }
 
 TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
@@ -176,7 +176,7 @@ TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
         config.beam_geometry = fan;
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
-        const auto heardIn = [&](double azimuth_deg, double elevation_deg) {
+        const auto receivedIn = [&](double azimuth_deg, double elevation_deg) {
             renderer.render(withPoint(geometry, towards(azimuth_deg, elevation_deg, 5.03)), ping);
             std::vector<size_t> beams;
             for (size_t i = 0; i < ping.bins.size(); ++i)
@@ -188,13 +188,13 @@ TEST(PointTargetTest, ABeamWithoutAPatternReceivesItInItsBoxAndTheAperture) {
             return beams;
         };
         using Beams = std::vector<size_t>;
-        EXPECT_EQ(heardIn(-25, 0), Beams{0});
-        EXPECT_EQ(heardIn(25, 9.9), Beams{5});
-        EXPECT_EQ(heardIn(5, -9.9), Beams{3});
-        EXPECT_EQ(heardIn(5, 10.1), Beams{});
-        EXPECT_EQ(heardIn(31, 0), Beams{});
-        EXPECT_EQ(heardIn(175, 0), Beams{});
-        EXPECT_EQ(heardIn(20.1, 9.9), fan == BeamGeometry::Conical ? Beams{4} : Beams{5}) << "cones bend";
+        EXPECT_EQ(receivedIn(-25, 0), Beams{0});
+        EXPECT_EQ(receivedIn(25, 9.9), Beams{5});
+        EXPECT_EQ(receivedIn(5, -9.9), Beams{3});
+        EXPECT_EQ(receivedIn(5, 10.1), Beams{});
+        EXPECT_EQ(receivedIn(31, 0), Beams{});
+        EXPECT_EQ(receivedIn(175, 0), Beams{});
+        EXPECT_EQ(receivedIn(20.1, 9.9), fan == BeamGeometry::Conical ? Beams{4} : Beams{5}) << "cones bend";
     }
 }
 
@@ -223,7 +223,7 @@ TEST(PointTargetTest, IsInTheBinOfBinAtOnTheEdgeOfABin) {
         fan.speed_of_sound = uniform(1400, 1600);
         const BinGrid grid = makeBinGrid(fan);
         for (const SonarConfig& config : energiesAndFields(fan)) {
-            const auto hear = [&](const SonarConfig& sonar, const auto& expect) {
+            const auto expectEchoes = [&](const SonarConfig& sonar, const auto& expect) {
                 SonarRenderer renderer(sonar, geometry);
                 for (int k = 20 + round; k < grid.bin_count - 20; k += 12, ++tried) {
                     ASSERT_EQ(binAt(grid.edge(k), grid.bin_width), k);
@@ -231,13 +231,13 @@ TEST(PointTargetTest, IsInTheBinOfBinAtOnTheEdgeOfABin) {
                     expect(k, std::span(ping.bins).subspan(3 * ping.bin_count, ping.bin_count));  // of the middle beam
                 }
             };
-            hear(config, [&](int k, std::span<const float> beam) {
+            expectEchoes(config, [&](int k, std::span<const float> beam) {
                 EXPECT_GT(beam[static_cast<size_t>(k)], 0) << grid.edge(k) << " m";
                 EXPECT_EQ(std::ranges::count_if(ping.bins, [](float echo) { return echo > 0; }), 1);
             });
             SonarConfig pulsed = config;
             pulsed.pulse.emplace().bandwidth_khz = grid.speed_of_sound / 2 / (3 * grid.bin_width) / 1000;  // 3 bins
-            hear(pulsed, [&](int k, std::span<const float> beam) {
+            expectEchoes(pulsed, [&](int k, std::span<const float> beam) {
                 double sum = 0, moment = 0;
                 for (int i = k - 6; i < k + 6; ++i) {
                     const double energy = double{beam[static_cast<size_t>(i)]};
@@ -291,8 +291,8 @@ TEST(PointTargetTest, SidelobesReachItOutsideFanAndApertureToTheFloor) {
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     const auto geometry = openWater();
     const auto outside = withPoint(geometry, towards(35.3, 0, 10.05));
-    const types::Sonar heard = pingOf(config, outside);
-    const double top = *std::ranges::max_element(heard.bins) * std::pow(10.05, 4);
+    const types::Sonar received = pingOf(config, outside);
+    const double top = *std::ranges::max_element(received.bins) * std::pow(10.05, 4);
     EXPECT_LT(10 * std::log10(top), -25);
     EXPECT_GT(10 * std::log10(top), -60);
     config.beam_pattern->floor_db = -20;
@@ -321,19 +321,19 @@ TEST(PointTargetTest, IsHiddenByObjectsInsideTheFanAndOutside) {
     SonarConfig config = targetSonar(40, 20);
     config.beam_pattern.emplace().receive.azimuth = lawOf(Weighting::Uniform, 2);
     for (const SonarConfig& way : everyWay(config)) {
-        const auto heardOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
+        const auto receivedOf = [&](const types::GeometryPtr& geometry, const glm::dvec3& at) {
             types::Snapshot with = withPoint(geometry, at, 20), without = with;
             without.targets.clear();
             return sumOf(pingOf(way, with)) - sumOf(pingOf(way, without));
         };
-        const double open = heardOf(openWater(), {10, 0, 0});
+        const double open = receivedOf(openWater(), {10, 0, 0});
         EXPECT_GT(open, 0);
-        EXPECT_EQ(heardOf(plate(5), {10, 0, 0}), 0) << "before it";
-        EXPECT_NEAR(heardOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
-        EXPECT_NEAR(heardOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
-        EXPECT_NEAR(heardOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
-        EXPECT_GT(heardOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
-        EXPECT_EQ(heardOf(plate(5, 5), {10, 10, 0}), 0);
+        EXPECT_EQ(receivedOf(plate(5), {10, 0, 0}), 0) << "before it";
+        EXPECT_NEAR(receivedOf(plate(10.5), {10, 0, 0}), open, 1e-3 * open) << "behind it";
+        EXPECT_NEAR(receivedOf(plate(10), {10, 0, 0}), open, 1e-3 * open) << "on it";
+        EXPECT_NEAR(receivedOf(plate(5, 0.6), {10, 0, 0}), open, 1e-3 * open) << "next to it";
+        EXPECT_GT(receivedOf(openWater(), {10, 10, 0}), 0) << "outside the fan";
+        EXPECT_EQ(receivedOf(plate(5, 5), {10, 10, 0}), 0);
     }
 }
 
@@ -342,25 +342,25 @@ TEST(PointTargetTest, IsUncoveredByAnObjectThatMovesAside) {
     SonarRenderer renderer(targetSonar(40, 20), geometry);
     types::Sonar ping;
     types::Snapshot snapshot = withPoint(geometry, {10, 0, 0}, 60);
-    const auto targetsHeard = [&] {
+    const auto targetsReceived = [&] {
         renderer.render(snapshot, ping);
-        return renderer.othersHeard();
+        return renderer.othersReceived();
     };
-    const auto leftOut = [&]() -> std::optional<Reason> {
-        for (const LeftOut& what : renderer.leftOut())
+    const auto reasonOf = [&]() -> std::optional<Reason> {
+        for (const Omitted& what : renderer.omissions())
             if (what.effect == "point targets") return what.reason;
         return {};
     };
-    EXPECT_EQ(targetsHeard(), 0u);
-    EXPECT_EQ(leftOut(), Reason::OutOfView);
+    EXPECT_EQ(targetsReceived(), 0u);
+    EXPECT_EQ(reasonOf(), Reason::OutOfView);
     snapshot.moved = {{0, glm::translate(glm::dmat4(1), {5.0, 3.0, 0.0})}};
-    EXPECT_EQ(targetsHeard(), 1u);
-    EXPECT_EQ(leftOut(), std::nullopt);
+    EXPECT_EQ(targetsReceived(), 1u);
+    EXPECT_EQ(reasonOf(), std::nullopt);
     snapshot.moved.clear();
-    EXPECT_EQ(targetsHeard(), 0u) << "back where the scene has it";
+    EXPECT_EQ(targetsReceived(), 0u) << "back where the scene has it";
     snapshot.targets.clear();
-    EXPECT_EQ(targetsHeard(), 0u);
-    EXPECT_EQ(leftOut(), Reason::NoneInScene);
+    EXPECT_EQ(targetsReceived(), 0u);
+    EXPECT_EQ(reasonOf(), Reason::NoneInScene);
 }
 
 TEST(PointTargetTest, IsTheSameFarFromTheOriginAndRotated) {

@@ -156,8 +156,8 @@ TEST(QualityTaskTest, ATargetAloneTakesTheSamplesThatItNeeds) {
     Fed<SonarTask> sonar(config);
     sonar.ping(outwards(scene));
     EXPECT_LE(sonar.quality().error, 0.01);
-    EXPECT_FALSE(config.mostSamples());
-    EXPECT_EQ(small().mostSamples(), 400'000);
+    EXPECT_FALSE(config.maxSamples());
+    EXPECT_EQ(small().maxSamples(), 400'000);
 }
 
 TEST(QualityTaskTest, IsChosenAgainWhenTheEchoesHaveChangedAndLoweredLater) {

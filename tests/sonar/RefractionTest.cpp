@@ -56,17 +56,17 @@ SonarConfig longRange(const std::string& profile, double height_deg = 30) {
     return config;
 }
 
-struct Told {
+struct Reported {
     types::Sonar ping;
     types::SonarTruth truth;
 };
 
-Told toldOf(const SonarConfig& config, const types::Snapshot& snapshot) {
+Reported reportedOf(const SonarConfig& config, const types::Snapshot& snapshot) {
     SonarRenderer renderer(config, snapshot.geometry);
-    Told told;
-    renderer.setTruth(told.ping, &told.truth);
-    renderer.render(snapshot, told.ping);
-    return told;
+    Reported reported;
+    renderer.setTruth(reported.ping, &reported.truth);
+    renderer.render(snapshot, reported.ping);
+    return reported;
 }
 
 double loudest(const types::Sonar& ping) { return std::ranges::max(ping.bins); }
@@ -95,19 +95,19 @@ double elevationAt(double range, double drop, double gradient) {
 TEST(RefractionTest, AFlatBottomInAGradientEchoesFromTheDirectionsOfTheExactArcs) {
     constexpr double drop = 200, gradient = 0.1;
     const auto geometry = test::sceneOf({test::ground(-drop, 20000)});
-    const Told told = toldOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
-    int told_bins = 0, straight_fails = 0;
+    const Reported reported = reportedOf(longRange(thermocline(gradient)), test::snapshotOf(geometry));
+    int reported_bins = 0, straight_fails = 0;
     for (size_t bin = 450; bin < 1000; bin += 10) {
-        const double range = 2 * (static_cast<double>(bin) + 0.5), told_elevation = told.truth.elevation[bin];
+        const double range = 2 * (static_cast<double>(bin) + 0.5), reported_elevation = reported.truth.elevation[bin];
         if (range < drop / std::sin(radians(14.8)) || range > 1990) continue;
-        EXPECT_NEAR(told_elevation, elevationAt(range, drop, gradient), 1e-3) << range << " m";
-        straight_fails += std::abs(told_elevation + std::asin(drop / range)) > 0.02;
+        EXPECT_NEAR(reported_elevation, elevationAt(range, drop, gradient), 1e-3) << range << " m";
+        straight_fails += std::abs(reported_elevation + std::asin(drop / range)) > 0.02;
         if (range < 1700) {  // beyond, a row of samples covers more than that
-            EXPECT_NEAR(1500 * timeDown(told_elevation, drop, gradient), range, 1e-3 * range + 1) << range << " m";
+            EXPECT_NEAR(1500 * timeDown(reported_elevation, drop, gradient), range, 1e-3 * range + 1) << range << " m";
         }
-        ++told_bins;
+        ++reported_bins;
     }
-    EXPECT_GT(told_bins, 40);
+    EXPECT_GT(reported_bins, 40);
     EXPECT_GT(straight_fails, 30) << "straight rays do not pass";
 }
 
@@ -125,19 +125,19 @@ TEST(RefractionTest, ALevelRayMeetsAPointHundredMetresAboveAtTwoKilometres) {
     const double rise = 300 - met.depth;
     EXPECT_NEAR(rise, 0.1 * 1951 * 1951 / (2 * 1530.0) * 1530 / 1500 * 1530 / 1500, 5) << "the brief form";
     const SonarConfig thin = longRange(thermocline(), 0.4);
-    const auto heard = [&](double height, const SonarConfig& config) {
+    const auto received = [&](double height, const SonarConfig& config) {
         const auto geometry = test::sceneOf({uprightPlate({met.across, 0, -300 + height})});
         SonarRenderer renderer(config, geometry);
         types::Sonar ping;
         renderer.render(test::snapshotOf(geometry, {0, 0, -300}), ping);
         return ping;
     };
-    const types::Sonar ping = heard(rise, thin);
+    const types::Sonar ping = received(rise, thin);
     ASSERT_GT(loudest(ping), 0);
     EXPECT_EQ(loudestBin(ping), static_cast<size_t>(range / 2)) << "two metres, a thousandth of the range";
-    EXPECT_EQ(loudest(heard(0, thin)), 0) << "straight ahead";
-    EXPECT_EQ(loudest(heard(rise, longRange("", 0.4))), 0) << "by straight rays";
-    EXPECT_GT(loudest(heard(0, longRange("", 0.4))), 0) << "by straight rays";
+    EXPECT_EQ(loudest(received(0, thin)), 0) << "straight ahead";
+    EXPECT_EQ(loudest(received(rise, longRange("", 0.4))), 0) << "by straight rays";
+    EXPECT_GT(loudest(received(0, longRange("", 0.4))), 0) << "by straight rays";
 }
 
 TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
@@ -147,9 +147,9 @@ TEST(RefractionTest, WaterOfAnotherSpeedStretchesRangesAndKeepsSpreading) {
     const auto snapshot = [](double scale) {
         return test::snapshotOf(test::sceneOf({test::ground(static_cast<float>(-20 * scale))}), {}, 0.1, 0.1, 0.2);
     };
-    const types::Sonar bent = toldOf(config, snapshot(1)).ping;
+    const types::Sonar bent = reportedOf(config, snapshot(1)).ping;
     config.water.reset();
-    const types::Sonar plain = toldOf(config, snapshot(ratio)).ping;
+    const types::Sonar plain = reportedOf(config, snapshot(ratio)).ping;
     double error = 0, norm = 0;
     for (size_t i = 0; i < plain.bins.size(); ++i) {
         error += std::pow(bent.bins[i] - ratio * ratio * plain.bins[i], 2);
@@ -163,18 +163,18 @@ TEST(RefractionTest, WaterOfTheSonarsOwnSpeedChangesNoBit) {
     const auto snapshot =
         test::snapshotOf(test::sceneOf({test::ground(-20), test::sphere(3, 24)}, -10, {{}, {60, 3, -9}}));
     SonarConfig config = longRange(profileOf({{0, 1500}, {30, 1500}, {90, 1500}}));
-    const types::Sonar same = toldOf(config, snapshot).ping;
+    const types::Sonar same = reportedOf(config, snapshot).ping;
     config.water->profile.reset();
-    EXPECT_EQ(same.bins, toldOf(config, snapshot).ping.bins);
+    EXPECT_EQ(same.bins, reportedOf(config, snapshot).ping.bins);
     config.water.reset();
-    EXPECT_EQ(same.bins, toldOf(config, snapshot).ping.bins);
+    EXPECT_EQ(same.bins, reportedOf(config, snapshot).ping.bins);
     EXPECT_GT(loudest(same), 0);
 }
 
 /** Speed grows down to 50 m, and falls below: rays of the duct stay in it, other rays descend steeply. */
 TEST(RefractionTest, BelowADuctThereIsAShadow) {
     const std::string duct = profileOf({{0, 1499}, {50, 1501.5}, {250, 1481.5}});
-    const auto heardAt = [&](double depth, const std::string& profile) {
+    const auto receivedAt = [&](double depth, const std::string& profile) {
         const auto geometry =
             test::sceneOf({test::quad({2000, -50, static_cast<float>(-depth) - 2}, {0, 100, 0}, {0, 0, 4})});
         SonarConfig config = longRange(profile, 12);
@@ -185,10 +185,10 @@ TEST(RefractionTest, BelowADuctThereIsAShadow) {
         for (const float bin : ping.bins) EXPECT_TRUE(std::isfinite(bin)) << depth << " m deep";
         return loudest(ping);
     };
-    EXPECT_EQ(heardAt(56, duct), 0) << "in the shadow";
-    EXPECT_GT(heardAt(56, ""), 0) << "straight rays have no shadow";
-    EXPECT_GT(heardAt(25, duct), 0) << "in the duct";
-    EXPECT_GT(heardAt(95, duct), 0) << "below the shadow";
+    EXPECT_EQ(receivedAt(56, duct), 0) << "in the shadow";
+    EXPECT_GT(receivedAt(56, ""), 0) << "straight rays have no shadow";
+    EXPECT_GT(receivedAt(25, duct), 0) << "in the duct";
+    EXPECT_GT(receivedAt(95, duct), 0) << "below the shadow";
 }
 
 TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
@@ -198,8 +198,8 @@ TEST(RefractionTest, AnObjectInTheWayOfABentRayHidesObjectsBehind) {
     const auto both = test::sceneOf({uprightPlate(place(0)), uprightPlate(place(1))}),
                far = test::sceneOf({uprightPlate(place(1))});
     const SonarConfig thin = longRange(thermocline(), 0.2);
-    const types::Sonar hidden = toldOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
-    const types::Sonar open = toldOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
+    const types::Sonar hidden = reportedOf(thin, test::snapshotOf(both, {0, 0, -300})).ping;
+    const types::Sonar open = reportedOf(thin, test::snapshotOf(far, {0, 0, -300})).ping;
     const size_t near_bin = static_cast<size_t>(0.7 * 1500 / 2), far_bin = static_cast<size_t>(1.3 * 1500 / 2);
     EXPECT_EQ(loudestBin(hidden), near_bin);
     EXPECT_NEAR(static_cast<double>(loudestBin(open)), static_cast<double>(far_bin), 1);
@@ -214,7 +214,7 @@ TEST(RefractionTest, BentRaysMeetAMovingObjectAtItsPlace) {
     glm::dmat4 place(1);
     place[3] = {at[0].across, 0, -at[0].depth, 1};
     snapshot.moved = {{0, place}};
-    const types::Sonar ping = toldOf(longRange(thermocline(), 0.4), snapshot).ping;
+    const types::Sonar ping = reportedOf(longRange(thermocline(), 0.4), snapshot).ping;
     ASSERT_GT(loudest(ping), 0);
     EXPECT_NEAR(static_cast<double>(loudestBin(ping)), 750, 1);
 }
@@ -224,20 +224,20 @@ TEST(RefractionTest, APointTargetEchoesFromItsArcAndNotInAShadow) {
     std::vector<acoustics::RayPoint> at(1);
     acoustics::traceRay(acoustics::SoundProfile({{0, 1000}, {1500, 1600}}), 300, elevation, std::vector{time}, at);
     const auto nothing = test::openWater();
-    const auto heard = [&](const std::string& profile, double pitch, glm::dvec3 place) {
+    const auto received = [&](const std::string& profile, double pitch, glm::dvec3 place) {
         types::Snapshot snapshot = test::snapshotOf(nothing, {0, 0, -300}, 0, pitch);
         snapshot.targets = {{place, 0}};
-        return toldOf(longRange(profile, 0.2), snapshot).ping;
+        return reportedOf(longRange(profile, 0.2), snapshot).ping;
     };
     const glm::dvec3 place(at[0].across, 0.5, -at[0].depth);
     const std::string linear = profileOf({{0, 1500}, {1000, 1600}});
-    const types::Sonar ping = heard(linear, -elevation, place);
+    const types::Sonar ping = received(linear, -elevation, place);
     ASSERT_GT(loudest(ping), 0);
     EXPECT_EQ(loudestBin(ping), static_cast<size_t>(time * 1500 / 2)) << "2 m in 1800";
-    EXPECT_EQ(loudest(heard("", -elevation, place)), 0) << "straight rays come from elsewhere";
+    EXPECT_EQ(loudest(received("", -elevation, place)), 0) << "straight rays come from elsewhere";
     const double r = time * 1500;
     EXPECT_NEAR(10 * std::log10(loudest(ping) * r * r * r * r), 0, 1) << "nearly as far as it sounds";
-    EXPECT_EQ(loudest(heard(linear, -elevation, place + glm::dvec3(0, 0, 20))), 0) << "out of the thin beam";
+    EXPECT_EQ(loudest(received(linear, -elevation, place + glm::dvec3(0, 0, 20))), 0) << "out of the thin beam";
 }
 
 TEST(RefractionTest, ThePlanStatesWhetherRaysAreBentAndTheBound) {
@@ -249,13 +249,14 @@ TEST(RefractionTest, ThePlanStatesWhetherRaysAreBentAndTheBound) {
         return makeRenderPlan(config, *geometry);
     };
     EXPECT_TRUE(planOf(2000, thermocline()).hasFeature("refraction"));
-    EXPECT_FALSE(planOf(2000, thermocline()).leftOut("refraction"));
+    EXPECT_FALSE(planOf(2000, thermocline()).findOmitted("refraction"));
     const RenderPlan near = planOf(20, profileOf({{0, 1500}, {20, 1500.2}}));
     EXPECT_FALSE(near.hasFeature("refraction"));
-    ASSERT_TRUE(near.leftOut("refraction"));
-    EXPECT_NEAR(near.leftOut("refraction")->value, 0.01 * 20 * 20 / 3000, 1e-9);
-    EXPECT_NEAR(near.leftOut("refraction")->bound, 0.1 * 20 * radians(30), 1e-9);
-    EXPECT_THAT(describe(*near.leftOut("refraction"), near.grid).reason, HasSubstr("a gradient of 0.01 1/s bends by"));
+    ASSERT_TRUE(near.findOmitted("refraction"));
+    EXPECT_NEAR(near.findOmitted("refraction")->value, 0.01 * 20 * 20 / 3000, 1e-9);
+    EXPECT_NEAR(near.findOmitted("refraction")->bound, 0.1 * 20 * radians(30), 1e-9);
+    EXPECT_THAT(describe(*near.findOmitted("refraction"), near.grid).reason,
+                HasSubstr("a gradient of 0.01 1/s bends by"));
     EXPECT_TRUE(planOf(100, profileOf({{0, 1490}, {9, 1490}})).hasFeature("refraction"))
         << "no gradient, but another speed than the sonar's: 0.67 m at 100 m, by bins of 0.5 m";
     EXPECT_FALSE(planOf(100, profileOf({{0, 1498}, {9, 1498}})).hasFeature("refraction")) << "0.13 m";
@@ -273,7 +274,7 @@ TEST(RefractionTest, TheRasterisedPathRejectsAProfileThatMatters) {
     EXPECT_EQ(whyStraight(config), "") << "negligible refraction is omitted";
     config.visibility = Visibility::Auto;
     config.device = "";
-    EXPECT_TRUE(config.castsRays());
+    EXPECT_TRUE(config.tracesRays());
 }
 
 }  // namespace

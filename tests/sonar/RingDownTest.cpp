@@ -30,9 +30,9 @@ TEST(RingDownTest, EveryBeamHasTheMeanOfItsDecayOverEachBin) {
         for (size_t k = 0; k < ping.bin_count; ++k) {
             const double r = 0.1 * static_cast<double>(k), rate = 1.2 * std::numbers::ln10;
             const double right = (at(r) - at(r + 0.1)) / rate / 0.1, middle = at(r + 0.05);
-            const float heard = ping.bins[beam * ping.bin_count + k];
-            EXPECT_NEAR(heard, right, 1e-6 * right) << k;
-            EXPECT_GT(std::abs(heard - middle), 1e-3 * middle) << "the level of the bin's middle differs";
+            const float received = ping.bins[beam * ping.bin_count + k];
+            EXPECT_NEAR(received, right, 1e-6 * right) << k;
+            EXPECT_GT(std::abs(received - middle), 1e-3 * middle) << "the level of the bin's middle differs";
         }
 }
 
@@ -43,9 +43,9 @@ TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
     config.pulse->ring_down = acoustics::RingDownConfig{-3000, 25};
     EXPECT_EQ(ringingPing(config, geometry).bins, plain.bins) << "of nothing";
     config.pulse->ring_down->level_db = 0;
-    const types::Sonar heard = ringingPing(config, geometry);
-    EXPECT_GT(heard.bins[0], 0.7f);
-    EXPECT_NEAR(heard.bins[100], plain.bins[100], 1e-6f * plain.bins[100]);
+    const types::Sonar received = ringingPing(config, geometry);
+    EXPECT_GT(received.bins[0], 0.7f);
+    EXPECT_NEAR(received.bins[100], plain.bins[100], 1e-6f * plain.bins[100]);
     const auto behind = test::sceneOf({test::wall(-10)});
     SonarRenderer deaf(config, behind);
     types::Sonar ping;
@@ -56,10 +56,10 @@ TEST(RingDownTest, IsAddedToTheEchoesAndIsNoEcho) {
 TEST(RingDownTest, ThePlanStatesWhetherItIsAdded) {
     const auto geometry = test::sceneOf({test::wall(10)});
     SonarConfig config = ringingSonar();
-    EXPECT_EQ(makeRenderPlan(config, *geometry).leftOut("transmit ring-down")->reason, Reason::NotConfigured);
+    EXPECT_EQ(makeRenderPlan(config, *geometry).findOmitted("transmit ring-down")->reason, Reason::NotConfigured);
     config.pulse->ring_down = acoustics::RingDownConfig{0, 25};
     EXPECT_TRUE(makeRenderPlan(config, *geometry).has(Pass::RingDown));
-    EXPECT_FALSE(makeRenderPlan(config, *geometry).leftOut("transmit ring-down"));
+    EXPECT_FALSE(makeRenderPlan(config, *geometry).findOmitted("transmit ring-down"));
 }
 
 }  // namespace

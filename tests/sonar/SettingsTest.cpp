@@ -22,7 +22,7 @@ public:
         task.config.set(config);
         scenes_.port.connectTo(task.snapshot, {});
         asked_.port.connectTo(task.settings, framework::ConnPolicy::buffer(4));
-        task.ping.connectTo(heard_.port, framework::ConnPolicy::buffer(4));
+        task.ping.connectTo(received_.port, framework::ConnPolicy::buffer(4));
         EXPECT_TRUE(task.configure()) << task.lastError();
         EXPECT_TRUE(task.start()) << task.lastError();
     }
@@ -38,7 +38,7 @@ public:
     }
     types::SonarPtr next() {
         types::SonarPtr ping;
-        return heard_.port.readNew(ping) ? ping : nullptr;
+        return received_.port.readNew(ping) ? ping : nullptr;
     }
 
     Task task{"sonar"};
@@ -46,7 +46,7 @@ public:
 private:
     test::Writer<types::SnapshotPtr> scenes_{"scenes"};
     test::Writer<types::SonarSettings> asked_{"driver"};
-    test::Reader<types::SonarPtr> heard_{"heard"};
+    test::Reader<types::SonarPtr> received_{"heard"};
 };
 
 TEST(SettingsTest, EachSettingsSampleGivesAPingAndASnapshotDoesNot) {
@@ -109,15 +109,15 @@ TEST(SettingsTest, AHeadLooksAtTheRequestedBearing) {
     Asked<ScanningSonarTask> sonar(config);
     sonar.show(facingWall(5));
     types::SonarSettings asked;
-    const auto heardAt = [&](double deg) {
+    const auto receivedAt = [&](double deg) {
         asked.bearing = types::Angle::fromDeg(deg);
         const types::SonarPtr ping = sonar.ask(asked);
         EXPECT_TRUE(ping) << sonar.task.lastError();
         EXPECT_NEAR(ping->bearings[0].deg(), deg, 1e-9);
         return firstEcho(*ping, 0);
     };
-    EXPECT_NEAR(heardAt(0), 5, 0.16);
-    EXPECT_NEAR(heardAt(30), 5 / std::cos(types::radians(30)), 0.4) << "slanting, over the width of the beam";
+    EXPECT_NEAR(receivedAt(0), 5, 0.16);
+    EXPECT_NEAR(receivedAt(30), 5 / std::cos(types::radians(30)), 0.4) << "slanting, over the width of the beam";
     const types::SonarPtr again = sonar.ask({});
     ASSERT_TRUE(again);
     EXPECT_NEAR(again->bearings[0].deg(), 30, 1e-9) << "it stays there";

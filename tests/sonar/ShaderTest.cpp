@@ -24,7 +24,7 @@ using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 
 /** Sonars that can be rasterised, with each choice that is a feature. */
-std::vector<SonarConfig> drawnSonars() {
+std::vector<SonarConfig> rasterSonars() {
     std::vector<SonarConfig> all;
     for (int choices = 0; choices < 32; ++choices)
         for (int volume = 0; volume < 3; ++volume) {
@@ -66,7 +66,7 @@ template <class Use>
 void forEachFeatureSet(const Use& use) {
     std::set<std::vector<std::string>> seen;
     const std::vector<types::GeometryPtr> geometries = scenes();
-    for (const SonarConfig& config : drawnSonars())
+    for (const SonarConfig& config : rasterSonars())
         for (const types::GeometryPtr& geometry : geometries)
             for (Estimator estimator : {Estimator::Footprint, Estimator::Nearest, Estimator::NearestJitter}) {
                 if (estimator != Estimator::Footprint && config.model != Model::Physical) continue;
@@ -116,7 +116,7 @@ protected:
             GTEST_SKIP() << "SKIPPED: no glslangValidator (Debian: glslang-tools; scripts/setup installs it)";
     }
     /** Returns the errors of glslangValidator for files of the folder; empty when it accepts all. */
-    std::string complaints(const std::string& arguments) const {
+    std::string messagesOf(const std::string& arguments) const {
         const std::string call =
             "cd " + folder_.path().string() + " && glslangValidator " + arguments + " > answer.txt 2>&1";
         const int status = std::system(call.c_str());
@@ -150,7 +150,7 @@ TEST_F(ShaderTest, EachSetOfFeaturesIsValidGlsl) {
         compiled.merge(featuresIn(shader.text, "#define (HAVE_\\w+)"));
         known.merge(featuresIn(shader.text, "(?:ifdef |ifndef |defined\\()(HAVE_\\w+)"));
     }
-    EXPECT_EQ(complaints(files), "");
+    EXPECT_EQ(messagesOf(files), "");
     size_t feature_sets = 0;
     forEachFeatureSet([&](const RenderPlan&, const types::Geometry&) { ++feature_sets; });
     EXPECT_EQ(deposits, feature_sets) << "a program for each";
@@ -166,17 +166,17 @@ TEST_F(ShaderTest, StagesFitTogether) {
         return "-l " + stage(GL_VERTEX_SHADER, name + ".vert.glsl") + " " +
                stage(GL_FRAGMENT_SHADER, name + ".frag.glsl");
     };
-    EXPECT_EQ(complaints(program("surface", {})), "");
-    EXPECT_EQ(complaints(program("surface", {"HAVE_NORMAL_MAP"})), "");
-    EXPECT_EQ(complaints(program("resolve", {})), "");
+    EXPECT_EQ(messagesOf(program("surface", {})), "");
+    EXPECT_EQ(messagesOf(program("surface", {"HAVE_NORMAL_MAP"})), "");
+    EXPECT_EQ(messagesOf(program("resolve", {})), "");
 }
 
 TEST_F(ShaderTest, ReportsAnErrorWithItsFileAndPlace) {
     const std::string right = gpu::shaderSource("deposit.comp.glsl", {"HAVE_PHYSICAL"});
     const std::string wrong = right + "float wrong() { return no_such_thing; }\n";
-    EXPECT_THAT(complaints(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),
+    EXPECT_THAT(messagesOf(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", wrong})),
                 AllOf(HasSubstr("deposit.comp.glsl.comp"), HasSubstr("'no_such_thing' : undeclared identifier")));
-    EXPECT_THAT(complaints(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", right})), IsEmpty());
+    EXPECT_THAT(messagesOf(write({GL_COMPUTE_SHADER, "deposit.comp.glsl", right})), IsEmpty());
 }
 
 TEST(ShaderTextTest, ComputeShadersHaveAtMostEightStorageBuffers) {

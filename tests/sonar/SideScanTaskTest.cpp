@@ -136,15 +136,15 @@ TEST_F(SideScanTaskTest, TheLawAcrossTheTrackIsAboutTheAxisOfEachBeam) {
 /** Elevations in the truth are above the vehicle's x-y plane, as with other sonars. For a flat bottom at slant range r
  *  the sine is -D / r; a vehicle that rolls to starboard changes the elevations by its roll. */
 TEST_F(SideScanTaskTest, TheTruthsElevationsAreAboveTheVehiclesPlane) {
-    test::Reader<types::SonarTruthPtr> told{"told"};
-    task_.truth.connectTo(told.port, framework::ConnPolicy::data());
+    test::Reader<types::SonarTruthPtr> reported{"told"};
+    task_.truth.connectTo(reported.port, framework::ConnPolicy::data());
     startWith(sideScan());
     for (const double roll : {0.0, 6.0}) {
         types::Snapshot snapshot = test::snapshotOf(sceneOf({ground(0)}, -10), {3, 4, height}, types::radians(70));
         snapshot.sonar.orientation *= glm::angleAxis(types::radians(roll), glm::dvec3(1, 0, 0));
         const auto line = lineOf(snapshot);
         types::SonarTruthPtr truth;
-        ASSERT_TRUE(line && told.port.readNewest(truth) == framework::FlowStatus::NewData) << task_.lastError();
+        ASSERT_TRUE(line && reported.port.readNewest(truth) == framework::FlowStatus::NewData) << task_.lastError();
         size_t compared = 0;
         for (uint32_t beam = 0; beam < 2; ++beam)
             for (uint32_t bin = 0; bin < line->bin_count; ++bin) {

@@ -107,7 +107,7 @@ private:
 };
 
 TEST(SinglePrecisionDepositTest, BinsMatchTheProcessor) {
-    double most_bins = 0;
+    double max_bins = 0;
     int with_echoes = 0;
     for (uint32_t seed = 1; seed <= 24; ++seed) {
         RandomSonar sonar(seed);
@@ -121,11 +121,11 @@ TEST(SinglePrecisionDepositTest, BinsMatchTheProcessor) {
         EXPECT_LE(std::sqrt(error), 1e-4 * std::sqrt(norm)) << "seed " << seed;
         if (norm > 0) {
             ++with_echoes;
-            most_bins = std::max(most_bins, sonar.bins_to_the_end);
+            max_bins = std::max(max_bins, sonar.bins_to_the_end);
         }
     }
     EXPECT_GT(with_echoes, 16);
-    EXPECT_GT(most_bins, 10000) << "single precision without an origin has steps of 1e-3 bins there";
+    EXPECT_GT(max_bins, 10000) << "single precision without an origin has steps of 1e-3 bins there";
 }
 
 }  // namespace

@@ -249,22 +249,22 @@ TEST_F(Sonar3dTaskTest, ThePingsTruthIsThatOfAFanOfTheWholeHeight) {
     renderer.setTruth(fan, &expected);
     renderer.render(scene, fan);
     ASSERT_EQ(truth->object.size(), expected.object.size());
-    size_t heard = 0, same = 0, near = 0, shadows = 0, same_shadows = 0;
+    size_t received = 0, same = 0, near = 0, shadows = 0, same_shadows = 0;
     for (size_t at = 0; at < expected.object.size(); ++at) {
         shadows += expected.shadow[at];
         same_shadows += expected.shadow[at] & truth->shadow[at];
         if (expected.object[at] < 0 || expected.share[at] < 0.8f) continue;
-        ++heard;
+        ++received;
         if (truth->object[at] != expected.object[at]) continue;
         ++same;
         // The nearest bins of wall and ball contain directions above and below the axis, and their mean.
         near += std::abs(truth->elevation[at] - expected.elevation[at]) < types::radians(2.1);
         EXPECT_NEAR(truth->share[at], expected.share[at], 0.2) << at;
     }
-    std::cout << same << " of " << heard << " labels and " << same_shadows << " of " << shadows
+    std::cout << same << " of " << received << " labels and " << same_shadows << " of " << shadows
               << " shadows the same\n";
-    EXPECT_GT(heard, 5000u);
-    EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(heard));
+    EXPECT_GT(received, 5000u);
+    EXPECT_GT(static_cast<double>(same), 0.99 * static_cast<double>(received));
     EXPECT_GT(static_cast<double>(near), 0.99 * static_cast<double>(same));
     EXPECT_GT(shadows, 1000u);
     EXPECT_GT(static_cast<double>(same_shadows), 0.97 * static_cast<double>(shadows));
@@ -304,15 +304,15 @@ TEST_F(Sonar3dTaskTest, AnEchoTooWeakForAReturnHasNoObject) {
 }
 
 TEST_F(Sonar3dTaskTest, ASilentSonarReportsItsDirections) {
-    std::string told;
+    std::string reported;
     auto environment = std::make_shared<framework::Environment>(task_.environment());
-    environment->warn = [&](const std::string& text) { told += text; };
+    environment->warn = [&](const std::string& text) { reported += text; };
     task_.setEnvironment(environment);
     startWith(grid());
     const auto map = mapOf(test::snapshotOf(sceneOf({test::wall(60)})));
     ASSERT_TRUE(map) << task_.lastError();
     EXPECT_TRUE(std::ranges::none_of(map->distances, [](float distance) { return std::isfinite(distance); }));
-    EXPECT_THAT(told, testing::HasSubstr("beyond the range of 15 m"));
+    EXPECT_THAT(reported, testing::HasSubstr("beyond the range of 15 m"));
 }
 
 }  // namespace

@@ -255,16 +255,16 @@ TEST(SonarConfigTest, ReportsContradictoryValues) {
 TEST(SonarConfigTest, TheDefaultQualityIsAnErrorOfFivePerCentWithACapOfSamples) {
     SonarConfig config;
     EXPECT_EQ(config.targetError(), 0.05);
-    EXPECT_EQ(config.mostSamples(), 400'000);
+    EXPECT_EQ(config.maxSamples(), 400'000);
     config.quality.max_samples = 1000;
     EXPECT_EQ(config.targetError(), 0.05);
-    EXPECT_EQ(config.mostSamples(), 1000);
+    EXPECT_EQ(config.maxSamples(), 1000);
     config.quality = {};
     config.quality.target_error = 0.1;
-    EXPECT_FALSE(config.mostSamples()) << "a target alone";
+    EXPECT_FALSE(config.maxSamples()) << "a target alone";
     config.quality = {};
     config.quality.rows = 8;
-    EXPECT_FALSE(config.choosesQuality() || config.mostSamples());
+    EXPECT_FALSE(config.choosesQuality() || config.maxSamples());
     EXPECT_EQ(config.rows(), 8) << "a user may give less than the chosen quality";
 }
 

@@ -87,7 +87,7 @@ TEST(SonarRendererTest, NothingInViewIsSilence) {
 TEST(SonarRendererTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     const types::Mesh plate = test::quad({0.5, -1, -1}, {0, 2, 0}, {0, 0, 2});
     const types::Mesh target = test::quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
-    const auto heard = [](const types::GeometryPtr& geometry, double range_min) {
+    const auto received = [](const types::GeometryPtr& geometry, double range_min) {
         SonarConfig config = oneFan();
         config.range_min = range_min;
         SonarRenderer renderer(config, geometry);
@@ -99,12 +99,12 @@ TEST(SonarRendererTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
     };
     const types::GeometryPtr both = test::sceneOf({plate, target}), alone = test::sceneOf({target});
     for (const double range_min : {0.45, 0.55, 1.9}) {
-        const auto [near, far] = heard(both, range_min);
+        const auto [near, far] = received(both, range_min);
         EXPECT_EQ(far, 0) << "the plate hides the wall, blanked from " << range_min;
         EXPECT_EQ(near > 0, range_min < 1.9) << range_min;
-        EXPECT_GT(heard(alone, range_min).second, 0);
+        EXPECT_GT(received(alone, range_min).second, 0);
     }
-    EXPECT_GT(heard(both, 0.45).first, heard(both, 0.55).first);
+    EXPECT_GT(received(both, 0.45).first, received(both, 0.55).first);
 }
 
 TEST(SonarRendererTest, ASonarOnASurfaceOrInsideABodyHasFiniteEchoes) {
@@ -166,7 +166,8 @@ TEST(SonarRendererTest, FarFromTheOriginOfATileEchoesAreTheSame) {
 
 TEST(SonarRendererTest, ASeaFloorOfTwoHugeTrianglesIsASeaFloor) {
     const auto small = binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1000)}), {}, 0, 0.2));
-    EXPECT_LT(differenceOf(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small), 0.01);
+    EXPECT_LT(differenceOf(binsSeen(test::snapshotOf(test::sceneOf({test::ground(-5, 1e8f)}), {}, 0, 0.2)), small),
+              0.01);
 }
 
 }  // namespace insonify::sonar

@@ -72,7 +72,7 @@ std::vector<uint32_t> bitsOf(const types::SonarTruth& truth) {
  *  angle. With bins of 0.1 m and samples of 0.1 deg the mean is within 3 mrad. */
 TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
     const Truths labelled = truthsOf(GetParam().of(truthFan()), test::snapshotOf(test::sceneOf({test::ground(-3)})));
-    double largest = 0;
+    double maximum = 0;
     for (size_t beam = 0; beam < 16; ++beam)
         for (double r = 6.55; r < 19.9; r += 0.1) {  // below 6 m the aperture ends
             const size_t at = labelled.at(r, beam);
@@ -82,9 +82,9 @@ TEST_P(SonarTruthTest, ABottomHasTheElevationAndTheGrazingAngleOfItsDepth) {
             const double angle = std::asin(3 / r);
             EXPECT_NEAR(labelled.truth.grazing[at], angle, 0.003) << r;
             EXPECT_NEAR(labelled.truth.elevation[at], -angle, 0.003) << r;
-            largest = std::max(largest, std::abs(static_cast<double>(labelled.truth.grazing[at]) - angle));
+            maximum = std::max(maximum, std::abs(static_cast<double>(labelled.truth.grazing[at]) - angle));
         }
-    RecordProperty("largest_rad", std::to_string(largest));
+    RecordProperty("largest_rad", std::to_string(maximum));
     EXPECT_THAT(labelled.truth.path, testing::Each(0));
 }
 

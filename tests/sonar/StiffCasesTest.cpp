@@ -30,7 +30,7 @@ std::vector<types::Mesh> wallAndBall() { return {test::wall(12), test::sphere(1.
 
 /** Returns the wall and ball after `change`. */
 template <class Change>
-std::vector<float> heardWith(const Change& change) {
+std::vector<float> receivedWith(const Change& change) {
     std::vector<types::Mesh> meshes = wallAndBall();
     for (types::Mesh& mesh : meshes) change(mesh);
     return stiffBins(stiffFan(), test::sceneOf(std::move(meshes), 0, {{0, 0, 0}, {9, 1, -0.5}}));
@@ -39,9 +39,9 @@ std::vector<float> heardWith(const Change& change) {
 }  // namespace
 
 TEST(StiffCasesTest, DegenerateTrianglesNormalsAndWindingChangeNoEcho) {
-    const std::vector<float> plain = heardWith([](types::Mesh&) {});
+    const std::vector<float> plain = receivedWith([](types::Mesh&) {});
     EXPECT_THAT(plain, Contains(testing::Gt(0)));
-    EXPECT_EQ(heardWith([](types::Mesh& mesh) {
+    EXPECT_EQ(receivedWith([](types::Mesh& mesh) {
                   mesh.indices.insert(mesh.indices.end(), {0, 0, 1, 2, 2, 2});
                   mesh.positions.push_back(0.5f * (mesh.positions[0] + mesh.positions[2]));
                   mesh.indices.insert(mesh.indices.end(), {0, static_cast<uint32_t>(mesh.positions.size() - 1), 2});
@@ -49,8 +49,8 @@ TEST(StiffCasesTest, DegenerateTrianglesNormalsAndWindingChangeNoEcho) {
               }),
               plain)
         << "repeated corners, and three in a line";
-    EXPECT_EQ(heardWith([](types::Mesh& mesh) { mesh.normals.assign(mesh.positions.size(), glm::vec3(0)); }), plain);
-    EXPECT_EQ(heardWith([](types::Mesh& mesh) {
+    EXPECT_EQ(receivedWith([](types::Mesh& mesh) { mesh.normals.assign(mesh.positions.size(), glm::vec3(0)); }), plain);
+    EXPECT_EQ(receivedWith([](types::Mesh& mesh) {
                   for (size_t i = 0; i < mesh.indices.size(); i += 3)
                       std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
               }),

@@ -300,13 +300,13 @@ TEST(SurfaceMapTest, TheRasterisedPathOmitsMapsWithANotice) {
     config.device = "software";
     const auto geometry = groundWith(mapOf(1, 1, {0.1f}));
     const RenderPlan plan = makeRenderPlan(config, *geometry);
-    const LeftOut* const left_out = plan.leftOut("surface maps");
-    ASSERT_NE(left_out, nullptr);
-    EXPECT_EQ(left_out->reason, Reason::Lacking);
+    const Omitted* const omitted = plan.findOmitted("surface maps");
+    ASSERT_NE(omitted, nullptr);
+    EXPECT_EQ(omitted->reason, Reason::Lacking);
     EXPECT_EQ(binsOf(geometry, config), binsOf(plainGround(), config));
     const RenderPlan without = makeRenderPlan(fanOver(), *plainGround());
-    ASSERT_NE(without.leftOut("surface maps"), nullptr);
-    EXPECT_EQ(without.leftOut("surface maps")->reason, Reason::NoneInScene);
+    ASSERT_NE(without.findOmitted("surface maps"), nullptr);
+    EXPECT_EQ(without.findOmitted("surface maps")->reason, Reason::NoneInScene);
 }
 
 TEST(SurfaceMapTest, LevelsOfAMapKeepItsMeanAtAnySize) {

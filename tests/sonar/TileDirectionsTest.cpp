@@ -18,7 +18,7 @@ TEST(TileDirectionsTest, EachSampleOfEachTileLooksAtItsCell) {
             {.beams = upTo(9), .width_deg = 5.0 * upTo(20), .bins = 50, .rows = 63 + upTo(20), .columns = upTo(9)});
         config.beam_geometry = run % 2 == 0 ? BeamGeometry::Planar : BeamGeometry::Conical;
         const RenderPlan plan = makeRenderPlan(config, *test::sceneOf({test::ground(-4, 200)}));
-        CastView view{makeAngularView(plan), {}};
+        TracedView view{makeAngularView(plan), {}};
         const int together = upTo(view.cells.beams), strip = together * view.cells.beam_columns;
         view.shape = TileShape(view.cells, plan.grid, together);
         const TileDirections directions(view, strip);

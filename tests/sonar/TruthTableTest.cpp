@@ -12,7 +12,7 @@ namespace {
 constexpr uint64_t unit = 1u << 30;
 
 /** Returns the truth of one beam of three bins. */
-types::SonarTruth told(const TruthTable& table) {
+types::SonarTruth reported(const TruthTable& table) {
     types::Sonar ping;
     ping.beam_count = 1;
     ping.bin_count = 3;
@@ -28,7 +28,7 @@ TEST(TruthTableTest, ABinHasTheObjectWithMostEnergyAndItsMeanAngles) {
     table.add(0, 1, ObjectEcho::of(unit, 0.2, 0.5, 7, 1));
     table.add(0, 1, ObjectEcho::of(4 * unit, -1, 1, 3, 4));
     table.add(0, 1, ObjectEcho::of(4 * unit, 0.7, 0.75, 7, 2));
-    const types::SonarTruth truth = told(table);
+    const types::SonarTruth truth = reported(table);
     EXPECT_THAT(truth.object, testing::ElementsAre(-1, 7, -1));
     EXPECT_NEAR(truth.share[1], 5.0 / 9, 1e-6);
     EXPECT_EQ(truth.hits[1], 7u);
@@ -38,24 +38,24 @@ TEST(TruthTableTest, ABinHasTheObjectWithMostEnergyAndItsMeanAngles) {
 }
 
 TEST(TruthTableTest, AnglesAreRecoveredFromTheirSines) {
-    double largest = 0;
+    double maximum = 0;
     for (double angle = -1.4; angle <= 1.4; angle += 0.001) {
         TruthTable table(1, 3);
         table.add(0, 0, ObjectEcho::of(uint64_t{1} << 50, std::sin(angle), 1, 0, 1));
-        const types::SonarTruth truth = told(table);
-        largest = std::max(largest, std::abs(static_cast<double>(truth.elevation[0]) - angle));
+        const types::SonarTruth truth = reported(table);
+        maximum = std::max(maximum, std::abs(static_cast<double>(truth.elevation[0]) - angle));
         EXPECT_FLOAT_EQ(truth.grazing[0], static_cast<float>(std::numbers::pi / 2));
     }
-    EXPECT_LT(largest, 1e-6);
-    RecordProperty("largest_rad", std::to_string(largest));
+    EXPECT_LT(maximum, 1e-6);
+    RecordProperty("largest_rad", std::to_string(maximum));
 }
 
 TEST(TruthTableTest, SilentBinsNearerThanTheLastEchoAreInShadow) {
     TruthTable table(1, 3);
     table.add(0, 1, ObjectEcho::of(unit, 0, 1, 0, 1));
-    EXPECT_THAT(told(table).shadow, testing::ElementsAre(1, 0, 0));
+    EXPECT_THAT(reported(table).shadow, testing::ElementsAre(1, 0, 0));
     table.clear();
-    EXPECT_THAT(told(table).shadow, testing::Each(0));
+    EXPECT_THAT(reported(table).shadow, testing::Each(0));
 }
 
 /** Seven objects in one bin, object k with (k + 1) units: four are distinguished, in any order. */
@@ -68,7 +68,7 @@ TEST(TruthTableTest, DistinguishesTheObjectsOfLowestIndexAndCountsAllEnergy) {
             for (uint32_t n = 0; n <= k; ++n) to.add(0, 2, ObjectEcho::of(unit, 0, 1, k, 1));
         }
         table.merge(0, second, 0);
-        const types::SonarTruth truth = told(table);
+        const types::SonarTruth truth = reported(table);
         EXPECT_EQ(truth.object[2], 3);
         EXPECT_FLOAT_EQ(truth.share[2], 4.0f / 28);
         EXPECT_EQ(truth.hits[2], 28u);

@@ -73,7 +73,7 @@ std::vector<SeenPart> met(const types::Snapshot& snapshot, const std::vector<Vie
                 rays.y[i] = static_cast<float>(sine + cosine * u);
                 rays.z[i] = static_cast<float>(v);
             }
-            visibility.cast({&rays, 1}, {&hits, 1});
+            visibility.trace({&rays, 1}, {&hits, 1});
             for (int i = 0; i < tile_samples && first + i < frustum.rows * frustum.columns; ++i)
                 seen.push_back(hits.command[i] == TileHits::nothing
                                    ? nothing
@@ -168,10 +168,10 @@ TEST(VisibilityTest, RayTracedPingsMatchRasterisedPingsUpToTheSampling) {
 TEST(VisibilityTest, NormalMapsHaveTheSameEffectInBoth) {
     const auto snapshot = test::snapshotOf(test::surfaces(), {10, 0, -2});
     SonarConfig gl = seenFan(Visibility::Gl), cpu = seenFan(Visibility::Cpu);
-    const types::Sonar drawn_ping = pingOf(gl, snapshot), cast_ping = pingOf(cpu, snapshot);
+    const types::Sonar raster_ping = pingOf(gl, snapshot), traced_ping = pingOf(cpu, snapshot);
     const types::Sonar flat = pingOf(cpu, test::snapshotOf(plainSurfaces(), {10, 0, -2}));
-    EXPECT_LT(relativeDifference(cast_ping, drawn_ping), 0.03);
-    EXPECT_GT(relativeDifference(flat, drawn_ping), 0.06);
+    EXPECT_LT(relativeDifference(traced_ping, raster_ping), 0.03);
+    EXPECT_GT(relativeDifference(flat, raster_ping), 0.06);
 }
 
 TEST(VisibilityTest, PingsHaveTheSameBytesForAnyNumberOfThreads) {
@@ -285,8 +285,8 @@ TEST(VisibilityTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
         SonarConfig config = seenFan(visibility);
         config.field_of_view_deg = 40;
         config.range_min = 0.45;
-        const types::Sonar heard = pingOf(config, snapshot);
-        EXPECT_GT(*std::max_element(heard.bins.begin(), heard.bins.end()), 0);
+        const types::Sonar received = pingOf(config, snapshot);
+        EXPECT_GT(*std::max_element(received.bins.begin(), received.bins.end()), 0);
         config.range_min = 1.5;
         const types::Sonar blanked = pingOf(config, snapshot);
         EXPECT_THAT(blanked.bins, testing::Each(0.0f)) << "the plate hides the wall";

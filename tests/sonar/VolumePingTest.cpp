@@ -66,9 +66,9 @@ TEST(VolumePingTest, OpenWaterEchoesByThePatternInElevation) {
     law.width_deg = 10;
     config.beam_pattern.emplace().transmit.elevation = law;
     const acoustics::BeamPattern pattern(law);
-    const double heard =
+    const double received =
         test::integral(-1.5, 1.5, [&](double angle) { return pattern.power(angle) * std::cos(angle); });
-    const auto right = waterOf([=](double) { return radians(10) * heard; });
+    const auto right = waterOf([=](double) { return radians(10) * received; });
     const auto box = waterOf([=](double) { return 2 * radians(10) * std::sin(half); });
     const auto far = test::snapshotOf(test::sceneOf({test::wall(90)}));
     for (const SonarConfig& way : everyWay(config)) expectForm(pingOf(way, far), right, box);
@@ -129,11 +129,11 @@ TEST(VolumePingTest, WaterWithoutScatteringChangesNoBin) {
 std::vector<uint64_t> sumsOfMisses(const RenderPlan& plan, const types::Geometry& geometry, int beams) {
     const PingEffects effects(plan, geometry);
     const EchoRules rules = makeEchoRules(plan, effects);
-    CastView view{makeAngularView(plan), {}};
+    TracedView view{makeAngularView(plan), {}};
     view.shape = TileShape(view.cells, rules.bins, beams);
     TileHits misses{};
     std::ranges::fill(misses.command, TileHits::nothing);
-    std::vector<CastTile> tiles;
+    std::vector<TracedTile> tiles;
     const int end = beams * view.cells.beam_columns;
     for (int column = 0; column < end; column += view.shape.all.columns)
         for (int row = 0; row < view.cells.rows; row += view.shape.all.rows)

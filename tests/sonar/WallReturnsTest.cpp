@@ -19,8 +19,8 @@ using test::pingOf;
 using test::snapshotOf;
 
 /** Returns 0.5 m apart, five bins, in water of 1000 m/s. */
-constexpr types::Shell slab{1, 2500, 2000, 0, 0, false};
-constexpr double slab_spacing = 0.5, critical_sine = 0.5;
+constexpr types::Shell plate{1, 2500, 2000, 0, 0, false};
+constexpr double frustum_spacing = 0.5, critical_sine = 0.5;
 
 acoustics::PlateReturns returnsOf(const types::Shell& shell) {
     const acoustics::Fluid water{1025, water_speed};
@@ -35,14 +35,14 @@ double energyOfPing(const types::Sonar& ping) {
 
 TEST(WallReturnsTest, APlatesReturnsAreAtTheirRangesWithTheirLevelsOverAngles) {
     const SonarConfig config = wallSonar(50, 0.5, 64);
-    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, slab)));
+    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
-    const acoustics::PlateReturns returns = returnsOf(slab);
+    const acoustics::PlateReturns returns = returnsOf(plate);
     ASSERT_GT(returns.reflected.size(), 4u);
     double worst_level = 0;
     for (uint32_t beam = 0; beam < 64; ++beam) {
         const double bearing = std::abs(rings.bearings[beam].rad), range = 10 / std::cos(bearing);
-        const double spacing = slab_spacing * std::sqrt(1 - std::pow(std::sin(bearing) / critical_sine, 2));
+        const double spacing = frustum_spacing * std::sqrt(1 - std::pow(std::sin(bearing) / critical_sine, 2));
         if (!(spacing > 0.35)) continue;  // windows overlap
         const double there = energyOf(rigid, beam, 0, 30) * range * range;
         for (size_t k = 0; k < 4; ++k) {
@@ -59,7 +59,7 @@ TEST(WallReturnsTest, APlatesReturnsAreAtTheirRangesWithTheirLevelsOverAngles) {
 
 TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
-    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, slab)));
+    const auto rings = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
     double level = 0;
     for (uint32_t k = 0; k < rings.bin_count; ++k) {
@@ -70,9 +70,9 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
     constexpr int steps = 2000;
     for (int i = 0; i < steps; ++i) {
         const acoustics::Fluid water{1025, water_speed};
-        const double frequency = 1000 * shell_khz + (i + 0.5) / steps * slab.sound_speed / (2 * slab.thickness);
-        mean += std::norm(acoustics::plateResponse({slab.thickness, slab.density, slab.sound_speed, 0, 0}, water, water,
-                                                   frequency, 1)
+        const double frequency = 1000 * shell_khz + (i + 0.5) / steps * plate.sound_speed / (2 * plate.thickness);
+        mean += std::norm(acoustics::plateResponse({plate.thickness, plate.density, plate.sound_speed, 0, 0}, water,
+                                                   water, frequency, 1)
                               .reflected) /
                 steps;
     }
@@ -84,12 +84,12 @@ TEST(WallReturnsTest, AllReturnsTogetherAreTheMeanReflectionOverAResonance) {
 
 TEST(WallReturnsTest, ObjectsBehindAreLateAndRingToo) {
     const SonarConfig config = wallSonar(2, 0.5, 1, 600);
-    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, slab)));
+    const auto both = pingOf(config, snapshotOf(shellsOf({test::wall(10), test::wall(40)}, 1, plate)));
     const auto alone = pingOf(config, snapshotOf(shellsOf({test::wall(40)}, 0)));
-    const acoustics::PlateReturns returns = returnsOf(slab);
+    const acoustics::PlateReturns returns = returnsOf(plate);
     const double there = energyOfPing(alone) * 40 * 40;
     for (size_t k = 0; k < 4; ++k) {
-        const double at = 40 - slab.thickness + slab_spacing * static_cast<double>(k + 1);
+        const double at = 40 - plate.thickness + frustum_spacing * static_cast<double>(k + 1);
         const double level = energyOf(both, 0, at - 0.2, at + 0.3) * at * at / there;
         EXPECT_NEAR(level / returns.passed[k], 1, 0.05) << k;
     }
@@ -115,7 +115,7 @@ TEST(WallReturnsTest, TheFarWallOfABodyEchoesFromWithin) {
 /** A wall whose returns are less than half a bin, or half of the pulse's resolution, apart has one return. */
 TEST(WallReturnsTest, ReturnsWithinHalfABinMergeByTheResponseAtTheFrequency) {
     for (const double spacing : {0.049, 0.051}) {
-        types::Shell shell = slab;
+        types::Shell shell = plate;
         shell.thickness = 2 * spacing;
         for (const bool long_pulse : {false, true}) {
             SonarConfig config = wallSonar(2, 0.5, 1);
@@ -136,7 +136,7 @@ TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
     const types::Mesh left = test::quad({10, 1, -100}, {0, 100, 0}, {0, 0, 200}),
                       right = test::quad({10, -101, -100}, {0, 100, 0}, {0, 0, 200});
     SonarConfig config = wallSonar(60, 20, 16);
-    const auto with = pingOf(config, snapshotOf(shellsOf({left, right}, 1, slab)));
+    const auto with = pingOf(config, snapshotOf(shellsOf({left, right}, 1, plate)));
     const auto without = pingOf(config, snapshotOf(shellsOf({left, right}, 1)));
     bool differs = false;
     for (uint32_t beam = 0; beam < 16; ++beam)
@@ -153,13 +153,13 @@ TEST(WallReturnsTest, EchoesWithoutARingingWallAreTheSameBitForBit) {
 TEST(WallReturnsTest, AllReturnsAreInTheFirstIfMaxWallsIsZero) {
     SonarConfig config = wallSonar(2, 0.5, 1);
     config.max_walls = 0;
-    const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, slab)));
+    const auto ping = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 1, plate)));
     const auto rigid = pingOf(config, snapshotOf(shellsOf({test::wall(10)}, 0)));
-    EXPECT_NEAR(energyOfPing(ping) / energyOfPing(rigid), 0.1 * sumOfReturns(returnsOf(slab).reflected), 1e-5);
+    EXPECT_NEAR(energyOfPing(ping) / energyOfPing(rigid), 0.1 * sumOfReturns(returnsOf(plate).reflected), 1e-5);
 }
 
 TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
-    types::Shell shell = slab;
+    types::Shell shell = plate;
     shell.thickness = 2;  // a metre apart
     const acoustics::PlateReturns returns = returnsOf(shell);
     for (const std::string effect : {"pattern", "pulse", "coherent", "all"}) {
@@ -197,7 +197,7 @@ TEST(WallReturnsTest, PatternsPulsesAndCoherentSpeckleKeepTheirEnergy) {
 
 TEST(WallReturnsTest, TheTruthNamesTheRingingWall) {
     const SonarConfig config = wallSonar(8, 2, 4, 300);
-    const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, slab));
+    const auto snapshot = snapshotOf(shellsOf({test::wall(10), test::wall(25)}, 1, plate));
     SonarRenderer renderer(config, snapshot.geometry);
     types::Sonar ping;
     types::SonarTruth truth;
@@ -224,7 +224,7 @@ TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
     const auto between = [&](double low, double high) {
         return std::exp(std::uniform_real_distribution(std::log(low), std::log(high))(random));
     };
-    double largest = 0;
+    double maximum = 0;
     int ringing = 0;
     for (int i = 0; i < 60; ++i) {
         types::Shell shell{between(1e-3, 2), between(500, 9000), between(300, 7000), 0, i % 3 ? between(1e-6, 1) : 0,
@@ -247,10 +247,10 @@ TEST(WallReturnsTest, RandomPlatesReturnAtMostTheEnergyOfARigidPlate) {
         if (!(energyOfPing(rigid) > 0)) continue;
         const double share = energyOfPing(ping) / (0.1 * energyOfPing(rigid));
         EXPECT_LE(share, 1 + 1e-3) << i;
-        largest = std::max(largest, share);
+        maximum = std::max(maximum, share);
         ringing += makeRenderPlan(config, *scene).laws.hasReturns();
     }
-    std::cout << ringing << " of 60 random plates ring; at most " << largest << " of a rigid plate's energy\n";
+    std::cout << ringing << " of 60 random plates ring; at most " << maximum << " of a rigid plate's energy\n";
     EXPECT_GT(ringing, 10);
 }
 

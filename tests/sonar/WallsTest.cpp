@@ -133,15 +133,15 @@ TEST(WallsTest, EachFurtherWallWeakensObjectsBehindUpToTheMaxNumber) {
     for (int i = 0; i < 8; ++i) walls.push_back(test::wall(5 + 2.0f * static_cast<float>(i)));
     const auto scene = shellsOf(walls, walls.size(), sheet);
     const double each = passed(sheet, 1);
-    for (const int most : {0, 1, 4, 16}) {
+    for (const int maximum : {0, 1, 4, 16}) {
         SonarConfig config = wallSonar(2, 2, 1);
-        config.max_walls = most;
+        config.max_walls = maximum;
         const auto ping = pingOf(config, snapshotOf(scene));
         const double first = energyOf(ping, 0, 4.9, 5.2) * 25;
         for (int i = 0; i < 8; ++i) {
-            const double range = 5 + 2 * i, share = i <= most ? std::pow(each, i) : 0;
+            const double range = 5 + 2 * i, share = i <= maximum ? std::pow(each, i) : 0;
             const double expected = share >= 1e-6 ? share * first / (range * range) : 0;
-            EXPECT_NEAR(energyOf(ping, 0, range - 0.1, range + 0.2), expected, 0.02 * expected) << most << " " << i;
+            EXPECT_NEAR(energyOf(ping, 0, range - 0.1, range + 0.2), expected, 0.02 * expected) << maximum << " " << i;
         }
     }
 }
@@ -211,7 +211,7 @@ TEST(WallsTest, ReportsWhyWallsAreOmitted) {
     const auto scene = shellsOf({test::wall(10)}, 1), plain = test::sceneOf({test::wall(10)});
     const auto why = [](const SonarConfig& config, const types::GeometryPtr& geometry) -> std::string {
         const RenderPlan plan = makeRenderPlan(config, *geometry);
-        const LeftOut* what = plan.leftOut("thin walls");
+        const Omitted* what = plan.findOmitted("thin walls");
         return what ? what->words(*what, plan.grid) : "";
     };
     SonarConfig config = wallSonar(8, 2, 4);

@@ -48,7 +48,7 @@ public:
         : tree_(scene), scene_(scene), config_(config), bins_(static_cast<size_t>(config.bin_count)) {
         energies_.resize(static_cast<size_t>(config.beam_count) * bins_ * scene.geometry->objects.size());
         for (int column = 0; column < config.beam_count * across; ++column)
-            for (int row = 0; row < up; row += RayTree::packet) cast(column, row);
+            for (int row = 0; row < up; row += RayTree::packet) trace(column, row);
     }
     const std::vector<double>& energies() const { return energies_; }
 
@@ -63,11 +63,11 @@ private:
         return scene_.sonar.orientation * glm::dvec3(std::cos(elevation) * std::cos(azimuth),
                                                      std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     }
-    void cast(int column, int first_row) {
+    void trace(int column, int first_row) {
         RayTree::Rays rays;
         RayTree::Found found;
         for (int i = 0; i < RayTree::packet; ++i) rays.set(i, directionOf(column, first_row + i));
-        tree_.cast(glm::dvec3(0), {&rays, 1}, {&found, 1});
+        tree_.trace(glm::dvec3(0), {&rays, 1}, {&found, 1});
         for (int i = 0; i < RayTree::packet; ++i)
             if (const uint32_t hit = found[static_cast<size_t>(i)]; hit != RayTree::none)
                 add(column, first_row + i, hit);

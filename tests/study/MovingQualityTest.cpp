@@ -24,14 +24,14 @@ using types::radians;
 constexpr double target = 0.05;  ///< Default.
 
 /** Results of a run. */
-struct HeardPings {
+struct RecordedPings {
     std::vector<types::SonarPtr> pings;
     std::vector<std::string> notices;
     types::Plan plan;
 };
 
 template <class Task, class Config>
-HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snapshots) {
+RecordedPings runOf(const Config& config, const std::vector<types::Snapshot>& snapshots) {
     Task task("sonar");
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
@@ -39,7 +39,7 @@ HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snaps
     task.ping.connectTo(out.port, framework::ConnPolicy::buffer(1));
     task.config.set(config);
     if (!task.configure() || !task.start()) throw std::runtime_error(task.lastError());
-    HeardPings run;
+    RecordedPings run;
     for (const types::Snapshot& snapshot : snapshots) {
         in.port.write(std::make_shared<types::Snapshot>(snapshot));
         task.update();
@@ -52,7 +52,7 @@ HeardPings runOf(const Config& config, const std::vector<types::Snapshot>& snaps
 
 /** Returns rel_l2_tvg of each ping; a turning head is at its ping's bearing. */
 std::vector<double> movingErrors(sonar::SonarConfig config, const std::vector<types::Snapshot>& snapshots,
-                                 const HeardPings& run, int columns_per_beam) {
+                                 const RecordedPings& run, int columns_per_beam) {
     config.quality = {};
     config.quality.rows = 2048;
     config.quality.columns_per_beam = columns_per_beam;
@@ -78,7 +78,7 @@ double nearlyAll(std::vector<double> errors) {
     return errors[errors.size() * 95 / 100];
 }
 
-std::string summaryOf(const HeardPings& run, const std::vector<double>& errors) {
+std::string summaryOf(const RecordedPings& run, const std::vector<double>& errors) {
     std::string text =
         "now " + std::to_string(run.plan.rows) + " x " + std::to_string(run.plan.columns_per_beam) + "\n";
     for (const std::string& notice : run.notices) text += notice + "\n";
@@ -128,7 +128,7 @@ std::vector<types::Snapshot> turnFromAWall(unsigned seed) {
 
 TEST(MovingQualityTest, AFanThatTurnsFromAWallToARoughFloorMeetsItsTarget) {
     const auto snapshots = turnFromAWall(3);
-    const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
@@ -138,7 +138,7 @@ TEST(MovingQualityTest, APassOverARoughFloorMeetsItsTarget) {
     const auto snapshots = snapshotsOf(scene, 100, [](int i) {
         return Place{glm::dvec3(-35 + 0.4 * i, 2, 0.5 * std::sin(0.1 * i)), 0.2 * std::sin(0.05 * i)};
     });
-    const HeardPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
+    const RecordedPings run = runOf<sonar::SonarTask>(movingFan(), snapshots);
     const std::vector<double> errors = movingErrors(movingFan(), snapshots, run, 12);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }
@@ -163,7 +163,7 @@ TEST(MovingQualityTest, AScanningHeadInAPoolMeetsItsTarget) {
     const auto snapshots = snapshotsOf(pool(), 400, [](int i) {
         return Place{glm::dvec3(-1 + 0.002 * i, 0.5, -0.8), 0.3};
     });
-    const HeardPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
+    const RecordedPings run = runOf<sonar::ScanningSonarTask>(config, snapshots);
     const std::vector<double> errors = movingErrors(config.beam(), snapshots, run, 64);
     EXPECT_LE(nearlyAll(errors), 2 * target) << summaryOf(run, errors);
 }

@@ -103,22 +103,22 @@ std::vector<StudyScene> unseenScenes() {
 
 TEST(UnseenQualityTest, ThePredictionHoldsWithinAFactorOfTwo) {
     int within = 0, all = 0;
-    std::string told;
+    std::string reported;
     for (StudyScene scene : unseenScenes())
-        for (const int most : {20'000, 400'000}) {
+        for (const int maximum : {20'000, 400'000}) {
             scene.config.quality = {};
             scene.config.quality.target_error = 0.05;
-            scene.config.quality.max_samples = most;
+            scene.config.quality.max_samples = maximum;
             const sonar::Quality chosen = sonar::chooseQuality(scene.config, scene.snapshot);
             const double error = difference(scene, chosen, {2048, 16});
             const bool holds = error <= 2 * std::max(chosen.error, 0.05);
             const bool waste = chosen.error > 0.05 && error < chosen.error / 3;
             within += holds && !waste;
-            told += fmt::format("{}: {} x {}, predicted {:.3f}, {:.3f}\n", scene.name, chosen.rows,
-                                chosen.columns_per_beam, chosen.error, error);
+            reported += fmt::format("{}: {} x {}, predicted {:.3f}, {:.3f}\n", scene.name, chosen.rows,
+                                    chosen.columns_per_beam, chosen.error, error);
             ++all;
         }
-    EXPECT_GE(within, 0.95 * all) << told;
+    EXPECT_GE(within, 0.95 * all) << reported;
 }
 
 }  // namespace

@@ -445,9 +445,9 @@ TEST(SpecklePingTest, ReportsMissingRequirements) {
     SonarConfig silent = coherent(boxes());
     silent.frequency_khz.reset();
     EXPECT_THAT(wordsOf(silent), ::testing::HasSubstr("without frequency_khz"));
-    SonarConfig drawn = coherent(boxes());
-    drawn.visibility = Visibility::Gl;
-    EXPECT_THAT(wordsOf(drawn), ::testing::HasSubstr("needs rays"));
+    SonarConfig rasterised = coherent(boxes());
+    rasterised.visibility = Visibility::Gl;
+    EXPECT_THAT(wordsOf(rasterised), ::testing::HasSubstr("needs rays"));
     SonarConfig mean = coherent(boxes());
     mean.model = Model::Cerqueira2017;
     EXPECT_THAT(wordsOf(mean), ::testing::HasSubstr("cerqueira2017"));

@@ -35,9 +35,9 @@ inline double apart(double a, double b) { return std::abs(std::remainder(a - b, 
 
 /** The min of these angles to a beam of a ping [rad]. */
 inline double nearestBeam(const types::Sonar& ping, double bearing) {
-    double least = 10;
-    for (const types::Angle& each : ping.bearings) least = std::min(least, apart(each.rad, bearing));
-    return least;
+    double minimum = 10;
+    for (const types::Angle& each : ping.bearings) minimum = std::min(minimum, apart(each.rad, bearing));
+    return minimum;
 }
 
 /** Fans of every kind, `rounds` of each. Bins are random, from 0.1 to 1. */

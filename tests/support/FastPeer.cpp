@@ -105,19 +105,19 @@ int listen(DomainParticipant& participant, Topic* topic, double seconds, size_t 
     std::cout << "ready" << std::endl;
     Bytes bytes;
     SampleInfo info;
-    size_t heard = 0, size = 0;
+    size_t received = 0, size = 0;
     bool met = false;
-    while (Clock::now() < end && heard < count) {
+    while (Clock::now() < end && received < count) {
         if (reader->take_next_sample(&bytes, &info) != ReturnCode_t::RETCODE_OK || !info.valid_data) {
             std::this_thread::sleep_for(std::chrono::microseconds(200));
         } else if (hasStamp(bytes)) {
-            ++heard;
+            ++received;
             size = bytes.size();
         } else if (!std::exchange(met, true)) {
             std::cout << "met" << std::endl;
         }
     }
-    std::cout << "{\"count\": " << heard << ", \"size\": " << size << "}" << std::endl;
+    std::cout << "{\"count\": " << received << ", \"size\": " << size << "}" << std::endl;
     return 0;
 }
 

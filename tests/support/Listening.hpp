@@ -36,12 +36,12 @@ protected:
     /** Waits for the next pose. */
     std::optional<types::Pose> next(size_t reader = 0) {
         types::Pose pose;
-        if (!comesTrue([&] { return work(), readers[reader].port.readNew(pose); })) return std::nullopt;
+        if (!becomesTrue([&] { return work(), readers[reader].port.readNew(pose); })) return std::nullopt;
         return pose;
     }
     /** Waits for a notice that contains this text; returns whether it came. */
-    bool tells(const std::string& text) {
-        return comesTrue([&] {
+    bool reports(const std::string& text) {
+        return becomesTrue([&] {
             work();
             const std::vector<std::string> all = task.notices();
             return std::ranges::any_of(all, [&](const auto& line) { return line.find(text) != std::string::npos; });

@@ -168,10 +168,10 @@ private:
     static bool echoes(const OculusFire& asked, const device::Bytes& message) {
         const auto ping = device::oculusResult(message);
         if (!ping) return false;
-        const OculusFire& told = ping->fire;
-        const double gain = told.mode == 2 ? (told.gain_percent - 40) * 100 / 60 : told.gain_percent;
-        return told.mode == asked.mode && told.gamma == asked.gamma && told.flags == asked.flags &&
-               told.range == asked.range && std::abs(gain - asked.gain_percent) < 0.1;
+        const OculusFire& reported = ping->fire;
+        const double gain = reported.mode == 2 ? (reported.gain_percent - 40) * 100 / 60 : reported.gain_percent;
+        return reported.mode == asked.mode && reported.gamma == asked.gamma && reported.flags == asked.flags &&
+               reported.range == asked.range && std::abs(gain - asked.gain_percent) < 0.1;
     }
     bool accepts(const OculusHeader& header) const override { return header.source == source_; }
 

@@ -12,7 +12,7 @@ constexpr std::chrono::seconds patience{60};
 
 /** Waits until the condition is true; returns false after patience. */
 template <class Condition>
-bool comesTrue(Condition&& condition) {
+bool becomesTrue(Condition&& condition) {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (!condition()) {
         if (std::chrono::steady_clock::now() > end) return false;
@@ -24,7 +24,7 @@ bool comesTrue(Condition&& condition) {
 /** Returns whether a count that another thread increments reaches `whole` without pausing for longer than patience. */
 inline bool reaches(const std::atomic<int>& count, int whole) {
     while (count < whole)
-        if (!comesTrue([&, before = count.load()] { return count > before; })) return false;
+        if (!becomesTrue([&, before = count.load()] { return count > before; })) return false;
     return true;
 }
 

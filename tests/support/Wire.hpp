@@ -44,7 +44,7 @@ public:
 
     void say(const Bytes& bytes) const { EXPECT_EQ(::write(file_, bytes.data(), bytes.size()), ssize_t(bytes.size())); }
     /** Returns the next bytes; throws if none arrive. */
-    Bytes hear() const {
+    Bytes receive() const {
         pollfd ready{file_, POLLIN, 0};
         Bytes bytes(4096);
         const auto patience = static_cast<int>(std::chrono::milliseconds(test::patience).count());

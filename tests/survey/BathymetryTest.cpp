@@ -406,7 +406,7 @@ TEST_F(BathymetryTest, FilesThatAreNoSurveyAreRefused) {
     }
 }
 
-TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunGoesOn) {
+TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunContinues) {
     SceneConfig config;
     config.bathymetry = config_;
     config.bathymetry->file = cutTiff("short.tif", 200, 200);

@@ -11,17 +11,18 @@ using ::testing::ElementsAre;
 
 const std::vector<CsvColumn> columns{{"time"}, {"level_db", -10, 0}};
 
-std::vector<std::vector<double>> rowsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
+std::vector<std::vector<double>> rowsOf(const std::string& text, size_t minimum = 1,
+                                        const CsvValidator& validate = {}) {
     const Folder folder;
     std::ofstream(folder / "a.csv", std::ios::binary) << text;
-    return readCsv(folder / "a.csv", columns, least, judge);
+    return readCsv(folder / "a.csv", columns, minimum, validate);
 }
 
 /** Returns "line:column: path: message" of each diagnostic. */
-std::vector<std::string> diagnosticsOf(const std::string& text, size_t least = 1, const CsvJudge& judge = {}) {
+std::vector<std::string> diagnosticsOf(const std::string& text, size_t minimum = 1, const CsvValidator& validate = {}) {
     std::vector<std::string> diagnostics;
     try {
-        rowsOf(text, least, judge);
+        rowsOf(text, minimum, validate);
     } catch (const ConfigError& error) {
         for (Diagnostic diagnostic : error.diagnostics()) {
             diagnostic.file.clear();
@@ -52,7 +53,7 @@ TEST(CsvTest, ReportsErrorsWithTheirPlace) {
 }
 
 TEST(CsvTest, TheCheckGetsEachRowAndThePreviousRow) {
-    const CsvJudge ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
+    const CsvValidator ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
         return before && row[0] <= before->front() ? std::vector<CsvDiagnostic>{{0, "must increase"}}
                                                    : std::vector<CsvDiagnostic>{};
     };

@@ -58,14 +58,14 @@ TEST(ExtentTest, NoPointOfATriangleIsNearerThanTheNearest) {
     for (int i = 0; i < 200; ++i) {
         const glm::dvec3 a = point(), b = point(), c = point(), p = point();
         const double nearest = glm::distance(p, nearestOfTriangle(p, a, b, c));
-        double least = 1e9;
+        double minimum = 1e9;
         for (int k = 0; k < 2000; ++k) {
             double u = share(random), v = share(random);
             if (u + v > 1) u = 1 - u, v = 1 - v;
-            least = std::min(least, glm::distance(p, a + u * (b - a) + v * (c - a)));
+            minimum = std::min(minimum, glm::distance(p, a + u * (b - a) + v * (c - a)));
         }
-        EXPECT_LE(nearest, least + 1e-12);
-        EXPECT_GT(nearest, least - 0.3);
+        EXPECT_LE(nearest, minimum + 1e-12);
+        EXPECT_GT(nearest, minimum - 0.3);
     }
 }
 

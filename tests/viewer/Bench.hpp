@@ -11,7 +11,7 @@
 
 namespace insonify::viewer {
 
-using test::comesTrue;
+using test::becomesTrue;
 
 /** 1 in bins 40 to 49 of beams 10 to 19, of 32 beams over 90 degrees and 100 bins of 0.15 m; 0 elsewhere. */
 inline std::shared_ptr<types::Sonar> blockPing(int64_t time = 3'000'000, uint32_t beams = 32, uint32_t bins = 100) {

@@ -94,7 +94,7 @@ public:
         send(frame + text);
     }
     /** Returns the payload of the next message; none if the connection was closed or a close frame arrived. */
-    std::optional<std::string> hear() {
+    std::optional<std::string> nextMessage() {
         while (true) {
             if (!fill(2)) return std::nullopt;
             const auto byte = [&](size_t i) { return static_cast<unsigned char>(received_[i]); };
@@ -111,7 +111,7 @@ public:
             if (code == 1 || code == 2) return payload;
         }
     }
-    std::string heard() { return hear().value_or("nothing"); }
+    std::string textOfNext() { return nextMessage().value_or("nothing"); }
     int closeCode() const { return close_code_; }  ///< 0: no close frame arrived.
 
 private:

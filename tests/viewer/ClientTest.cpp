@@ -31,13 +31,13 @@ T at(const std::string& bytes, size_t place) {
 Client page(uint16_t port) {
     Client client(port);
     EXPECT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
-    EXPECT_EQ(json::parse(client.hear().value_or("{}"))["type"], "interfaces");
+    EXPECT_EQ(json::parse(client.nextMessage().value_or("{}"))["type"], "interfaces");
     return client;
 }
 
 /** Returns the JSON of the next ping that a page receives. */
 json nextPing(Client& client) {
-    while (const auto message = client.hear())
+    while (const auto message = client.nextMessage())
         if (message->size() > 8 && at<uint32_t>(*message, 0) == ping_kind)
             return json::parse(message->substr(8, at<uint32_t>(*message, 4)));
     return nullptr;
@@ -62,18 +62,18 @@ TEST(ClientTest, SendsFoxgloveItsChannelAndThePingAsACdrMessage) {
     Client client(bench.port());
     EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     EXPECT_THAT(client.head(), HasSubstr("Sec-WebSocket-Protocol: foxglove.websocket.v1"));
-    EXPECT_EQ(json::parse(client.heard())["op"], "serverInfo");
-    const json channel = json::parse(client.heard())["channels"][0];
+    EXPECT_EQ(json::parse(client.textOfNext())["op"], "serverInfo");
+    const json channel = json::parse(client.textOfNext())["channels"][0];
     EXPECT_EQ(channel["topic"], "/sonar/port");
     EXPECT_EQ(channel["schemaName"], "marine_acoustic_msgs/ProjectedSonarImage");
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":99}]})");
-    EXPECT_THAT(client.heard(), HasSubstr("no channel 99"));
+    EXPECT_THAT(client.textOfNext(), HasSubstr("no channel 99"));
     client.say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":0}]})");
     client.say("is the subscription taken?");
-    EXPECT_THAT(client.heard(), HasSubstr("not a JSON object"));
+    EXPECT_THAT(client.textOfNext(), HasSubstr("not a JSON object"));
     bench.show(blockPing());
 
-    const std::string message = client.heard();
+    const std::string message = client.textOfNext();
     ASSERT_GT(message.size(), 13u);
     EXPECT_EQ(message[0], 1);
     EXPECT_EQ(at<uint32_t>(message, 1), 5u);
@@ -102,8 +102,8 @@ TEST(ClientTest, FoxglovesNewerProtocolIsTheSame) {
         Client client(bench.port());
         EXPECT_THAT(client.upgrade(offered), HasSubstr("101"));
         EXPECT_THAT(client.head() + "\r\n", HasSubstr(std::string("Sec-WebSocket-Protocol: ") + agreed + "\r\n"));
-        EXPECT_EQ(json::parse(client.heard())["op"], "serverInfo");
-        EXPECT_EQ(json::parse(client.heard())["op"], "advertise");
+        EXPECT_EQ(json::parse(client.textOfNext())["op"], "serverInfo");
+        EXPECT_EQ(json::parse(client.textOfNext())["op"], "advertise");
     }
     EXPECT_THAT(Client(bench.port()).upgrade("foxglove.sdk.v10"), HasSubstr("400"));
 }
@@ -116,7 +116,7 @@ TEST(ClientTest, EachServerHasItsOwnSession) {
         for (int k = 0; k < 2; ++k) {
             Client client(bench.port());
             ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
-            sessions.insert(json::parse(client.heard())["sessionId"].get<std::string>());
+            sessions.insert(json::parse(client.textOfNext())["sessionId"].get<std::string>());
         }
     }
     EXPECT_EQ(sessions.size(), 2u) << "the same after a reconnection, another after a restart";
@@ -127,10 +127,10 @@ TEST(ClientTest, SendsFoxgloveTheTimeOfTheDeployment) {
     bench.start();
     Client client(bench.port());
     ASSERT_THAT(client.upgrade(foxglove_sdk_protocol), HasSubstr("101"));
-    client.heard();
-    client.heard();
+    client.textOfNext();
+    client.textOfNext();
     bench.show(blockPing());
-    const std::string time = client.heard();
+    const std::string time = client.textOfNext();
     ASSERT_EQ(time.size(), 9u);
     EXPECT_EQ(time[0], 2);
     EXPECT_EQ(at<uint64_t>(time, 1), 3'500'000'000u) << "the clock, not the stamp";
@@ -143,7 +143,7 @@ TEST(ClientTest, SendsTheNewestSampleAtOnceToANewSubscriber) {
     Client client(bench.port());
     ASSERT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
     client.say(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":1}]})");
-    while (const auto message = client.hear()) {
+    while (const auto message = client.nextMessage()) {
         if ((*message)[0] != 1) continue;
         ros::Image image;
         ros::decode(std::span(*message).subspan(13), image);
@@ -218,11 +218,11 @@ TEST(ClientTest, AnswersAndCountsInvalidRequests) {
     EXPECT_THAT(answerTo(port, "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n"),
                 StartsWith("HTTP/1.1 431"));
     EXPECT_EQ(bench.viewer.counts().refused, 4u);
-    const auto told = [&] {
+    const auto reported = [&] {
         std::lock_guard lock(mutex);
         return !warnings.empty();
     };
-    EXPECT_TRUE(comesTrue(told));
+    EXPECT_TRUE(becomesTrue(reported));
     std::lock_guard lock(mutex);
     EXPECT_THAT(warnings, testing::Each(testing::MatchesRegex("viewer: [1-4] connections? refused; the last: .*")));
     EXPECT_THAT(bench.viewer.notices(), testing::Contains("4 connections refused"));
@@ -238,11 +238,11 @@ TEST(ClientTest, InvalidFramesCloseOnlyThatClientAndAreCounted) {
     for (const auto& [bytes, code] : frames) {
         Client client = page(bench.port());
         client.send(bytes);
-        while (client.hear()) {
+        while (client.nextMessage()) {
         }
         EXPECT_EQ(client.closeCode(), code);
     }
-    EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 1; }));
+    EXPECT_TRUE(becomesTrue([&] { return bench.viewer.counts().clients == 1; }));
     EXPECT_EQ(bench.viewer.counts().refused, 3u);
     bench.show(blockPing());
     EXPECT_EQ(nextPing(good)["count"], 1);
@@ -306,9 +306,9 @@ TEST(ClientTest, AClientThatNeverReadsDelaysNoCycleAndLosesTheOldest) {
             EXPECT_EQ(nextPing(good)["time_us"], shown + 1);
         }
     });
-    const bool goes_on = test::reaches(shown, 300);
-    EXPECT_TRUE(goes_on) << "ping " << shown << " waits for a client that never reads";
-    if (!goes_on) deaf.reset();
+    const bool continues = test::reaches(shown, 300);
+    EXPECT_TRUE(continues) << "ping " << shown << " waits for a client that never reads";
+    if (!continues) deaf.reset();
     all.get();
     EXPECT_GT(bench.viewer.counts().dropped, 200u) << "of 300 pings of 512 kB a socket holds few";
 }
@@ -319,7 +319,7 @@ TEST(ClientTest, DisconnectsAClientThatDoesNotAnswer) {
     Bench bench(config);
     bench.start();
     const Client silent = page(bench.port());  // a client, because it has received the first message
-    EXPECT_TRUE(comesTrue([&] { return bench.viewer.counts().clients == 0; }));
+    EXPECT_TRUE(becomesTrue([&] { return bench.viewer.counts().clients == 0; }));
 }
 
 }  // namespace

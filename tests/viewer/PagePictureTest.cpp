@@ -56,12 +56,13 @@ TEST_F(PageTest, TheCursorShowsRangeBearingAndLevel) {
     for (const char* level : {"0.0 dB", "10.0 dB"}) {
         double range = 0, bearing = 0;
         char side[8] = "", rest[32] = "";
-        const std::string told = readAt(6.75, 8);
-        ASSERT_EQ(std::sscanf(told.c_str(), "%lf m %lf° %7s %31[^\n]", &range, &bearing, side, rest), 4) << told;
+        const std::string reported = readAt(6.75, 8);
+        ASSERT_EQ(std::sscanf(reported.c_str(), "%lf m %lf° %7s %31[^\n]", &range, &bearing, side, rest), 4)
+            << reported;
         EXPECT_NEAR(range, 6.75, 0.05);
         EXPECT_NEAR(bearing, 8, 0.5);
         EXPECT_STREQ(side, "port");
-        EXPECT_NEAR(std::stod(rest), std::stod(level), 0.05) << told;
+        EXPECT_NEAR(std::stod(rest), std::stod(level), 0.05) << reported;
         running->deployment().call("source.setLevel", {"10"});
         ASSERT_TRUE(becomes("Math.abs(insonify.fan.ping.top_db - 10) < 0.1"));
     }
@@ -156,8 +157,8 @@ TEST_F(PageTest, TwoClicksMeasureDistanceAndDirection) {
     EXPECT_NEAR(types::degrees(found["bearing"].get<double>()), -30, 1);
     EXPECT_THAT(text("measured"), testing::AllOf(HasSubstr(" m apart, towards -"), HasSubstr("stbd, 0")));
     double heading = 0;
-    const std::string told = text("measured");
-    ASSERT_EQ(std::sscanf(told.c_str() + told.find("stbd, ") + 6, "%lf° true", &heading), 1) << told;
+    const std::string reported = text("measured");
+    ASSERT_EQ(std::sscanf(reported.c_str() + reported.find("stbd, ") + 6, "%lf° true", &heading), 1) << reported;
     EXPECT_NEAR(heading, 30, 1) << "the sonar looks north";
     const auto at = windowAt(3, 0);
     for (const char* kind : {"mousePressed", "mouseReleased"})
@@ -201,7 +202,7 @@ TEST_F(PageTest, ASnapshotIsThePictureAsAFile) {
     click("snapshot");
     const std::filesystem::path file =
         saved / value("`source.ping_${insonify.fan.ping.time_us}.png`").get<std::string>();
-    ASSERT_TRUE(comesTrue([&] { return std::filesystem::exists(file); })) << file;
+    ASSERT_TRUE(becomesTrue([&] { return std::filesystem::exists(file); })) << file;
     const cv::Mat picture = cv::imread(file.string());  // of blue, green, red
     EXPECT_EQ(picture.rows, value("insonify.fan.canvas.height + 22"));
     EXPECT_EQ(picture.cols, value("insonify.fan.canvas.width"));

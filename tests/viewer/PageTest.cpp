@@ -205,8 +205,8 @@ TEST_F(PageTest, DrawsTheSceneTheWaterThePathAndTheFan) {
     EXPECT_TRUE(becomes("look().path > 5")) << "a path grows until it is longer than the vehicle that hides it";
     const json seen = value("look()");
     EXPECT_GT(seen["colours"], 50) << seen;
-    for (const auto& [part, least] : {std::pair("scene", 1000), {"fan", 1000}, {"water", 1000}})
-        EXPECT_GT(seen[part], least) << seen;
+    for (const auto& [part, minimum] : {std::pair("scene", 1000), {"fan", 1000}, {"water", 1000}})
+        EXPECT_GT(seen[part], minimum) << seen;
 
     running->deployment().call("world.setWater", {"false"});
     EXPECT_TRUE(becomes("!insonify.world().water.visible")) << "a later snapshot has none";
@@ -275,7 +275,7 @@ TEST_F(PageTest, TheFanIsAtThePoseOfItsPing) {
     for (int i = 0; i < 2; ++i) {  // an instant with a snapshot, one without
         const int64_t before = now();
         running->deployment().step();
-        ASSERT_TRUE(comesTrue([&] { return now() == before + 10'000; }));
+        ASSERT_TRUE(becomesTrue([&] { return now() == before + 10'000; }));
         const std::string time = std::to_string(now() / 20'000 * 20'000);
         EXPECT_TRUE(becomes("insonify.fan.ping.time_us === " + std::to_string(now())));
         EXPECT_TRUE(becomes("insonify.snapshot().time_us === " + time));
@@ -283,7 +283,7 @@ TEST_F(PageTest, TheFanIsAtThePoseOfItsPing) {
     }
 }
 
-TEST_F(PageTest, EachVehicleHasItsOwnPathThatEndsWhenTimeGoesBack) {
+TEST_F(PageTest, EachVehicleHasItsOwnPathThatEndsWhenTimeJumpsBack) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.vehicles.size === 1"));
     value(

@@ -14,7 +14,7 @@ namespace {
 
 /** Returns the next answer, skipping other messages. */
 nlohmann::json answer(Client& client) {
-    while (const auto message = client.hear()) {
+    while (const auto message = client.nextMessage()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
         if (json.is_object() && json["type"] == "answer") return json;
     }
@@ -124,8 +124,8 @@ private:
 Client joined(const SceneBench& bench) {
     Client client(bench.publisher.port());
     client.upgrade(foxglove_protocol);
-    EXPECT_THAT(client.heard(), testing::HasSubstr("serverInfo"));
-    EXPECT_THAT(client.heard(), testing::HasSubstr("advertise"));
+    EXPECT_THAT(client.textOfNext(), testing::HasSubstr("serverInfo"));
+    EXPECT_THAT(client.textOfNext(), testing::HasSubstr("advertise"));
     return client;
 }
 
@@ -134,10 +134,10 @@ void subscribe(Client& client, int channel) {
 }
 
 /** Returns whether a sample arrives, skipping other messages. */
-bool hearsSample(Client& client) {
+bool receivesSample(Client& client) {
     const auto end = std::chrono::steady_clock::now() + test::patience;
     while (std::chrono::steady_clock::now() < end) {
-        const auto message = client.hear();
+        const auto message = client.nextMessage();
         if (!message || message->front() == 1) return message.has_value();
     }
     return false;
@@ -148,7 +148,7 @@ TEST(PublisherTest, ASubscriberDuringAnotherSourceReceivesTheSceneToo) {
     Client watcher = joined(bench);
     subscribe(watcher, SceneBench::scene_channel);
     bench.offerScene(1);
-    ASSERT_TRUE(hearsSample(watcher)) << "it is new to nobody after this";
+    ASSERT_TRUE(receivesSample(watcher)) << "it is new to nobody after this";
     Client busy = joined(bench);
     subscribe(busy, SceneBench::picture_channel);
     const std::jthread pings([&](const std::stop_token& stop) {
@@ -157,14 +157,14 @@ TEST(PublisherTest, ASubscriberDuringAnotherSourceReceivesTheSceneToo) {
     for (int newcomer = 0; newcomer < 100; ++newcomer) {
         Client client = joined(bench);
         subscribe(client, SceneBench::scene_channel);
-        ASSERT_TRUE(hearsSample(client)) << "newcomer " << newcomer;
+        ASSERT_TRUE(receivesSample(client)) << "newcomer " << newcomer;
     }
 }
 
 /** Returns the number of samples received before the server's clock shows this time. */
 int samplesUntil(Client& client, uint64_t seconds) {
     int samples = 0;
-    while (const auto message = client.hear()) {
+    while (const auto message = client.nextMessage()) {
         if (*message == timeMessage(seconds * 1'000'000'000)) return samples;
         samples += message->front() == 1 ? 1 : 0;
     }
@@ -178,12 +178,12 @@ TEST(PublisherTest, DoesNotSendASceneAgainForOtherSubscriptions) {
     bench.offerScene(1);
     EXPECT_EQ(samplesUntil(watcher, 1), 0);
     subscribe(watcher, SceneBench::scene_channel);
-    ASSERT_TRUE(hearsSample(watcher));
+    ASSERT_TRUE(receivesSample(watcher));
     bench.offerPing(2);
     EXPECT_EQ(samplesUntil(watcher, 2), 0);
     Client other = joined(bench);
     subscribe(other, SceneBench::ping_channel);
-    ASSERT_TRUE(hearsSample(other));
+    ASSERT_TRUE(receivesSample(other));
     bench.offerPing(3);
     EXPECT_EQ(samplesUntil(watcher, 3), 0);
 }

@@ -61,7 +61,7 @@ TEST(SceneMeshTest, SendsMeshesWithTheVerticesThatTheyUse) {
     EXPECT_EQ(message.json["left_out"], 0);
 }
 
-TEST(SceneMeshTest, OmitsAndCountsTheSmallestObjectsOfTooManyTriangles) {
+TEST(SceneMeshTest, OmitsAndCountsSmallObjectsBeyondTheTriangleLimit) {
     const MeshMessage message = meshTakenApart(sceneMessage(scene(100, 10), 115, "scene.snapshot"));
     EXPECT_EQ(message.json["triangles"], 120);
     EXPECT_EQ(message.json["left_out"], 1);

@@ -29,11 +29,11 @@ TEST(ServerTest, AnErrorClosesOnlyItsSession) {
     Client asks(server.port()), silent(server.port());
     for (Client* client : {&asks, &silent}) ASSERT_THAT(client->upgrade(page_protocol), testing::HasSubstr("101"));
     asks.say("{}");
-    EXPECT_EQ(asks.hear(), std::nullopt);
-    EXPECT_TRUE(comesTrue([&] { return server.counts().clients == 1; }));
+    EXPECT_EQ(asks.nextMessage(), std::nullopt);
+    EXPECT_TRUE(becomesTrue([&] { return server.counts().clients == 1; }));
     EXPECT_EQ(server.counts().refused, 2u);
     server.toPages(0, {"", bytesOf("still there"), true});
-    EXPECT_EQ(silent.heard(), "still there");
+    EXPECT_EQ(silent.textOfNext(), "still there");
 }
 
 /** Serves one file, and nothing else. */
@@ -59,7 +59,7 @@ TEST(ServerTest, CountsHandshakesUnderWayAsClients) {
     EXPECT_THAT(answers, testing::ElementsAre(testing::Pair(testing::HasSubstr("101"), 3),
                                               testing::Pair(testing::HasSubstr("503"), 9)));
     asking.clear();
-    EXPECT_TRUE(comesTrue([&] { return server.counts().clients == 0; }));
+    EXPECT_TRUE(becomesTrue([&] { return server.counts().clients == 0; }));
 }
 
 /** Otherwise a link on the page would reveal the token in its address. */
@@ -74,13 +74,13 @@ TEST(ServerTest, CountsReplacedFramesForEachClient) {
     Server server({}, quiet);
     Client client(server.port());
     ASSERT_THAT(client.upgrade(page_protocol), testing::HasSubstr("101"));
-    ASSERT_TRUE(comesTrue([&] { return server.pages() == 1; }));
+    ASSERT_TRUE(becomesTrue([&] { return server.pages() == 1; }));
     constexpr uint64_t published = 20000;
     for (uint64_t i = 0; i < published; ++i) server.toPages(0, {"", bytesOf("sample"), true});
     server.toPages(1, {"", bytesOf("last"), true});
-    uint64_t heard = 0;
-    while (client.heard() == "sample") ++heard;
-    EXPECT_EQ(heard + server.counts().dropped, published);
+    uint64_t textOfNext = 0;
+    while (client.textOfNext() == "sample") ++textOfNext;
+    EXPECT_EQ(textOfNext + server.counts().dropped, published);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ protected:
         return nullptr;
     }
     bool holds(const std::string& property, const json& wanted) {
-        return comesTrue([&] { return held(property) == wanted; });
+        return becomesTrue([&] { return held(property) == wanted; });
     }
     /** Waits for further statuses; every field shows each of them. */
     void nextStatuses(int count = 2) {

@@ -142,8 +142,8 @@ TEST(ViewerTaskTest, AcceptsAllKindsOfSamples) {
     bench.start();
     Client client(bench.port());
     EXPECT_THAT(client.upgrade(foxglove_protocol), HasSubstr("101"));
-    ASSERT_TRUE(client.hear());
-    const auto channels = nlohmann::json::parse(client.heard())["channels"];
+    ASSERT_TRUE(client.nextMessage());
+    const auto channels = nlohmann::json::parse(client.textOfNext())["channels"];
     std::vector<std::pair<std::string, std::string>> topics;
     for (const auto& channel : channels) topics.emplace_back(channel["topic"], channel["schemaName"]);
     using testing::Pair;
@@ -163,7 +163,7 @@ TEST(ViewerTaskTest, AcceptsAllKindsOfSamples) {
 /** Sends a request and returns the answer. */
 nlohmann::json replyTo(Client& client, const std::string& request) {
     client.say(request);
-    while (const auto message = client.hear()) {
+    while (const auto message = client.nextMessage()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
         if (json.is_object() && json["type"] == "answer") return json;
     }
@@ -192,7 +192,7 @@ TEST(ViewerTaskTest, APageSetsPropertiesButNoStates) {
 
 /** Returns the next text message with this op. */
 nlohmann::json nextOf(Client& client, const std::string& op) {
-    while (const auto message = client.hear()) {
+    while (const auto message = client.nextMessage()) {
         const auto json = nlohmann::json::parse(*message, nullptr, false);
         if (json.is_object() && json["op"] == op) return json;
     }
@@ -247,9 +247,9 @@ TEST(ViewerTaskTest, SendsFoxgloveParametersThatChange) {
     running.deployment().call("world.setWater", {"false"});
     running.deployment().call("source.setLevel", {"3"});
     for (nlohmann::json level = 1; level != 3;) {
-        const auto told = valuesIn(nextOf(client, "parameterValues"));
-        ASSERT_EQ(told.size(), 1u) << "of this one alone";
-        level = told.at("source.level");
+        const auto reported = valuesIn(nextOf(client, "parameterValues"));
+        ASSERT_EQ(reported.size(), 1u) << "of this one alone";
+        level = reported.at("source.level");
         ASSERT_TRUE(level == 1 || level == 3) << level;
     }
 }
@@ -292,7 +292,7 @@ types::SnapshotPtr withDoorAt(const types::GeometryPtr& geometry, double north) 
 foxglove::SceneUpdate nextScene(Client& client) {
     foxglove::SceneUpdate update;
     std::optional<std::string> message;
-    do message = client.hear();
+    do message = client.nextMessage();
     while (message && (*message)[0] != 1);
     if (message) ros::decode(std::span(*message).subspan(13), update);
     return update;
@@ -336,18 +336,18 @@ TEST(ViewerTaskTest, APagePausesALockstepRunAndStepsIt) {
     Client client(running.port());
     ASSERT_THAT(client.upgrade(page_protocol), HasSubstr("101"));
     const auto time = [&] { return running.deployment().status().now.microseconds; };
-    ASSERT_TRUE(comesTrue([&] { return time() > 1'000'000; }));
+    ASSERT_TRUE(becomesTrue([&] { return time() > 1'000'000; }));
     EXPECT_THAT(replyTo(client, R"({"id":1,"step":true})")["refused"], "cannot step: the deployment is not paused");
     EXPECT_EQ(replyTo(client, R"({"id":2,"pause":true})")["result"], "");
     const int64_t paused = time();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(time(), paused);
     EXPECT_EQ(replyTo(client, R"({"id":3,"step":true})")["result"], "");
-    EXPECT_TRUE(comesTrue([&] { return time() > paused; }));
+    EXPECT_TRUE(becomesTrue([&] { return time() > paused; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(time(), paused + 10'000);
     EXPECT_EQ(replyTo(client, R"({"id":4,"pause":false})")["result"], "");
-    EXPECT_TRUE(comesTrue([&] { return time() > paused + 50'000; }));
+    EXPECT_TRUE(becomesTrue([&] { return time() > paused + 50'000; }));
 }
 
 }  // namespace

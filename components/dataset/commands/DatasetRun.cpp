@@ -192,12 +192,12 @@ void DatasetRun::checkDrawn() const {
             checkAssignment(fmt::format("{}.choice[{}]", path, k), drawn.property, drawn.choice[k]);
         if (!drawn.choice.empty()) continue;
         const double first = drawn.law.draw(wordOf(sweep_, 0, i));
-        double least = first, most = first;
+        double minimum = first, maximum = first;
         for (uint64_t index = 1; index < samples_->count(); ++index) {
             const double value = drawn.law.draw(wordOf(sweep_, index, i));
-            least = std::min(least, value), most = std::max(most, value);
+            minimum = std::min(minimum, value), maximum = std::max(maximum, value);
         }
-        for (const double value : {first, least, most})
+        for (const double value : {first, minimum, maximum})
             checkAssignment(path, drawn.property, {fmt::format("{}", value), drawn.line, drawn.column});
     }
 }

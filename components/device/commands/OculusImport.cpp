@@ -54,7 +54,7 @@ deployer::Imported importOculus(const std::filesystem::path& recording, std::opt
     }
     const OculusPing first = pingOf(recorded->ping);
     const int bits = first.bits > 8 ? 16 : 8;
-    deployer::FanTasks tasks{.largest_code = std::exp2(bits) - 1};
+    deployer::FanTasks tasks{.max_code = std::exp2(bits) - 1};
     if (spec) {
         tasks = deployer::FanTasks::of(*spec);
         refuseWithoutTrajectory(tasks, spec->file);
@@ -75,8 +75,7 @@ deployer::Imported importOculus(const std::filesystem::path& recording, std::opt
             pose.time = time;
             log.write(stream, pose);
         }
-        log.write(imported.stream,
-                  deployer::withCodesTimes(tasks.largest_code / ping.largestCode(), sonarOf(ping, time)),
+        log.write(imported.stream, deployer::withCodesTimes(tasks.max_code / ping.maxCode(), sonarOf(ping, time)),
                   {{"insonify_frequency_khz", fmt::format("{}", ping.frequency_hz / 1e3)}});
     }
     log.close();

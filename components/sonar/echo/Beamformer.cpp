@@ -35,10 +35,10 @@ std::vector<size_t> groupsOf(const Fan& cells) {
 /** Removes weights below the floor from both ends. */
 template <class Run>
 void trim(Run& run, double floor) {
-    const auto heard = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
-    const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), heard);
+    const auto received = [&](float weight) { return std::abs(static_cast<double>(weight)) >= floor; };
+    const auto last = std::find_if(run.weights.rbegin(), run.weights.rend(), received);
     run.weights.erase(last.base(), run.weights.end());
-    const auto first = std::ranges::find_if(run.weights, heard);
+    const auto first = std::ranges::find_if(run.weights, received);
     run.first += static_cast<size_t>(first - run.weights.begin());
     run.weights.erase(run.weights.begin(), first);
 }
@@ -115,10 +115,10 @@ Beamformer::Band Beamformer::bandOf(const Beam& beam, const Fan& cells, const Ru
 }
 
 void Beamformer::sumGroup(size_t group, std::span<const float> echoes) {
-    static constexpr float ones[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
+    static constexpr float items[group_cells] = {1, 1, 1, 1, 1, 1, 1, 1};
     float* sum = &grouped_[group * bin_count_];
     std::fill(sum, sum + bin_count_, 0.0f);
-    addRows(&echoes[groups_[group] * bin_count_], bin_count_, {ones, cellsIn(group)}, sum, bin_count_);
+    addRows(&echoes[groups_[group] * bin_count_], bin_count_, {items, cellsIn(group)}, sum, bin_count_);
 }
 
 void Beamformer::form(size_t beam, std::span<const float> echoes, std::span<float> bins) const {

@@ -20,8 +20,8 @@ public:
     /** Returns the intensity of bin j [1/m^2, relative to the source's at 1 m], at most the largest float. An A_j that
      *  is not positive is no echo. */
     float intensity(size_t j, double accumulated) const {
-        constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
-        return accumulated > 0 ? static_cast<float>(std::min(accumulated * factor_[j], largest)) : 0.0f;
+        constexpr double maximum = static_cast<double>(std::numeric_limits<float>::max());
+        return accumulated > 0 ? static_cast<float>(std::min(accumulated * factor_[j], maximum)) : 0.0f;
     }
 
     /** Returns spreading and absorption of bin j, of intensity [1/m^2]. */

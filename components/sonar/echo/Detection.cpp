@@ -25,15 +25,15 @@ double strongestOf(const std::vector<float>& bins) {
 Detector::Detector(const DetectionConfig& config, const types::Sonar& ping, double bin_width)
     : ping_(ping),
       bin_width_(bin_width),
-      least_(std::max(strongestOf(ping.bins) * shareOf(config.threshold_db),
-                      config.floor_db ? shareOf(*config.floor_db) : 0)),
+      minimum_(std::max(strongestOf(ping.bins) * shareOf(config.threshold_db),
+                        config.floor_db ? shareOf(*config.floor_db) : 0)),
       gate_share_(shareOf(-config.gate_db)) {}
 
 std::optional<Detection> Detector::strongest(uint32_t beam) const {
     const std::span<const float> bins = binsOf(ping_, beam);
     const auto weaker = [](float a, float b) { return !(a >= b) && !std::isnan(b); };
     const auto peak = std::max_element(bins.begin(), bins.end(), weaker);
-    if (peak == bins.end() || !(*peak > 0) || *peak < least_) return std::nullopt;
+    if (peak == bins.end() || !(*peak > 0) || *peak < minimum_) return std::nullopt;
     const double gate = *peak * gate_share_;
     auto from = peak, to = peak + 1;
     while (from != bins.begin() && *(from - 1) >= gate) --from;
@@ -49,7 +49,7 @@ std::optional<Detection> Detector::strongest(uint32_t beam) const {
 
 std::optional<Detection> Detector::first(uint32_t beam) const {
     const std::span<const float> bins = binsOf(ping_, beam);
-    const auto found = std::find_if(bins.begin(), bins.end(), [this](float bin) { return bin > 0 && bin >= least_; });
+    const auto found = std::find_if(bins.begin(), bins.end(), [this](float bin) { return bin > 0 && bin >= minimum_; });
     if (found == bins.end()) return std::nullopt;
     return Detection{(static_cast<double>(found - bins.begin()) + 0.5) * bin_width_, *found,
                      static_cast<size_t>(found - bins.begin())};

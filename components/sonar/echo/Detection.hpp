@@ -55,7 +55,7 @@ public:
 private:
     const types::Sonar& ping_;
     double bin_width_;   ///< [m]
-    double least_;       ///< Min value of a return [1].
+    double minimum_;     ///< Min value of a return [1].
     double gate_share_;  ///< Min value of the other bins of a return, relative to its strongest bin [1].
 };
 

@@ -22,7 +22,7 @@ void tabulateElevation(const RenderPlan& plan, EchoRules& rules) {
 
 /** Returns the min width of a sample [rad]: a quarter of the narrower of a row and a column, because images are finer
  *  at their edges. */
-double smallestSample(const RenderPlan& plan) {
+double minSample(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const double row = config.beam_height_deg / config.rows(), column = config.beamWidthDeg() / config.columnsPerBeam();
     return types::radians(std::min(row, column)) / 4;
@@ -41,7 +41,7 @@ double samplesOfLobe(const RenderPlan& plan, double samples) {
     double widest = 0;
     for (const MaterialRecord& record : plan.laws.records)
         if (record.law.y > 0) widest = std::max(widest, double{record.law.z});
-    const double sample = smallestSample(plan);
+    const double sample = minSample(plan);
     return std::min(samples, 8 * std::numbers::pi * (widest / (sample * sample) + 1));
 }
 
@@ -56,7 +56,7 @@ EchoRules makeEchoRules(const RenderPlan& plan, const PingEffects& effects) {
     rules.strength_scale = strengthScale(plan);
     rules.laws = plan.laws;
     rules.looks_down = plan.config.across_track;
-    rules.hears_misses = plan.hears_misses;
+    rules.echoes_from_misses = plan.echoes_from_misses;
     rules.has_maps = plan.has(Pass::SurfaceMaps);
     rules.lattice = scattererLattice(plan);
     if (plan.config.frequency_khz) rules.turns_per_metre = 2e3 * *plan.config.frequency_khz / bins.speed_of_sound;
@@ -79,16 +79,16 @@ EchoRules makeEnergyRules(RenderPlan plan, const PingEffects& effects) {
 double strengthScale(const RenderPlan& plan) {
     const SonarConfig& config = plan.sampled;
     const BinGrid& bins = plan.grid;
-    constexpr double most = 1048576, max_sum = 8 * most;  // max of one deposit, and of a bin: half of 64 bits
-    if (config.model != Model::Physical) return 1;        // S and its weights are at most 1
+    constexpr double maximum = 1048576, max_sum = 8 * maximum;  // max of one deposit, and of a bin: half of 64 bits
+    if (config.model != Model::Physical) return 1;              // S and its weights are at most 1
     const double ratio =
         std::max(1.5, 0.5 * bins.bin_width / std::max(bins.range_min, 1e-3));  // of a bin's middle to its ranges
     const double pixels =
         static_cast<double>(plan.options.samples_per_pixel * config.rows()) * (config.columnsPerBeam() + 2);
-    const double lobe = plan.laws.loudestLobe(smallestSample(plan)), surface = plan.laws.loudest();
+    const double lobe = plan.laws.loudestLobe(minSample(plan)), surface = plan.laws.loudest();
     const double strongest = std::max(surface, lobe), sum = surface * pixels + lobe * samplesOfLobe(plan, pixels);
     const double scale = ratio * ratio * widestCell(plan) * std::max(plan.max_map_strength, 1.0);
-    return std::exp2(-std::ceil(std::max(0.0, std::log2(scale * std::max(strongest / most, sum / max_sum)))));
+    return std::exp2(-std::ceil(std::max(0.0, std::log2(scale * std::max(strongest / maximum, sum / max_sum)))));
 }
 
 }  // namespace insonify::sonar

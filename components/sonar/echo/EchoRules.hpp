@@ -32,9 +32,9 @@ struct EchoRules {
     double turns_per_metre = 0;         ///< Phase of an echo for each metre of its slant range, two way [1/m].
     std::vector<double>
         layers;  ///< Three values each: low and high above the water surface [m], share of the strongest [1].
-    bool has_maps = false;      ///< Cells have factors by surface maps.
-    bool looks_down = false;    ///< The sonar's x axis points down, so that elevations are above its y-z plane.
-    bool hears_misses = false;  ///< Whether effects process cells that are misses.
+    bool has_maps = false;            ///< Cells have factors by surface maps.
+    bool looks_down = false;          ///< The sonar's x axis points down, so that elevations are above its y-z plane.
+    bool echoes_from_misses = false;  ///< Whether effects process cells that are misses.
     std::vector<const PingEffect*> own;  ///< Effects with their own sums, which follow the channels.
 
     size_t channels() const { return features.has(Feature::Cerqueira2017) || features.has(Feature::Speckle) ? 2 : 1; }

@@ -19,9 +19,9 @@ struct CellTruth {
 /** An estimator that deposits into a beam of its own first, and from there into the sums and the truth: the same
  *  numbers in both. */
 template <class Estimator>
-class Told : public Estimator {
+class TruthEstimator : public Estimator {
 public:
-    Told(const EchoRules& rules, uint64_t* all_sums, const TruthSink* truth)
+    TruthEstimator(const EchoRules& rules, uint64_t* all_sums, const TruthSink* truth)
         : Estimator(rules, truth->one_beam.data()),
           truth_(*truth),
           channels_(rules.channels()),
@@ -29,7 +29,7 @@ public:
           all_(all_sums) {}
 
     /** Sets the truth of the next deposit. */
-    void regard(const CellTruth& cell) { shown_ = cell; }
+    void setCell(const CellTruth& cell) { shown_ = cell; }
 
     void depositCell(const Footprint& cell, uint beam, double strength_range) {
         Estimator::depositCell(cell, 0, strength_range);
@@ -93,12 +93,12 @@ void sumBatch(const EchoRules& rules, const Cells& cells, const Covered& covered
             estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
         return;
     }
-    Told<Estimator> estimator(rules, to.sums, to.truth);
+    TruthEstimator<Estimator> estimator(rules, to.sums, to.truth);
     for (int i = 0; i < cells.count; ++i) {
         const double x = cells.normal_x[i], y = cells.normal_y[i], z = cells.normal_z[i];
         const double facing = (x * cells.cos_az[i] + y * cells.sin_az[i]) * cells.cos_el[i] + z * cells.sin_el[i];
         const double up = rules.looks_down ? -cells.cos_az[i] * cells.cos_el[i] : cells.sin_el[i];
-        estimator.regard({cells.object[i], cells.hits[i], up, abs(facing) / sqrt(x * x + y * y + z * z)});
+        estimator.setCell({cells.object[i], cells.hits[i], up, abs(facing) / sqrt(x * x + y * y + z * z)});
         estimator.depositCell(footprintOf(covered, i), beamOf(i), covered.strength_range[i]);
     }
 }

@@ -25,14 +25,14 @@ struct Plane {
     glm::dvec3 u, v;
     explicit Plane(const glm::dvec3& normal) {
         const glm::dvec3 n = glm::abs(normal);
-        const glm::dvec3 least = n.x <= n.y && n.x <= n.z ? glm::dvec3(1, 0, 0)
-                                 : n.y <= n.z             ? glm::dvec3(0, 1, 0)
-                                                          : glm::dvec3(0, 0, 1);
-        u = glm::normalize(glm::cross(normal, least));
+        const glm::dvec3 minimum = n.x <= n.y && n.x <= n.z ? glm::dvec3(1, 0, 0)
+                                   : n.y <= n.z             ? glm::dvec3(0, 1, 0)
+                                                            : glm::dvec3(0, 0, 1);
+        u = glm::normalize(glm::cross(normal, minimum));
         v = glm::cross(normal, u);
     }
     /** Returns the direction in the plane in which a tensor is largest. */
-    glm::dvec3 largest(const glm::dmat3& tensor) const {
+    glm::dvec3 maximum(const glm::dmat3& tensor) const {
         const glm::dvec3 tu = tensor * u;
         const double uu = glm::dot(u, tu), uv = glm::dot(v, tu), vv = glm::dot(v, tensor * v);
         const double angle = std::atan2(2 * uv, uu - vv) / 2;
@@ -77,7 +77,7 @@ struct FlatPart {
     std::array<double, 2> lengths{};      ///< Coherent lengths along `axes` [m].
 
     void turnAxes() {
-        axes[0] = Plane(normal).largest(moments.spread());
+        axes[0] = Plane(normal).maximum(moments.spread());
         axes[1] = glm::cross(normal, axes[0]);
         low.fill(INFINITY);
         high.fill(-INFINITY);
@@ -269,7 +269,7 @@ private:
         const double scale = std::pow(wavelength_, 2) / (4 * std::numbers::pi);
         const glm::dmat3 per_square = part.perSquare();
         std::array<glm::dvec3, 2> axes;
-        axes[0] = Plane(facet.normal).largest(part.steps / part.moments.area + std::max(scale, 1e-12) * per_square);
+        axes[0] = Plane(facet.normal).maximum(part.steps / part.moments.area + std::max(scale, 1e-12) * per_square);
         axes[1] = glm::cross(facet.normal, axes[0]);
         std::array<double, 2> waves{}, steps{}, curvatures{};
         std::array<bool, 2> curved{};

@@ -12,9 +12,9 @@ constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 void markShadows(size_t first, size_t bins, types::SonarTruth& truth) {
     bool echo_beyond = false;
     for (size_t at = first + bins; at-- > first;) {
-        const bool heard = truth.object[at] != types::SonarTruth::no_object;
-        truth.shadow[at] = !heard && echo_beyond;
-        echo_beyond = echo_beyond || heard;
+        const bool received = truth.object[at] != types::SonarTruth::no_object;
+        truth.shadow[at] = !received && echo_beyond;
+        echo_beyond = echo_beyond || received;
     }
 }
 
@@ -51,11 +51,11 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
         uint32_t hits = 0;
         for (size_t beam = 0; beam < fan.beam_count; ++beam) {
             const size_t at = beam * bins + bin;
-            const auto heard = static_cast<double>(fan.bins[at]);
-            if (truth.object[at] == types::SonarTruth::no_object || !(heard > 0)) continue;
-            energy += heard;
+            const auto received = static_cast<double>(fan.bins[at]);
+            if (truth.object[at] == types::SonarTruth::no_object || !(received > 0)) continue;
+            energy += received;
             hits += truth.hits[at];
-            const double share = heard * static_cast<double>(truth.share[at]);
+            const double share = received * static_cast<double>(truth.share[at]);
             const auto known = std::ranges::find_if(echoes_, [&](const Echo& echo) {
                 return echo.object == truth.object[at] && echo.path == truth.path[at];
             });

@@ -4,18 +4,18 @@ namespace insonify::sonar {
 namespace {
 
 /** Several numbers that are processed together. */
-using Lanes = double __attribute__((vector_size(bins_at_once * sizeof(double))));
+using Bins8 = double __attribute__((vector_size(bins_at_once * sizeof(double))));
 
 /** The same in whole quanta. */
 using Counts = int64_t __attribute__((vector_size(bins_at_once * sizeof(int64_t))));
 
-inline Lanes min(Lanes a, double b) { return a < b ? a : Lanes{} + b; }
-inline Lanes max(Lanes a, double b) { return a > b ? a : Lanes{} + b; }
-inline Lanes abs(Lanes a) { return a < 0.0 ? -a : a; }
-inline Lanes load(const double* from) {
-    Lanes lanes;
-    std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
+inline Bins8 min(Bins8 a, double b) { return a < b ? a : Bins8{} + b; }
+inline Bins8 max(Bins8 a, double b) { return a > b ? a : Bins8{} + b; }
+inline Bins8 abs(Bins8 a) { return a < 0.0 ? -a : a; }
+inline Bins8 load(const double* from) {
+    Bins8 bins;
+    std::memcpy(&bins, from, sizeof bins);
+    return bins;
 }
 
 /** Energies of footprints: as deposit.glsl with HAVE_PHYSICAL, several bins at once. */
@@ -36,28 +36,28 @@ struct PhysicalBins : Bins {
     }
 
 private:
-    using real = Lanes;
+    using real = Bins8;
 #include "shaders/trapezoid.glsl"
 
     void addBins(const Footprint& cell, double strength_range, uint first, uint64_t* of_beam) {
-        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
-        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
-        const Lanes to_above = trapezoidShare(cell, above - cell.centre);
-        const Lanes share =
-            (above < cell.nearest ? to_above : Lanes{} + 0.5) - trapezoidShare(cell, below - cell.centre);
+        const Bins8 above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Bins8 below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Bins8 to_above = trapezoidShare(cell, above - cell.centre);
+        const Bins8 share =
+            (above < cell.nearest ? to_above : Bins8{} + 0.5) - trapezoidShare(cell, below - cell.centre);
         add(partEnergy(cell, strength_range, share, load(middles + first), above, below), of_beam + first);
     }
 
     void addLimbBins(const Footprint& cell, double strength_range, uint first, uint64_t* of_beam) {
-        const Lanes above = max(min(load(edges + first), cell.near_end), cell.far_end);
-        const Lanes below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
-        const Lanes cut_off =
-            above < cell.nearest ? Lanes{} : 0.5 - trapezoidShare(cell, placeOf(cell, above) - cell.centre);
-        const Lanes share = cut_off + limbShare(cell, above) - limbShare(cell, below);
+        const Bins8 above = max(min(load(edges + first), cell.near_end), cell.far_end);
+        const Bins8 below = max(min(load(edges + first + 1), cell.near_end), cell.far_end);
+        const Bins8 cut_off =
+            above < cell.nearest ? Bins8{} : 0.5 - trapezoidShare(cell, placeOf(cell, above) - cell.centre);
+        const Bins8 share = cut_off + limbShare(cell, above) - limbShare(cell, below);
         add(limbEnergy(cell, strength_range, share, load(middles + first), above, below), of_beam + first);
     }
 
-    static void add(Lanes amounts, uint64_t* to) {
+    static void add(Bins8 amounts, uint64_t* to) {
         Counts counts;
         std::memcpy(&counts, to, sizeof counts);
         // Signed, because there is an instruction for it.

@@ -117,11 +117,11 @@ private:
     bool isFlat(std::span<const Side> sides) {
         size_t going_on = 0;
         for (size_t i = 0; i < sides.size(); ++i) {
-            const auto goes_on = std::ranges::find_if(
+            const auto onward = std::ranges::find_if(
                 sides, [&](const Side& other) { return between(sides[i].inward, -other.inward) < same_direction; });
-            if (goes_on == sides.end()) continue;
+            if (onward == sides.end()) continue;
             ++going_on;
-            parts_.join(sides[i].edge.triangle, goes_on->edge.triangle);
+            parts_.join(sides[i].edge.triangle, onward->edge.triangle);
         }
         return going_on == sides.size();
     }

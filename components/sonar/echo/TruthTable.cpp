@@ -33,7 +33,7 @@ TruthTable::TruthTable(size_t beams, size_t bins)
     : bins_(bins),
       used_(beams * bins),
       first_(beams * bins),
-      others_(beams * bins * (told_apart - 1)),
+      others_(beams * bins * (kept_apart - 1)),
       rest_(beams * bins) {}
 
 void TruthTable::clear() { std::ranges::fill(used_, uint8_t{0}); }
@@ -45,7 +45,7 @@ void TruthTable::addToOthers(size_t at, const ObjectEcho& added) {
         if (echo(at, i).object == added.object) return echo(at, i).add(added);
         if (echo(at, i).object > echo(at, highest).object) highest = i;
     }
-    if (count < told_apart) {
+    if (count < kept_apart) {
         echo(at, count) = added;
         ++used_[at];
     } else if (added.object > echo(at, highest).object) {
@@ -100,11 +100,11 @@ void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth) const 
     bool echo_beyond = false;
     for (size_t bin = bins_; bin-- > 0;) {
         const size_t from = beam * bins_ + bin, at = to * bins_ + bin;
-        const bool heard = used_[from] > 0;
+        const bool received = used_[from] > 0;
         truth.path[at] = 0;
-        truth.shadow[at] = !heard && echo_beyond;
-        echo_beyond = echo_beyond || heard;
-        if (heard) {
+        truth.shadow[at] = !received && echo_beyond;
+        echo_beyond = echo_beyond || received;
+        if (received) {
             reportBin(from, at, truth);
         } else {
             truth.object[at] = types::SonarTruth::no_object;

@@ -40,11 +40,11 @@ struct ObjectEcho {
 /** The objects of the echoes in the bins of some beams. All sums are of whole numbers, so that the order of the echoes
  *  is free: the table is the same for any number of threads.
  *
- *  Up to `told_apart` objects of a bin are distinguished, with exact energies. If there are more, the objects with the
+ *  Up to `kept_apart` objects of a bin are distinguished, with exact energies. If there are more, the objects with the
  *  lowest indices are distinguished; the others count in the bin's energy and hits. */
 class TruthTable {
 public:
-    static constexpr size_t told_apart = 4;
+    static constexpr size_t kept_apart = 4;
 
     TruthTable(size_t beams, size_t bins);
 
@@ -67,12 +67,12 @@ public:
     void report(size_t beam, size_t to, types::SonarTruth& truth) const;
 
 private:
-    static constexpr uint8_t more = told_apart + 1;  ///< In used_: there is a rest.
+    static constexpr uint8_t more = kept_apart + 1;  ///< In used_: there is a rest.
 
-    size_t objectsAt(size_t at) const { return std::min<size_t>(used_[at], told_apart); }
+    size_t objectsAt(size_t at) const { return std::min<size_t>(used_[at], kept_apart); }
     /** Returns one of the objects of a bin. */
     const ObjectEcho& echo(size_t at, size_t i) const {
-        return i == 0 ? first_[at] : others_[at * (told_apart - 1) + i - 1];
+        return i == 0 ? first_[at] : others_[at * (kept_apart - 1) + i - 1];
     }
     ObjectEcho& echo(size_t at, size_t i) { return const_cast<ObjectEcho&>(std::as_const(*this).echo(at, i)); }
     void addToOthers(size_t at, const ObjectEcho& echo);

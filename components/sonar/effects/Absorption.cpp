@@ -12,7 +12,7 @@ constexpr const char* inside_a_bin = "absorption inside a bin";
 /** Returns an absorption that changes by `residual` to either side of a bin's middle, in decibels. */
 double decibels(double residual) { return 10 * residual / std::numbers::ln10; }
 
-std::string residualWords(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string residualWords(const Omitted& what, const BinGrid& /*grid*/) {
     if (what.reason == Reason::BelowBound) return fmt::format("beta dR/2 = {:.1e} < {:.0e}", what.value, what.bound);
     return fmt::format("beta dR/2 = {:.1e}, {:.2g} dB to either side", what.value, decibels(what.value));
 }
@@ -30,12 +30,12 @@ public:
         }
         const double residual = absorption.intensityPerMetre() * plan.grid.bin_width / 2;
         const Reason reason = residual < 1e-3 ? Reason::BelowBound : Reason::Approximated;
-        plan.left_out.push_back({inside_a_bin, reason, residual, 1e-3, residualWords});
+        plan.omitted.push_back({inside_a_bin, reason, residual, 1e-3, residualWords});
         return true;
     }
     void note(const RenderPlan& plan, const types::Geometry& /*geometry*/,
               std::vector<std::string>& notices) const override {
-        const LeftOut* inside = plan.leftOut(inside_a_bin);
+        const Omitted* inside = plan.findOmitted(inside_a_bin);
         if (inside && decibels(inside->value) > 0.1)
             notices.push_back(
                 fmt::format("Warning: absorption changes within a bin by {:.2g} dB to either side of its "

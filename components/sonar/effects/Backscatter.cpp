@@ -8,15 +8,15 @@
 namespace insonify::sonar {
 namespace {
 
-std::string noMaterial(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
-std::string noLobe(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string noMaterial(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string noLobe(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no material has a reflection and a roughness_slope";
 }
-std::string noMatter(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material names its matter alone"; }
-std::string noFrequencyOfMatter(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string noMatter(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "no material names its matter alone"; }
+std::string noFrequencyOfMatter(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; matter follows Lambert's law by its lambert_db";
 }
-std::string noFrequency(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string noFrequency(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; sediments follow Lambert's law by their lambert_db";
 }
 
@@ -34,8 +34,8 @@ public:
         const MaterialLaws& laws = plan.laws;
         if (!laws.tables.empty() || laws.hasLobes()) plan.features.add(Feature::BackscatterLaws);
         if (plan.config.model != Model::Physical) return plan.features.has(Feature::BackscatterLaws);
-        const auto omitUnless = [&](bool has, const char* effect, LeftOut::Words words) {
-            if (!has) plan.left_out.push_back({.effect = effect, .reason = Reason::NoneInScene, .words = words});
+        const auto omitUnless = [&](bool has, const char* effect, Omitted::Words words) {
+            if (!has) plan.omitted.push_back({.effect = effect, .reason = Reason::NoneInScene, .words = words});
         };
         omitUnless(laws.hasLobes(), "specular lobe", noLobe);
         omitUnless(laws.has_seabeds, "seabeds by TR 9407", laws.lacks_frequency ? noFrequency : noMaterial);

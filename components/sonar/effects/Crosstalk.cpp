@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* crosstalk_name = "crosstalk";
 
-std::string unheardPings(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string silentPings(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no ping of another sonar arrives at the first ping";
 }
 
@@ -16,7 +16,7 @@ class CrosstalkInPings final : public PingEffect {
 public:
     CrosstalkInPings(const RenderPlan& plan, const types::Geometry& geometry)
         : direct_(plan, geometry),
-          echoes_(plan.config.crosstalk->echoes && plan.casts_rays ? makeForeignEchoes(plan) : nullptr) {}
+          echoes_(plan.config.crosstalk->echoes && plan.traces_rays ? makeForeignEchoes(plan) : nullptr) {}
 
     void takeQuality() override {
         if (echoes_) echoes_->takeQuality();
@@ -25,30 +25,30 @@ public:
     void begin(const PingStart& start) override {
         snapshot_ = &start.snapshot;
         had_any_ = !start.snapshot.transmissions.empty();
-        heard_ = 0;
+        received_ = 0;
         if (echoes_) echoes_->begin(start.snapshot);
     }
     bool followsRays() const override { return echoes_ != nullptr; }
-    void followRays(const CastPing& ping, std::span<const CastTile> tiles) override {
+    void followRays(const TracedPing& ping, std::span<const TracedTile> tiles) override {
         if (had_any_) echoes_->follow(ping, tiles);
     }
-    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override {
+    bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) override {
         return had_any_ && echoes_->addEnergies(ping, cell, bins);
     }
     void addToBins(types::Sonar& ping) override {
-        if (had_any_) heard_ = direct_.add(*snapshot_, ping);
+        if (had_any_) received_ = direct_.add(*snapshot_, ping);
     }
-    size_t heard() const override { return heard_; }
-    std::optional<LeftOut> leftOut() const override {
+    size_t received() const override { return received_; }
+    std::optional<Omitted> omissions() const override {
         if (!snapshot_ || had_any_) return {};
-        return LeftOut{.effect = crosstalk_name, .reason = Reason::Other, .words = unheardPings};
+        return Omitted{.effect = crosstalk_name, .reason = Reason::Other, .words = silentPings};
     }
 
 private:
     DirectSound direct_;
     std::unique_ptr<ForeignEchoes> echoes_;      ///< Null where echoes of surfaces are not simulated.
     const types::Snapshot* snapshot_ = nullptr;  ///< Snapshot of the ping; null before the first.
-    size_t heard_ = 0;                           ///< Transmissions that arrived directly in the last ping [1].
+    size_t received_ = 0;                        ///< Transmissions that arrived directly in the last ping [1].
     bool had_any_ = false;                       ///< Whether the ping has transmissions.
 };
 

@@ -5,23 +5,23 @@
 namespace insonify::sonar {
 namespace {
 
-std::string withoutDeforming(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutDeforming(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no mesh has a skin or morph targets";
 }
-std::string deformingNeedsRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string deformingNeedsRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the scene is drawn, with skins and morph targets at rest; they deform with `visibility: cpu`";
 }
 
-/** Meshes that skins and morph targets deform from ping to ping. CastEchoes poses them. */
+/** Meshes that skins and morph targets deform from ping to ping. RayEchoes poses them. */
 class DeformingMeshes final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
-        const auto omit = [&](Reason reason, LeftOut::Words words) {
+        const auto omit = [&](Reason reason, Omitted::Words words) {
             return leaveOut(plan, {.effect = "deforming meshes", .reason = reason, .words = words});
         };
         if (std::ranges::none_of(geometry.meshes, [](const auto& mesh) { return mesh.deformation != nullptr; }))
             return omit(Reason::NoneInScene, withoutDeforming);
-        if (!plan.casts_rays) return omit(Reason::Lacking, deformingNeedsRays);
+        if (!plan.traces_rays) return omit(Reason::Lacking, deformingNeedsRays);
         return true;
     }
 };

@@ -9,13 +9,13 @@ constexpr const char* own_key = "edge_diffraction";
 constexpr const char* edges_name = "edge diffraction";
 constexpr double default_turn_deg = 60;  ///< The `crease` of MeshEdges.hpp.
 
-std::string withoutLobe(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutLobe(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no material has a reflection and a roughness_slope, or is a smooth matter";
 }
-std::string withoutEdges(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutEdges(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no straight edge turns by min_turn_deg";
 }
-std::string unheardEdges(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string silentEdges(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "edges hidden, or out of the pattern or the range, at the first ping";
 }
 
@@ -27,22 +27,22 @@ public:
     void takeShapes(const types::Snapshot& snapshot) override { edges_->takeShapes(snapshot); }
     void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
-        heard_ = edges_->add(ping.snapshot, ping.ping, ping.field);
+        received_ = edges_->add(ping.snapshot, ping.ping, ping.field);
         pinged_ = true;
     }
-    size_t heard() const override { return heard_; }
-    std::optional<LeftOut> leftOut() const override {
+    size_t received() const override { return received_; }
+    std::optional<Omitted> omissions() const override {
         const size_t all = edges_->count();
-        if (!pinged_ || (all > 0 && heard_ == all)) return {};
-        if (all == 0) return LeftOut{.effect = edges_name, .reason = Reason::NoneInScene, .words = withoutEdges};
-        return LeftOut{edges_name, Reason::OutOfView, static_cast<double>(all - heard_), static_cast<double>(all),
-                       unheardEdges};
+        if (!pinged_ || (all > 0 && received_ == all)) return {};
+        if (all == 0) return Omitted{.effect = edges_name, .reason = Reason::NoneInScene, .words = withoutEdges};
+        return Omitted{edges_name, Reason::OutOfView, static_cast<double>(all - received_), static_cast<double>(all),
+                       silentEdges};
     }
 
 private:
     const RenderPlan& plan_;
     std::unique_ptr<EdgeEchoes> edges_;
-    size_t heard_ = 0;  ///< Edges with an echo in the last ping [1].
+    size_t received_ = 0;  ///< Edges with an echo in the last ping [1].
     bool pinged_ = false;
 };
 

@@ -16,8 +16,8 @@ namespace insonify::sonar {
 
 class EchoField;
 class RayPaths;
-struct CastPing;
-struct CastTile;
+struct TracedPing;
+struct TracedTile;
 struct EchoRules;
 struct Cells;
 struct Covered;
@@ -81,12 +81,12 @@ public:
     virtual bool followsRays() const { return false; }
     /** Follows rays beyond their hits, before their tiles are summed. May change the hits. Several threads call it,
      *  each with its own tiles. */
-    virtual void followRays(const CastPing& /*ping*/, std::span<const CastTile> /*tiles*/) {}
+    virtual void followRays(const TracedPing& /*ping*/, std::span<const TracedTile> /*tiles*/) {}
     /** Adds to the intensities of a cell's bins once the rays of all cells are followed. Where fields are summed, the
      *  bins are 0 before. Returns whether it has added any. Called once for each cell, by several threads. */
-    virtual bool addEnergies(const CastPing& /*ping*/, size_t /*cell*/, std::span<float> /*bins*/) { return false; }
+    virtual bool addEnergies(const TracedPing& /*ping*/, size_t /*cell*/, std::span<float> /*bins*/) { return false; }
     /** Adds to the truth of a ping, whose beams are sorted, once the truth of its surfaces is complete. */
-    virtual void addToTruth(const CastPing& /*ping*/, types::SonarTruth& /*truth*/) {}
+    virtual void addToTruth(const TracedPing& /*ping*/, types::SonarTruth& /*truth*/) {}
 
     /** Adds echoes to beams, before fields are squared. */
     virtual void addEchoes(PingInMaking& /*ping*/) {}
@@ -94,9 +94,9 @@ public:
     virtual void addToBins(types::Sonar& /*ping*/) {}
 
     /** Returns the number of things, other than surfaces, of which the last ping has an echo [1]. */
-    virtual size_t heard() const { return 0; }
+    virtual size_t received() const { return 0; }
     /** Returns what the effect omitted in the last ping; none before the first ping. */
-    virtual std::optional<LeftOut> leftOut() const { return {}; }
+    virtual std::optional<Omitted> omissions() const { return {}; }
 };
 
 /** An effect of a sonar's configuration or scene on its pings, in one file. The list of effects (Effects.hpp) is the
@@ -134,8 +134,8 @@ public:
 bool followsMotion(const SonarConfig& config);
 
 /** Omits an effect, for Effect::plan(). */
-inline bool leaveOut(RenderPlan& plan, const LeftOut& what) {
-    plan.left_out.push_back(what);
+inline bool leaveOut(RenderPlan& plan, const Omitted& what) {
+    plan.omitted.push_back(what);
     return false;
 }
 

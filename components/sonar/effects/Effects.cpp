@@ -21,7 +21,7 @@ const Effect& volume();
 const Effect& speckle();
 const Effect& multipath();
 const Effect& thinWalls();
-const Effect& slabs();
+const Effect& frusta();
 const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
@@ -39,7 +39,7 @@ struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{
         &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),        &ringDown(),
-        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &slabs(),        &refraction(),
+        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &frusta(),       &refraction(),
         &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(), &edgeDiffraction(),
         &imperfections(), &crosstalk(),   &truth()};
 };
@@ -144,19 +144,19 @@ std::string PingEffects::whyNotOnDevice() const {
 
 bool PingEffects::followsRays() const { return std::ranges::any_of(all_, &PingEffect::followsRays); }
 
-void PingEffects::followRays(const CastPing& ping, std::span<const CastTile> tiles) {
+void PingEffects::followRays(const TracedPing& ping, std::span<const TracedTile> tiles) {
     for (const auto& effect : all_)
         if (effect->followsRays()) effect->followRays(ping, tiles);
 }
 
-bool PingEffects::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
+bool PingEffects::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
     bool any = false;
     for (const auto& effect : all_)
         if (effect->followsRays()) any |= effect->addEnergies(ping, cell, bins);
     return any;
 }
 
-void PingEffects::addToTruth(const CastPing& ping, types::SonarTruth& truth) {
+void PingEffects::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
     for (const auto& effect : all_)
         if (effect->followsRays()) effect->addToTruth(ping, truth);
 }
@@ -169,16 +169,16 @@ void PingEffects::addToBins(types::Sonar& ping) {
     for (const auto& effect : all_) effect->addToBins(ping);
 }
 
-size_t PingEffects::heard() const {
-    size_t heard = 0;
-    for (const auto& effect : all_) heard += effect->heard();
-    return heard;
+size_t PingEffects::received() const {
+    size_t received = 0;
+    for (const auto& effect : all_) received += effect->received();
+    return received;
 }
 
-std::vector<LeftOut> PingEffects::leftOut() const {
-    std::vector<LeftOut> all;
+std::vector<Omitted> PingEffects::omissions() const {
+    std::vector<Omitted> all;
     for (const auto& effect : all_)
-        if (const auto what = effect->leftOut()) all.push_back(*what);
+        if (const auto what = effect->omissions()) all.push_back(*what);
     return all;
 }
 

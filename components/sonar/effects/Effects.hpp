@@ -33,13 +33,13 @@ public:
     /** Returns why a compute shader cannot make the sums of the effects, as a clause. Empty: it can. */
     std::string whyNotOnDevice() const;
     bool followsRays() const;
-    void followRays(const CastPing& ping, std::span<const CastTile> tiles);
-    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins);
-    void addToTruth(const CastPing& ping, types::SonarTruth& truth);
+    void followRays(const TracedPing& ping, std::span<const TracedTile> tiles);
+    bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins);
+    void addToTruth(const TracedPing& ping, types::SonarTruth& truth);
     void addEchoes(PingInMaking& ping);
     void addToBins(types::Sonar& ping);
-    size_t heard() const;  ///< [1]
-    std::vector<LeftOut> leftOut() const;
+    size_t received() const;  ///< [1]
+    std::vector<Omitted> omissions() const;
 
 private:
     std::vector<std::unique_ptr<PingEffect>> all_;

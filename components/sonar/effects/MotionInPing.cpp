@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string speedWords(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string speedWords(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("below {:.2g} m/s it is less than half a bin", what.value);
 }
 

@@ -5,8 +5,8 @@
 namespace insonify::sonar {
 namespace {
 
-std::string noBounces(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "bounces is 0"; }
-std::string noMirror(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string noBounces(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "bounces is 0"; }
+std::string noMirror(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no surface is configured, and no material is `mirror: true` or smooth enough";
 }
 
@@ -32,7 +32,7 @@ public:
         return true;
     }
     std::unique_ptr<PingEffect> make(const RenderPlan& plan, const types::Geometry& geometry) const override {
-        return plan.casts_rays ? makePathEchoes(plan, geometry) : nullptr;
+        return plan.traces_rays ? makePathEchoes(plan, geometry) : nullptr;
     }
     std::string takeOut(SonarConfig& config) const override {
         if (!config.tracesPaths()) return {};

@@ -3,7 +3,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string noMap(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string noMap(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
 
 /** Normals from a texture of the material (ACOUSTICS.md 3.4). */
 class NormalMaps final : public Effect {

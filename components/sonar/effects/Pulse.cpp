@@ -6,7 +6,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string lengthWords(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string lengthWords(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("the pulse resolves {:.2g} m, under half a bin, {:.2g} m", what.value, what.bound);
 }
 

@@ -28,7 +28,7 @@ std::shared_ptr<const acoustics::SoundProfile> bendingProfile(const SonarConfig&
     return matters(*profile, config, grid) ? profile : nullptr;
 }
 
-std::string bendWords(const LeftOut& what, const BinGrid& grid) {
+std::string bendWords(const Omitted& what, const BinGrid& grid) {
     return fmt::format("a gradient of {:.3g} 1/s bends by {:.2g} m at {:.4g} m < {:.2g} m",
                        2 * what.value * grid.speed_of_sound / (grid.range_max * grid.range_max), what.value,
                        grid.range_max, what.bound);
@@ -38,7 +38,7 @@ std::string bendWords(const LeftOut& what, const BinGrid& grid) {
 class Refraction final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
-        if (plan.casts_rays)
+        if (plan.traces_rays)
             plan.profile = bendingProfile(plan.config, plan.grid);
         else if (const std::string why = whyStraight(plan.config); !why.empty())
             throw types::ConfigError("", "water.profile", why);
@@ -66,8 +66,8 @@ Bending bending(const SonarConfig& config, const BinGrid& grid, double gradient)
 }
 
 std::string whyStraight(const SonarConfig& config) {
-    const bool drawn = hasProfile(config) && !config.castsRays();
-    if (!bendingProfile(config, makeBinGrid(config)) || !drawn) return {};
+    const bool rasterised = hasProfile(config) && !config.tracesRays();
+    if (!bendingProfile(config, makeBinGrid(config)) || !rasterised) return {};
     return "bends the rays of a sonar of this range, which only ray tracing shows; visibility may be auto or cpu, "
            "without "
            "published: true and deposit: gpu, in a build with rays";

@@ -8,9 +8,9 @@ class RingDownInPings final : public PingEffect {
 public:
     explicit RingDownInPings(const RenderPlan& plan) {
         for (int k = 0; k < plan.grid.bin_count; ++k) {
-            const double heard = plan.config.pulse->ring_down->mean(plan.grid.edge(k), plan.grid.edge(k + 1));
-            if (static_cast<float>(heard) == 0) return;
-            bins_.push_back(static_cast<float>(heard));
+            const double received = plan.config.pulse->ring_down->mean(plan.grid.edge(k), plan.grid.edge(k + 1));
+            if (static_cast<float>(received) == 0) return;
+            bins_.push_back(static_cast<float>(received));
         }
     }
     void addToBins(types::Sonar& ping) override {

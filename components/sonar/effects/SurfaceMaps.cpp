@@ -3,29 +3,29 @@
 namespace insonify::sonar {
 namespace {
 
-std::string withoutMaps(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
-std::string byReflectivity(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutMaps(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "no material has one"; }
+std::string byReflectivity(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "cerqueira2017 uses the reflectivity of the material only";
 }
-std::string mapsNeedRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string mapsNeedRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the scene is rasterised; surface maps need `visibility: cpu`";
 }
 
-/** Strengths and materials from maps on surfaces (ACOUSTICS.md 3.13). CastEchoes looks them up. */
+/** Strengths and materials from maps on surfaces (ACOUSTICS.md 3.13). RayEchoes looks them up. */
 class SurfaceMaps final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
-        double largest = 0;
+        double maximum = 0;
         for (const types::Material& material : geometry.materials)
-            largest = std::max(largest, static_cast<double>(material.max_map_strength));
-        const auto omit = [&](Reason reason, LeftOut::Words words) {
+            maximum = std::max(maximum, static_cast<double>(material.max_map_strength));
+        const auto omit = [&](Reason reason, Omitted::Words words) {
             return leaveOut(plan, {.effect = "surface maps", .reason = reason, .words = words});
         };
-        if (!(largest > 0)) return omit(Reason::NoneInScene, withoutMaps);
+        if (!(maximum > 0)) return omit(Reason::NoneInScene, withoutMaps);
         if (plan.config.model != Model::Physical) return omit(Reason::Other, byReflectivity);
-        if (!plan.casts_rays) return omit(Reason::Lacking, mapsNeedRays);
+        if (!plan.traces_rays) return omit(Reason::Lacking, mapsNeedRays);
         plan.add(Pass::SurfaceMaps);
-        plan.max_map_strength = std::max(largest, 1.0);
+        plan.max_map_strength = std::max(maximum, 1.0);
         return true;
     }
 };

@@ -6,10 +6,10 @@ namespace {
 
 constexpr const char* name = "point targets";
 
-std::string means(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string means(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "cerqueira2017: bins are means of S(n.d)";
 }
-std::string unheard(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string silent(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "hidden, or out of the pattern or the range, at the first ping";
 }
 
@@ -24,24 +24,25 @@ public:
     }
     void addEchoes(PingInMaking& ping) override {
         all_ = ping.snapshot.targets.size();
-        heard_ = 0;
+        received_ = 0;
         pinged_ = true;
         if (all_ == 0) return;
         if (!targets_) targets_.emplace(plan_, *geometry_);
-        heard_ = targets_->add(ping.snapshot, ping.ping, ping.field, ping.bent);
+        received_ = targets_->add(ping.snapshot, ping.ping, ping.field, ping.bent);
     }
-    size_t heard() const override { return heard_; }
-    std::optional<LeftOut> leftOut() const override {
-        if (!pinged_ || (all_ > 0 && heard_ == all_)) return {};
-        if (all_ == 0) return LeftOut{name, Reason::NoneInScene};
-        return LeftOut{name, Reason::OutOfView, static_cast<double>(all_ - heard_), static_cast<double>(all_), unheard};
+    size_t received() const override { return received_; }
+    std::optional<Omitted> omissions() const override {
+        if (!pinged_ || (all_ > 0 && received_ == all_)) return {};
+        if (all_ == 0) return Omitted{name, Reason::NoneInScene};
+        return Omitted{name, Reason::OutOfView, static_cast<double>(all_ - received_), static_cast<double>(all_),
+                       silent};
     }
 
 private:
     const RenderPlan& plan_;
     const types::Geometry* geometry_;
     std::optional<PointTargets> targets_;  ///< Made at the first ping with a target.
-    size_t all_ = 0, heard_ = 0;           ///< Targets of the last ping, and those with an echo [1].
+    size_t all_ = 0, received_ = 0;        ///< Targets of the last ping, and those with an echo [1].
     bool pinged_ = false;
 };
 

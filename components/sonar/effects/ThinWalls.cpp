@@ -3,31 +3,31 @@
 namespace insonify::sonar {
 namespace {
 
-std::string withoutShell(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "no material has a shell"; }
-std::string withoutFrequency(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutShell(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "no material has a shell"; }
+std::string withoutFrequency(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no frequency_khz; shells let nothing through";
 }
-std::string withoutRays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string withoutRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the scene is rasterised; sound passes through shells with `visibility: cpu`";
 }
-std::string onBentWays(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string onBentWays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "sound passes through shells on straight paths only; remove water.profile and motion_in_ping";
 }
-std::string withoutWalls(const LeftOut& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
+std::string withoutWalls(const Omitted& /*what*/, const BinGrid& /*grid*/) { return "max_walls is 0"; }
 
-/** Sound that passes through thin walls (ACOUSTICS.md 5.26). CastEchoes traces it. */
+/** Sound that passes through thin walls (ACOUSTICS.md 5.26). RayEchoes traces it. */
 class ThinWalls final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
         const bool has_shell =
             std::ranges::any_of(geometry.materials, [](const auto& one) { return one.shell.has_value(); });
-        const auto omit = [&](Reason reason, LeftOut::Words words) {
+        const auto omit = [&](Reason reason, Omitted::Words words) {
             return leaveOut(plan, {.effect = "thin walls", .reason = reason, .words = words});
         };
         if (!has_shell || plan.config.model != Model::Physical) return omit(Reason::NoneInScene, withoutShell);
         if (plan.config.max_walls == 0) return omit(Reason::Other, withoutWalls);
         if (!plan.config.frequency_khz) return omit(Reason::Lacking, withoutFrequency);
-        if (!plan.casts_rays) return omit(Reason::Lacking, withoutRays);
+        if (!plan.traces_rays) return omit(Reason::Lacking, withoutRays);
         if (plan.profile || plan.config.motion_in_ping) return omit(Reason::Lacking, onBentWays);
         if (!plan.laws.hasWalls()) return omit(Reason::NoneInScene, withoutShell);
         plan.add(Pass::Walls);

@@ -3,7 +3,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string nobody(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string nobody(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "nobody is connected to truth or returns at the first ping";
 }
 
@@ -11,9 +11,9 @@ std::string nobody(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
 class TruthInPings final : public PingEffect {
 public:
     void begin(const PingStart& start) override { omitted_ = !start.truth; }
-    std::optional<LeftOut> leftOut() const override {
+    std::optional<Omitted> omissions() const override {
         if (!omitted_) return {};
-        return LeftOut{.effect = "truth", .reason = Reason::Other, .words = nobody};
+        return Omitted{.effect = "truth", .reason = Reason::Other, .words = nobody};
     }
 
 private:

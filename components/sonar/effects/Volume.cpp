@@ -22,9 +22,9 @@ double strengthOf(const VolumeLayer& layer) {
 }
 
 double strongest(const SonarConfig& config) {
-    double most = 0;
-    for (const VolumeLayer& layer : config.volume) most = std::max(most, strengthOf(layer));
-    return most;
+    double maximum = 0;
+    for (const VolumeLayer& layer : config.volume) maximum = std::max(maximum, strengthOf(layer));
+    return maximum;
 }
 
 double azimuthBetween(const SonarConfig& config, const Beam& cell, double elevation) {
@@ -60,14 +60,14 @@ struct VolumeChanges {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-parameter"  // only layers use the slope of a ray
 struct OpenVolume : VolumeChanges {
-    static constexpr bool hears_misses = false;
+    static constexpr bool echoes_from_misses = false;
     using VolumeChanges::VolumeChanges;
 #include "shaders/volume.glsl"
 };
 #pragma GCC diagnostic pop
 #define HAVE_VOLUME_LAYERS
 struct LayeredVolume : VolumeChanges {
-    static constexpr bool hears_misses = true;
+    static constexpr bool echoes_from_misses = true;
     using VolumeChanges::VolumeChanges;
 #include "shaders/volume.glsl"
 };
@@ -87,21 +87,21 @@ void hideVolumeBy(const CellBatch& batch) {
         const auto beam = static_cast<uint>(cells.beam[i] - batch.first_beam);
         if (batch.covered.pixel[i] > 0)
             water.hideVolume(footprintOf(batch.covered, i), beam, riseOf(batch.water, cells, i), cells.size[i]);
-        else if constexpr (Water::hears_misses)
-            water.hearLayers(beam, riseOf(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
+        else if constexpr (Water::echoes_from_misses)
+            water.addLayers(beam, riseOf(batch.water, cells, i), batch.rules.bins.range_max, cells.size[i]);
     }
 }
 
 /** Returns the layers of a configuration as in EchoRules::layers; empty where a layer has no bounds. */
 std::vector<double> layersOf(const SonarConfig& config) {
     if (!config.hasLayers()) return {};
-    const double most = strongest(config);
+    const double maximum = strongest(config);
     std::vector<double> layers;
     for (const VolumeLayer& layer : config.volume) {
         constexpr double far = 1e9;
         layers.push_back(layer.bottom_m ? -*layer.bottom_m : -far);
         layers.push_back(layer.top_m ? -*layer.top_m : far);
-        layers.push_back(most > 0 ? strengthOf(layer) / most : 0);
+        layers.push_back(maximum > 0 ? strengthOf(layer) / maximum : 0);
     }
     return layers;
 }
@@ -162,9 +162,9 @@ void VolumeInPings::addToCell(const uint64_t* changes, size_t cell, double unit,
     uint64_t sum = 0;
     for (size_t j = 0; j < bins.size(); ++j) {
         sum += changes[j];
-        const double heard = std::max(0.0, open_[cell] + static_cast<double>(static_cast<int64_t>(sum)) * quantum);
+        const double received = std::max(0.0, open_[cell] + static_cast<double>(static_cast<int64_t>(sum)) * quantum);
         bins[j] = static_cast<float>(
-            std::min(double{bins[j]} + intensity_[j] * heard, double{std::numeric_limits<float>::max()}));
+            std::min(double{bins[j]} + intensity_[j] * received, double{std::numeric_limits<float>::max()}));
     }
 }
 
@@ -181,8 +181,8 @@ public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.config.volume.empty()) return leaveOut(plan, {"volume reverberation", Reason::NotConfigured});
         plan.effect_features.emplace_back("volume");
-        plan.hears_misses = plan.config.hasLayers();
-        if (plan.hears_misses) plan.effect_features.emplace_back("volume_layers");
+        plan.echoes_from_misses = plan.config.hasLayers();
+        if (plan.echoes_from_misses) plan.effect_features.emplace_back("volume_layers");
         plan.fills_water = true;
         return true;
     }

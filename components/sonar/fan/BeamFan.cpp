@@ -10,7 +10,7 @@
 namespace insonify::sonar {
 namespace {
 
-constexpr double widest_slab = types::radians(60);
+constexpr double widest_frustum = types::radians(60);
 
 double halfElevation(const SonarConfig& config) { return types::radians(config.beam_height_deg) / 2; }
 
@@ -118,7 +118,7 @@ std::vector<ViewFrustum> makeFrusta(const SonarConfig& config, const Fan& beams,
         low = coneAzimuth(low, half_elevation);
         high = coneAzimuth(high, half_elevation);
     }
-    const int count = std::max(options.min_frusta, static_cast<int>(std::ceil((high - low) / widest_slab - 1e-9)));
+    const int count = std::max(options.min_frusta, static_cast<int>(std::ceil((high - low) / widest_frustum - 1e-9)));
     const double columns = config.columnsPerBeam() * (high - low) / types::radians(config.beamWidthDeg()) / count;
     std::vector<ViewFrustum> frusta(static_cast<size_t>(count));
     for (int i = 0; i < count; ++i) {

@@ -151,14 +151,14 @@ double Directivity::sentAzimuth(double azimuth) const {
     return powerOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
-double Directivity::heardAzimuth(double azimuth, double bearing, size_t zone) const {
-    if (!zones_.empty()) return std::norm(heardField(azimuth, bearing, zone));
+double Directivity::receivedAzimuth(double azimuth, double bearing, size_t zone) const {
+    if (!zones_.empty()) return std::norm(receivedField(azimuth, bearing, zone));
     return conical_ ? powerOf(receive_azimuth_, azimuth, bearing)
                     : powerOf(receive_azimuth_, wrapped(azimuth - bearing));
 }
 
 double Directivity::azimuth(double azimuth, double bearing, size_t zone) const {
-    return sentAzimuth(azimuth) * heardAzimuth(azimuth, bearing, zone);
+    return sentAzimuth(azimuth) * receivedAzimuth(azimuth, bearing, zone);
 }
 
 double Directivity::idealAzimuth(double azimuth, double bearing) const {
@@ -170,7 +170,7 @@ double Directivity::sentAmplitude(double azimuth) const {
     return amplitudeOf(transmit_azimuth_, conical_ ? azimuth : wrapped(azimuth));
 }
 
-std::complex<double> Directivity::heardField(double azimuth, double bearing, size_t zone) const {
+std::complex<double> Directivity::receivedField(double azimuth, double bearing, size_t zone) const {
     const double angle = conical_ ? azimuth : wrapped(azimuth - bearing), axis = conical_ ? bearing : 0;
     const double ideal = amplitudeOf(receive_azimuth_, angle, axis);
     if (zones_.empty() || std::abs(angle) > pi / 2) return ideal;
@@ -182,9 +182,9 @@ std::complex<double> Directivity::heardField(double azimuth, double bearing, siz
 
 double Directivity::sentElevation(double angle) const { return powerOf(transmit_elevation_, angle); }
 
-double Directivity::heardElevation(double angle) const { return powerOf(receive_elevation_, angle); }
+double Directivity::receivedElevation(double angle) const { return powerOf(receive_elevation_, angle); }
 
-double Directivity::elevation(double angle) const { return sentElevation(angle) * heardElevation(angle); }
+double Directivity::elevation(double angle) const { return sentElevation(angle) * receivedElevation(angle); }
 
 double Directivity::elevationReach() const {
     const auto either = [&](double angle) { return std::max(elevation(angle), elevation(-angle)); };
@@ -206,16 +206,16 @@ double Directivity::halfPowerAzimuth() const {
     return 2 * angle;
 }
 
-SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool casts_rays) {
+SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool traces_rays) {
     SonarConfig sampled = config;
     if (directivity.hasElevation())
         sampled.beam_height_deg =
-            std::min(types::degrees(2 * directivity.elevationReach()), casts_rays ? 180 : tallest_image_deg);
+            std::min(types::degrees(2 * directivity.elevationReach()), traces_rays ? 180 : tallest_image_deg);
     if (!directivity.hasAzimuth()) return sampled;
     const Fan beams = makeBeams(config);
     const auto [low, high] = directivity.azimuthSpan(beams);
-    const double fine = std::min(beams.smallestSpacing(), directivity.halfPowerAzimuth()) /
-                        std::max(min_cells, config.columnsPerBeam());
+    const double fine =
+        std::min(beams.minSpacing(), directivity.halfPowerAzimuth()) / std::max(min_cells, config.columnsPerBeam());
     const int cells = static_cast<int>(std::clamp(std::ceil((high - low) / fine), 1.0, double{max_cells}));
     const double width = types::degrees(high - low) / cells;
     sampled.bearings_deg.clear();
@@ -225,9 +225,9 @@ SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directiv
     return sampled;
 }
 
-Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool casts_rays) {
+Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool traces_rays) {
     const Fan all = makeBeams(sampled);
-    if (!casts_rays || !directivity.hasAzimuth()) return all;
+    if (!traces_rays || !directivity.hasAzimuth()) return all;
     const bool each = sampled.elements || (sampled.isCoherent() && directivity.isComplex());
     const double near = each ? 2 * pi : directivity.nearAzimuth(0);  // fields with phases: all cells
     const double from = beams.front().centre - near, to = beams.back().centre + near;
@@ -248,7 +248,7 @@ Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity
 
 std::string whyTooLarge(const SonarConfig& config) {
     if (!config.beam_pattern) return {};
-    const SonarConfig sampled = sampledConfig(config, Directivity(config), config.castsRays());
+    const SonarConfig sampled = sampledConfig(config, Directivity(config), config.tracesRays());
     if (int64_t{sampled.beams()} * sampled.bin_count <= max_bins) return {};
     return fmt::format("has {} azimuth cells of {} bins each, {} in all; may be {}: give wider beams or fewer bins",
                        sampled.beams(), sampled.bin_count, int64_t{sampled.beams()} * sampled.bin_count, max_bins);

@@ -28,15 +28,15 @@ public:
     double elevation(double angle) const;
     /** Returns the field, whose square is the power, with the signs or phases of its sidelobes [1]. */
     std::complex<double> azimuthField(double azimuth, double bearing, size_t zone) const {
-        return sentAmplitude(azimuth) * heardField(azimuth, bearing, zone);
+        return sentAmplitude(azimuth) * receivedField(azimuth, bearing, zone);
     }
     double sentAmplitude(double azimuth) const;
-    std::complex<double> heardField(double azimuth, double bearing, size_t zone) const;
+    std::complex<double> receivedField(double azimuth, double bearing, size_t zone) const;
     /** Return the one-way patterns at angles [rad]. */
     double sentAzimuth(double azimuth) const;
-    double heardAzimuth(double azimuth, double bearing, size_t zone) const;
+    double receivedAzimuth(double azimuth, double bearing, size_t zone) const;
     double sentElevation(double angle) const;
-    double heardElevation(double angle) const;
+    double receivedElevation(double angle) const;
     /** Returns the number of range zones, from the nearest. The receiving array has one pattern in each: one zone,
      *  unless the array has a fixed focus. */
     size_t zoneCount() const { return std::max<size_t>(1, zones_.size()); }
@@ -81,11 +81,11 @@ private:
 
 /** Returns the configuration that a sonar with a beam pattern is sampled with: azimuth cells replace the beams. Cells
  *  and aperture extend as far as the pattern is above its floor, in images at most as far as an image shows. */
-SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool casts_rays);
+SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool traces_rays);
 
 /** Returns the azimuth cells of a sampled configuration. With rays, cells far from all beams are sixteen times as wide,
  *  because only sidelobes receive their echoes. */
-Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool casts_rays);
+Fan azimuthCells(const SonarConfig& sampled, const Fan& beams, const Directivity& directivity, bool traces_rays);
 
 /** Returns why the cells of a sonar would exceed the max memory; empty where they do not.
  *  @throws types::ConfigError as Directivity does. */

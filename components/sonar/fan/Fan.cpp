@@ -94,14 +94,14 @@ bool Fan::spans(double azimuth) const {
     return off <= 0.5 * (high_ - low_) * (1 + 1e-12);
 }
 
-double Fan::smallestSpacing() const {
-    double smallest = whole_turn;
+double Fan::minSpacing() const {
+    double minimum = whole_turn;
     const auto take = [&](double spacing) {
-        if (spacing > 1e-9) smallest = std::min(smallest, spacing);
+        if (spacing > 1e-9) minimum = std::min(minimum, spacing);
     };
     for (size_t k = 1; k < size(); ++k) take(beams_[k].centre - beams_[k - 1].centre);
     if (size() > 1) take(front().centre + whole_turn - back().centre);
-    return smallest;
+    return minimum;
 }
 
 std::vector<double> Fan::halfways() const {

@@ -60,7 +60,7 @@ public:
     /** Returns whether each beam begins where the beam before it ends. */
     bool joins() const { return joins_; }
     /** Returns the smallest distance between the centres of two different beams; 2 pi where there are none [rad]. */
-    double smallestSpacing() const;
+    double minSpacing() const;
     /** Returns the bearings halfway between neighbours, size() + 1 values. The outermost are equally far beyond the
      *  outermost beams, or halfway across the seam of a round fan. A single beam has its own limits [rad]. */
     std::vector<double> halfways() const;

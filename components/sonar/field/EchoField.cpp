@@ -109,9 +109,9 @@ FieldResponse::FieldResponse(const RenderPlan& plan) {
     pulse_.emplace(*plan.config.pulse, plan.grid.speed_of_sound);
     reach_ = pulse_->extent(RangeResponse::floor_db);
     const double width = sample_width_ / static_cast<double>(stride_);
-    const auto most = static_cast<int>(std::min(std::ceil(reach_ / width), static_cast<double>(cells() - 1)));
+    const auto maximum = static_cast<int>(std::min(std::ceil(reach_ / width), static_cast<double>(cells() - 1)));
     const auto stride = static_cast<int>(stride_);
-    for (int t = -most; t <= most; ++t) {
+    for (int t = -maximum; t <= maximum; ++t) {
         const double power = pulse_->mean((t - 0.5) * width, (t + 0.5) * width);
         const int from = (stride - 1) / 2 + t, run = (from % stride + stride) % stride;
         const ptrdiff_t shift = (from - run) / stride;
@@ -250,9 +250,9 @@ void EchoField::add(size_t beam, double range, std::complex<double> field) {
     float* const fields = &beams()[beam * numbers()];
     for (auto sample = static_cast<size_t>(first); sample < response_.samples() && static_cast<double>(sample) <= last;
          ++sample) {
-        const std::complex<double> heard = response_.amplitude(sample, range) * field;
-        fields[2 * sample] += static_cast<float>(heard.real());
-        fields[2 * sample + 1] += static_cast<float>(heard.imag());
+        const std::complex<double> received = response_.amplitude(sample, range) * field;
+        fields[2 * sample] += static_cast<float>(received.real());
+        fields[2 * sample + 1] += static_cast<float>(received.imag());
     }
 }
 

@@ -80,11 +80,11 @@ double LineArray::position(size_t element) const {
     return (static_cast<double>(element) - 0.5 * static_cast<double>(count() - 1)) * spacing_;
 }
 
-ComplexRows LineArray::hear(const ComplexRows& field, std::span<const Cone> cells) const {
+ComplexRows LineArray::elementSignals(const ComplexRows& field, std::span<const Cone> cells) const {
     if (field.rowCount() != cells.size()) throw std::invalid_argument("a field has one row for each cell");
-    ComplexRows heard(count(), field.sample_count);
+    ComplexRows element_rows(count(), field.sample_count);
     for (size_t m = 0; m < count(); ++m) {
-        const auto sum = heard.row(m);
+        const auto sum = element_rows.row(m);
         for (size_t cell = 0; cell < cells.size(); ++cell) {
             const std::complex<float> turn(meanTurn(position(m) / wavelength_, cells[cell]));
             const auto echoes = field.row(cell);
@@ -94,11 +94,11 @@ ComplexRows LineArray::hear(const ComplexRows& field, std::span<const Cone> cell
             }
         }
     }
-    return heard;
+    return element_rows;
 }
 
-ComplexRows LineArray::form(const ComplexRows& heard, std::span<const double> sines) const {
-    if (heard.rowCount() != count()) throw std::invalid_argument("there is one row for each element");
+ComplexRows LineArray::form(const ComplexRows& element_rows, std::span<const double> sines) const {
+    if (element_rows.rowCount() != count()) throw std::invalid_argument("there is one row for each element");
     const size_t size = std::bit_ceil(oversampling * count());
     std::vector<Direction> directions;
     for (const double sine : sines) {
@@ -110,11 +110,11 @@ ComplexRows LineArray::form(const ComplexRows& heard, std::span<const double> si
         directions.push_back(
             {wrapped(low), wrapped(low + 1), static_cast<float>(place - low), turn(low), turn(low + 1)});
     }
-    ComplexRows beams(sines.size(), heard.sample_count);
+    ComplexRows beams(sines.size(), element_rows.sample_count);
     std::vector<Complex> spectrum;
-    for (size_t i = 0; i < heard.sample_count; ++i) {
+    for (size_t i = 0; i < element_rows.sample_count; ++i) {
         spectrum.assign(size, 0.0);
-        for (size_t m = 0; m < count(); ++m) spectrum[m] = weights_[m] * Complex(heard.row(m)[i]);
+        for (size_t m = 0; m < count(); ++m) spectrum[m] = weights_[m] * Complex(element_rows.row(m)[i]);
         transform(spectrum);
         for (size_t k = 0; k < sines.size(); ++k) {
             const Direction& direction = directions[k];
@@ -141,20 +141,22 @@ LineArray lineArrayOf(const SonarConfig& config) {
 
 void takeSignals(const RenderPlan& plan, const EchoField& field, const LineArray& array,
                  types::SonarElements& signals) {
-    ComplexRows heard = array.hear(sentField(plan, field), conesOf(plan.cells));
-    if (plan.config.imperfections) multiplyRows(heard, plan.config.imperfections->elementFactors(array.count()));
+    ComplexRows element_rows = array.elementSignals(sentField(plan, field), conesOf(plan.cells));
+    if (plan.config.imperfections) multiplyRows(element_rows, plan.config.imperfections->elementFactors(array.count()));
     signals.speed_of_sound = plan.grid.speed_of_sound;
     signals.wavelength = array.wavelength();
     signals.sample_spacing = field.response().sampleWidth();
     signals.first_range = 0.5 * signals.sample_spacing;
-    signals.sample_count = static_cast<uint32_t>(heard.sample_count);
+    signals.sample_count = static_cast<uint32_t>(element_rows.sample_count);
     signals.positions.clear();
     for (size_t m = 0; m < array.count(); ++m) signals.positions.push_back(array.position(m));
     signals.weights = array.weights();
-    signals.in_phase.resize(heard.values.size());
-    signals.quadrature.resize(heard.values.size());
-    std::ranges::transform(heard.values, signals.in_phase.begin(), [](const auto& value) { return value.real(); });
-    std::ranges::transform(heard.values, signals.quadrature.begin(), [](const auto& value) { return value.imag(); });
+    signals.in_phase.resize(element_rows.values.size());
+    signals.quadrature.resize(element_rows.values.size());
+    std::ranges::transform(element_rows.values, signals.in_phase.begin(),
+                           [](const auto& value) { return value.real(); });
+    std::ranges::transform(element_rows.values, signals.quadrature.begin(),
+                           [](const auto& value) { return value.imag(); });
 }
 
 }  // namespace insonify::sonar

@@ -51,13 +51,13 @@ public:
      *  mean of exp(i k position sine) over the cell's sines, k the wavenumber. The field's phase is that of the path to
      *  the array's middle and back. One row per cell. @throws std::invalid_argument when the numbers of rows and cells
      *  differ */
-    ComplexRows hear(const ComplexRows& field, std::span<const Cone> cells) const;
+    ComplexRows elementSignals(const ComplexRows& field, std::span<const Cone> cells) const;
 
-    /** Returns beams that look along cones: the sum over the elements of weight * heard * exp(-i k position sine),
+    /** Returns beams that look along cones: the sum over the elements of weight * signal * exp(-i k position sine),
      *  within 0.5 %. Uses a Fourier transform over the elements, padded to at least 16 times the array's length, and
      *  linear interpolation between its directions. Elements more than half a wavelength apart make some directions
      *  ambiguous. @throws std::invalid_argument when the numbers of rows and elements differ */
-    ComplexRows form(const ComplexRows& heard, std::span<const double> sines) const;
+    ComplexRows form(const ComplexRows& element_rows, std::span<const double> sines) const;
 
 private:
     double spacing_, wavelength_;

@@ -11,7 +11,7 @@ struct RenderPlan;
 struct LatticeLevel {
     double range_end;   ///< It is used from the end of the level before to here [m].
     double spacing;     ///< Side of its squares, each with one scatterer, seen along the surface's main axis [m].
-    double stands_for;  ///< Scatterers of the scene that each lattice scatterer represents; 0: very many [1].
+    double represents;  ///< Scatterers of the scene that each lattice scatterer represents; 0: very many [1].
     uint32_t number;    ///< Equal spacings have equal numbers [1].
 };
 

@@ -131,9 +131,9 @@ INSONIFY_VECTOR_CLONES void radiate(int count, LatticeScatterers& __restrict sca
 
 /** Rounds fields to quanta. */
 INSONIFY_VECTOR_CLONES void countQuanta(const float* fields, int count, int64_t* __restrict quanta) {
-    constexpr float most = 1048576;
+    constexpr float capacity = 1048576;
     for (int i = 0; i < count; ++i) {
-        const float low = fields[i] < most ? fields[i] : most, amount = low > -most ? low : -most;
+        const float low = fields[i] < capacity ? fields[i] : capacity, amount = low > -capacity ? low : -capacity;
         quanta[i] = static_cast<int64_t>(static_cast<double>(amount) * quanta_per_unit);
     }
 }
@@ -159,8 +159,8 @@ __attribute__((target("arch=x86-64-v4"))) int keepHeld(int count, LatticeScatter
     int held = 0;
     for (int i = 0; i < count; i += LatticeSquares::at_once) {
         const __m512i sums = _mm512_load_si512(scatterers.sum + i);
-        const uint32_t first_ones = (2u << std::min(count - i - 1, 15)) - 1;
-        const auto mask = static_cast<__mmask16>(first_ones & _mm512_cmpge_epi32_mask(sums, _mm512_setzero_si512()));
+        const uint32_t first_bits = (2u << std::min(count - i - 1, 15)) - 1;
+        const auto mask = static_cast<__mmask16>(first_bits & _mm512_cmpge_epi32_mask(sums, _mm512_setzero_si512()));
         for (void* const array : arrays) {
             const __m512i all = _mm512_load_si512(static_cast<int32_t*>(array) + i);
             _mm512_storeu_si512(static_cast<int32_t*>(array) + held, _mm512_maskz_compress_epi32(mask, all));
@@ -423,7 +423,7 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void Scatterers::depositLevel(co
         const int i = (row - rows.first) % OutlineRows::at_once;
         if (i == 0) rows.setEnds(row, ends);
         for (int32_t at = ends.first[i], last = ends.last[i]; at <= last; at += LatticeSquares::at_once) {
-            if (count > LatticeSquares::most - LatticeSquares::at_once) {
+            if (count > LatticeSquares::capacity - LatticeSquares::at_once) {
                 add(part, level, count);
                 count = 0;
             }
@@ -441,9 +441,9 @@ void Scatterers::add(const LatticePatch& part, const LatticeLevel& level, int co
     place(part, squares_, wholeVectors(count), scatterers_);
     locate(part, wholeVectors(count), scatterers_);
     const int held = keepHeld(count, scatterers_);
-    for (int i = 0; level.stands_for > 0 && i < held; ++i)
+    for (int i = 0; level.represents > 0 && i < held; ++i)
         scatterers_.size[i] *=
-            std::sqrt(gammaStrength(static_cast<float>(level.stands_for), mixed(scatterers_.bits[i] + 0x5bd1e995u)));
+            std::sqrt(gammaStrength(static_cast<float>(level.represents), mixed(scatterers_.bits[i] + 0x5bd1e995u)));
     radiate(wholeVectors(held), scatterers_);
     countQuanta(scatterers_.real, wholeVectors(held), scatterers_.real_quanta);
     countQuanta(scatterers_.imaginary, wholeVectors(held), scatterers_.imaginary_quanta);

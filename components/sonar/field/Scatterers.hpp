@@ -48,26 +48,28 @@ struct LatticePatch;
 
 /** Squares of a lattice in which scatterers of a patch may be, counted from the square of its middle. */
 struct LatticeSquares {
-    static constexpr int most = 256, at_once = 16;
-    alignas(64) int32_t u[most + at_once] = {}, v[most + at_once] = {};
+    static constexpr int capacity = 256, at_once = 16;
+    alignas(64) int32_t u[capacity + at_once] = {}, v[capacity + at_once] = {};
 };
 
 /** Scatterers of squares, and the fields of those inside the patch. */
 struct LatticeScatterers {
-    alignas(64) float u[LatticeSquares::most], v[LatticeSquares::most];  ///< From the patch's middle [spacings].
-    alignas(64) uint32_t bits[LatticeSquares::most];                     ///< Random bits of the square.
-    alignas(64) float size[LatticeSquares::most];   ///< Size of the field, in units of the square root of a whole cell.
-    alignas(64) float turns[LatticeSquares::most];  ///< Phase of the two-way path.
-    alignas(64) int32_t sum[LatticeSquares::most];  ///< Index of the sum of the real part; -1: outside the patch.
-    alignas(64) float real[LatticeSquares::most], imaginary[LatticeSquares::most];  ///< Fields.
-    alignas(64) int64_t real_quanta[LatticeSquares::most], imaginary_quanta[LatticeSquares::most];
+    alignas(64) float u[LatticeSquares::capacity],
+        v[LatticeSquares::capacity];                      ///< From the patch's middle [spacings].
+    alignas(64) uint32_t bits[LatticeSquares::capacity];  ///< Random bits of the square.
+    alignas(
+        64) float size[LatticeSquares::capacity];  ///< Size of the field, in units of the square root of a whole cell.
+    alignas(64) float turns[LatticeSquares::capacity];  ///< Phase of the two-way path.
+    alignas(64) int32_t sum[LatticeSquares::capacity];  ///< Index of the sum of the real part; -1: outside the patch.
+    alignas(64) float real[LatticeSquares::capacity], imaginary[LatticeSquares::capacity];  ///< Fields.
+    alignas(64) int64_t real_quanta[LatticeSquares::capacity], imaginary_quanta[LatticeSquares::capacity];
 };
 
 /** The estimator of fields. Finds the scatterers on the surfaces that samples see, and adds their fields to each range
  *  cell of a beam (ACOUSTICS.md 5.21). */
 class Scatterers {
 public:
-    static constexpr bool tells_truth = false;
+    static constexpr bool reports_truth = false;
     static constexpr Features features{Feature::Physical, Feature::Speckle};
 
     /** `sums`: EchoRules::sumCount() for each beam, [range cell][real, imaginary] in quanta, with sign. */

@@ -53,7 +53,7 @@ void Culler::visible(const ViewFrustum& frustum, std::vector<DrawRange>& ranges)
 
 uint32_t Culler::inView(const View& view, size_t object) const {
     if (places_.isFar(object)) return NOT_IN_VIEW;
-    if (rules_.draw_all) return DRAWN_WHOLE;
+    if (rules_.draw_all) return WHOLE_IN_VIEW;
     const Box& box = places_.box(object);
     const glm::vec3 centre(box.low * 0.5 + box.high * 0.5), half(box.high * 0.5 - box.low * 0.5);
     const float distance = nearest(view, records()[object], centre, half);
@@ -100,7 +100,7 @@ bool Culler::turnsItsBack(const Query& query, const types::Cluster& cluster) con
 }
 
 bool Culler::mayShow(const Query& query, glm::vec3 centre, glm::vec3 half) const {
-    return query.in_view == DRAWN_WHOLE || nearest(query.view, records()[query.object], centre, half) <= range_max_;
+    return query.in_view == WHOLE_IN_VIEW || nearest(query.view, records()[query.object], centre, half) <= range_max_;
 }
 
 }  // namespace insonify::sonar

@@ -11,10 +11,10 @@ namespace insonify::sonar {
 namespace {
 
 /** Returns the columns or rows of the largest picture. */
-int64_t largestSide(const std::vector<ViewFrustum>& frusta) {
-    int largest = 0;
-    for (const ViewFrustum& frustum : frusta) largest = std::max({largest, frustum.columns, frustum.rows});
-    return largest;
+int64_t maxSide(const std::vector<ViewFrustum>& frusta) {
+    int maximum = 0;
+    for (const ViewFrustum& frustum : frusta) maximum = std::max({maximum, frustum.columns, frustum.rows});
+    return maximum;
 }
 
 int64_t clusterCount(const types::Geometry& geometry) {
@@ -25,7 +25,7 @@ int64_t clusterCount(const types::Geometry& geometry) {
 }
 
 /** Returns the size of the largest storage buffer [bytes]. */
-int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry) {
+int64_t maxBuffer(const DepositSetup& setup, const types::Geometry& geometry) {
     size_t triangles = 0, shares = 0, starts = 0;
     for (const types::Mesh& mesh : geometry.meshes) triangles += mesh.indices.size() / 3;
     for (const ColumnShares& frustum : setup.shares) {
@@ -44,7 +44,7 @@ int64_t largestBuffer(const DepositSetup& setup, const types::Geometry& geometry
 gpu::Limits drawingNeeds(const RenderPlan& plan, const types::Geometry& geometry) {
     gpu::Limits needs;
     needs.draw_parameters = 1;
-    needs.texture_size = needs.viewport_size = largestSide(plan.frusta);
+    needs.texture_size = needs.viewport_size = maxSide(plan.frusta);
     if (plan.features.has(Feature::NormalMap))
         for (const types::NormalMap& map : geometry.normal_maps)
             needs.texture_size = std::max({needs.texture_size, int64_t{map.width}, int64_t{map.height}});
@@ -58,11 +58,11 @@ gpu::Limits depositNeeds(const DepositSetup& setup, const types::Geometry& geome
     constexpr int64_t group_bytes = 2 * 4 * 8 * 32, own_bytes = 8;  // deposit.comp.glsl: words of the sums of a channel
     gpu::Limits needs;
     needs.storage_blocks = needs.storage_bindings = SUMS_BINDING + 1;
-    needs.storage_bytes = largestBuffer(setup, geometry);
+    needs.storage_bytes = maxBuffer(setup, geometry);
     needs.shared_bytes = group_bytes * static_cast<int64_t>(setup.rules.channels()) + own_bytes;
     needs.group_invocations = needs.group_size = group;
     needs.group_count =
-        std::max((largestSide(setup.frusta) + side - 1) / side, (clusterCount(geometry) + group - 1) / group);
+        std::max((maxSide(setup.frusta) + side - 1) / side, (clusterCount(geometry) + group - 1) / group);
     return needs;
 }
 

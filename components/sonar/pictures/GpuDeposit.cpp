@@ -13,8 +13,8 @@ namespace {
 
 /** Returns a number as the sum of two floats: its float, and the rest. */
 vec2 pairOf(double number) {
-    constexpr double most = std::numeric_limits<float>::max();
-    const double held = std::clamp(number, -most, most);
+    constexpr double maximum = std::numeric_limits<float>::max();
+    const double held = std::clamp(number, -maximum, maximum);
     const auto high = static_cast<float>(held);
     return {high, static_cast<float>(held - static_cast<double>(high))};
 }

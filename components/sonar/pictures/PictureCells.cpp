@@ -41,7 +41,8 @@ struct Frame {
 /** Sets direction, extent and solid angle of all cells. `by_rays`: as in Frame; a template parameter, because compilers
  *  do not vectorise a loop with this choice. */
 template <bool by_rays>
-inline __attribute__((always_inline)) void aimEach(const Shares& shares, const Frame& frame, Cells& __restrict cells) {
+inline __attribute__((always_inline)) void placeEach(const Shares& shares, const Frame& frame,
+                                                     Cells& __restrict cells) {
     const int count = cells.count;
     for (int i = 0; i < count; ++i) {
         const double ray_u = shares.u[i], ray_v = shares.v[i];
@@ -62,12 +63,12 @@ inline __attribute__((always_inline)) void aimEach(const Shares& shares, const F
     }
 }
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void aimAll(const Shares& shares, const Frame& frame,
-                                                            Cells& __restrict cells) {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void placeAll(const Shares& shares, const Frame& frame,
+                                                              Cells& __restrict cells) {
     if (frame.by_rays)
-        aimEach<true>(shares, frame, cells);
+        placeEach<true>(shares, frame, cells);
     else
-        aimEach<false>(shares, frame, cells);
+        placeEach<false>(shares, frame, cells);
 }
 
 /** Makes cells of pixels, a batch at a time. */
@@ -79,7 +80,7 @@ public:
           cells_(deposit_.cells),
           frame_{std::cos(part.frustum.azimuth), std::sin(part.frustum.azimuth), part.frustum.dv(),
                  1 / (part.frustum.du() * part.frustum.dv()), has(Feature::Nearest) || has(Feature::Published)},
-          counts_misses_(has(Feature::Published) || part.rules.hears_misses),
+          counts_misses_(has(Feature::Published) || part.rules.echoes_from_misses),
           jitters_(has(Feature::Jitter)) {}
 
     void run() {
@@ -145,7 +146,7 @@ private:
     }
 
     void flush() {
-        aimAll(shares_, frame_, cells_);
+        placeAll(shares_, frame_, cells_);
         if (part_.picture.channels == 4 && !frame_.by_rays) moveMappedCosines();
         if (has(Feature::ElevationPattern)) {
             ElevationTable table{part_.rules.elevation_powers.data(), part_.rules.elevation_reach};

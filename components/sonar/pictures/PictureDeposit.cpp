@@ -30,9 +30,9 @@ PictureDeposit::PictureDeposit(DepositSetup setup, const SurfacePass& surface, c
       pictures_(setup_.frusta.size()),
       sums_(setup_.sumCount()) {
     for (size_t i = 0; i < pictures_.size(); ++i) {
-        const VisibilityBuffer& drawn = surface.picture(i);
-        pictures_[i].view.channels = static_cast<size_t>(drawn.channels());
-        pictures_[i].words = gpu::ReadBack(drawn.bytes());
+        const VisibilityBuffer& rasterised = surface.picture(i);
+        pictures_[i].view.channels = static_cast<size_t>(rasterised.channels());
+        pictures_[i].words = gpu::ReadBack(rasterised.bytes());
         pictures_[i].view.ranges.reserve(surface.lists().drawLimit());
     }
     touchColumns();

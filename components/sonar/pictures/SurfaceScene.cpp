@@ -9,9 +9,9 @@ namespace {
 /** A mesh in the form that is rasterised: triangle t ends in vertex t, and no other triangle ends there. So the last
  *  vertex of a triangle, the provoking one, identifies the triangle. gl_PrimitiveID, for which llvmpipe splits meshes,
  *  is not needed. */
-class Drawn {
+class Rasterised {
 public:
-    explicit Drawn(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
+    explicit Rasterised(const types::Mesh& mesh) : indices(mesh.indices), place_(mesh.positions.size(), nobody) {
         sources.resize(indices.size() / 3);
         for (size_t t = 0; t < sources.size(); ++t) endInOwnVertex(t);
         for (size_t i = 0; i < indices.size(); ++i)
@@ -45,7 +45,7 @@ private:
 
 /** Returns one attribute of all rasterised vertices; `neutral` where a mesh has none. */
 template <class T>
-std::vector<T> joined(const types::Geometry& geometry, const std::vector<Drawn>& meshes,
+std::vector<T> joined(const types::Geometry& geometry, const std::vector<Rasterised>& meshes,
                       std::vector<T> types::Mesh::*attribute, T neutral) {
     std::vector<T> all;
     for (size_t m = 0; m < meshes.size(); ++m) {
@@ -117,11 +117,11 @@ SurfaceScene::SurfaceScene(const types::Geometry& geometry, const MaterialLaws& 
 }
 
 void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
-    std::vector<Drawn> meshes;
+    std::vector<Rasterised> meshes;
     std::vector<uint32_t> indices;
     uint32_t vertex = 0;
     for (const types::Mesh& mesh : geometry.meshes) {
-        const Drawn& added = meshes.emplace_back(mesh);
+        const Rasterised& added = meshes.emplace_back(mesh);
         const auto first_index = static_cast<uint32_t>(indices.size());
         places_.push_back({vertex, first_index, first_index / 3});
         vertex += static_cast<uint32_t>(added.sources.size());

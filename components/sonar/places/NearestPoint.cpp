@@ -85,10 +85,10 @@ public:
 
     double nearest() {
         const types::Cluster* first = nullptr;
-        float least = std::numeric_limits<float>::infinity();
+        float minimum = std::numeric_limits<float>::infinity();
         forEachCluster([&](const types::Cluster& cluster, float at_least) {
-            if (at_least < least) least = at_least, first = &cluster;
-            return least;
+            if (at_least < minimum) minimum = at_least, first = &cluster;
+            return minimum;
         });
         if (!first) return 0;
         look(*first);

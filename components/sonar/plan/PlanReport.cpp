@@ -14,7 +14,7 @@
 namespace insonify::sonar {
 namespace {
 
-std::string reasonOf(const LeftOut& what, const BinGrid& grid) {
+std::string reasonOf(const Omitted& what, const BinGrid& grid) {
     if (what.words) return what.words(what, grid);
     switch (what.reason) {
         case Reason::NotConfigured: return "not configured";
@@ -90,7 +90,7 @@ std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot)
         depth, top, bottom);
 }
 
-types::Omission describe(const LeftOut& what, const BinGrid& grid) {
+types::Omission describe(const Omitted& what, const BinGrid& grid) {
     const std::string name(what.effect);
     if (what.reason != Reason::OutOfView) return {name, reasonOf(what, grid)};
     return {fmt::format("{}{:.0f} of {:.0f} {}", name == "triangles" ? "at least " : "", what.value, what.bound, name),
@@ -98,17 +98,18 @@ types::Omission describe(const LeftOut& what, const BinGrid& grid) {
 }
 
 types::Plan report(const RenderPlan& plan, const types::Geometry& geometry) {
-    types::Plan told;
-    told.rows = plan.config.rows();
-    told.columns_per_beam = plan.config.columnsPerBeam();
-    told.slabs = static_cast<int>(plan.frusta.size());
-    told.predicted_error = std::numeric_limits<double>::quiet_NaN();
-    told.features = plan.featureNames();
-    for (Pass pass : plan.passes) told.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);
-    for (const LeftOut& what : plan.left_out) told.omitted.push_back(describe(what, plan.grid));
-    told.notices = configNotices(plan.config);
-    for (const Effect* effect : effects()) effect->note(plan, geometry, told.notices);
-    return told;
+    types::Plan reported;
+    reported.rows = plan.config.rows();
+    reported.columns_per_beam = plan.config.columnsPerBeam();
+    reported.slabs = static_cast<int>(plan.frusta.size());
+    reported.predicted_error = std::numeric_limits<double>::quiet_NaN();
+    reported.features = plan.featureNames();
+    for (Pass pass : plan.passes)
+        reported.passes.emplace_back(types::EnumNames<Pass>::names[static_cast<size_t>(pass)]);
+    for (const Omitted& what : plan.omitted) reported.omitted.push_back(describe(what, plan.grid));
+    reported.notices = configNotices(plan.config);
+    for (const Effect* effect : effects()) effect->note(plan, geometry, reported.notices);
+    return reported;
 }
 
 }  // namespace insonify::sonar

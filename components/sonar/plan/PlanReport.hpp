@@ -12,7 +12,7 @@ namespace insonify::sonar {
 types::Plan report(const RenderPlan& plan, const types::Geometry& geometry);
 
 /** Returns in words what is omitted and why. */
-types::Omission describe(const LeftOut& what, const BinGrid& grid);
+types::Omission describe(const Omitted& what, const BinGrid& grid);
 
 /** Returns a notice if the sonar is outside the depths of its sound speed profile; empty otherwise. */
 std::string depthNotice(const RenderPlan& plan, const types::Snapshot& snapshot);

@@ -46,25 +46,25 @@ std::vector<std::string> RenderPlan::defines() const {
 void RenderPlan::setQuality(int rows, int columns_per_beam) {
     config.quality.rows = rows;
     config.quality.columns_per_beam = columns_per_beam;
-    sampled = directivity ? sampledConfig(config, *directivity, casts_rays) : config;
-    cells = directivity ? azimuthCells(sampled, beams, *directivity, casts_rays) : beams;
-    if (!casts_rays) frusta = makeFrusta(sampled, cells, options);
+    sampled = directivity ? sampledConfig(config, *directivity, traces_rays) : config;
+    cells = directivity ? azimuthCells(sampled, beams, *directivity, traces_rays) : beams;
+    if (!traces_rays) frusta = makeFrusta(sampled, cells, options);
 }
 
-const LeftOut* RenderPlan::leftOut(std::string_view effect) const {
-    const auto found = std::ranges::find(left_out, effect, &LeftOut::effect);
-    return found == left_out.end() ? nullptr : &*found;
+const Omitted* RenderPlan::findOmitted(std::string_view effect) const {
+    const auto found = std::ranges::find(omitted, effect, &Omitted::effect);
+    return found == omitted.end() ? nullptr : &*found;
 }
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry, const RenderOptions& options) {
     RenderPlan plan;
     plan.config = config;
     plan.options = options;
-    plan.casts_rays = !options.needImages() && config.castsRays();
+    plan.traces_rays = !options.needImages() && config.tracesRays();
     plan.grid = makeBinGrid(config);
     plan.laws = makeMaterialLaws(config, geometry);
     plan.features = featuresOf(config, options);
-    plan.passes = {Pass::Cull, plan.casts_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
+    plan.passes = {Pass::Cull, plan.traces_rays ? Pass::Rays : Pass::Surface, Pass::Deposit, Pass::Beams};
     plan.beams = makeBeams(config);
     if (config.beam_pattern) plan.directivity.emplace(config);
     plan.setQuality(config.rows(), config.columnsPerBeam());

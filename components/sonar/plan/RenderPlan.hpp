@@ -62,7 +62,7 @@ private:
 /** Work for each ping, in this order. */
 enum class Pass { Cull, Surface, Rays, SurfaceMaps, Deposit, Walls, Paths, Beams, Beamform, Pulse, RingDown };
 
-/** Reason for an omission; LeftOut::words adds the details. */
+/** Reason for an omission; Omitted::words adds the details. */
 enum class Reason {
     NotConfigured,
     NoneInScene,
@@ -74,9 +74,9 @@ enum class Reason {
 };
 
 /** An omission, with the numbers that justify it. */
-struct LeftOut {
+struct Omitted {
     /** The reason in words. */
-    using Words = std::string (*)(const LeftOut& what, const BinGrid& grid);
+    using Words = std::string (*)(const Omitted& what, const BinGrid& grid);
 
     std::string_view effect;  ///< Name in words, a constant.
     Reason reason;
@@ -92,7 +92,7 @@ class Effect;
 struct RenderPlan {
     SonarConfig config;  ///< With the current quality.
     RenderOptions options;
-    bool casts_rays = false;
+    bool traces_rays = false;
     Features features;
     std::vector<std::string> effect_features;  ///< Names that effects add: "motion_in_ping".
     std::vector<const Effect*> effects;        ///< Active effects, in order.
@@ -107,8 +107,8 @@ struct RenderPlan {
     std::vector<ViewFrustum> frusta;  ///< Frusta of the images of the cells; empty with rays.
     double max_map_strength = 1;      ///< Max factor by surface maps, at least 1 [1].
     bool fills_water = false;         ///< Whether there are echoes where there is no surface.
-    bool hears_misses = false;        ///< Whether effects process samples that hit nothing.
-    std::vector<LeftOut> left_out;
+    bool echoes_from_misses = false;  ///< Whether effects process samples that hit nothing.
+    std::vector<Omitted> omitted;
 
     /** Sets other rows and columns per beam [1], and the matching images. */
     void setQuality(int rows, int columns_per_beam);
@@ -121,7 +121,7 @@ struct RenderPlan {
     /** "HAVE_PHYSICAL", "HAVE_NORMAL_MAP"..., for the shaders. */
     std::vector<std::string> defines() const;
     /** Returns the omission of an effect, by its name in words; null where it is not omitted. */
-    const LeftOut* leftOut(std::string_view effect) const;
+    const Omitted* findOmitted(std::string_view effect) const;
 };
 
 RenderPlan makeRenderPlan(const SonarConfig& config, const types::Geometry& geometry,

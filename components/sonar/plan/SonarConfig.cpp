@@ -226,13 +226,13 @@ std::optional<bool> SonarConfig::choosesRays() const {
     return {};
 }
 
-bool SonarConfig::castsRays() const {
+bool SonarConfig::tracesRays() const {
     const std::optional<bool> chosen = choosesRays();
     return chosen ? *chosen : !gpu::EglContext::hasCard();
 }
 
 void SonarConfig::requireDevice(const std::string& task) const {
-    if (castsRays()) return;
+    if (tracesRays()) return;
     try {
         gpu::EglContext::requireDevice(device);
     } catch (const gpu::GlError& error) {
@@ -240,11 +240,11 @@ void SonarConfig::requireDevice(const std::string& task) const {
     }
 }
 
-std::optional<double> SonarConfig::mostSamples() const {
-    constexpr double default_most = 400'000;
+std::optional<double> SonarConfig::maxSamples() const {
+    constexpr double default_max = 400'000;
     if (quality.max_samples) return *quality.max_samples;
     if (quality.target_error || !targetError()) return {};
-    return default_most;
+    return default_max;
 }
 
 std::optional<double> SonarConfig::absorbedKhz() const {

@@ -242,7 +242,7 @@ struct SonarConfig {
     /** Returns the error to choose the quality for. None when the quality or a budget is given, or with `published`. */
     std::optional<double> targetError() const;
     /** Returns the max number of samples of a ping for its target; none when it is unlimited [1]. */
-    std::optional<double> mostSamples() const;
+    std::optional<double> maxSamples() const;
     /** Returns whether the quality is chosen from the pings, rather than given. */
     bool choosesQuality() const { return targetError() || quality.budget_ms; }
     /** Returns the beams per ping: of `bearings_deg`, else beam_count [1]. */
@@ -268,7 +268,7 @@ struct SonarConfig {
      *  configuration and the environment decide. None: it depends on whether there is a graphics card. */
     std::optional<bool> choosesRays() const;
     /** Returns the same; looks for a graphics card where nothing else decides. */
-    bool castsRays() const;
+    bool tracesRays() const;
     /** Throws types::ConfigError where the configuration needs a graphics device that EGL does not list. */
     void requireDevice(const std::string& task) const;
     /** Returns the frequency for the law of absorption: its own, or the sonar's [kHz]; none where absorption has no

@@ -66,19 +66,19 @@ Squares squares(const BeamBins& got, const BeamBins& reference, int first_bin, d
 
 void addNorms(const Comparison& c, Metrics& metrics) {
     Squares plain, flattened;
-    int heard = 0;
+    int received = 0;
     for (size_t b = 0; b < c.got.size(); ++b) {
         const Squares beam = squares(c.got[b], c.reference[b], c.first_bin, 0);
         plain += beam;
         flattened += squares(c.got[b], c.reference[b], c.first_bin, 5);
         if (beam.reference > 0) {
             metrics.mean_rel_l2 += beam.relative();
-            ++heard;
+            ++received;
         }
     }
     metrics.rel_l2 = plain.relative();
     metrics.rel_l2_tvg = flattened.relative();
-    metrics.mean_rel_l2 /= std::max(1, heard);
+    metrics.mean_rel_l2 /= std::max(1, received);
 }
 
 void addLevels(const Comparison& c, Metrics& metrics) {
@@ -110,9 +110,9 @@ std::vector<bool> shadow(const BeamBins& beam) {
     std::vector<double> sums(beam.size() + 1);
     for (size_t k = 0; k < beam.size(); ++k) sums[k + 1] = sums[k] + beam[k];
     std::vector<bool> dark(beam.size());
-    const auto heard = [](double e) { return e > 0; };
-    const auto first = std::ranges::find_if(beam, heard) - beam.begin();
-    const auto last = std::find_if(beam.rbegin(), beam.rend(), heard).base() - beam.begin();
+    const auto received = [](double e) { return e > 0; };
+    const auto first = std::ranges::find_if(beam, received) - beam.begin();
+    const auto last = std::find_if(beam.rbegin(), beam.rend(), received).base() - beam.begin();
     for (auto k = first; k < last; ++k) {
         const auto low = std::max<std::ptrdiff_t>(0, k - shadow_neighbourhood);
         const auto high = std::min(static_cast<std::ptrdiff_t>(beam.size()), k + shadow_neighbourhood + 1);
@@ -137,17 +137,17 @@ void addShapes(const Comparison& c, Metrics& metrics) {
 
 void addEnergies(const Comparison& c, Metrics& metrics) {
     double got = 0, reference = 0, ripple = 0;
-    int heard = 0;
+    int received = 0;
     for (size_t b = 0; b < c.got.size(); ++b) {
         const double beam = total(c.got[b]), wanted = total(c.reference[b]);
         got += beam;
         reference += wanted;
         if (!(wanted > 0)) continue;
         ripple += std::pow(beam / wanted - 1, 2);
-        ++heard;
+        ++received;
     }
     metrics.energy_bias = got == reference ? 0 : got / reference - 1;
-    metrics.ripple = std::sqrt(ripple / std::max(1, heard));
+    metrics.ripple = std::sqrt(ripple / std::max(1, received));
 }
 
 double correlation(const Comparison& c) {

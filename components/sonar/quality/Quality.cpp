@@ -14,7 +14,7 @@ constexpr double step_of_samples = 4, worth_a_trade = 0.85;
 /** Returns whether a device can rasterise this number of columns per beam. */
 bool fits(SonarConfig config, int columns) {
     config.quality.columns_per_beam = columns;
-    if (config.castsRays()) return true;
+    if (config.tracesRays()) return true;
     return makeFrusta(config, makeBeams(config)).front().columns <= max_image_size;
 }
 
@@ -37,18 +37,19 @@ double ErrorModel::error(int rows, int columns_per_beam) const {
 }
 
 QualityLadder::QualityLadder(const SonarConfig& config) {
-    const Quality least;
+    const Quality minimum;
     for (int i = 0; rows_.empty() || rows_.back() < max_rows; ++i)
         rows_.push_back(
-            static_cast<int>(std::lround(least.rows * std::exp2(i / static_cast<double>(rungs_per_doubling)))));
-    for (int columns = least.columns_per_beam; columns <= max_columns; columns *= 2)
+            static_cast<int>(std::lround(minimum.rows * std::exp2(i / static_cast<double>(rungs_per_doubling)))));
+    for (int columns = minimum.columns_per_beam; columns <= max_columns; columns *= 2)
         for (const int each : {columns, columns + columns / 2})
             if (each <= max_columns && (columns_.empty() || fits(config, each))) columns_.push_back(each);
 }
 
-Quality QualityLadder::choose(const ErrorModel& model, double target, double max_samples, const Quality& least) const {
-    Quality best = least;
-    best.error = model.error(least.rows, least.columns_per_beam);
+Quality QualityLadder::choose(const ErrorModel& model, double target, double max_samples,
+                              const Quality& minimum) const {
+    Quality best = minimum;
+    best.error = model.error(minimum.rows, minimum.columns_per_beam);
     const auto better = [&](const Quality& quality) {
         if (best.error > target) return quality.error < best.error;
         return quality.error <= target && quality.samples() < best.samples();
@@ -56,7 +57,7 @@ Quality QualityLadder::choose(const ErrorModel& model, double target, double max
     for (const int columns : columns_)
         for (const int rows : rows_) {
             const Quality quality{rows, columns, model.error(rows, columns)};
-            if (rows < least.rows || columns < least.columns_per_beam || quality.samples() > max_samples) continue;
+            if (rows < minimum.rows || columns < minimum.columns_per_beam || quality.samples() > max_samples) continue;
             if (better(quality)) best = quality;
         }
     return best;
@@ -115,8 +116,8 @@ ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRe
     ErrorModel model = estimator.model(renderer, scene, ping, start);
     while (model.error() > goal.target) {
         const double samples = std::min(goal.max_samples, step_of_samples * model.at.samples());
-        const Quality finer = ladder.choose(model, aim_share * goal.target, samples, model.at);
-        const Quality other = ladder.choose(model, aim_share * goal.target, samples);
+        const Quality finer = ladder.choose(model, target_share * goal.target, samples, model.at);
+        const Quality other = ladder.choose(model, target_share * goal.target, samples);
         if (!(finer == model.at))
             model = goTo(finer);
         else if (goal.trades && other.error < worth_a_trade * model.error())
@@ -135,7 +136,7 @@ Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene) {
     const Quality start;
     renderer.setQuality(start.rows, start.columns_per_beam);
     renderer.render(scene, ping);
-    const QualityGoal goal{config.targetError().value_or(0), config.mostSamples().value_or(infinity) / config.beams()};
+    const QualityGoal goal{config.targetError().value_or(0), config.maxSamples().value_or(infinity) / config.beams()};
     return climb(estimator, QualityLadder(config), renderer, scene, start, goal, ping).at;
 }
 

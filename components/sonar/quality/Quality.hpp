@@ -40,7 +40,7 @@ public:
     /** Returns the quality with the fewest samples whose error is at most `target`, else that with the smallest error.
      *  It has at least the rows and columns of `least`, and at most `max_samples` per beam; `least` itself where there
      *  is none. Its error is that of `model`. */
-    Quality choose(const ErrorModel& model, double target, double max_samples, const Quality& least = {}) const;
+    Quality choose(const ErrorModel& model, double target, double max_samples, const Quality& minimum = {}) const;
 
 private:
     std::vector<int> rows_, columns_;
@@ -91,7 +91,7 @@ ErrorModel climb(ErrorEstimator& estimator, const QualityLadder& ladder, SonarRe
                  const types::Snapshot& scene, const Quality& start, const QualityGoal& goal, types::Sonar& ping);
 
 /** Goal of a new choice, when the error was above the target or a lower quality suffices [1 of the target]. */
-constexpr double aim_share = 0.8;
+constexpr double target_share = 0.8;
 
 /** Returns the quality that a sonar chooses in one snapshot, for its configuration's target and max samples. */
 Quality chooseQuality(const SonarConfig& config, const types::Snapshot& scene);

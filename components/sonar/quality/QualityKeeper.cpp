@@ -20,7 +20,7 @@ constexpr int rarely = 16;  ///< One of this number of due pings is evaluated wh
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;
 constexpr double overhead = 0.15, pings_to_choose = 10;  ///< Max total cost of estimates [share of the pings, pings].
 constexpr int min_pings = 64, settled = 20, max_notices = 20;
-constexpr double worth_telling = 1.2, too_far_from_model = 4;
+constexpr double worth_reporting = 1.2, too_far_from_model = 4;
 
 }  // namespace
 
@@ -71,9 +71,9 @@ QualityKeeper::QualityKeeper(const SonarConfig& config, int turn)
     if (config.quality.budget_ms) budget_.emplace(*config.quality.budget_ms, Quality().samples() * beams_);
 }
 
-double QualityKeeper::mostSamples() const {
-    const double most = std::min(config_.mostSamples().value_or(infinity), budget_ ? budget_->limit() : infinity);
-    return std::max(most / beams_, Quality().samples());
+double QualityKeeper::maxSamples() const {
+    const double maximum = std::min(config_.maxSamples().value_or(infinity), budget_ ? budget_->limit() : infinity);
+    return std::max(maximum / beams_, Quality().samples());
 }
 
 bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
@@ -81,27 +81,27 @@ bool QualityKeeper::follow(SonarRenderer& renderer, const types::Snapshot& scene
     if (!renderer.hasEchoes()) return false;
     ++pings_;
     ++since_change_;
-    heard_samples_ += model_.at.samples();
+    received_samples_ += model_.at.samples();
     if (!std::exchange(chosen_, true)) {
         choose(renderer, scene, ping);
         return true;
     }
     const bool limited = keepBudget(renderer, scene, ping, ms, period_ms);
     const bool watched = !limited && isDue() && watch(renderer, scene, ping);
-    tellBudget(scene, ms);
+    reportBudget(scene, ms);
     return limited || watched;
 }
 
 void QualityKeeper::choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping) {
     const Quality before = model_.at;
     const bool is_first = pings_ == 1, sees_all = turn_ == 1;
-    model_ = climb(estimator_, ladder_, renderer, scene, before, {target_, mostSamples(), is_first || sees_all}, ping);
-    const Quality enough = ladder_.choose(model_, aim_share * target_, mostSamples(), before);
+    model_ = climb(estimator_, ladder_, renderer, scene, before, {target_, maxSamples(), is_first || sees_all}, ping);
+    const Quality enough = ladder_.choose(model_, target_share * target_, maxSamples(), before);
     if (enough.samples() <= worth_lowering * model_.at.samples()) moveTo(renderer, enough);
     modelled_ = model_.at.samples();
     since_change_ = 0;
     worst_ = 0;
-    tellChoice(scene);
+    reportChoice(scene);
 }
 
 void QualityKeeper::moveTo(SonarRenderer& renderer, const Quality& quality) {
@@ -112,7 +112,7 @@ void QualityKeeper::moveTo(SonarRenderer& renderer, const Quality& quality) {
 
 bool QualityKeeper::isDue() {
     const auto watched = [](int64_t pings, double share) { return std::floor(static_cast<double>(pings) * share); };
-    if (estimator_.rendered() > overhead * heard_samples_ + pings_to_choose * model_.at.samples()) return false;
+    if (estimator_.rendered() > overhead * received_samples_ + pings_to_choose * model_.at.samples()) return false;
     const bool no_time = budget_ && model_.at.samples() > near_limit * budget_->limit() / beams_;
     const bool is_first_turn = turn_ > 1 && pings_ <= turn_;
     const double share = no_time ? watched_share / rarely : is_first_turn ? first_turn_share : watched_share;
@@ -137,11 +137,11 @@ bool QualityKeeper::lower(SonarRenderer& renderer, const types::Snapshot& scene,
     const double scale = model.error() > 0 ? std::max(1.0, worst / model.error()) : 1;
     model.of_rows *= scale;
     model.of_columns *= scale;
-    const Quality enough = ladder_.choose(model, aim_share * target_, mostSamples());
+    const Quality enough = ladder_.choose(model, target_share * target_, maxSamples());
     if (enough.samples() > worth_lowering * model_.at.samples()) return false;
     model_ = model;
     moveTo(renderer, enough);
-    tellChoice(scene);
+    reportChoice(scene);
     return true;
 }
 
@@ -151,23 +151,23 @@ bool QualityKeeper::keepBudget(SonarRenderer& renderer, const types::Snapshot& s
     const bool by_period = period_ms > 0 && !wanted.target_error && !wanted.max_samples && !wanted.budget_ms;
     if (by_period && budget_) budget_->setBudget(period_ms);
     if (by_period && !budget_) budget_.emplace(period_ms);
-    const double before = mostSamples();
+    const double before = maxSamples();
     if (!budget_ || !budget_->note(ms, model_.at.samples() * beams_)) return false;
-    const bool rises = mostSamples() > before;
-    if (rises && mostSamples() > too_far_from_model * modelled_) {
+    const bool rises = maxSamples() > before;
+    if (rises && maxSamples() > too_far_from_model * modelled_) {
         choose(renderer, scene, ping);
         return true;
     }
-    const Quality next = ladder_.choose(model_, aim_share * target_, mostSamples(), rises ? model_.at : Quality());
+    const Quality next = ladder_.choose(model_, target_share * target_, maxSamples(), rises ? model_.at : Quality());
     if (next == model_.at) return false;
     moveTo(renderer, next);
     since_change_ = 0;
     return true;
 }
 
-void QualityKeeper::tell(const std::string& notice) {
-    if (notices_told_ < max_notices) notices_.push_back(notice);
-    if (++notices_told_ == max_notices) notices_.push_back("further changes of the quality are not reported");
+void QualityKeeper::report(const std::string& notice) {
+    if (notices_reported_ < max_notices) notices_.push_back(notice);
+    if (++notices_reported_ == max_notices) notices_.push_back("further changes of the quality are not reported");
 }
 
 std::string QualityKeeper::text() const {
@@ -177,28 +177,29 @@ std::string QualityKeeper::text() const {
 }
 
 std::string QualityKeeper::limitText() const {
-    if (budget_ && budget_->limit() < config_.mostSamples().value_or(infinity))
+    if (budget_ && budget_->limit() < config_.maxSamples().value_or(infinity))
         return fmt::format("the budget of {:.4g} ms allows no more", budget_->budget());
-    return config_.mostSamples() ? fmt::format("max_samples {:.0f} allows no more", *config_.mostSamples())
-                                 : "there is no finer quality";
+    return config_.maxSamples() ? fmt::format("max_samples {:.0f} allows no more", *config_.maxSamples())
+                                : "there is no finer quality";
 }
 
-void QualityKeeper::tellChoice(const types::Snapshot& scene) {
-    const std::string when = notices_told_ ? fmt::format("from {:.3f} s on ", scene.time.seconds()) : "";
-    told_ = model_.at;
-    if (target_ == 0) return tell(fmt::format("{}{}; budget {:g} ms", when, text(), *config_.quality.budget_ms));
+void QualityKeeper::reportChoice(const types::Snapshot& scene) {
+    const std::string when = notices_reported_ ? fmt::format("from {:.3f} s on ", scene.time.seconds()) : "";
+    reported_ = model_.at;
+    if (target_ == 0) return report(fmt::format("{}{}; budget {:g} ms", when, text(), *config_.quality.budget_ms));
     if (model_.at.error <= target_ || std::exchange(missed_, true))
-        return tell(fmt::format("{}{}, target {:g}", when, text(), target_));
-    tell(fmt::format("Warning: {}{}, misses the target of {:g}: {}", when, text(), target_, limitText()));
+        return report(fmt::format("{}{}, target {:g}", when, text(), target_));
+    report(fmt::format("Warning: {}{}, misses the target of {:g}: {}", when, text(), target_, limitText()));
 }
 
-void QualityKeeper::tellBudget(const types::Snapshot& scene, double ms) {
+void QualityKeeper::reportBudget(const types::Snapshot& scene, double ms) {
     if (!budget_) return;
-    if (model_.at == Quality() && budget_->limit() < model_.at.samples() * beams_ && !std::exchange(late_told_, true))
-        tell(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:.4g} ms", ms,
-                         budget_->budget()));
-    const double ratio = model_.at.samples() / told_.samples();
-    if (since_change_ == settled && std::max(ratio, 1 / ratio) > worth_telling) tellChoice(scene);
+    if (model_.at == Quality() && budget_->limit() < model_.at.samples() * beams_ &&
+        !std::exchange(late_reported_, true))
+        report(fmt::format("Warning: the coarsest quality takes {:.3g} ms; the budget is {:.4g} ms", ms,
+                           budget_->budget()));
+    const double ratio = model_.at.samples() / reported_.samples();
+    if (since_change_ == settled && std::max(ratio, 1 / ratio) > worth_reporting) reportChoice(scene);
 }
 
 }  // namespace insonify::sonar

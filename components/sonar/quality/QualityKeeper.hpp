@@ -78,7 +78,7 @@ public:
     std::vector<std::string> takeNotices() { return std::exchange(notices_, {}); }
 
 private:
-    double mostSamples() const;  ///< Max samples per beam [1].
+    double maxSamples() const;  ///< Max samples per beam [1].
     void choose(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping);
     bool watch(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping);
     bool isDue();
@@ -86,9 +86,9 @@ private:
     bool keepBudget(SonarRenderer& renderer, const types::Snapshot& scene, types::Sonar& ping, double ms,
                     double period_ms);
     void moveTo(SonarRenderer& renderer, const Quality& quality);
-    void tell(const std::string& notice);
-    void tellChoice(const types::Snapshot& scene);
-    void tellBudget(const types::Snapshot& scene, double ms);
+    void report(const std::string& notice);
+    void reportChoice(const types::Snapshot& scene);
+    void reportBudget(const types::Snapshot& scene, double ms);
     std::string text() const;
     std::string limitText() const;  ///< Why there is no finer quality.
 
@@ -99,14 +99,14 @@ private:
     ErrorEstimator estimator_;
     std::optional<BudgetKeeper> budget_;
     ErrorModel model_;  ///< At the current quality.
-    bool chosen_ = false, missed_ = false, late_told_ = false;
-    int64_t pings_ = 0;         ///< Pings with an echo [1].
-    double heard_samples_ = 0;  ///< Samples per beam of all pings with an echo [1].
-    int since_change_ = 0;      ///< Pings with an echo since the quality was changed or last evaluated [1].
-    double worst_ = 0;          ///< Largest error estimated in these pings [1].
-    double modelled_ = 0;       ///< Samples per beam at which the error was last estimated in two parts [1].
-    Quality told_;              ///< Quality of the last notice.
-    int notices_told_ = 0;
+    bool chosen_ = false, missed_ = false, late_reported_ = false;
+    int64_t pings_ = 0;            ///< Pings with an echo [1].
+    double received_samples_ = 0;  ///< Samples per beam of all pings with an echo [1].
+    int since_change_ = 0;         ///< Pings with an echo since the quality was changed or last evaluated [1].
+    double worst_ = 0;             ///< Largest error estimated in these pings [1].
+    double modelled_ = 0;          ///< Samples per beam at which the error was last estimated in two parts [1].
+    Quality reported_;             ///< Quality of the last notice.
+    int notices_reported_ = 0;
     std::vector<std::string> notices_;
 };
 

@@ -70,16 +70,16 @@ std::vector<AngularView::Elevation> elevationsOf(const RenderPlan& plan) {
 
 /** Returns the max samples of one triangle in one cell, so that its ranges stay within a fiftieth of a bin of the
  *  plane's. */
-int mostMerged(const AngularView& view, const BinGrid& bins) {
+int maxMerged(const AngularView& view, const BinGrid& bins) {
     // Over an angle d, 1/r of a plane n.p = D deviates from the straight line between its ends by at most d d / (8 D).
     // That is a fiftieth of a bin at the far edge, on planes with a grazing angle of 15 deg. The relative error of
     // energies is d d / 24, for any length of the bins.
     constexpr double widest = 0.0085;  // [rad]
     const double angle = std::min(widest, std::sqrt(8 * 0.02 * bins.bin_width / bins.range_max / 4));
     const double cell = std::max(view.column_width, view.row_height);
-    int most = 1;
-    while (most < tile_samples && cell * 2 * std::sqrt(most) <= angle) most *= 4;
-    return most;
+    int maximum = 1;
+    while (maximum < tile_samples && cell * 2 * std::sqrt(maximum) <= angle) maximum *= 4;
+    return maximum;
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ TileShape::TileShape(const AngularView& view, const BinGrid& bins, int beams) {
             at[count + i] = {at[i].columns + (widens ? across : 0), at[i].rows + (widens ? 0 : up)};
     }
     all = size[tile_samples];
-    max_merged = std::min(together * all.rows, mostMerged(view, bins));
+    max_merged = std::min(together * all.rows, maxMerged(view, bins));
 }
 
 }  // namespace insonify::sonar

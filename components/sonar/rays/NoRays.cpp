@@ -1,4 +1,4 @@
-// Replaces CastEchoes.cpp, PathEchoes.cpp and ForeignEchoes.cpp in a build without Embree.
+// Replaces RayEchoes.cpp, PathEchoes.cpp and ForeignEchoes.cpp in a build without Embree.
 #include <stdexcept>
 
 #include "components/sonar/EchoRenderer.hpp"
@@ -9,7 +9,7 @@ namespace insonify::sonar {
 
 bool haveRays() { return false; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan&, types::GeometryPtr, PingEffects&) {
+std::unique_ptr<EchoRenderer> makeRayEchoes(const RenderPlan&, types::GeometryPtr, PingEffects&) {
     throw std::runtime_error("this build has no rays (Embree); visibility may be auto or gl");
 }
 

@@ -13,7 +13,7 @@ namespace insonify::sonar {
 namespace {
 
 /** Returns a unit vector normal to a direction. */
-glm::dvec3 besideOf(const glm::dvec3& direction) {
+glm::dvec3 acrossOf(const glm::dvec3& direction) {
     const glm::dvec3 up = std::abs(direction.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     return glm::normalize(glm::cross(up, direction));
 }
@@ -60,7 +60,7 @@ void RayPaths::placeCorners() {
         corners_.push_back(farthest * static_cast<double>(i) / static_cast<double>(count));
 }
 
-std::optional<HeardPoint> RayPaths::heard(const glm::dvec3& place, size_t target) const {
+std::optional<EchoPoint> RayPaths::received(const glm::dvec3& place, size_t target) const {
     constexpr int steps = 100;
     Drift drift;
     if (motion_) drift.constant = motion_->targetVelocity(target) * world_from_sonar_;
@@ -73,7 +73,7 @@ std::optional<HeardPoint> RayPaths::heard(const glm::dvec3& place, size_t target
     if (!(glm::length(missed) < 0.1 * plan_.grid.bin_width)) return {};
     const double range = glm::length(point);
     const glm::dvec3 direction = point / range;
-    return HeardPoint{point, apparent(direction, glm::dot(direction, place), direction, range, &drift).focus};
+    return EchoPoint{point, apparent(direction, glm::dot(direction, place), direction, range, &drift).focus};
 }
 
 glm::dvec3 RayPaths::movedBy(const glm::dvec3& direction, double range, const Drift* drift) const {
@@ -127,22 +127,22 @@ double RayPaths::rangeOf(const glm::dvec3& normal, double distance, const glm::d
 ApparentPlane RayPaths::apparent(const glm::dvec3& normal, double distance, const glm::dvec3& direction, double near,
                                  const Drift* drift) const {
     const double range = rangeOf(normal, distance, direction, near, drift);
-    const glm::dvec3 beside = besideOf(direction), upward = glm::cross(direction, beside);
+    const glm::dvec3 across = acrossOf(direction), upward = glm::cross(direction, across);
     const double angle = table_ ? table_->elevationStep() : 1e-3, length = 1e-3 * range;
     const auto turned = [&](const glm::dvec3& aside) {
         const auto to = [&](double by) { return at(glm::normalize(direction + by * aside), range, drift); };
         return (to(angle) - to(-angle)) / (2 * angle);
     };
-    const glm::dvec3 by_beside = turned(beside), by_upward = turned(upward);
+    const glm::dvec3 by_across = turned(across), by_upward = turned(upward);
     const glm::dvec3 onward =
         (at(direction, range + length, drift) - at(direction, range - length, drift)) / (2 * length);
     const double facing = glm::dot(normal, onward), pace = glm::length(onward);
     // Derivatives of range with the direction, on the plane normal . at(direction, range) = distance [m].
-    const double slope_beside = -glm::dot(normal, by_beside) / facing;
+    const double slope_across = -glm::dot(normal, by_across) / facing;
     const double slope_upward = -glm::dot(normal, by_upward) / facing;
-    const double area = std::abs(glm::dot(glm::cross(by_beside, by_upward), onward)) / pace;  // per steradian [m^2]
+    const double area = std::abs(glm::dot(glm::cross(by_across, by_upward), onward)) / pace;  // per steradian [m^2]
     ApparentPlane plane;
-    plane.normal = direction / range - (slope_beside * beside + slope_upward * upward) / (range * range);
+    plane.normal = direction / range - (slope_across * across + slope_upward * upward) / (range * range);
     plane.cosine = std::abs(facing) / (glm::length(normal) * pace);
     plane.focus = std::min(range * range / area, max_focus);
     return plane;

@@ -20,7 +20,7 @@ struct ApparentPlane {
 };
 
 /** A point whose echo arrives from an apparent place. */
-struct HeardPoint {
+struct EchoPoint {
     glm::dvec3 place;  ///< Apparent place, sonar axes [m].
     double focus;      ///< Intensity relative to straight rays of the same range [1].
 };
@@ -61,7 +61,7 @@ public:
     /** Returns the apparent place of a point target of this ping, as if its echo arrived along a straight ray: the
      *  place nearest to the straight one. `place`: of the target when the pulse was sent, sonar axes [m]. None where no
      *  path reaches it, as in a shadow. */
-    std::optional<HeardPoint> heard(const glm::dvec3& place, size_t target) const;
+    std::optional<EchoPoint> received(const glm::dvec3& place, size_t target) const;
     /** Returns the max inverse range of echoes from places at an inverse distance or farther [1/m]. */
     double nearLimit(double inverse_distance) const;
 

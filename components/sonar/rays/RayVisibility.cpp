@@ -54,7 +54,7 @@ void forgetHits(RTCRayHit16& all) {
 }
 
 /** Sets origins and directions of the active rays; keeps their hits so far. */
-void aim(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
+void direct(const Rows& turn, glm::vec3 from, const TileRays& rays, RTCRayHit16& all) {
     std::fill_n(all.ray.org_x, tile_samples, from.x);
     std::fill_n(all.ray.org_y, tile_samples, from.y);
     std::fill_n(all.ray.org_z, tile_samples, from.z);
@@ -83,7 +83,7 @@ void extend(const TileRays& rays, float nearest, RTCRayHit16& all) {
 
 /** Sets rays with other origins, in the axes given by `turn` and `place` of the sonar. */
 template <class Rays>
-void aim(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
+void direct(const Rows& turn, glm::vec3 place, const PathRays& rays, Rays& ray) {
     const auto turned = [](glm::vec3 row, float x, float y, float z) { return row.x * x + row.y * y + row.z * z; };
     for (int i = 0; i < tile_samples; ++i) {
         ray.org_x[i] = place.x + turned(turn.x, rays.from_x[i], rays.from_y[i], rays.from_z[i]);
@@ -157,7 +157,7 @@ Places placesOf(const RayPaths& paths, const TileRays& rays, double range, const
 }
 
 /** Sets the rays from one place to another; keeps their hits so far. */
-void aim(const Rows& turn, glm::vec3 place, const Places& from, const Places& to, RTCRayHit16& all) {
+void direct(const Rows& turn, glm::vec3 place, const Places& from, const Places& to, RTCRayHit16& all) {
     for (size_t i = 0; i < tile_samples; ++i) {
         const glm::vec3 way = to[i] - from[i];
         all.ray.org_x[i] = place.x + glm::dot(turn.x, from[i]);
@@ -382,13 +382,13 @@ void RayVisibility::placeMovers(const types::Snapshot& snapshot) {
     }
 }
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::span<const TileRays> rays,
-                                                                         std::span<TileHits> hits) const {
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::trace(std::span<const TileRays> rays,
+                                                                          std::span<TileHits> hits) const {
     std::array<RTCRayHit16, tiles_at_once> all;
     const Rows world(world_from_sonar_);
     for (size_t i = 0; i < rays.size(); ++i) {
         extend(rays[i], static_cast<float>(nearest), all[i]);
-        aim(world, place_, rays[i], all[i]);
+        direct(world, place_, rays[i], all[i]);
     }
     intersect(here_->trees->scene(), std::span(all).first(rays.size()));
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -403,23 +403,23 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::cast(std::sp
             take(all[i], hits[i],
                  [this](uint32_t geometry, uint32_t instance) { return deforming_.meaning(geometry, instance); });
     }
-    for (size_t i = 0; i < rays.size(); ++i) castAtMovers(rays[i], all[i], hits[i]);
+    for (size_t i = 0; i < rays.size(); ++i) traceToMovers(rays[i], all[i], hits[i]);
 }
 
-void RayVisibility::castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
+void RayVisibility::traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
     if (here_->movers.empty()) return;
     const TileCone cone = coneAbout(rays);
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
     for (const Mover& mover : here_->movers) {
         if (!mover.mayMeet(cone)) continue;
-        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        direct(Rows(mover.from_sonar), mover.place, rays, all);
         intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
 
-void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const {
+void RayVisibility::traceAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const {
     const std::span<const double> corners = paths.corners();
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     TileRays left = rays;
@@ -430,7 +430,7 @@ void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileH
         RTCRayHit16 all;
         extend(left, k == 1 ? static_cast<float>(nearest / length) : 0, all);
         for (float& end : all.ray.tfar) end = std::min(end, 1.0f);
-        castPiece(paths, left, piece, all, hits);
+        tracePiece(paths, left, piece, all, hits);
         for (uint32_t i = 0; i < tile_samples; ++i) {
             if (hits.command[i] == TileHits::nothing || !(left.active >> i & 1)) continue;
             hits.range[i] = static_cast<float>(start + static_cast<double>(all.ray.tfar[i]) * length);
@@ -439,46 +439,46 @@ void RayVisibility::castAlong(const RayPaths& paths, const TileRays& rays, TileH
     }
 }
 
-void RayVisibility::castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
-                              TileHits& hits) const {
+void RayVisibility::tracePiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                               TileHits& hits) const {
     alignas(64) int valid[tile_samples];
     for (int i = 0; i < tile_samples; ++i) valid[i] = (rays.active >> i & 1) ? -1 : 0;
-    aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+    direct(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
     intersect(here_->trees->scene(), valid, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
-    if (!deforming_.isEmpty()) castPieceAtDeforming(paths, rays, piece, valid, all, hits);
+    if (!deforming_.isEmpty()) tracePieceAtDeforming(paths, rays, piece, valid, all, hits);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
-            aim(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
-                placesOf(paths, rays, piece.end, drift), all);
+            direct(Rows(mover.from_sonar), mover.place, placesOf(paths, rays, piece.start, drift),
+                   placesOf(paths, rays, piece.end, drift), all);
         else
-            aim(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
+            direct(Rows(mover.from_sonar), mover.place, piece.from, piece.to, all);
         intersect(mover.tree, valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
     }
 }
 
 /** Each object by itself, for it moves by a drift of its own. */
-void RayVisibility::castPieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece,
-                                         const int* valid, RTCRayHit16& all, TileHits& hits) const {
+void RayVisibility::tracePieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece,
+                                          const int* valid, RTCRayHit16& all, TileHits& hits) const {
     for (size_t i = 0; i < deforming_.size(); ++i) {
         if (const Drift* drift = paths.drift(deforming_.object(i)))
-            aim(Rows(world_from_sonar_), place_, placesOf(paths, rays, piece.start, drift),
-                placesOf(paths, rays, piece.end, drift), all);
+            direct(Rows(world_from_sonar_), place_, placesOf(paths, rays, piece.start, drift),
+                   placesOf(paths, rays, piece.end, drift), all);
         else
-            aim(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+            direct(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
         intersect(deforming_.scene(i), valid, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return deforming_.meaningIn(i, geometry); });
     }
 }
 
-void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
+void RayVisibility::trace(const PathRays& rays, TileHits& hits) const {
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     RTCRayHit16 all;
     const Valid valid(rays.towards.active);
     bound(rays, all.ray);
-    aim(Rows(world_from_sonar_), place_, rays, all.ray);
+    direct(Rows(world_from_sonar_), place_, rays, all.ray);
     forgetHits(all);
     intersect(here_->trees->scene(), valid.of, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
@@ -490,7 +490,7 @@ void RayVisibility::cast(const PathRays& rays, TileHits& hits) const {
     }
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
-        aim(Rows(mover.from_sonar), mover.place, rays, all.ray);
+        direct(Rows(mover.from_sonar), mover.place, rays, all.ray);
         forgetHits(all);
         intersect(mover.tree, valid.of, all);
         take(all, hits, [&](uint32_t geometry, uint32_t) { return mover.meaning(geometry); });
@@ -501,14 +501,14 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     RTCRay16 all;
     const Valid valid(rays.towards.active);
     bound(rays, all);
-    aim(Rows(world_from_sonar_), place_, rays, all);
+    direct(Rows(world_from_sonar_), place_, rays, all);
     // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
     const bool are_coherent = !here_->trees->hasInstances();
     occlude(here_->trees->scene(), valid.of, are_coherent, all);
     if (!deforming_.isEmpty()) occlude(deforming_.scene(), valid.of, false, all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
-        aim(Rows(mover.from_sonar), mover.place, rays, all);
+        direct(Rows(mover.from_sonar), mover.place, rays, all);
         occlude(mover.tree, valid.of, are_coherent, all);
     }
     uint32_t met = 0;

@@ -29,7 +29,7 @@ struct TileHits {
     uint32_t triangle[tile_samples];             ///< Within the mesh of the command's object [1].
     float u[tile_samples], v[tile_samples];  ///< Barycentric coordinates of the triangle's second and third corner [1].
     float distance[tile_samples];            ///< In lengths of the ray's direction [1].
-    float range[tile_samples];               ///< Slant range, set by castAlong() only [m].
+    float range[tile_samples];               ///< Slant range, set by traceAlong() only [m].
 };
 
 /** Rays of a tile with any origins, sonar axes; distances along them in lengths of their directions. */
@@ -43,7 +43,8 @@ struct PathRays {
  *
  *  Objects at rest form one tree about an origin near the sonar, on a coarse grid, so that world coordinates may be
  *  large. Each object that moves, or is transient, has a tree of its mesh, which is placed anew and never rebuilt.
- *  Objects that deform have trees that are refitted to their meshes in each ping. All trees are shared with other renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
+ *  Objects that deform have trees that are refitted to their meshes in each ping. All trees are shared with other
+ * renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
@@ -77,14 +78,14 @@ public:
 
     /** Traces tiles from the sonar, at most `tiles_at_once`, which should be neighbours: hits[i] are the hits of
      *  rays[i]. Thread-safe. */
-    void cast(std::span<const TileRays> rays, std::span<TileHits> hits) const;
+    void trace(std::span<const TileRays> rays, std::span<TileHits> hits) const;
 
     /** Finds the first hits of rays with other origins. */
-    void cast(const PathRays& rays, TileHits& hits) const;
+    void trace(const PathRays& rays, TileHits& hits) const;
     /** Returns the active rays, as bits, that hit anything. */
     uint32_t blocked(const PathRays& rays) const;
     /** Traces a tile along paths that are not straight, by straight pieces between their corners. */
-    void castAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
+    void traceAlong(const RayPaths& paths, const TileRays& rays, TileHits& hits) const;
 
     /** Returns the commands that hits refer to: one for each object and run of one material. */
     const std::vector<CommandRecord>& commands() const { return commands_; }
@@ -99,8 +100,8 @@ private:
         double start, end;
         Places from, to;
     };
-    void castPiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
-                   TileHits& hits) const;
+    void tracePiece(const RayPaths& paths, const TileRays& rays, const Piece& piece, RTCRayHit16& all,
+                    TileHits& hits) const;
     void listCommands();
     bool hasNewMover(const types::Snapshot& snapshot) const;
     /** Records the objects of a snapshot as moving; every tree is to be rebuilt. */
@@ -109,15 +110,15 @@ private:
     void placeMovers(const types::Snapshot& snapshot);
     void placeDeforming(const types::Snapshot& snapshot);
     bool doesDeform(size_t object) const { return !deforms_.empty() && deforms_[object]; }
-    void castPieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece, const int* valid,
-                              RTCRayHit16& all, TileHits& hits) const;
-    void castAtMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
+    void tracePieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece, const int* valid,
+                               RTCRayHit16& all, TileHits& hits) const;
+    void traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< First command of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
-    std::vector<bool> deforms_;  ///< Whether each object deforms; empty if no object does.
+    std::vector<bool> deforms_;            ///< Whether each object deforms; empty if no object does.
     DeformingTrees deforming_;
     std::vector<glm::dmat4> deforming_places_;  ///< Places of the deforming objects about the origin.
     bool is_fitted_ = false;                    ///< Whether the trees match these places and the present meshes.

@@ -139,7 +139,7 @@ bool SurfaceMapping::isMapped(const TileHits& hits) const {
         hits.command, [this](uint32_t command) { return command < of_command_.size() && of_command_[command]; });
 }
 
-MapLevels::Look SurfaceMapping::look(const CastView& view, const PlacedScene& scene, const CastTile& tile,
+MapLevels::Look SurfaceMapping::look(const TracedView& view, const PlacedScene& scene, const TracedTile& tile,
                                      int i) const {
     const uint32_t command = tile.hits->command[i];
     if (command >= of_command_.size() || !of_command_[command]) return {};
@@ -214,7 +214,8 @@ Seen choose(const SurfaceMapping& maps, uint32_t command, const MapLevels::Look&
 
 }  // namespace
 
-void MappedTiles::take(const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles, bool apart) {
+void MappedTiles::take(const TracedView& view, const PlacedScene& scene, std::span<const TracedTile> tiles,
+                       bool apart) {
     const SurfaceMapping& maps = *scene.maps;
     whole_.assign(tiles.begin(), tiles.end());
     rest_.clear();
@@ -226,13 +227,13 @@ void MappedTiles::take(const CastView& view, const PlacedScene& scene, std::span
         add(maps, tiles[at], at, looks.data(), apart);
     }
     for (Part& part : parts_) {
-        CastTile& tile = part.tile < whole_.size() ? whole_[part.tile] : rest_[part.tile - whole_.size()];
+        TracedTile& tile = part.tile < whole_.size() ? whole_[part.tile] : rest_[part.tile - whole_.size()];
         tile.hits = &part.hits;
         tile.gains = part.gains.data();
     }
 }
 
-void MappedTiles::add(const SurfaceMapping& maps, const CastTile& tile, size_t at, const MapLevels::Look* looks,
+void MappedTiles::add(const SurfaceMapping& maps, const TracedTile& tile, size_t at, const MapLevels::Look* looks,
                       bool apart) {
     std::array<std::array<Seen, max_materials>, tile_samples> seen;
     size_t count = 1;

@@ -63,7 +63,7 @@ public:
     bool isMapped(const TileHits& hits) const;
     /** Returns the contents of the map that sample `i` of a tile hits. The footprint is as seen from the sonar,
      *  whichever path sound took. */
-    MapLevels::Look look(const CastView& view, const PlacedScene& scene, const CastTile& tile, int i) const;
+    MapLevels::Look look(const TracedView& view, const PlacedScene& scene, const TracedTile& tile, int i) const;
     /** Returns the command of a class of a command with a map; the command itself for 0, its own material. */
     uint32_t commandOf(uint32_t command, size_t class_number) const {
         return class_number == 0 ? command : first_class_[command] + static_cast<uint32_t>(class_number) - 1;
@@ -87,11 +87,11 @@ public:
     /** Takes some tiles of a scene with maps, which must outlive their use here. `apart`: each sample gets one of its
      *  materials, in proportion to their shares. It is for fields, in which two materials at one place would not add as
      *  energies do. */
-    void take(const CastView& view, const PlacedScene& scene, std::span<const CastTile> tiles, bool apart);
+    void take(const TracedView& view, const PlacedScene& scene, std::span<const TracedTile> tiles, bool apart);
     /** Returns one tile for each tile, with all its samples, each with the material of its largest share. */
-    std::span<const CastTile> whole() const { return whole_; }
+    std::span<const TracedTile> whole() const { return whole_; }
     /** Returns the other materials of samples with several. */
-    std::span<const CastTile> rest() const { return rest_; }
+    std::span<const TracedTile> rest() const { return rest_; }
 
 private:
     static constexpr size_t max_materials = 4;      ///< Further materials of a sample count as its largest [1].
@@ -103,9 +103,9 @@ private:
         TileHits hits;
         std::array<float, tile_samples> gains;
     };
-    void add(const SurfaceMapping& maps, const CastTile& tile, size_t at, const MapLevels::Look* looks, bool apart);
+    void add(const SurfaceMapping& maps, const TracedTile& tile, size_t at, const MapLevels::Look* looks, bool apart);
 
-    std::vector<CastTile> whole_, rest_;
+    std::vector<TracedTile> whole_, rest_;
     std::vector<Part> parts_;
 };
 

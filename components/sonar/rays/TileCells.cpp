@@ -14,11 +14,11 @@ namespace {
 /** Makes cells of tiles, a batch at a time. */
 class TileCells {
 public:
-    TileCells(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
+    TileCells(const EchoRules& rules, const TracedView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
           has_maps_(rules.has_maps),
-          hears_misses_(rules.hears_misses && !to.behind_walls),
+          echoes_from_misses_(rules.echoes_from_misses && !to.behind_walls),
           curves_(!rules.features.has(Feature::Speckle) && !scene.paths),
           view_(view.cells),
           shape_(view.shape),
@@ -27,14 +27,14 @@ public:
           cells_(deposit_.cells),
           max_merged_(scene.paths ? 1 : view.shape.max_merged) {}
 
-    void add(const CastTile& tile) {
+    void add(const TracedTile& tile) {
         const uint32_t same = sameAsNext(*tile.hits);
         for (int i = 0; i < tile_samples;) {
             const bool met = tile.hits->command[i] != TileHits::nothing;
             const int merged = met && !tile.apparent ? sameFrom(same, i) : 1;
             if (met)
                 addCell(tile, i, merged);
-            else if (hears_misses_)
+            else if (echoes_from_misses_)
                 addMiss(tile, i);
             i += merged;
         }
@@ -59,18 +59,18 @@ private:
     /** Returns the number of samples from i that are a rectangle of one triangle in one beam. */
     int sameFrom(uint32_t same, int i) const {
         const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-        const int most = std::min(static_cast<int>(alignment), max_merged_);
+        const int maximum = std::min(static_cast<int>(alignment), max_merged_);
         const int run = std::countr_one(same >> i) + 1;
-        return static_cast<int>(std::bit_floor(static_cast<uint32_t>(std::min(run, most))));
+        return static_cast<int>(std::bit_floor(static_cast<uint32_t>(std::min(run, maximum))));
     }
 
-    void addCell(const CastTile& tile, int sample, int merged) {
+    void addCell(const TracedTile& tile, int sample, int merged) {
         const PlacedRun& run = scene_.ranges[tile.hits->command[sample]];
         const CommandRecord& command = scene_.commands[tile.hits->command[sample]];
         const uint32_t object = command.object;
         const int i = cells_.count;
         cells_.setPlane(i, run, tile.hits->triangle[sample]);
-        aim(tile, sample, merged);
+        look(tile, sample, merged);
         if (tile.passed) cells_.size[i] *= tile.meanPassed(sample, merged);
         if (has_maps_) cells_.gain[i] = tile.meanGain(sample, merged);
         if (tile.isApparent(sample)) putApparent(cells_, i, tile.apparent[sample]);
@@ -92,13 +92,13 @@ private:
     }
 
     /** Adds a miss: only effects process it. */
-    void addMiss(const CastTile& tile, int sample) {
+    void addMiss(const TracedTile& tile, int sample) {
         const int column = tile.first_column + shape_.at[sample].columns, i = cells_.count;
         if (column >= tile.end_column || tile.first_row + shape_.at[sample].rows >= view_.rows) return;
         cells_.setMiss(i);
         cells_.gain[i] = 1;
         in_map_.placeMiss(i);
-        aim(tile, sample, 1);
+        look(tile, sample, 1);
         if (++cells_.count == Cells::capacity) finish();
     }
 
@@ -128,7 +128,7 @@ private:
     }
 
     /** Sets the look direction of the current cell, with `merged` samples. */
-    void aim(const CastTile& tile, int sample, int merged) {
+    void look(const TracedTile& tile, int sample, int merged) {
         const TileShape::Extent at = shape_.at[sample], size = shape_.size[merged];
         setLookDirection(view_, conical_,
                          {view_, tile.first_column + at.columns, size.columns, tile.first_row + at.rows, size.rows},
@@ -137,7 +137,7 @@ private:
 
     bool conical_, mapped_;
     bool has_maps_;  ///< Surface maps, in addition to normal maps.
-    bool hears_misses_;
+    bool echoes_from_misses_;
     bool curves_;  ///< Whether smooth bodies curve within a cell: not with fields or bent rays.
     const AngularView& view_;
     const TileShape& shape_;
@@ -150,9 +150,10 @@ private:
 
 }  // namespace
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRules& rules, const CastView& view,
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositTiles(const EchoRules& rules, const TracedView& view,
                                                                   const PlacedScene& scene,
-                                                                  std::span<const CastTile> tiles, const EchoSums& to) {
+                                                                  std::span<const TracedTile> tiles,
+                                                                  const EchoSums& to) {
     TileCells cells(rules, view, scene, to);
     for (size_t i = 0; i < tiles.size(); ++i) {
         if (i + 2 < tiles.size()) fetchPlanes(scene, tiles[i + 2]);

@@ -25,13 +25,13 @@ struct PlacedScene {
 };
 
 /** Arrangement of samples. */
-struct CastView {
+struct TracedView {
     AngularView cells;
     TileShape shape;
 };
 
 /** A traced tile: its place in the view and its hits. */
-struct CastTile {
+struct TracedTile {
     int first_column, first_row;
     int end_column;  ///< Samples from this column on are not in the tile: they were not traced, and are not misses.
     TileHits* hits;
@@ -64,10 +64,10 @@ struct CastTile {
 };
 
 /** A ray-traced ping, at the current quality. */
-struct CastPing {
+struct TracedPing {
     const EchoRules& rules;
     const BinLevels& levels;  ///< Intensities of the rules' bins.
-    const CastView& view;
+    const TracedView& view;
     const RayVisibility& visibility;  ///< Placed in this ping.
     PlacedScene scene;
 };
@@ -128,7 +128,7 @@ inline void relateSizes(const AngularView& view, Cells& cells) {
 }
 
 /** Prefetches the planes of a later tile; they are scattered in memory like its triangles. */
-inline void fetchPlanes(const PlacedScene& scene, const CastTile& tile) {
+inline void fetchPlanes(const PlacedScene& scene, const TracedTile& tile) {
     for (int i = 0; i < tile_samples; ++i) {
         if (tile.hits->command[i] == TileHits::nothing) continue;
         const PlaneRecord& plane = scene.ranges[tile.hits->command[i]].planes[tile.hits->triangle[i]];
@@ -163,7 +163,7 @@ inline void putApparent(Cells& cells, int i, const ApparentPlane& plane) {
 
 /** Adds the energies of tiles to sums. Neighbouring samples of one triangle in one beam may be one cell. Allocates
  *  nothing. */
-void depositTiles(const EchoRules& rules, const CastView& view, const PlacedScene& scene,
-                  std::span<const CastTile> tiles, const EchoSums& to);
+void depositTiles(const EchoRules& rules, const TracedView& view, const PlacedScene& scene,
+                  std::span<const TracedTile> tiles, const EchoSums& to);
 
 }  // namespace insonify::sonar

@@ -6,7 +6,7 @@
 
 namespace insonify::sonar {
 
-TileDirections::TileDirections(const CastView& view, int strip_columns)
+TileDirections::TileDirections(const TracedView& view, int strip_columns)
     : tile_(view.shape.all),
       strip_columns_(strip_columns),
       tiles_across_(static_cast<size_t>((strip_columns + tile_.columns - 1) / tile_.columns)) {

@@ -10,7 +10,7 @@ class TileDirections {
 public:
     TileDirections() = default;
     /** `strip_columns`: the columns of a strip; tiles of one strip have no columns of the next. */
-    TileDirections(const CastView& view, int strip_columns);
+    TileDirections(const TracedView& view, int strip_columns);
 
     /** Returns the rays of the tile that begins at a column and a row; rays outside of the strip and of the view are
      *  not active. */

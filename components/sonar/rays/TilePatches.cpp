@@ -15,12 +15,12 @@ namespace {
 /** Makes patches of tiles, a batch at a time. */
 class TilePatches {
 public:
-    TilePatches(const EchoRules& rules, const CastView& view, const PlacedScene& scene, const EchoSums& to)
+    TilePatches(const EchoRules& rules, const TracedView& view, const PlacedScene& scene, const EchoSums& to)
         : conical_(rules.features.has(Feature::Conical)),
           mapped_(rules.features.has(Feature::NormalMap)),
           has_maps_(rules.has_maps),
           has_own_(!rules.own.empty()),
-          hears_misses_(rules.hears_misses && !to.behind_walls),
+          echoes_from_misses_(rules.echoes_from_misses && !to.behind_walls),
           view_(view.cells),
           shape_(view.shape),
           scene_(scene),
@@ -34,14 +34,14 @@ public:
         }
     }
 
-    void add(const CastTile& tile) {
+    void add(const TracedTile& tile) {
         uint32_t met = 0;
         for (int i = 0; i < tile_samples; ++i) {
             command_[place_[i]] = tile.hits->command[i];
             triangle_[place_[i]] = tile.hits->triangle[i];
             met |= static_cast<uint32_t>(tile.hits->command[i] != TileHits::nothing) << place_[i];
         }
-        for (uint32_t left = hears_misses_ ? ~met & 0xffff : 0; left != 0; left &= left - 1)
+        for (uint32_t left = echoes_from_misses_ ? ~met & 0xffff : 0; left != 0; left &= left - 1)
             addMiss(tile, std::countr_zero(left));
         while (met != 0) {
             const int first = std::countr_zero(met);
@@ -74,7 +74,7 @@ private:
         for (int up = row; up < row + rows; ++up) all |= ((1u << columns) - 1) << (up * shape_.all.columns + column);
         return all;
     }
-    SampleRectangle around(const CastTile& tile, uint32_t samples) const {
+    SampleRectangle around(const TracedTile& tile, uint32_t samples) const {
         uint32_t columns = 0;
         for (uint32_t left = samples; left != 0; left >>= shape_.all.columns) columns |= left;
         columns &= (1u << shape_.all.columns) - 1;
@@ -82,22 +82,22 @@ private:
         return {view_, tile.first_column + column, static_cast<int>(std::bit_width(columns)) - column,
                 tile.first_row + row, rowOf(static_cast<int>(std::bit_width(samples)) - 1) - row + 1};
     }
-    int beamAt(const CastTile& tile, int place) const {
+    int beamAt(const TracedTile& tile, int place) const {
         return view_.beam_of[static_cast<size_t>(tile.first_column + columnOf(place))];
     }
 
     /** Returns the samples of one patch with the lowest sample, among samples that hit the same triangle. Where beams
      *  do not join, a patch has one beam. Where effects have their own sums, which need whole cells, it is a rectangle
      *  of one beam. */
-    uint32_t partOf(const CastTile& tile, uint32_t same) const {
+    uint32_t partOf(const TracedTile& tile, uint32_t same) const {
         const int first = std::countr_zero(same);
         if (has_own_ || !view_.joined) {
             int column = columnOf(first), end = column + 1;
-            const auto isBeside = [&](int other) {
+            const auto isNeighbour = [&](int other) {
                 return other >= 0 && other < shape_.all.columns && beamAt(tile, other) == beamAt(tile, first);
             };
-            while (isBeside(end)) ++end;
-            while (isBeside(column - 1)) --column;
+            while (isNeighbour(end)) ++end;
+            while (isNeighbour(column - 1)) --column;
             same &= bits(column, end - column, 0, shape_.all.rows);
         }
         const int row = rowOf(first);
@@ -117,7 +117,7 @@ private:
     }
 
     /** Adds a miss: only effects process it. */
-    void addMiss(const CastTile& tile, int place) {
+    void addMiss(const TracedTile& tile, int place) {
         const int column = tile.first_column + columnOf(place), row = tile.first_row + rowOf(place);
         if (column >= tile.end_column || row >= view_.rows) return;
         cells_.setMiss(cells_.count);
@@ -127,7 +127,7 @@ private:
         count();
     }
 
-    void addPatch(const CastTile& tile, uint32_t samples) {
+    void addPatch(const TracedTile& tile, uint32_t samples) {
         const int i = cells_.count, first = std::countr_zero(samples);
         const SampleRectangle all = around(tile, samples);
         const CommandRecord& command = scene_.commands[command_[first]];
@@ -143,7 +143,7 @@ private:
     }
 
     /** Returns the mean of `passed` of some samples [1]. */
-    double meanPassed(const CastTile& tile, uint32_t samples) const {
+    double meanPassed(const TracedTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
             sum += tile.meanPassed(sample_[std::countr_zero(left)], 1);
@@ -151,7 +151,7 @@ private:
     }
 
     /** Returns the mean factor of some samples by surface maps [1]. */
-    double meanGain(const CastTile& tile, uint32_t samples) const {
+    double meanGain(const TracedTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
             sum += tile.meanGain(sample_[std::countr_zero(left)], 1);
@@ -159,7 +159,7 @@ private:
     }
 
     /** Returns the mean slant range of some samples beyond that of their surface [m]. */
-    double meanLate(const CastTile& tile, uint32_t samples) const {
+    double meanLate(const TracedTile& tile, uint32_t samples) const {
         double sum = 0;
         for (uint32_t left = samples; left != 0; left &= left - 1)
             sum += tile.meanLate(sample_[std::countr_zero(left)], 1);
@@ -167,7 +167,7 @@ private:
     }
 
     /** Returns samples numbered as in Patch::seen. */
-    uint32_t samplesIn(const SampleRectangle& all, uint32_t samples, const CastTile& tile) const {
+    uint32_t samplesIn(const SampleRectangle& all, uint32_t samples, const TracedTile& tile) const {
         const uint32_t row_bits = (1u << all.columns) - 1;
         if (isRectangle(all, samples)) return row_bits;
         uint32_t seen = 0;
@@ -258,7 +258,7 @@ private:
         uint32_t object, lattice;
     };
 
-    bool conical_, mapped_, has_maps_, has_own_, hears_misses_;
+    bool conical_, mapped_, has_maps_, has_own_, echoes_from_misses_;
     const AngularView& view_;
     const TileShape& shape_;
     const PlacedScene& scene_;
@@ -276,9 +276,9 @@ private:
 
 }  // namespace
 
-INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositPatches(const EchoRules& rules, const CastView& view,
+INSONIFY_VECTOR_CLONES __attribute__((flatten)) void depositPatches(const EchoRules& rules, const TracedView& view,
                                                                     const PlacedScene& scene,
-                                                                    std::span<const CastTile> tiles,
+                                                                    std::span<const TracedTile> tiles,
                                                                     const EchoSums& to) {
     TilePatches patches(rules, view, scene, to);
     for (size_t i = 0; i < tiles.size(); ++i) {

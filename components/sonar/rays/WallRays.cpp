@@ -29,7 +29,7 @@ EchoTrain EchoTrain::then(const Returns& returns, double spacing, double resolut
     return train;
 }
 
-bool WallRays::begin(const CastTile& tile, const TileRays& rays) {
+bool WallRays::begin(const TracedTile& tile, const TileRays& rays) {
     hits_ = *tile.hits;
     bool any = false;
     for (int i = 0; i < tile_samples; ++i) {
@@ -44,9 +44,9 @@ bool WallRays::begin(const CastTile& tile, const TileRays& rays) {
         ray.from = glm::dvec3(0);
         ray.way = ray.look = way / length;
         const glm::dvec3 up = std::abs(ray.look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-        ray.beside[0] = glm::normalize(glm::cross(up, ray.look));
-        ray.beside[1] = glm::cross(ray.look, ray.beside[0]);
-        for (int k = 0; k < 2; ++k) ray.per_from[k] = glm::dvec3(0), ray.per_way[k] = ray.beside[k];
+        ray.across[0] = glm::normalize(glm::cross(up, ray.look));
+        ray.across[1] = glm::cross(ray.look, ray.across[0]);
+        for (int k = 0; k < 2; ++k) ray.per_from[k] = glm::dvec3(0), ray.per_way[k] = ray.across[k];
         ray.is_bent = false;
         ray.range = 0;
         ray.power = 1;
@@ -67,7 +67,7 @@ bool WallRays::begin(const CastTile& tile, const TileRays& rays) {
     return true;
 }
 
-const CastTile* WallRays::next() {
+const TracedTile* WallRays::next() {
     while (echo_ >= echoes_)
         if (!goOn()) return nullptr;
     return show(echo_++);
@@ -194,7 +194,7 @@ bool WallRays::goOn() {
         if (rays_[static_cast<size_t>(i)].is_there) pass(i, on);
     }
     if (!on.towards.active) return false;
-    visibility_.cast(on, hits_);
+    visibility_.trace(on, hits_);
     ++walls_;
     for (int i = 0; i < tile_samples; ++i) {
         Ray& ray = rays_[static_cast<size_t>(i)];
@@ -209,7 +209,7 @@ ApparentPlane WallRays::apparent(const Ray& ray) const {
     ApparentPlane plane;
     plane.normal = ray.look / ray.range;
     for (int k = 0; k < 2; ++k)
-        plane.normal -= glm::dot(ray.way, ray.per_from[k]) / (ray.medium.speed * ray.range * ray.range) * ray.beside[k];
+        plane.normal -= glm::dot(ray.way, ray.per_from[k]) / (ray.medium.speed * ray.range * ray.range) * ray.across[k];
     plane.cosine = ray.cosine;
     const double area = std::abs(glm::dot(glm::cross(ray.per_from[0], ray.per_from[1]), ray.way));  // per steradian
     // On return from a fluid of another speed, the rays of a steradian spread differently: reciprocity.
@@ -218,7 +218,7 @@ ApparentPlane WallRays::apparent(const Ray& ray) const {
     return plane;
 }
 
-const CastTile* WallRays::show(size_t echo) {
+const TracedTile* WallRays::show(size_t echo) {
     bool any_late = false, any_bent = false;
     shown_ = hits_;
     for (int i = 0; i < tile_samples; ++i) {

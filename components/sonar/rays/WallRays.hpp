@@ -60,9 +60,9 @@ public:
 
     /** Begins with the hits of a tile, the first return of which is deposited already. Returns whether any of them is a
      *  wall that rings or lets sound through. */
-    bool begin(const CastTile& tile, const TileRays& rays);
+    bool begin(const TracedTile& tile, const TileRays& rays);
     /** Returns the next echoes to deposit, until the next call; null: there are no more. */
-    const CastTile* next();
+    const TracedTile* next();
 
 private:
     static constexpr int max_bodies = 8;  ///< Max nested bodies [1].
@@ -82,7 +82,7 @@ private:
         bool is_there = false;  ///< It has hit a surface in this layer.
         bool is_bent = false;
         glm::dvec3 from, way, look;          ///< [m], unit, unit: its initial direction.
-        glm::dvec3 beside[2];                ///< Normal to `look`.
+        glm::dvec3 across[2];                ///< Normal to `look`.
         glm::dvec3 per_from[2], per_way[2];  ///< Change of `from` and `way` with the look direction [m], [1].
         double range = 0;                    ///< Slant range at `from` [m].
         double power = 1;                    ///< Share of the energy that returns [1].
@@ -109,7 +109,7 @@ private:
     bool refract(int i, double speed);
     bool goOn();
     void countEchoes();
-    const CastTile* show(size_t echo);
+    const TracedTile* show(size_t echo);
     ApparentPlane apparent(const Ray& ray) const;
 
     const EchoRules& rules_;
@@ -121,7 +121,7 @@ private:
     int walls_ = 0;  ///< Walls that the rays of this layer have passed [1].
     size_t echo_ = 0, echoes_ = 0;
     TileHits hits_{}, shown_{};
-    CastTile tile_{};
+    TracedTile tile_{};
     std::array<Ray, tile_samples> rays_;
     std::array<float, tile_samples> passed_{}, late_{};
     std::array<ApparentPlane, tile_samples> apparent_{};

@@ -17,14 +17,14 @@ DirectSound::DirectSound(const RenderPlan& plan, const types::Geometry& geometry
 
 void DirectSound::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
 
-double DirectSound::heardBy(const Beam& beam, const BeamAngles& from, double range) const {
+double DirectSound::receivedBy(const Beam& beam, const BeamAngles& from, double range) const {
     const auto& pattern = plan_.directivity;
     const double off = std::remainder(from.azimuth - beam.centre, 2 * std::numbers::pi);
     const double across = pattern && pattern->hasAzimuth()
-                              ? pattern->heardAzimuth(from.azimuth, beam.centre, pattern->zoneAt(range))
+                              ? pattern->receivedAzimuth(from.azimuth, beam.centre, pattern->zoneAt(range))
                               : off >= beam.low - beam.centre && off < beam.high - beam.centre;
     const double along = pattern && pattern->hasElevation()
-                             ? pattern->heardElevation(from.elevation)
+                             ? pattern->receivedElevation(from.elevation)
                              : std::abs(from.elevation) <= types::radians(plan_.config.beam_height_deg) / 2;
     return across * along;
 }
@@ -57,17 +57,17 @@ bool DirectSound::addWay(const types::Transmission& sent, const Reception& recei
     const double intensity =
         received.level * power * way.power * std::exp(-received.loss * way.length) / (way.length * way.length);
     const BeamAngles from = beamAnglesOf(way.direction, conical);
-    bool heard = false;
+    bool has_echo = false;
     for (size_t beam = 0; intensity > 0 && beam < plan_.beams.size(); ++beam) {
-        const double gain = heardBy(plan_.beams[beam], from, way.length);
+        const double gain = receivedBy(plan_.beams[beam], from, way.length);
         if (!(gain > 0)) continue;
-        heard = true;
+        has_echo = true;
         float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
         for (size_t i = 0; i < shares_.size(); ++i)
             bins[i] = static_cast<float>(
                 std::min(double{bins[i]} + intensity * gain * shares_[i], double{std::numeric_limits<float>::max()}));
     }
-    return heard;
+    return has_echo;
 }
 
 size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
@@ -79,14 +79,14 @@ size_t DirectSound::add(const types::Snapshot& snapshot, types::Sonar& ping) {
         earliest = std::max(earliest, -received_.back().offset);
     }
     ways_->place(snapshot, plan_.grid.range_max + earliest);
-    size_t heard = 0;
+    size_t has_echo = 0;
     for (size_t i = 0; i < received_.size(); ++i) {
         const auto& sent = snapshot.transmissions[i];
         bool any = false;
         for (const TargetWay& way : ways_->waysTo(sent->sonar.position)) any |= addWay(*sent, received_[i], way, ping);
-        heard += any ? 1 : 0;
+        has_echo += any ? 1 : 0;
     }
-    return heard;
+    return has_echo;
 }
 
 }  // namespace insonify::sonar

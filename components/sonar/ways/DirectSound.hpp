@@ -27,7 +27,7 @@ private:
     /** Fills shares_ for bins from first_bin_. Returns whether there are any. */
     bool spread(double range, double length);
     /** Returns the receive power of a beam in a direction of the sonar's axes [1]. */
-    double heardBy(const Beam& beam, const BeamAngles& from, double range) const;
+    double receivedBy(const Beam& beam, const BeamAngles& from, double range) const;
 
     const RenderPlan& plan_;
     Receiver receiver_;

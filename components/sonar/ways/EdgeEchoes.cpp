@@ -175,7 +175,7 @@ size_t EdgeEchoes::add(const types::Snapshot& snapshot, types::Sonar& ping, Echo
     sightlines_.place(snapshot);
     const glm::dvec3& sonar = snapshot.sonar.position;
     const glm::dquat sonar_from_world = glm::conjugate(snapshot.sonar.orientation);
-    size_t heard = 0;
+    size_t received = 0;
     for (const OwnEdge& own : edges_) {
         PlacedEdge edge = own.edge;
         const glm::dmat4& place = places_[own.object];
@@ -197,12 +197,12 @@ size_t EdgeEchoes::add(const types::Snapshot& snapshot, types::Sonar& ping, Echo
             way.length = glm::distance(sonar, echo.at);
             if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
             way.direction = sonar_from_world * ((echo.at - sonar) / way.length);
-            if (points_.mayHear(way.direction) && sightlines_.isOpen(echo.at))
+            if (points_.mayReceive(way.direction) && sightlines_.isOpen(echo.at))
                 any |= points_.addAlong(way, 10 * std::log10(echo.section), ping, field);
         }
-        heard += any ? 1 : 0;
+        received += any ? 1 : 0;
     }
-    return heard;
+    return received;
 }
 
 }  // namespace insonify::sonar

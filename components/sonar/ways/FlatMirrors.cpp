@@ -150,18 +150,18 @@ void FlatMirrors::addObject(size_t object, int bounces, uint32_t& count) {
     if (all.empty()) return;
     reflects_[object] = true;
     Planes planes(all);
-    std::vector<size_t> largest_first(all.size());
-    std::iota(largest_first.begin(), largest_first.end(), size_t{0});
-    std::ranges::stable_sort(largest_first, std::greater(), [&](size_t i) { return glm::length(all[i].across); });
-    for (const size_t largest : largest_first) {
-        if (planes.isTaken(largest)) continue;
-        const MirrorPlane plane = Planes::planeOf(all[largest]);
+    std::vector<size_t> by_size(all.size());
+    std::iota(by_size.begin(), by_size.end(), size_t{0});
+    std::ranges::stable_sort(by_size, std::greater(), [&](size_t i) { return glm::length(all[i].across); });
+    for (const size_t maximum : by_size) {
+        if (planes.isTaken(maximum)) continue;
+        const MirrorPlane plane = Planes::planeOf(all[maximum]);
         FlatMirror mirror;
         mirror.object = object;
-        mirror.corners = all[largest].corners;
+        mirror.corners = all[maximum].corners;
         mirror.first = static_cast<uint32_t>(triangles_.size());
         chooseAxes(mirror, plane.normal);
-        for (const size_t i : planes.take(largest)) {
+        for (const size_t i : planes.take(maximum)) {
             MirrorTriangle triangle{{}, all[i].power, all[i].place};
             for (size_t k = 0; k < 3; ++k)
                 triangle.corners[k] = {all[i].corners[k][mirror.u], all[i].corners[k][mirror.v]};

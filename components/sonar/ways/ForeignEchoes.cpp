@@ -39,14 +39,14 @@ public:
         bin_count_ = static_cast<size_t>(summedGrid(plan_).bin_count);
     }
     void begin(const types::Snapshot& snapshot) override;
-    void follow(const CastPing& ping, std::span<const CastTile> tiles) override;
-    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override;
+    void follow(const TracedPing& ping, std::span<const TracedTile> tiles) override;
+    bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) override;
 
 private:
     /** Returns the rays of one tile, as bits, whose ends the sender sees. */
-    uint32_t openTo(const PlacedSender& sender, const CastPing& ping, const CastTile& tile) const;
-    void deposit(const PlacedSender& sender, const CastPing& ping, const CastTile& tile, int sample);
-    LobeSlopes slopes(const CastPing& ping, const CastTile& tile, int sample, const CellAngles& at,
+    uint32_t openTo(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile) const;
+    void deposit(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile, int sample);
+    LobeSlopes slopes(const TracedPing& ping, const TracedTile& tile, int sample, const CellAngles& at,
                       const MirrorPlane& plane, const HalfWay& way) const;
     /** Returns the index of the sums of pulses that become boxes of a length [m]; clears new sums. */
     size_t sumsOf(double length);
@@ -85,21 +85,21 @@ void EchoesOfOthers::begin(const types::Snapshot& snapshot) {
     }
 }
 
-void EchoesOfOthers::follow(const CastPing& ping, std::span<const CastTile> tiles) {
+void EchoesOfOthers::follow(const TracedPing& ping, std::span<const TracedTile> tiles) {
     thread_local MappedTiles mapped;
     if (ping.scene.maps) {
         mapped.take(ping.view, ping.scene, tiles, true);
         tiles = mapped.whole();
     }
     for (const PlacedSender& sender : senders_)
-        for (const CastTile& tile : tiles) {
+        for (const TracedTile& tile : tiles) {
             const uint32_t open = openTo(sender, ping, tile);
             for (int i = 0; i < tile_samples; ++i)
                 if (open >> i & 1) deposit(sender, ping, tile, i);
         }
 }
 
-uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const CastPing& ping, const CastTile& tile) const {
+uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile) const {
     PathRays rays{};
     rays.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
@@ -128,7 +128,7 @@ uint32_t EchoesOfOthers::openTo(const PlacedSender& sender, const CastPing& ping
     return rays.towards.active ? rays.towards.active & ~ping.visibility.blocked(rays) : 0;
 }
 
-LobeSlopes EchoesOfOthers::slopes(const CastPing& ping, const CastTile& tile, int sample, const CellAngles& at,
+LobeSlopes EchoesOfOthers::slopes(const TracedPing& ping, const TracedTile& tile, int sample, const CellAngles& at,
                                   const MirrorPlane& plane, const HalfWay& way) const {
     const PlacedRun& run = ping.scene.ranges[tile.hits->command[sample]];
     if (!run.facets || !ping.rules.laws.hasLobe(run.material)) return {};
@@ -143,21 +143,21 @@ LobeSlopes EchoesOfOthers::slopes(const CastPing& ping, const CastTile& tile, in
     return ping.rules.laws.lobeSlopes(run.material, seen);
 }
 
-void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, const CastTile& tile, int sample) {
+void EchoesOfOthers::deposit(const PlacedSender& sender, const TracedPing& ping, const TracedTile& tile, int sample) {
     const CellAngles at(ping.view, tile, sample, 1);
     const MirrorPlane plane = planeMet(ping.scene, *tile.hits, sample);
-    const double heard = std::abs(glm::dot(plane.normal, at.middle));
-    if (!(heard > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
+    const double facing = std::abs(glm::dot(plane.normal, at.middle));
+    if (!(facing > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
     HalfWay way = halfWay(plane, sender.place, at);
     const double lit = std::abs(glm::dot(plane.normal, way.from_focus));
     const double half = 1 / way.inverse, range = half + sender.received.offset;
     if (!(lit > edge_on && range > nearest_bin)) return;
     const PlacedRun& run = ping.scene.ranges[tile.hits->command[sample]];
     const MaterialLaws::Bistatic given = ping.rules.laws.bistatic(
-        run.material, lit, heard, std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus))),
+        run.material, lit, facing, std::abs(glm::dot(plane.normal, glm::normalize(at.middle + way.from_focus))),
         slopes(ping, tile, sample, at, plane, way));
     const double power = sender.sent->radiation->towards(glm::normalize(sender.sender_from_sonar * way.from_focus)) *
-                         patterns_->heard(patterns_->wayOf(at.middle)) * sender.received.level;
+                         patterns_->received(patterns_->wayOf(at.middle)) * sender.received.level;
     if (!(power > 0)) return;
     // The cell's own echo is at `half`; the delay of the pulse shifts it, and its extent stays.
     const double stretch = half / range * (half / range), nearest = 1 / way.nearest + sender.received.offset;
@@ -173,18 +173,18 @@ void EchoesOfOthers::deposit(const PlacedSender& sender, const CastPing& ping, c
                          range / (way.back * way.back));
 }
 
-bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
+bool EchoesOfOthers::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
     const double quantum = quantumOf(ping);
     bool any = false;
-    thread_local std::vector<double> heard;  // cumulated up to each bin
-    heard.resize(bins.size());
+    thread_local std::vector<double> facing;  // cumulated up to each bin
+    facing.resize(bins.size());
     for (size_t group = 0; group < lengths_.size(); ++group) {
         const uint64_t* sums = sums_[group].data() + cell * bins.size();
         // A box of the pulse's length about each echo: the difference of two cumulated sums.
         const auto reach = static_cast<std::ptrdiff_t>(std::llround(lengths_[group] / 2 / ping.rules.bins.bin_width));
         double before = 0;
         for (size_t j = 0; j < bins.size(); ++j)
-            heard[j] = before += double{ping.levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
+            facing[j] = before += double{ping.levels.intensity(j, static_cast<double>(sums[j]) * quantum)};
         if (!(before > 0)) continue;
         any = true;
         const auto bins_in_box = static_cast<double>(2 * reach + 1);
@@ -192,7 +192,7 @@ bool EchoesOfOthers::addEnergies(const CastPing& ping, size_t cell, std::span<fl
         const double intensity = lengths_[group] > 0 ? lengths_[group] / (receiver_.summedCell() * bins_in_box) : 1;
         for (std::ptrdiff_t j = 0; j < std::ssize(bins); ++j) {
             const std::ptrdiff_t low = j - reach - 1, high = std::min(j + reach, std::ssize(bins) - 1);
-            const double sum = heard[static_cast<size_t>(high)] - (low >= 0 ? heard[static_cast<size_t>(low)] : 0);
+            const double sum = facing[static_cast<size_t>(high)] - (low >= 0 ? facing[static_cast<size_t>(low)] : 0);
             float& bin = bins[static_cast<size_t>(j)];
             bin =
                 static_cast<float>(std::min(double{bin} + intensity * sum, double{std::numeric_limits<float>::max()}));

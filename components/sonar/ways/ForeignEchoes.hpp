@@ -17,9 +17,9 @@ public:
     /** Begins a ping. The snapshot must outlive the ping. */
     virtual void begin(const types::Snapshot& snapshot) = 0;
     /** Adds the hits of the rays of tiles. Several threads call it, each with its own tiles. */
-    virtual void follow(const CastPing& ping, std::span<const CastTile> tiles) = 0;
+    virtual void follow(const TracedPing& ping, std::span<const TracedTile> tiles) = 0;
     /** Adds to the intensities of a cell's bins; returns whether any is above 0. Several threads call it. */
-    virtual bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) = 0;
+    virtual bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) = 0;
 };
 
 /** Makes them. The plan has `crosstalk` and outlives them. Null in a build without rays. */

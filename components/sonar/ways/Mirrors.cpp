@@ -12,13 +12,13 @@
 namespace insonify::sonar {
 namespace {
 
-std::string noSurface(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string noSurface(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "multipath.surface is given, and the scene has no water_surface";
 }
-std::string aboveSurface(const LeftOut& /*what*/, const BinGrid& /*grid*/) {
+std::string aboveSurface(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the sonar was above the water surface at the first ping";
 }
-std::string beyondRange(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string beyondRange(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("the water surface was {:.4g} m away at the first ping, beyond {:.4g} m", what.value,
                        what.bound);
 }
@@ -53,14 +53,14 @@ void WaterMirror::place(const types::Snapshot& snapshot, double range_max) {
     const WaterView water = waterViewOf(snapshot);
     ping_ = static_cast<uint64_t>(snapshot.time.microseconds);
     plane_ = {water.up, -water.height};
-    left_out_.reset();
+    omitted_.reset();
     if (wanted_ && !snapshot.water_surface)
-        left_out_ = LeftOut{.effect = "multipath", .reason = Reason::Lacking, .words = noSurface};
+        omitted_ = Omitted{.effect = "multipath", .reason = Reason::Lacking, .words = noSurface};
     else if (wanted_ && !(plane_.distance > 0))
-        left_out_ = LeftOut{.effect = "multipath", .reason = Reason::Other, .words = aboveSurface};
+        omitted_ = Omitted{.effect = "multipath", .reason = Reason::Other, .words = aboveSurface};
     else if (wanted_ && plane_.distance > range_max)
-        left_out_ = LeftOut{"multipath", Reason::Other, plane_.distance, range_max, beyondRange};
-    reflects_ = wanted_ && !left_out_;
+        omitted_ = Omitted{"multipath", Reason::Other, plane_.distance, range_max, beyondRange};
+    reflects_ = wanted_ && !omitted_;
 }
 
 double WaterMirror::distance(const glm::dvec3& from, const glm::dvec3& way) const {

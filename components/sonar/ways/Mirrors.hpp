@@ -52,7 +52,7 @@ public:
      *  facet in the ping. Flat without wind. */
     MirrorPlane facet(const glm::dvec3& at, const glm::dvec3& way, uint64_t key) const;
     /** Returns why it does not reflect in this ping; none where it does, or is not configured to. */
-    std::optional<LeftOut> leftOut() const { return left_out_; }
+    std::optional<Omitted> omissions() const { return omitted_; }
 
 private:
     bool wanted_;
@@ -60,7 +60,7 @@ private:
     uint64_t ping_ = 0;
     bool reflects_ = false;
     MirrorPlane plane_;
-    std::optional<LeftOut> left_out_;
+    std::optional<Omitted> omitted_;
 };
 
 }  // namespace insonify::sonar

@@ -2,9 +2,9 @@
 
 namespace insonify::sonar {
 
-CellAngles::CellAngles(const CastView& cast, const CastTile& tile, int sample, int merged) {
-    const AngularView& view = cast.cells;
-    const TileShape::Extent at = cast.shape.at[sample], covered = cast.shape.size[merged];
+CellAngles::CellAngles(const TracedView& traced, const TracedTile& tile, int sample, int merged) {
+    const AngularView& view = traced.cells;
+    const TileShape::Extent at = traced.shape.at[sample], covered = traced.shape.size[merged];
     const int column = tile.first_column + at.columns;
     const size_t left = view.at(column), low = 2 * static_cast<size_t>(tile.first_row + at.rows);
     const auto across = static_cast<size_t>(covered.columns), up = static_cast<size_t>(covered.rows);

@@ -15,7 +15,7 @@ struct CellAngles {
 
     /** @param sample  its first sample in the tile
      *  @param merged  samples, a power of 2 [1] */
-    CellAngles(const CastView& view, const CastTile& tile, int sample, int merged);
+    CellAngles(const TracedView& view, const TracedTile& tile, int sample, int merged);
 };
 
 /** Inverse range of a path whose half is along a direction to a plane and from there to a focus, and its derivatives

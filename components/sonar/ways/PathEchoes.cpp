@@ -67,15 +67,15 @@ public:
     void takeQuality() override;
     void begin(const PingStart& start) override;
     bool followsRays() const override { return true; }
-    void followRays(const CastPing& ping, std::span<const CastTile> tiles) override;
-    bool addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) override;
-    void addToTruth(const CastPing& ping, types::SonarTruth& truth) override;
-    std::optional<LeftOut> leftOut() const override { return water_.leftOut(); }
+    void followRays(const TracedPing& ping, std::span<const TracedTile> tiles) override;
+    bool addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) override;
+    void addToTruth(const TracedPing& ping, types::SonarTruth& truth) override;
+    std::optional<Omitted> omissions() const override { return water_.omissions(); }
 
 private:
     class Tracer;
     /** Removes the hits of a tile's rays beyond the water surface. */
-    void endAtSurface(const CastView& view, const CastTile& tile) const;
+    void endAtSurface(const TracedView& view, const TracedTile& tile) const;
     /** Returns the directly received intensities of a cell; none where fields are summed. */
     std::span<float> direct(size_t cell);
 
@@ -94,7 +94,7 @@ private:
 /** Follows the rays of one tile after another. */
 class PathEchoes::Tracer {
 public:
-    Tracer(PathEchoes& paths, const CastPing& ping)
+    Tracer(PathEchoes& paths, const TracedPing& ping)
         : paths_(paths),
           rules_(ping.rules),
           view_(ping.view),
@@ -104,11 +104,11 @@ public:
           near_edge_(rules_.edges.front()),
           far_edge_(rules_.edges[static_cast<size_t>(rules_.bins.bin_count)]) {}
 
-    void follow(const CastTile& tile) {
+    void follow(const TracedTile& tile) {
         if (!begin(tile)) return;
         while (rays_.towards.active) {
-            castOn();
-            hear(tile);
+            traceOn();
+            receive(tile);
             for (int i = 0; i < tile_samples; ++i)
                 if (isActive(i)) goOn(i, from(i), towards(i), hits_);
         }
@@ -122,7 +122,7 @@ private:
     double reflected(uint32_t command) const { return paths_.reflected_[scene_.commands[command].material]; }
     void drop(int i) { rays_.towards.active &= ~(1u << i); }
 
-    bool begin(const CastTile& tile);
+    bool begin(const TracedTile& tile);
     /** Continues a ray from its hit: by a mirror, or through a wall; drops a ray that ends there. */
     void goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
     /** Returns whether sound passes straight through a wall that is not a mirror, into water. */
@@ -137,17 +137,17 @@ private:
         return std::sqrt(rules_.laws.walls[scene_.commands[hits.command[i]].material].passedAt(cosine));
     }
     void pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
-    void aim(int i, const glm::dvec3& at, const glm::dvec3& on);
+    void look(int i, const glm::dvec3& at, const glm::dvec3& on);
     /** Continues a ray from the mirror that it has hit; drops a ray that has hit none in reach. */
     void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
     void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
-    void castOn();
+    void traceOn();
     using Shares = std::array<double, tile_samples>;
     /** Returns for each ray with a hit the share of the energy that returns directly to the sonar, on the side of the
      *  hit [1]. */
     Shares openBack() const;
     Shares through(PathRays& back) const;
-    void hear(const CastTile& tile);
+    void receive(const TracedTile& tile);
     int sameFrom(int i) const;
     /** `gain`: factor by surface maps [1]. */
     void deposit(const CellAngles& at, int i, double open, double gain);
@@ -157,7 +157,7 @@ private:
     void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
     Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
     /** Prepares the sums for echoes of ray i's hit: received from a direction, seen at a cosine. */
-    void recordWay(int i, bool twice, const glm::dvec3& heard, double cosine) {
+    void recordWay(int i, bool twice, const glm::dvec3& received, double cosine) {
         if (!paths_.records_truth_) return;
         const Chain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
@@ -166,13 +166,13 @@ private:
         bins_.by_way = paths_.truth_->sums(by_surface ? way : PathTruth::Bounced);
         bins_.truth = &*paths_.truth_;
         bins_.object = scene_.commands[hits_.command[i]].object;
-        bins_.sine_elevation = heard.z;
+        bins_.sine_elevation = received.z;
         bins_.sine_grazing = cosine;
     }
 
     PathEchoes& paths_;
     const EchoRules& rules_;
-    const CastView& view_;
+    const TracedView& view_;
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
     SharedBins bins_;
@@ -184,7 +184,7 @@ private:
     uint64_t key_ = 0;                          ///< Number of the tile.
 };
 
-bool PathEchoes::Tracer::begin(const CastTile& tile) {
+bool PathEchoes::Tracer::begin(const TracedTile& tile) {
     rays_.towards.active = 0;
     key_ = static_cast<uint64_t>(tile.first_column) << 32 | static_cast<uint32_t>(tile.first_row);
     for (int i = 0; i < tile_samples; ++i) {
@@ -215,7 +215,7 @@ void PathEchoes::Tracer::pass(int i, const glm::dvec3& from, const glm::dvec3& w
     if (chain.walls == paths_.max_walls_ || !(chain.power >= min_passed)) return drop(i);
     chain.wall_names = types::hashed(chain.wall_names, hits.command[i], static_cast<uint64_t>(++chain.walls));
     lengths_[static_cast<size_t>(i)] += double{hits.distance[i]};
-    aim(i, from + double{hits.distance[i]} * way, way);
+    look(i, from + double{hits.distance[i]} * way, way);
 }
 
 void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
@@ -255,10 +255,10 @@ void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3&
     length += distance;
     if (!(2 * rules_.bins.range_max - length > 0)) return drop(i);
     chain.planes[static_cast<size_t>(chain.count++)] = plane;
-    aim(i, at, on);
+    look(i, at, on);
 }
 
-void PathEchoes::Tracer::aim(int i, const glm::dvec3& at, const glm::dvec3& on) {
+void PathEchoes::Tracer::look(int i, const glm::dvec3& at, const glm::dvec3& on) {
     const double length = lengths_[static_cast<size_t>(i)], left = 2 * rules_.bins.range_max - length;
     if (!(left > 0)) return drop(i);
     const glm::vec3 begin(at), ahead(on);
@@ -268,7 +268,7 @@ void PathEchoes::Tracer::aim(int i, const glm::dvec3& at, const glm::dvec3& on) 
     rays_.farthest[i] = static_cast<float>(std::min(left, paths_.water_.distance(at, on) + 1e-3));
 }
 
-void PathEchoes::Tracer::castOn() { visibility_.cast(rays_, hits_); }
+void PathEchoes::Tracer::traceOn() { visibility_.trace(rays_, hits_); }
 
 PathEchoes::Tracer::Shares PathEchoes::Tracer::openBack() const {
     PathRays back{};
@@ -305,7 +305,7 @@ PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
     for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = back.towards.active >> i & 1;
     TileHits hits;
     for (int wall = 0; back.towards.active; ++wall) {
-        visibility_.cast(back, hits);
+        visibility_.trace(back, hits);
         for (int i = 0; i < tile_samples; ++i) {
             if (!(back.towards.active >> i & 1)) continue;
             double& share = shares[static_cast<size_t>(i)];
@@ -326,19 +326,19 @@ PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
 /** Returns the number of samples from i that are a rectangle of one triangle, seen via the same mirrors. */
 int PathEchoes::Tracer::sameFrom(int i) const {
     const auto alignment = static_cast<uint32_t>(i == 0 ? tile_samples : i & -i);
-    const int most = std::min(static_cast<int>(alignment), view_.shape.max_merged);
+    const int maximum = std::min(static_cast<int>(alignment), view_.shape.max_merged);
     int run = 1;
-    while (run < most && isActive(i + run) && hits_.triangle[i + run] == hits_.triangle[i] &&
+    while (run < maximum && isActive(i + run) && hits_.triangle[i + run] == hits_.triangle[i] &&
            hits_.command[i + run] == hits_.command[i] &&
            chains_[static_cast<size_t>(i + run)].sameAs(chains_[static_cast<size_t>(i)]))
         ++run;
     return static_cast<int>(std::bit_floor(static_cast<uint32_t>(run)));
 }
 
-void PathEchoes::Tracer::hear(const CastTile& tile) {
+void PathEchoes::Tracer::receive(const TracedTile& tile) {
     const Shares open = openBack();
     TileHits as_met;
-    CastTile seen = tile;
+    TracedTile seen = tile;
     seen.hits = &hits_;
     if (scene_.maps) {
         as_met = hits_;
@@ -439,11 +439,12 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
     if (!(there > 0)) return;
     bins_.sine_elevation = chain.turnedBack(way.from_focus).z;
     // Echoes that this surface and the first mirror both reflect and scatter have their own rays from the other end.
-    const bool comes_itself =
+    const bool is_direct =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
-    const double strength = scale * (given.diffuse + (comes_itself ? 0 : given.lobe));
+    const double strength = scale * (given.diffuse + (is_direct ? 0 : given.lobe));
     const Footprint cell = footprint(at, i, way, at.size * there);
-    patterns.eachCell(by_itself, [&](size_t heard) { bins_.depositCell(cell, static_cast<uint>(heard), strength); });
+    patterns.eachCell(by_itself,
+                      [&](size_t received) { bins_.depositCell(cell, static_cast<uint>(received), strength); });
 }
 
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
@@ -471,7 +472,7 @@ void PathEchoes::begin(const PingStart& start) {
     std::ranges::fill(sums_, 0);
 }
 
-void PathEchoes::endAtSurface(const CastView& view, const CastTile& tile) const {
+void PathEchoes::endAtSurface(const TracedView& view, const TracedTile& tile) const {
     TileHits& hits = *tile.hits;
     for (int i = 0; i < tile_samples; ++i) {
         if (hits.command[i] == TileHits::nothing) continue;
@@ -481,18 +482,18 @@ void PathEchoes::endAtSurface(const CastView& view, const CastTile& tile) const 
     }
 }
 
-void PathEchoes::followRays(const CastPing& ping, std::span<const CastTile> tiles) {
+void PathEchoes::followRays(const TracedPing& ping, std::span<const TracedTile> tiles) {
     if (water_.reflects())
-        for (const CastTile& tile : tiles) endAtSurface(ping.view, tile);
+        for (const TracedTile& tile : tiles) endAtSurface(ping.view, tile);
     Tracer tracer(*this, ping);
-    for (const CastTile& tile : tiles) tracer.follow(tile);
+    for (const TracedTile& tile : tiles) tracer.follow(tile);
 }
 
 std::span<float> PathEchoes::direct(size_t cell) {
     return direct_.empty() ? std::span<float>() : std::span(direct_).subspan(cell * bin_count_, bin_count_);
 }
 
-bool PathEchoes::addEnergies(const CastPing& ping, size_t cell, std::span<float> bins) {
+bool PathEchoes::addEnergies(const TracedPing& ping, size_t cell, std::span<float> bins) {
     if (records_truth_ && !direct_.empty()) std::ranges::copy(bins, direct(cell).begin());
     const double quantum = quantumOf(ping);
     const uint64_t* sums = sums_.data() + cell * bins.size();
@@ -506,7 +507,7 @@ bool PathEchoes::addEnergies(const CastPing& ping, size_t cell, std::span<float>
     return any != 0;
 }
 
-void PathEchoes::addToTruth(const CastPing& ping, types::SonarTruth& truth) {
+void PathEchoes::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
     for (size_t cell = 0; cell < plan_.cells.size(); ++cell)
         truth_->take(cell, direct(cell), ping.levels, quantumOf(ping));
     truth_->report(truth);

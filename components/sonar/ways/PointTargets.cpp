@@ -28,13 +28,17 @@ std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const
 
 std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out, const TargetWay& back,
                                                            double strength_db) const {
-    const auto sent = directionOf(out.direction), heard = directionOf(back.direction);
+    const auto sent = directionOf(out.direction), received = directionOf(back.direction);
     const double range = 0.5 * (out.length + back.length);
-    if (!sent || !heard || !(range >= plan_.grid.range_min)) return {};
+    if (!sent || !received || !(range >= plan_.grid.range_min)) return {};
     const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
                              (out.length * out.length * back.length * back.length);
-    return Return{
-        range, *sent, *heard, intensity, out.by_surface == back.by_surface ? 1.0 : -1.0, inPhase(out) * inPhase(back)};
+    return Return{range,
+                  *sent,
+                  *received,
+                  intensity,
+                  out.by_surface == back.by_surface ? 1.0 : -1.0,
+                  inPhase(out) * inPhase(back)};
 }
 
 double PointTargets::inPhase(const TargetWay& way) const {
@@ -43,12 +47,12 @@ double PointTargets::inPhase(const TargetWay& way) const {
     return coherentReflection(plan_.config.multipath->surface->wind_m_s, wavelength, way.sine_grazing);
 }
 
-bool PointTargets::mayHear(const glm::dvec3& direction) const {
+bool PointTargets::mayReceive(const glm::dvec3& direction) const {
     const auto angles = directionOf(direction);
     if (!angles) return false;
     const auto& pattern = plan_.directivity;
     if (pattern && pattern->hasElevation()) {
-        const double along = pattern->sentElevation(angles->elevation) * pattern->heardElevation(angles->elevation);
+        const double along = pattern->sentElevation(angles->elevation) * pattern->receivedElevation(angles->elevation);
         if (along < pattern->floor()) return false;
     } else if (std::abs(angles->elevation) > types::radians(plan_.config.beam_height_deg) / 2) {
         return false;
@@ -59,26 +63,27 @@ bool PointTargets::mayHear(const glm::dvec3& direction) const {
 double PointTargets::powerIn(const Beam& beam, const Return& echo) const {
     const auto& pattern = plan_.directivity;
     const double half_height = types::radians(plan_.config.beam_height_deg) / 2;
-    const double off = std::remainder(echo.heard.azimuth - beam.centre, 2 * std::numbers::pi);
+    const double off = std::remainder(echo.received.azimuth - beam.centre, 2 * std::numbers::pi);
     const bool in_box = off >= beam.low - beam.centre && off < beam.high - beam.centre;
-    const double across = pattern && pattern->hasAzimuth()
-                              ? pattern->sentAzimuth(echo.sent.azimuth) *
-                                    pattern->heardAzimuth(echo.heard.azimuth, beam.centre, pattern->zoneAt(echo.range))
-                              : in_box && plan_.beams.spans(echo.sent.azimuth);
+    const double across =
+        pattern && pattern->hasAzimuth()
+            ? pattern->sentAzimuth(echo.sent.azimuth) *
+                  pattern->receivedAzimuth(echo.received.azimuth, beam.centre, pattern->zoneAt(echo.range))
+            : in_box && plan_.beams.spans(echo.sent.azimuth);
     const double along =
         pattern && pattern->hasElevation()
-            ? pattern->sentElevation(echo.sent.elevation) * pattern->heardElevation(echo.heard.elevation)
-            : std::abs(echo.heard.elevation) <= half_height && std::abs(echo.sent.elevation) <= half_height;
+            ? pattern->sentElevation(echo.sent.elevation) * pattern->receivedElevation(echo.received.elevation)
+            : std::abs(echo.received.elevation) <= half_height && std::abs(echo.sent.elevation) <= half_height;
     return pattern && across * along < pattern->floor() ? 0 : across * along;
 }
 
 std::complex<double> PointTargets::phaseIn(const Beam& beam, const Return& echo) const {
     if (!plan_.directivity || !plan_.directivity->hasAzimuth()) return 1;
     const double sent = plan_.directivity->sentAmplitude(echo.sent.azimuth);
-    const std::complex<double> heard =
-        plan_.directivity->heardField(echo.heard.azimuth, beam.centre, plan_.directivity->zoneAt(echo.range));
-    if (heard.imag() == 0) return std::copysign(1.0, sent * heard.real());
-    return std::copysign(1.0, sent) * heard / std::abs(heard);
+    const std::complex<double> received =
+        plan_.directivity->receivedField(echo.received.azimuth, beam.centre, plan_.directivity->zoneAt(echo.range));
+    if (received.imag() == 0) return std::copysign(1.0, sent * received.real());
+    return std::copysign(1.0, sent) * received / std::abs(received);
 }
 
 bool PointTargets::spread(double range) {
@@ -94,15 +99,15 @@ bool PointTargets::spread(double range) {
 }
 
 bool PointTargets::addTo(types::Sonar& ping, const Return& echo) const {
-    bool heard = false;
+    bool received = false;
     for (size_t beam = 0; beam < plan_.beams.size(); ++beam) {
         const double power = powerIn(plan_.beams[beam], echo);
         if (!(power > 0)) continue;
         float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
         for (size_t i = 0; i < means_.size(); ++i) bins[i] += static_cast<float>(echo.intensity * power * means_[i]);
-        heard = true;
+        received = true;
     }
-    return heard;
+    return received;
 }
 
 bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {
@@ -111,30 +116,30 @@ bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) con
     const double phase = turn * (turns - std::floor(turns)), loose = turn * static_cast<double>(key >> 11) * 0x1p-53;
     const std::complex<double> unit = echo.sign * (std::polar(echo.in_phase, phase) +
                                                    std::polar(std::sqrt(1 - echo.in_phase * echo.in_phase), loose));
-    bool heard = false;
+    bool received = false;
     for (size_t k = 0; k < plan_.beams.size(); ++k) {
         const double power = powerIn(plan_.beams[k], echo);
         if (!(power > 0)) continue;
         field.add(k, echo.range, std::sqrt(echo.intensity * power) * phaseIn(plan_.beams[k], echo) * unit);
-        heard = true;
+        received = true;
     }
-    return heard;
+    return received;
 }
 
 std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types::Snapshot& snapshot, size_t target) {
     const glm::dvec3 from_sonar = snapshot.targets[target].position - snapshot.sonar.position;
-    const auto heard = bent.heard(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
-    if (!heard) return {};
+    const auto received = bent.received(glm::conjugate(snapshot.sonar.orientation) * from_sonar, target);
+    if (!received) return {};
     TargetWay way;
-    way.length = glm::length(heard->place);
-    way.direction = heard->place / way.length;
-    way.power = heard->focus;
+    way.length = glm::length(received->place);
+    way.direction = received->place / way.length;
+    way.power = received->focus;
     return way;
 }
 
 size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
     ways_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
-    size_t heard = 0;
+    size_t received = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
     for (size_t i = 0; i < snapshot.targets.size(); ++i) {
         const types::PointTarget& target = snapshot.targets[i];
@@ -150,9 +155,9 @@ size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, Ec
                     static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
                 any |= field ? addTo(*field, *echo, types::hashed(time, i, pair)) : addTo(ping, *echo);
             }
-        heard += any ? 1 : 0;
+        received += any ? 1 : 0;
     }
-    return heard;
+    return received;
 }
 
 bool PointTargets::addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field) {

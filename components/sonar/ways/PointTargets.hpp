@@ -36,13 +36,13 @@ public:
 
     /** Returns whether any beam may receive from a direction, a unit vector in the sonar's axes. Quick: false is
      *  certain. */
-    bool mayHear(const glm::dvec3& direction) const;
+    bool mayReceive(const glm::dvec3& direction) const;
 
 private:
     /** One echo of a target: out along one path, back along another or the same. */
     struct Return {
         double range;  ///< Half of the two-way path [m].
-        BeamAngles sent, heard;
+        BeamAngles sent, received;
         double intensity;  ///< Without patterns and pulse [1/m^2].
         double sign;       ///< -1 where the water surface has inverted its pressure [1].
         double in_phase;   ///< Share of its amplitude that rough mirrors leave in phase [1].

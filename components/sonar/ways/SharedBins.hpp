@@ -28,7 +28,7 @@ struct SharedBins : Bins {
 #undef HAVE_PHYSICAL
 
 /** Returns a quantum of the sums [sr]. */
-double quantumOf(const CastPing& ping) {
+double quantumOf(const TracedPing& ping) {
     return ping.view.cells.cell() / (quanta_per_unit * ping.rules.strength_scale);
 }
 

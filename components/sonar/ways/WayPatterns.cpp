@@ -26,7 +26,7 @@ WayPatterns::WayPatterns(const RenderPlan& plan)
     for (int i = 0; i <= pattern_steps; ++i) {
         const double angle = std::asin(reach_ * (2.0 * i / pattern_steps - 1));
         sent_.push_back(patterned ? plan.directivity->sentElevation(angle) : 1);
-        heard_.push_back(patterned ? plan.directivity->heardElevation(angle) : 1);
+        received_.push_back(patterned ? plan.directivity->receivedElevation(angle) : 1);
         if (has_azimuth_) azimuths_.push_back(plan.directivity->sentAzimuth(pi * (2.0 * i / pattern_steps - 1)));
     }
 }
@@ -51,16 +51,17 @@ double WayPatterns::sentAzimuth(double azimuth) const {
     return azimuths_[i] * (1 - part) + azimuths_[i + 1] * part;
 }
 
-double WayPatterns::power(const Way& sent, const Way& heard) const {
-    if (!sent.heard || !heard.heard) return 0;
-    const double here = sentAzimuth(heard.azimuth);
-    return here > 0 ? elevation(sent_, sent.sine) * elevation(heard_, heard.sine) * sentAzimuth(sent.azimuth) / here
-                    : 0;
+double WayPatterns::power(const Way& sent, const Way& received) const {
+    if (!sent.received || !received.received) return 0;
+    const double here = sentAzimuth(received.azimuth);
+    return here > 0
+               ? elevation(sent_, sent.sine) * elevation(received_, received.sine) * sentAzimuth(sent.azimuth) / here
+               : 0;
 }
 
-double WayPatterns::heard(const Way& way) const {
-    const double here = way.heard ? sentAzimuth(way.azimuth) : 0;
-    return here > 0 ? elevation(heard_, way.sine) / here : 0;
+double WayPatterns::received(const Way& way) const {
+    const double here = way.received ? sentAzimuth(way.azimuth) : 0;
+    return here > 0 ? elevation(received_, way.sine) / here : 0;
 }
 
 bool WayPatterns::inOneBeam(const Way& a, const Way& b) const {

@@ -14,16 +14,16 @@ public:
 
     /** A direction in sonar axes. */
     struct Way {
-        double azimuth = 0;  ///< As in cells: of cones their bearing [rad].
-        double sine = 0;     ///< Sine of the elevation [1].
-        bool heard = false;  ///< Whether it is received: not behind a straight array.
+        double azimuth = 0;     ///< As in cells: of cones their bearing [rad].
+        double sine = 0;        ///< Sine of the elevation [1].
+        bool received = false;  ///< Whether it is received: not behind a straight array.
     };
     Way wayOf(const glm::dvec3& direction) const;
     /** Returns the power sent along one path and received along another, relative to the azimuth response of the cell
      *  that receives it [1]. */
-    double power(const Way& sent, const Way& heard) const;
+    double power(const Way& sent, const Way& received) const;
     /** Returns the receive power along a path, relative to the azimuth response of the cell that receives it [1]. */
-    double heard(const Way& way) const;
+    double received(const Way& way) const;
     /** Returns whether both are within one beam. */
     bool inOneBeam(const Way& a, const Way& b) const;
     /** Calls use(cell) for each azimuth cell that contains a path's direction. */
@@ -39,8 +39,8 @@ private:
     const RenderPlan& plan_;
     bool conical_, has_azimuth_;
     double reach_, beam_width_;
-    std::vector<double> sent_, heard_;  ///< Powers in elevation, over its sine from -reach_ [1].
-    std::vector<double> azimuths_;      ///< Transmit power, over azimuths from -pi [1].
+    std::vector<double> sent_, received_;  ///< Powers in elevation, over its sine from -reach_ [1].
+    std::vector<double> azimuths_;         ///< Transmit power, over azimuths from -pi [1].
 };
 
 }  // namespace insonify::sonar

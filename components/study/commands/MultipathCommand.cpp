@@ -18,10 +18,10 @@ using command::Json;
 
 Json toJson(const MultipathResult& result) {
     Json json{{"curves", Json::array()}, {"verdicts", Json::array()}};
-    for (const HeardCurve& curve : result.curves) {
+    for (const EchoCurve& curve : result.curves) {
         Json points = Json::array();
-        for (const HeardPoint& point : curve.points)
-            points.push_back({{"x", point.x}, {"heard", point.heard}, {"expected", point.expected}});
+        for (const EchoPoint& point : curve.points)
+            points.push_back({{"x", point.x}, {"heard", point.received}, {"expected", point.expected}});
         json["curves"].push_back({{"name", curve.name},
                                   {"title", curve.title},
                                   {"x", curve.x_label},

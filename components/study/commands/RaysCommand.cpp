@@ -7,7 +7,7 @@
 
 #include "components/command/Json.hpp"
 #include "components/study/commands/StudyCommand.hpp"
-#include "components/study/oracles/EmbreeCaster.hpp"
+#include "components/study/oracles/EmbreeTracer.hpp"
 
 namespace insonify::study {
 namespace {
@@ -18,7 +18,7 @@ struct Options {
     int pings = 30;
 };
 
-/** Times of ray tracing (EmbreeCaster) with the number of rays that a sonar's quality requires, for comparison with a
+/** Times of ray tracing (EmbreeTracer) with the number of rays that a sonar's quality requires, for comparison with a
  *  renderer. */
 struct RayTimes {
     size_t rays = 0, met = 0;                      ///< Rays traced in a ping, and those that hit something [1].
@@ -45,15 +45,15 @@ double share(const std::vector<double>& sorted, double part) {
     return sorted[static_cast<size_t>(std::ceil(part * static_cast<double>(sorted.size()))) - 1];
 }
 
-/** Times `pings` pings of each kind after a first ping, without building the tree. `config` as for EmbreeCaster. */
+/** Times `pings` pings of each kind after a first ping, without building the tree. `config` as for EmbreeTracer. */
 RayTimes timeRays(const sonar::SonarConfig& config, const types::Snapshot& scene, int pings) {
-    EmbreeCaster caster(scene);
-    caster.prepare(config);
+    EmbreeTracer tracer(scene);
+    tracer.prepare(config);
     RayTimes result;
     result.rays = static_cast<size_t>(config.rows()) * static_cast<size_t>(config.columnsPerBeam() * config.beams());
-    const auto alone = sortedTimes(pings, [&] { result.met = caster.castOnly(scene.sonar); });
+    const auto alone = sortedTimes(pings, [&] { result.met = tracer.traceOnly(scene.sonar); });
     std::vector<float> energies;
-    const auto whole = sortedTimes(pings, [&] { caster.render(scene.sonar, energies); });
+    const auto whole = sortedTimes(pings, [&] { tracer.render(scene.sonar, energies); });
     result.alone_median_ms = share(alone, 0.5), result.alone_p99_ms = share(alone, 0.99);
     result.ping_median_ms = share(whole, 0.5), result.ping_p99_ms = share(whole, 0.99);
     return result;

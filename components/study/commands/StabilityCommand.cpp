@@ -23,7 +23,7 @@ void makeFolder(const std::filesystem::path& folder) {
 void printRow(const StabilityRow& row) {
     const Outcome& outcome = row.outcome;
     fmt::print("{:>3}  {:<7}  {:>8}  {}\n", row.number, nameOf(outcome.verdict),
-               isJudged(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
+               isEvaluated(outcome) ? fmt::format("{:.1e}", outcome.deviation) : "", row.name);
     if (outcome.verdict == Verdict::Fail) fmt::print("     expected: {}\n     got: {}\n", row.expected, outcome.got);
     if (outcome.verdict == Verdict::NotRun) fmt::print("     {}\n", outcome.got);
     std::fflush(stdout);

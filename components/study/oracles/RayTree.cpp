@@ -109,7 +109,7 @@ RayTree::~RayTree() = default;
 
 void RayTree::takeLaws(const sonar::SonarConfig& config) {
     const Hearer hearer{config.model, config.frequency_khz, config.speedOfSound()};
-    if (std::exchange(heard_by_, hearer) == hearer) return;
+    if (std::exchange(received_by_, hearer) == hearer) return;
     laws_ = sonar::makeMaterialLaws(config, *geometry_);
     facets_.clear();
     if (laws_.tables.empty() && !laws_.hasLobes()) return void(laws_.records.clear());
@@ -166,7 +166,7 @@ std::array<glm::dvec3, 3> RayTree::cornersOf(const Source& source) const {
     return corners;
 }
 
-void RayTree::cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const {
+void RayTree::trace(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const {
     std::array<RTCRayHit16, packets_at_once> hits;
     for (size_t k = 0; k < rays.size(); ++k) {
         RTCRayHit16& hit = hits[k];
@@ -205,11 +205,12 @@ double RayTree::mappedCosine(uint32_t triangle, glm::dvec3 point, glm::dvec3 dir
     const glm::dvec3 normal = glm::normalize(place.normals * mixed(mesh.normals, corners, weights));
     const glm::dvec3 leaning = glm::dmat3(place.origin_from_object) * glm::dvec3(along);
     const glm::dvec3 tangent = glm::normalize(leaning - normal * glm::dot(normal, leaning));
-    const glm::dvec3 told =
+    const glm::dvec3 reported =
         lookedUp(geometry_->normal_maps[static_cast<size_t>(material.normal_map)], mixed(mesh.uvs, corners, weights));
     const double scale = material.normal_scale;
-    const glm::dvec3 bent = glm::normalize(told.x * scale * tangent +
-                                           told.y * scale * along.w * glm::cross(normal, tangent) + told.z * normal);
+    const glm::dvec3 bent =
+        glm::normalize(reported.x * scale * tangent + reported.y * scale * along.w * glm::cross(normal, tangent) +
+                       reported.z * normal);
     const double cosine = -glm::dot(bent, direction) * (glm::dot(normal, direction) < 0 ? 1 : -1);
     return cosine > 1e-6 ? cosine : 1e-6;
 }

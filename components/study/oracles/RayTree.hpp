@@ -44,7 +44,7 @@ public:
 
     /** Finds the first triangle on each ray from a point about the origin, for at most `packets_at_once` packets. All
      *  rays of a call should be close together. */
-    void cast(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
+    void trace(glm::dvec3 from, std::span<const Rays> rays, std::span<Found> found) const;
 
     /** Sets the materials' backscatter for a sonar of this configuration; before the first call Lambert's law. A call
      * that changes neither model nor frequency nor speed of sound does nothing. */
@@ -106,7 +106,7 @@ private:
     std::vector<sonar::FacetRecord> facets_;  ///< Axes of each triangle in the world; empty without lobes.
     std::vector<Source> sources_;             ///< Source of each triangle.
     sonar::MaterialLaws laws_;                ///< None if all materials follow Lambert's law.
-    std::optional<Hearer> heard_by_;
+    std::optional<Hearer> received_by_;
     std::unique_ptr<Embree> embree_;
 };
 

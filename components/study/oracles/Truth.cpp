@@ -49,8 +49,8 @@ struct Profile {
         if (!(high > low)) return 0;
         return integral(low, high, [&](double elevation) {
             const double inverse = slope * std::cos(elevation - steepest);
-            const double heard = pattern ? pattern(elevation) : 1;
-            return heard * std::cos(elevation) * distance * inverse * inverse * inverse;
+            const double received = pattern ? pattern(elevation) : 1;
+            return received * std::cos(elevation) * distance * inverse * inverse * inverse;
         });
     }
 };

@@ -7,7 +7,7 @@ from .things.catalogue import may_be_thing
 from .world import Spot, World
 
 KEYS = ("floor", "things", "max_triangles")
-MOST_TRIANGLES = 8_000_000
+MAX_TRIANGLES = 8_000_000
 
 
 def make_world(recipe, seed):
@@ -15,7 +15,7 @@ def make_world(recipe, seed):
     block = recipe.block(KEYS)
     if "floor" not in block and "things" not in block:
         recipe.fail("is empty; a recipe has a floor, things or both")
-    most = number_in(block["max_triangles"], 1, MOST_TRIANGLES, True) if "max_triangles" in block else 2_000_000
+    most = number_in(block["max_triangles"], 1, MAX_TRIANGLES, True) if "max_triangles" in block else 2_000_000
 
     def refuse(count):
         raise RecipeError(

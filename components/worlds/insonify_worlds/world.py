@@ -26,7 +26,7 @@ from .things import THINGS
 from .things.catalogue import CREASE_DEG, ENTRY, Model, may_be_thing
 
 STONE_SHAPES = 8
-SMALLEST_M = 1e-5  # shorter edges, which booleans leave behind, are removed
+MIN_EDGE_M = 1e-5  # shorter edges, which booleans leave behind, are removed
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Placed:
 def surface_of(solid):
     """Triangles with normals, which are smooth at blunt edges. Triangles without area in single precision are
     removed."""
-    mesh = solid.simplify(SMALLEST_M).calculate_normals(0, CREASE_DEG).to_mesh()
+    mesh = solid.simplify(MIN_EDGE_M).calculate_normals(0, CREASE_DEG).to_mesh()
     points = mesh.vert_properties[:, :3]
     a, b, c = np.moveaxis(points[mesh.tri_verts].astype(float), 1, 0)
     faces = mesh.tri_verts[np.any(np.cross(b - a, c - a) != 0, axis=1)]

@@ -114,15 +114,15 @@ TEST_F(CopyTest, ATruncatedFileKeepsItsCompleteMessages) {
 }
 
 TEST_F(CopyTest, AFileTruncatedAnywhereIsRepairedOrRefused) {
-    size_t most = 0;
+    size_t maximum = 0;
     for (size_t size = 0; size < whole.size(); size += 41) try {
             const size_t samples = repaired({whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size)}).samples;
-            EXPECT_GE(samples, most) << size;
-            most = samples;
+            EXPECT_GE(samples, maximum) << size;
+            maximum = samples;
         } catch (const types::ConfigError&) {
             EXPECT_LT(size, chunks[0].to) << "no channel is declared yet";
         }
-    EXPECT_EQ(most, 6u);
+    EXPECT_EQ(maximum, 6u);
 }
 
 TEST_F(CopyTest, AChunkWithAWrongChecksumIsOmittedAndReported) {

@@ -16,9 +16,9 @@ using nlohmann::json;
 json readByPython(const std::filesystem::path& log) {
     const std::string script = test::sourceFile("tests/log/pocolog/read_log.py");
     const std::string said = pythonSays(script + " " + log.string(), log.parent_path() / "answer.txt");
-    const json told = json::parse(said, nullptr, false);
-    EXPECT_FALSE(told.is_discarded()) << said;
-    return told;
+    const json reported = json::parse(said, nullptr, false);
+    EXPECT_FALSE(reported.is_discarded()) << said;
+    return reported;
 }
 
 types::Sonar ping() {
@@ -54,10 +54,10 @@ TEST(IndependentReaderTest, DecodesEveryTypeFromItsRegistryToTheLastByteAndFinds
     });
     log.addStream<double>("never.written");
     log.close();
-    const json told = readByPython(folder / "x.0.log");
-    EXPECT_TRUE(told["index"]);
-    EXPECT_EQ(told["streams"].size(), std::tuple_size_v<types::SampleTypes> + 1);
-    for (const auto& [name, stream] : told["streams"].items())
+    const json reported = readByPython(folder / "x.0.log");
+    EXPECT_TRUE(reported["index"]);
+    EXPECT_EQ(reported["streams"].size(), std::tuple_size_v<types::SampleTypes> + 1);
+    for (const auto& [name, stream] : reported["streams"].items())
         EXPECT_EQ(stream["samples"].size(), name == "never.written" ? 0u : 2u) << name;
 }
 

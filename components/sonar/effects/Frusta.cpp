@@ -5,12 +5,12 @@
 namespace insonify::sonar {
 namespace {
 
-std::string oneImage(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string oneImage(const Omitted& what, const BinGrid& /*grid*/) {
     return fmt::format("one image shows all {:g} deg", what.value);
 }
 
 /** Several images of a fan that is too wide for one. */
-class Slabs final : public Effect {
+class Frusta final : public Effect {
 public:
     bool plan(const types::Geometry& /*geometry*/, RenderPlan& plan) const override {
         if (plan.frusta.size() != 1) return !plan.frusta.empty();
@@ -23,8 +23,8 @@ public:
 
 }  // namespace
 
-const Effect& slabs() {
-    static const Slabs effect;
+const Effect& frusta() {
+    static const Frusta effect;
     return effect;
 }
 

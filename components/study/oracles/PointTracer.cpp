@@ -1,4 +1,4 @@
-#include "components/study/oracles/PointCaster.hpp"
+#include "components/study/oracles/PointTracer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -69,8 +69,8 @@ public:
             all.push_back(powerOf(pattern.transmit.elevation, angle) * powerOf(pattern.receive.elevation, angle));
         }
         const double floor = std::pow(10, pattern.floor_db / 10);
-        const auto heard = std::ranges::find_if(all, [&](double power) { return power >= floor; }) - all.begin();
-        half_ = 1 - 2.0 * static_cast<double>(heard) / steps;
+        const auto received = std::ranges::find_if(all, [&](double power) { return power >= floor; }) - all.begin();
+        half_ = 1 - 2.0 * static_cast<double>(received) / steps;
         weights_ = std::move(all);
     }
     double half() const { return half_; }  ///< Sine of the max elevation received [1].
@@ -108,43 +108,43 @@ public:
     double rays() const { return rays_; }
 
     /** Samples a tile; each tile has its own `seed`. */
-    void cast(const Tile& tile, uint64_t seed) {
+    void trace(const Tile& tile, uint64_t seed) {
         seed_ = seed, drawn_ = 0;
-        cast(tile, partings);
+        trace(tile, partings);
     }
 
 private:
     double draw() { return types::unit(types::mixedBits(seed_ + ++drawn_) >> 32); }
 
-    void cast(const Tile& tile, int partings_left) {
+    void trace(const Tile& tile, int partings_left) {
         Directions directions;
         for (int i = 0; i < RayTree::packet; ++i)  // an edge that cuts off a corner separates the corner rays
             directions[static_cast<size_t>(i)] = tile.at(i % split / (split - 1.0), i / split / (split - 1.0));
-        const RayTree::Found seen = castRays(directions);
+        const RayTree::Found seen = traceRays(directions);
         if (std::ranges::count(seen, seen[0]) == RayTree::packet) {
             const bool mapped = seen[0] != RayTree::none && tree_[seen[0]].mapped;
             fillWith(seen[0], tile, mapped ? mapped_fill[partings_left] : fill[partings_left]);
         } else if (partings_left > 0) {
-            for (int i = 0; i < RayTree::packet; ++i) cast(tile.part(i % split, i / split), partings_left - 1);
+            for (int i = 0; i < RayTree::packet; ++i) trace(tile.part(i % split, i / split), partings_left - 1);
         } else {
-            hearRays(tile);
+            receiveRays(tile);
         }
     }
 
     /** Traces one random ray in each part of the tile. */
-    void hearRays(const Tile& tile) {
+    void receiveRays(const Tile& tile) {
         Directions directions;
         for (int i = 0; i < RayTree::packet; ++i)
             directions[static_cast<size_t>(i)] = tile.part(i % split, i / split).at(draw(), draw());
-        const RayTree::Found found = castRays(directions);
-        for (size_t i = 0; i < found.size(); ++i) hear(found[i], directions[i], tile.solidAngle() / RayTree::packet);
+        const RayTree::Found found = traceRays(directions);
+        for (size_t i = 0; i < found.size(); ++i) addEcho(found[i], directions[i], tile.solidAngle() / RayTree::packet);
     }
 
-    RayTree::Found castRays(const Directions& directions) {
+    RayTree::Found traceRays(const Directions& directions) {
         RayTree::Rays rays;
         for (int i = 0; i < RayTree::packet; ++i) rays.set(i, world_from_sonar_ * directions[static_cast<size_t>(i)]);
         RayTree::Found found;
-        tree_.cast(from_, {&rays, 1}, {&found, 1});
+        tree_.trace(from_, {&rays, 1}, {&found, 1});
         rays_ += RayTree::packet;
         return found;
     }
@@ -161,18 +161,18 @@ private:
             const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
             for (int j = 0; j < count; ++j) {
                 const double up = tile.up + (j + high) * tile.height / count, level = std::sqrt(1 - up * up);
-                hear(triangle, {level * cosine, level * sine, up}, each);
+                addEcho(triangle, {level * cosine, level * sine, up}, each);
             }
             high += std::numbers::phi - 1;
             high -= std::floor(high);
         }
     }
 
-    void hear(uint32_t number, const glm::dvec3& direction, double solid_angle) {
+    void addEcho(uint32_t number, const glm::dvec3& direction, double solid_angle) {
         solid_angle *= aperture_.weight(direction.z);
         if (number == RayTree::none) return endAt(grid_.range_max, solid_angle);
         const RayTree::Triangle& triangle = tree_[number];
-        if (number != last_) aimAt(number);
+        if (number != last_) startPart(number);
         const double facing = glm::dot(normal_, direction), range = distance_ / facing;
         endAt(range, solid_angle);
         if (!(range >= grid_.range_min && range < grid_.range_max)) return;
@@ -199,7 +199,7 @@ private:
             solid_angle * (1 / std::max(grid_.edge(static_cast<int>(bin)), grid_.range_min) - 1 / end);
     }
 
-    void aimAt(uint32_t number) {
+    void startPart(uint32_t number) {
         const RayTree::Triangle& triangle = tree_[number];
         normal_ = glm::transpose(world_from_sonar_) * triangle.normal;
         distance_ = triangle.distance - glm::dot(triangle.normal, from_);
@@ -246,7 +246,7 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
     const auto law = [](const std::optional<acoustics::BeamLaw>& of) {
         return of ? std::optional<acoustics::BeamPattern>(*of) : std::nullopt;
     };
-    const auto sent = law(pattern.transmit.azimuth), heard = law(pattern.receive.azimuth);
+    const auto sent = law(pattern.transmit.azimuth), received = law(pattern.receive.azimuth);
     std::vector<std::vector<double>> weights;
     for (const sonar::Beam& beam : sonar::makeBeams(config)) {
         const double axis = (beam.low + beam.high) / 2;
@@ -255,7 +255,7 @@ std::vector<std::vector<double>> weightsOf(const sonar::SonarConfig& config, con
             constexpr double gauss = 0.7745966692414834;  // three points of Gauss and Legendre
             const auto power = [&](double share) {
                 const double a = (strip.low + strip.high + share * (strip.high - strip.low)) / 2;
-                return (sent ? sent->power(a) : 1) * (heard ? heard->power(a - axis) : 1);
+                return (sent ? sent->power(a) : 1) * (received ? received->power(a - axis) : 1);
             };
             each.push_back((5 * power(-gauss) + 8 * power(0) + 5 * power(gauss)) / 18);
         }
@@ -294,7 +294,7 @@ void takePulse(std::vector<double>& energies, const sonar::BinGrid& grid, const 
 
 }  // namespace
 
-std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
+std::vector<double> PointTracer::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                         uint64_t seed) {
     if (config.hasLayers()) throw std::invalid_argument("points support only homogeneous water, no layers");
     tree_.takeLaws(config);
@@ -302,7 +302,7 @@ std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::S
     const std::vector<Strip> strips = stripsOf(config);
     const bool formed = config.beam_pattern && config.beam_pattern->hasAzimuth();
     const auto weights = formed ? weightsOf(config, strips) : std::vector<std::vector<double>>{};
-    const auto isHeard = [&](size_t strip) {
+    const auto isReceived = [&](size_t strip) {
         return !formed || std::ranges::any_of(weights, [&](const auto& beam) { return beam[strip] > 0; });
     };
     const Aperture aperture(config);
@@ -323,18 +323,18 @@ std::vector<double> PointCaster::render(const types::Pose& sonar, const sonar::S
         };
         Sums& own = sums[static_cast<size_t>(number)];
         own = {std::vector<double>(bins), std::vector<double>(water), std::vector<double>(water)};
-        if (!isHeard(which)) return;
+        if (!isReceived(which)) return;
         Part part(tree_, sonar, grid, aperture, own);
         for (int row = number % parts; row < up; row += parts)
             for (int column = 0; column < across; ++column)
-                part.cast(
+                part.trace(
                     {azimuth(column), azimuth(column + 1) - azimuth(column), sine(row), sine(row + 1) - sine(row)},
                     types::hashed(seed, which, static_cast<uint64_t>(row + 1) << 32 | static_cast<uint32_t>(column)));
         if (water > 0) takeWater(own, grid, std::pow(10, *config.volume.front().strength_db / 10));
         rays[static_cast<size_t>(number)] = part.rays();
     });
     rays_ = 0;
-    for (const double cast : rays) rays_ += cast;
+    for (const double traced : rays) rays_ += traced;
     std::vector<double> energies(static_cast<size_t>(config.beams()) * bins);
     workers_.forEach(config.beams(), [&](int number) {
         const auto beam = static_cast<size_t>(number);

@@ -7,7 +7,7 @@
 namespace insonify::sonar {
 
 /** The pulses of other sonars that one sonar has received messages of, kept while they may arrive at it. */
-class OthersHeard {
+class OthersReceived {
 public:
     static constexpr double memory = 10;  ///< Time for which a pulse is kept: sound travels 15 km [s].
 

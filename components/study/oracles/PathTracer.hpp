@@ -12,12 +12,12 @@ namespace insonify::study {
  *  azimuth and in the sine of elevation; each echo is added to the bin of its own range, in double. A point is received
  *  along each pair of the direct path and the path by the surface, out and back (ACOUSTICS.md 5.23). Both paths must be
  *  free, in the fan and within the aperture. */
-class PathCaster {
+class PathTracer {
 public:
-    explicit PathCaster(const types::Snapshot& scene);
+    explicit PathTracer(const types::Snapshot& scene);
 
     /** Returns the energies E/S0 of one ping from `sonar`, [beam][bin], from `up` times `across` tiles of 16 rays in
-     *  each beam. Another seed draws other rays. `config` as for EmbreeCaster, with a surface and one bounce. */
+     *  each beam. Another seed draws other rays. `config` as for EmbreeTracer, with a surface and one bounce. */
     std::vector<double> render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                uint64_t seed);
 

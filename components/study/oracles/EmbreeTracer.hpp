@@ -14,11 +14,11 @@ namespace insonify::study {
  *
  *  Supports `physical` without absorption and `published`; planar beams; normal maps without mipmaps. Surfaces nearer
  *  than `range_min` hide those behind them. */
-class EmbreeCaster {
+class EmbreeTracer {
 public:
     /** Builds the tree of all triangles of the snapshot. Throws std::runtime_error if Embree fails. */
-    explicit EmbreeCaster(const types::Snapshot& scene);
-    ~EmbreeCaster();
+    explicit EmbreeTracer(const types::Snapshot& scene);
+    ~EmbreeTracer();
 
     /** Makes the tables of a configuration: one ray for each of config.quality.rows over the aperture and
      *  columns_per_beam for each beam. */
@@ -28,7 +28,7 @@ public:
     void render(const types::Pose& sonar, std::vector<float>& energies);
 
     /** Only traces the rays of a ping; returns the number of hits [1]. */
-    size_t castOnly(const types::Pose& sonar);
+    size_t traceOnly(const types::Pose& sonar);
 
     /** Returns the number of bins that the longest cell of the last ping covered, kappa of ACOUSTICS.md 4.5 [1]. */
     double kappaMax() const;

@@ -1,4 +1,4 @@
-#include "components/study/oracles/PathCaster.hpp"
+#include "components/study/oracles/PathTracer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ public:
     double rays() const { return rays_; }
 
     /** Traces rays in the sonar's axes that represent a solid angle each [sr]. */
-    void cast(Directions directions, double solid_angle) {
+    void trace(Directions directions, double solid_angle) {
         for (glm::dvec3& d : directions) d = world_from_sonar_ * d;
         solid_angle_ = solid_angle;
         Distances to_surface, none{};
@@ -58,8 +58,8 @@ public:
             const uint32_t met = is_direct ? direct[i] : std::isfinite(to_surface[i]) ? reflected[i] : RayTree::none;
             points_[i] = {met, origin, d, rangeOf(met, origin, d), is_direct};
         }
-        hearBothWays();
-        hearOtherWays();
+        receiveBothWays();
+        receiveOtherWays();
     }
 
 private:
@@ -84,7 +84,7 @@ private:
             rays.set(i, directions[at], std::isfinite(nearest[at]) ? nearest[at] : 0);
         }
         RayTree::Found found;
-        tree_.cast(from, {&rays, 1}, {&found, 1});
+        tree_.trace(from, {&rays, 1}, {&found, 1});
         rays_ += RayTree::packet;
         return found;
     }
@@ -97,7 +97,7 @@ private:
         return range > 0 ? range : infinite;
     }
 
-    void hearBothWays() {
+    void receiveBothWays() {
         for (const Point& point : points_) {
             if (!point.isMet()) continue;
             const RayTree::Triangle& plane = tree_[point.triangle];
@@ -110,7 +110,7 @@ private:
     }
 
     /** Adds sound whose way out differs from its way back. */
-    void hearOtherWays() {
+    void receiveOtherWays() {
         Directions out, out_of_sonar;
         Distances reach{}, none{}, to_surface{};
         for (size_t i = 0; i < points_.size(); ++i) {
@@ -169,7 +169,7 @@ private:
 };
 
 /** Returns one ray in each of a tile's 16 parts, in the sonar's axes. */
-Directions drawnIn(double azimuth, double width, double up, double height, uint64_t seed) {
+Directions rasterisedIn(double azimuth, double width, double up, double height, uint64_t seed) {
     Directions directions;
     for (uint64_t i = 0; i < directions.size(); ++i) {
         const auto draw = [&](uint64_t which) { return types::unit(types::mixedBits(seed + 2 * i + which) >> 32); };
@@ -183,10 +183,10 @@ Directions drawnIn(double azimuth, double width, double up, double height, uint6
 
 }  // namespace
 
-PathCaster::PathCaster(const types::Snapshot& scene)
+PathTracer::PathTracer(const types::Snapshot& scene)
     : tree_(scene), surface_(scene.water_surface.value() - tree_.origin().z) {}
 
-std::vector<double> PathCaster::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
+std::vector<double> PathTracer::render(const types::Pose& sonar, const sonar::SonarConfig& config, int up, int across,
                                        uint64_t seed) {
     tree_.takeLaws(config);
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
@@ -203,14 +203,15 @@ std::vector<double> PathCaster::render(const types::Pose& sonar, const sonar::So
         const double width = (beams[which].high - beams[which].low) / across, height = 2 * half / up;
         for (int row = 0; row < up; ++row)
             for (int column = 0; column < across; ++column)
-                part.cast(drawnIn(beams[which].low + column * width, width, row * height - half, height,
-                                  types::hashed(seed, which,
-                                                static_cast<uint64_t>(row) << 32 | static_cast<uint32_t>(column))),
-                          width * height / RayTree::packet);
+                part.trace(
+                    rasterisedIn(
+                        beams[which].low + column * width, width, row * height - half, height,
+                        types::hashed(seed, which, static_cast<uint64_t>(row) << 32 | static_cast<uint32_t>(column))),
+                    width * height / RayTree::packet);
         rays[which] = part.rays();
     });
     rays_ = 0;
-    for (const double cast : rays) rays_ += cast;
+    for (const double traced : rays) rays_ += traced;
     return energies;
 }
 

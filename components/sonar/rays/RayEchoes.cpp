@@ -56,9 +56,9 @@ struct Strip {
     std::mutex mutex;
 };
 
-class CastEchoes final : public EchoRenderer {
+class RayEchoes final : public EchoRenderer {
 public:
-    CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
+    RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
     void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
@@ -68,24 +68,24 @@ public:
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     EchoField* field() override { return field_ ? &*field_ : nullptr; }
     const RayPaths* bent() const override { return ray_paths_ && !ray_paths_->areStraight() ? &*ray_paths_ : nullptr; }
-    bool hasEchoes() const override { return heard_; }
+    bool hasEchoes() const override { return received_; }
     const std::string& device() const override { return device_; }
 
 private:
     /** Buffers of one thread. */
     struct Worker {
-        std::vector<CastTile> tiles;
+        std::vector<TracedTile> tiles;
         std::vector<TileHits> hits;                           ///< Hits of each tile.
         std::vector<std::array<float, tile_samples>> passed;  ///< Shares of each tile's samples, where there are walls.
         MappedTiles mapped;
         std::vector<uint64_t> sums;
-        std::optional<TruthTable> shown;  ///< Truth of the sums, where it is recorded.
-        std::vector<uint64_t> one_beam;   ///< For TruthSink.
-        std::vector<uint64_t> told_sums;  ///< Sums of energies, where the truth of fields is recorded.
+        std::optional<TruthTable> shown;      ///< Truth of the sums, where it is recorded.
+        std::vector<uint64_t> one_beam;       ///< For TruthSink.
+        std::vector<uint64_t> reported_sums;  ///< Sums of energies, where the truth of fields is recorded.
         size_t number = 0;
         Stages stages{};
         Clock::time_point last;
-        bool heard = false;
+        bool received = false;
 
         void lap(StageOf stage) {
             const Clock::time_point now = Clock::now();
@@ -110,21 +110,21 @@ private:
                 bent(),
                 surface_maps_ ? &*surface_maps_ : nullptr};
     }
-    CastPing castPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
+    TracedPing tracedPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
     void addEnergies(types::Sonar& ping);
-    void depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker);
+    void depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker);
     /** Deposits tiles. `behind_walls`: without the water in front of the hits. */
-    void deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
+    void deposit(std::span<const TracedTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
     /** Deposits tiles whose surface maps have been looked up. */
-    void depositAsMet(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
+    void depositAsMet(std::span<const TracedTile> tiles, bool behind_walls, int first_beam, Worker& worker) const;
     /** Follows rays through the walls that they have hit. Returns whether there are any. */
-    bool castThrough(std::span<CastTile> tiles, Worker& worker) const;
-    bool castThrough(CastTile& tile) const;
+    bool traceThrough(std::span<TracedTile> tiles, Worker& worker) const;
+    bool traceThrough(TracedTile& tile) const;
     /** Follows rays through walls that ring or have a fill; deposits their echoes. */
-    void followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const;
+    void followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const;
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
-    std::span<CastTile> cast(const Part& part, Worker& worker) const;
+    std::span<TracedTile> trace(const Part& part, Worker& worker) const;
     /** Fills the bins of a cell from its sums. Returns whether it has any echo. */
     bool fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping);
     /** Adds a part's sums to its strip's. Returns whether these are now complete, and in the worker. */
@@ -135,7 +135,7 @@ private:
     PingEffects& effects_;
     EchoRules rules_;
     std::optional<EchoRules> truth_rules_;  ///< Rules for energies, where fields are summed.
-    CastView view_;
+    TracedView view_;
     TileDirections directions_;
     BinLevels levels_;
     WaterView water_;                 ///< Water view of this ping.
@@ -160,12 +160,12 @@ private:
     std::vector<Strip> strips_;
     std::atomic<size_t> next_ = 0;
     std::string device_ = "rays on the processor";
-    bool heard_ = false;
+    bool received_ = false;
     types::SonarTruth* truth_ = nullptr;   ///< Truth to be filled; null: none.
     std::optional<TruthGrid> truth_grid_;  ///< Made at the first ping with truth.
 };
 
-CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects)
+RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects)
     : plan_(plan),
       geometry_(std::move(geometry)),
       effects_(effects),
@@ -179,7 +179,7 @@ CastEchoes::CastEchoes(const RenderPlan& plan, types::GeometryPtr geometry, Ping
     takeScene(geometry_, false);
 }
 
-void CastEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
+void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     deformed_ = meshes;
     takeScene(std::move(geometry), true);
     if (!meshes) return;
@@ -188,10 +188,11 @@ void CastEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
         triangles += geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
     bends_ = triangles <= max_bent;
     const auto flat = std::make_shared<const std::vector<CurveRecord>>();
-    for (const uint32_t object : meshes->objects()) curves_[static_cast<size_t>(geometry_->objects[object].mesh)] = flat;
+    for (const uint32_t object : meshes->objects())
+        curves_[static_cast<size_t>(geometry_->objects[object].mesh)] = flat;
 }
 
-void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
+void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
     visibility_.takeShapes();
     threads_.run([&](int part, int parts) {
         deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
@@ -202,13 +203,12 @@ void CastEchoes::takeShapes(const types::Snapshot& snapshot) {
             const glm::dmat3 world_from_mesh = worldFromMesh(*geometry_, number);
             if (facets_[number]) facets_[number] = MeshFacts::facetsNow(mesh, world_from_mesh, plan_.laws);
             if (bends_)
-                curves_[number] =
-                    std::make_shared<const std::vector<CurveRecord>>(facetCurves(mesh, world_from_mesh));
+                curves_[number] = std::make_shared<const std::vector<CurveRecord>>(facetCurves(mesh, world_from_mesh));
         }
     });
 }
 
-bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
+bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // kept until unused
     if (before != geometry_)
         visibility_.takeScene(
@@ -236,7 +236,7 @@ bool CastEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     return true;
 }
 
-bool CastEchoes::forget() {
+bool RayEchoes::forget() {
     if (ray_paths_) return false;
     visibility_.forget();
     rules_ = makeEchoRules(plan_, effects_);
@@ -244,7 +244,7 @@ bool CastEchoes::forget() {
     return true;
 }
 
-void CastEchoes::takePlan() {
+void RayEchoes::takePlan() {
     levels_ = BinLevels(plan_.config, summedGrid(plan_));
     surface_ = WaterMirror(plan_.config);
     if (plan_.profile || plan_.config.motion_in_ping) {
@@ -255,7 +255,7 @@ void CastEchoes::takePlan() {
     takeQuality();
 }
 
-void CastEchoes::takeQuality() {
+void RayEchoes::takeQuality() {
     rules_ = makeEchoRules(plan_, effects_);
     view_.cells = makeAngularView(plan_);
     if (plan_.features.has(Feature::Speckle)) {
@@ -268,7 +268,7 @@ void CastEchoes::takeQuality() {
     truth_grid_.reset();
 }
 
-void CastEchoes::shareOut() {
+void RayEchoes::shareOut() {
     const int beam_columns = view_.cells.beam_columns, beams = view_.cells.beams, together = beamsTogether();
     view_.shape = TileShape(view_.cells, rules_.bins, together);
     directions_ = TileDirections(view_, together * beam_columns);
@@ -292,18 +292,18 @@ void CastEchoes::shareOut() {
     }
 }
 
-void CastEchoes::makeTruth() {
+void RayEchoes::makeTruth() {
     const bool whole = std::ranges::all_of(strips_, [](const Strip& strip) { return strip.parts == 1; });
     truth_grid_.emplace(plan_, whole);
     for (Worker& worker : workers_) {
         worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
-        const EchoRules& told = field_ ? *truth_rules_ : rules_;
-        worker.one_beam.assign(told.sumCount(), 0);
-        if (field_) worker.told_sums.assign(static_cast<size_t>(beamsTogether()) * told.sumCount(), 0);
+        const EchoRules& reported = field_ ? *truth_rules_ : rules_;
+        worker.one_beam.assign(reported.sumCount(), 0);
+        if (field_) worker.reported_sums.assign(static_cast<size_t>(beamsTogether()) * reported.sumCount(), 0);
     }
 }
 
-void CastEchoes::place(const types::Snapshot& snapshot) {
+void RayEchoes::place(const types::Snapshot& snapshot) {
     water_ = waterViewOf(snapshot);
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
@@ -319,7 +319,7 @@ void CastEchoes::place(const types::Snapshot& snapshot) {
     ahead_.take(snapshot.ahead, plan_.laws);
 }
 
-void CastEchoes::placeRuns() {
+void RayEchoes::placeRuns() {
     runs_.clear();
     for (const CommandRecord& command : scene().commands) {
         const auto mesh = static_cast<size_t>(geometry_->objects[command.object].mesh);
@@ -330,29 +330,29 @@ void CastEchoes::placeRuns() {
     }
 }
 
-std::span<CastTile> CastEchoes::cast(const Part& part, Worker& worker) const {
+std::span<TracedTile> RayEchoes::trace(const Part& part, Worker& worker) const {
     const int begin = part.first_beam * view_.cells.beam_columns, end = begin + part.beams * view_.cells.beam_columns;
     std::array<TileRays, RayVisibility::tiles_at_once> rays;
     size_t count = 0, waiting = 0;
-    const auto castWaiting = [&] {
+    const auto traceWaiting = [&] {
         TileHits* const hits = &worker.hits[count - waiting];
-        if (!bent()) visibility_.cast({rays.data(), waiting}, {hits, waiting});
-        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.castAlong(*ray_paths_, rays[i], hits[i]);
+        if (!bent()) visibility_.trace({rays.data(), waiting}, {hits, waiting});
+        for (size_t i = 0; bent() && i < waiting; ++i) visibility_.traceAlong(*ray_paths_, rays[i], hits[i]);
         waiting = 0;
     };
     for (int column = begin; column < end; column += view_.shape.all.columns)
         for (int row = part.first_row; row < part.first_row + part.rows; row += view_.shape.all.rows) {
-            CastTile& tile = worker.tiles[count];
+            TracedTile& tile = worker.tiles[count];
             tile = {column, row, end, &worker.hits[count]};
             ++count;
             rays[waiting++] = directions_.rays(view_.cells, column, row);
-            if (waiting == rays.size()) castWaiting();
+            if (waiting == rays.size()) traceWaiting();
         }
-    if (waiting > 0) castWaiting();
+    if (waiting > 0) traceWaiting();
     return {worker.tiles.data(), count};
 }
 
-bool CastEchoes::gather(const Part& part, Worker& worker) {
+bool RayEchoes::gather(const Part& part, Worker& worker) {
     Strip& strip = strips_[part.strip];
     if (strip.parts == 1) return true;
     const std::lock_guard alone(strip.mutex);
@@ -362,7 +362,7 @@ bool CastEchoes::gather(const Part& part, Worker& worker) {
     return true;
 }
 
-bool CastEchoes::castThrough(CastTile& tile) const {
+bool RayEchoes::traceThrough(TracedTile& tile) const {
     const TileRays straight = directions_.rays(view_.cells, tile.first_column, tile.first_row);
     PathRays on{};
     on.towards = straight;
@@ -385,17 +385,17 @@ bool CastEchoes::castThrough(CastTile& tile) const {
         on.farthest[i] = end;
         on.towards.active |= 1u << i;
     }
-    if (on.towards.active) visibility_.cast(on, *tile.hits);
+    if (on.towards.active) visibility_.trace(on, *tile.hits);
     return on.towards.active;
 }
 
-bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
+bool RayEchoes::traceThrough(std::span<TracedTile> tiles, Worker& worker) const {
     bool any = false;
     for (size_t i = 0; i < tiles.size(); ++i) {
         if (!tiles[i].passed) worker.passed[i].fill(1);
         tiles[i].passed = worker.passed[i].data();
         tiles[i].path = behind_walls;
-        if (castThrough(tiles[i]))
+        if (traceThrough(tiles[i]))
             any = true;
         else
             std::fill_n(tiles[i].hits->command, tile_samples, TileHits::nothing);
@@ -403,43 +403,43 @@ bool CastEchoes::castThrough(std::span<CastTile> tiles, Worker& worker) const {
     return any;
 }
 
-void CastEchoes::followWalls(std::span<const CastTile> tiles, int first_beam, Worker& worker) const {
+void RayEchoes::followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const {
     const PlacedScene scene = this->scene();
     WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, levels_.lossOfWater());
-    for (const CastTile& tile : tiles)
+    for (const TracedTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
-            while (const CastTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);
+            while (const TracedTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);
 }
 
-void CastEchoes::deposit(std::span<const CastTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
+void RayEchoes::deposit(std::span<const TracedTile> tiles, bool behind_walls, int first_beam, Worker& worker) const {
     if (!surface_maps_) return depositAsMet(tiles, behind_walls, first_beam, worker);
     worker.mapped.take(view_, scene(), tiles, field_.has_value());
     depositAsMet(worker.mapped.whole(), behind_walls, first_beam, worker);
     depositAsMet(worker.mapped.rest(), true, first_beam, worker);
 }
 
-void CastEchoes::depositAsMet(std::span<const CastTile> tiles, bool behind_walls, int first_beam,
-                              Worker& worker) const {
+void RayEchoes::depositAsMet(std::span<const TracedTile> tiles, bool behind_walls, int first_beam,
+                             Worker& worker) const {
     const EchoSums sums{first_beam, worker.sums.data(), nullptr, behind_walls};
     if (field_)
         depositPatches(rules_, view_, scene(), tiles, sums);
     else if (!truth_)
         depositTiles(rules_, view_, scene(), tiles, sums);
     if (!truth_) return;
-    std::vector<uint64_t>& told = field_ ? worker.told_sums : worker.sums;
+    std::vector<uint64_t>& reported = field_ ? worker.reported_sums : worker.sums;
     const TruthSink truth{*worker.shown, {}, worker.one_beam};
     depositTiles(field_ ? *truth_rules_ : rules_, view_, scene(), tiles,
-                 {first_beam, told.data(), &truth, behind_walls});
+                 {first_beam, reported.data(), &truth, behind_walls});
 }
 
-void CastEchoes::depositPart(const Part& part, std::span<CastTile> tiles, Worker& worker) {
+void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker) {
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
     if (truth_) worker.shown->clear();
     deposit(tiles, false, part.first_beam, worker);
     const bool apart = plan_.has(Pass::Walls) && rules_.laws.hasReturns();
     if (apart) followWalls(tiles, part.first_beam, worker);
     const int walls = plan_.has(Pass::Walls) && !apart ? plan_.config.max_walls : 0;
-    for (int wall = 0; wall < walls && castThrough(tiles, worker); ++wall)
+    for (int wall = 0; wall < walls && traceThrough(tiles, worker); ++wall)
         deposit(tiles, true, part.first_beam, worker);
     if (!truth_) return;
     for (int beam = 0; beam < part.beams; ++beam)
@@ -447,47 +447,47 @@ void CastEchoes::depositPart(const Part& part, std::span<CastTile> tiles, Worker
                           *truth_);
 }
 
-void CastEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
-    const std::span<CastTile> tiles = cast(part, worker);
+void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
+    const std::span<TracedTile> tiles = trace(part, worker);
     worker.lap(DrawStage);
-    effects_.followRays(castPing(), tiles);
+    effects_.followRays(tracedPing(), tiles);
     depositPart(part, tiles, worker);
     worker.lap(DepositStage);
     if (gather(part, worker))
         for (int beam = 0; beam < part.beams; ++beam)
-            worker.heard |= fill(static_cast<size_t>(part.first_beam + beam), worker,
-                                 &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
+            worker.received |= fill(static_cast<size_t>(part.first_beam + beam), worker,
+                                    &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
     worker.lap(BeamStage);
 }
 
-bool CastEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+bool RayEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
     if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
-    const bool heard = levels_.fill(rules_, sums, view_.cells.cell(), bins);
+    const bool received = levels_.fill(rules_, sums, view_.cells.cell(), bins);
     addOwnSums(rules_, sums, cell, view_.cells.cell(), bins);
-    return heard;
+    return received;
 }
 
-void CastEchoes::addEnergies(types::Sonar& ping) {
-    const CastPing cast = castPing();
+void RayEchoes::addEnergies(types::Sonar& ping) {
+    const TracedPing traced = tracedPing();
     threads_.run([&](int part, int parts) {
         for (int cell = part; cell < view_.cells.beams; cell += parts) {
             const auto i = static_cast<size_t>(cell);
             const auto thread = static_cast<size_t>(part);
             const std::span<float> bins = field_ ? field_->energies(thread) : grid_->cell(i, ping);
-            const bool any = effects_.addEnergies(cast, i, bins);
+            const bool any = effects_.addEnergies(traced, i, bins);
             if (any && field_) field_->addEnergies(i, bins, thread);
-            workers_[thread].heard |= any;
+            workers_[thread].received |= any;
         }
     });
 }
 
-void CastEchoes::work(Worker& worker, types::Sonar& ping) {
+void RayEchoes::work(Worker& worker, types::Sonar& ping) {
     worker.last = Clock::now();
     for (size_t i = next_++; i < parts_.size(); i = next_++) workOn(parts_[i], worker, ping);
 }
 
-void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+void RayEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
     Worker& own = workers_.front();
     own.last = Clock::now();
     place(snapshot);
@@ -497,7 +497,7 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     stages[CullStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
     next_ = 0;
     for (Worker& worker : workers_) {
-        worker.heard = false;
+        worker.received = false;
         for (Stage& stage : worker.stages) stage.seconds = 0;
     }
     for (Strip& strip : strips_) {
@@ -516,13 +516,13 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
     else
         grid_->finish(ping, threads_);
     if (truth_) truth_grid_->finish(*truth_, threads_);
-    if (truth_) effects_.addToTruth(castPing(), *truth_);
+    if (truth_) effects_.addToTruth(tracedPing(), *truth_);
     stages[BeamStage].seconds += std::chrono::duration<double>(Clock::now() - own.last).count();
-    heard_ = false;
+    received_ = false;
     for (const Worker& worker : workers_) {
         for (size_t i = 0; i < stages.size(); ++i)
             stages[i].seconds += worker.stages[i].seconds / static_cast<double>(alone ? 1 : workers_.size());
-        heard_ = heard_ || worker.heard;
+        received_ = received_ || worker.received;
     }
 }
 
@@ -530,9 +530,8 @@ void CastEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Sta
 
 bool haveRays() { return true; }
 
-std::unique_ptr<EchoRenderer> makeCastEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                             PingEffects& effects) {
-    return std::make_unique<CastEchoes>(plan, std::move(geometry), effects);
+std::unique_ptr<EchoRenderer> makeRayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects) {
+    return std::make_unique<RayEchoes>(plan, std::move(geometry), effects);
 }
 
 }  // namespace insonify::sonar

@@ -32,7 +32,7 @@ namespace insonify::sonar {
  *  second ahead of the clock. A quaternion that is not of unit length is normalised. A sonar that moved faster than a
  *  tenth of the speed of sound since the last snapshot counts as repositioned. A warning reports it, and the ping gets
  *  no velocity from that displacement. */
-class AimedTask : public framework::TaskContext {
+class TriggeredTask : public framework::TaskContext {
 public:
     using TaskContext::TaskContext;
 
@@ -66,17 +66,17 @@ protected:
     virtual void turnHead(types::Angle /*bearing*/) {}
     /** Makes the last changes to a snapshot with a valid pose before it is rendered. Returns the reason for refusing
      *  it, or null. */
-    virtual const char* steer(types::Snapshot& /*scene*/) { return nullptr; }
+    virtual const char* setLook(types::Snapshot& /*scene*/) { return nullptr; }
 
     /** Forgets all snapshots and computes the grid of the current configuration. */
-    void resetAim();
-    /** Takes the input of the next ping, if there is one, into aimed(), usedPose() and begun(). Returns whether there
-     *  was one. */
+    void resetTrigger();
+    /** Takes the input of the next ping, if there is one, into takenScene(), usedPose() and begun(). Returns whether
+     * there was one. */
     bool takeNext();
     /** Evaluates the input of the next ping. Returns the reason for refusing it, or null. */
     const char* refusal();
-    types::Snapshot& aimed() { return taken_.scene; }
-    const types::Snapshot& aimed() const { return taken_.scene; }
+    types::Snapshot& takenScene() { return taken_.scene; }
+    const types::Snapshot& takenScene() const { return taken_.scene; }
     const types::Pose& usedPose() const { return taken_.used; }  ///< Pose before normalisation.
     types::Time begun() const { return taken_.begun; }           ///< Time at which the input was taken.
     /** Input of one ping. */

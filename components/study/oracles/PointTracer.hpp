@@ -19,9 +19,9 @@ namespace insonify::study {
  *  With a beam pattern in azimuth, tiles are those of narrow strips all around, and each beam is the sum of the strips
  *  weighted by the mean of its pattern over them (ACOUSTICS.md 5.11). A pattern in elevation weights each point; a
  *  pulse is summed over bins (5.12); scattering water is received up to each point (3.9). */
-class PointCaster {
+class PointTracer {
 public:
-    explicit PointCaster(const types::Snapshot& scene) : tree_(scene) {}
+    explicit PointTracer(const types::Snapshot& scene) : tree_(scene) {}
 
     /** Returns the energies E/S0 of one ping from `sonar`, [beam][bin], from `up` times `across` tiles in each beam.
      *  Another seed draws other rays; the same seed gives the same sums on any number of threads. `config`: `physical`,

@@ -11,7 +11,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
-#include "components/study/oracles/PointCaster.hpp"
+#include "components/study/oracles/PointTracer.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::study {
@@ -27,9 +27,9 @@ struct Errors {
 
 /** Returns the errors of the mean of two halves: from the truth, and estimated from the halves. */
 Errors errorsOf(const StudyScene& scene, int up, int across) {
-    PointCaster caster(scene.snapshot);
-    std::vector<double> mean = caster.render(scene.snapshot.sonar, scene.config, up, across, 1);
-    const std::vector<double> second = caster.render(scene.snapshot.sonar, scene.config, up, across, 2);
+    PointTracer tracer(scene.snapshot);
+    std::vector<double> mean = tracer.render(scene.snapshot.sonar, scene.config, up, across, 1);
+    const std::vector<double> second = tracer.render(scene.snapshot.sonar, scene.config, up, across, 2);
     const std::vector<float> half(mean.begin(), mean.end());
     for (size_t i = 0; i < mean.size(); ++i) mean[i] = (mean[i] + second[i]) / 2;
     const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
@@ -44,9 +44,9 @@ StudyScene studyNamed(const std::string& name) {
     throw std::invalid_argument(name);
 }
 
-class PointCasterTest : public testing::TestWithParam<const char*> {};
+class PointTracerTest : public testing::TestWithParam<const char*> {};
 
-TEST_P(PointCasterTest, ItsErrorIsThatEstimatedFromItsHalvesAndFallsWithRays) {
+TEST_P(PointTracerTest, ItsErrorIsThatEstimatedFromItsHalvesAndFallsWithRays) {
     const StudyScene scene = studyNamed(GetParam());
     const int across = std::max(1, 8 / scene.config.beam_count);
     const Errors coarse = errorsOf(scene, 8, across), fine = errorsOf(scene, 32, 4 * across);
@@ -59,14 +59,14 @@ TEST_P(PointCasterTest, ItsErrorIsThatEstimatedFromItsHalvesAndFallsWithRays) {
     RecordProperty("true_error", std::to_string(fine.true_error));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, PointCasterTest,
+INSTANTIATE_TEST_SUITE_P(Scenes, PointTracerTest,
                          testing::Values("flat_bottom_edge", "tilted_plane", "wall", "sphere", "shadow_screen"),
                          [](const auto& scene) { return std::string(scene.param); });
 
-TEST(PointCasterTest, EqualSeedsGiveEqualSumsAndOtherSeedsOthers) {
+TEST(PointTracerTest, EqualSeedsGiveEqualSumsAndOtherSeedsOthers) {
     const StudyScene scene = studyNamed("shadow_screen");
     const auto sums = [&](uint64_t seed) {
-        return PointCaster(scene.snapshot).render(scene.snapshot.sonar, scene.config, 50, 3, seed);
+        return PointTracer(scene.snapshot).render(scene.snapshot.sonar, scene.config, 50, 3, seed);
     };
     EXPECT_EQ(sums(1), sums(1));
     EXPECT_NE(sums(1), sums(2));
@@ -85,14 +85,14 @@ types::GeometryPtr leaningWall(glm::ivec3 rgb) {
     return geometry;
 }
 
-TEST(PointCasterTest, ANormalMapChangesOnlyTheCosine) {
+TEST(PointTracerTest, ANormalMapChangesOnlyTheCosine) {
     const glm::ivec3 rgb(190, 160, 230);
     sonar::SonarConfig config = fan(20, 20, 1, 15);
     setSamples(config, 256, 256);
     const types::Snapshot scene = lookingAt(leaningWall(rgb));
-    const std::vector<double> sums = PointCaster(scene).render(scene.sonar, config, 64, 64, 1);
-    const glm::dvec3 told = glm::dvec3(rgb) * (2.0 / 255) - 1.0;
-    const glm::dvec3 bent = glm::normalize(glm::dvec3(-told.z, -told.x, told.y));
+    const std::vector<double> sums = PointTracer(scene).render(scene.sonar, config, 64, 64, 1);
+    const glm::dvec3 reported = glm::dvec3(rgb) * (2.0 / 255) - 1.0;
+    const glm::dvec3 bent = glm::normalize(glm::dvec3(-reported.z, -reported.x, reported.y));
     double expected = 0;
     for (int i = 0; i < 400; ++i)
         for (int j = 0; j < 400; ++j) {
@@ -101,8 +101,8 @@ TEST(PointCasterTest, ANormalMapChangesOnlyTheCosine) {
             expected += -glm::dot(bent, d) * d.x * d.x / 100 * std::cos(up) * std::pow(radians(20) / 400, 2);
         }
     EXPECT_NEAR(std::accumulate(sums.begin(), sums.end(), 0.0), expected, 1e-3 * expected);
-    const Probe drawn = probe(config, scene);
-    EXPECT_NEAR(drawn.energy(), expected, 1e-3 * expected) << "and it is rendered like this";
+    const Probe rasterised = probe(config, scene);
+    EXPECT_NEAR(rasterised.energy(), expected, 1e-3 * expected) << "and it is rendered like this";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "components/sonar/AimedTask.hpp"
+#include "components/sonar/TriggeredTask.hpp"
 
 #include <fmt/format.h>
 
@@ -28,15 +28,15 @@ const char* normalisePose(types::Pose& pose) {
 
 }  // namespace
 
-double AimedTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
+double TriggeredTask::realtimePeriod() const { return activity().realtime() ? period_.period() : 0; }
 
-void AimedTask::resetAim() {
+void TriggeredTask::resetTrigger() {
     grid_ = makeBinGrid(sonarConfig());
     shortest_ = std::numeric_limits<double>::infinity();
     period_ = {};
 }
 
-void AimedTask::followSnapshot(const types::Snapshot& scene) {
+void TriggeredTask::followSnapshot(const types::Snapshot& scene) {
     const std::optional<Mark> before = std::exchange(before_, Mark{scene.time, scene.sonar.position});
     const double seconds = before ? (scene.time - before->time).seconds() : 0;
     jumped_ = false;
@@ -53,7 +53,7 @@ void AimedTask::followSnapshot(const types::Snapshot& scene) {
                         way, seconds, fastest));
 }
 
-bool AimedTask::takeGiven() {
+bool TriggeredTask::takeGiven() {
     types::SnapshotPtr sample;
     types::Pose given;
     if (!given_pose.readNew(given) || snapshot.readNewest(sample) == framework::FlowStatus::NoData) return false;
@@ -65,7 +65,7 @@ bool AimedTask::takeGiven() {
     return true;
 }
 
-std::map<std::string, std::string> AimedTask::changedBy(const types::SonarSettings& asked) const {
+std::map<std::string, std::string> TriggeredTask::changedBy(const types::SonarSettings& asked) const {
     const SonarConfig config = sonarConfig();
     std::map<std::string, std::string> changed;
     const auto compare = [&](const char* name, double wanted, std::optional<double> now) {
@@ -84,13 +84,13 @@ std::map<std::string, std::string> AimedTask::changedBy(const types::SonarSettin
     return changed;
 }
 
-void AimedTask::applySettings(const types::SonarSettings& asked) {
+void TriggeredTask::applySettings(const types::SonarSettings& asked) {
     const auto changed = changedBy(asked);
     if (!changed.empty()) properties().front()->setAll(changed);
     if (!asked.bearing.isUnknown()) turnHead(asked.bearing);
 }
 
-bool AimedTask::takeAsked() {
+bool TriggeredTask::takeAsked() {
     types::SonarSettings asked;
     types::SnapshotPtr sample;
     if (snapshot.readNewest(sample) == framework::FlowStatus::NoData || !settings.takeNext(asked)) return false;
@@ -106,7 +106,7 @@ bool AimedTask::takeAsked() {
     return true;
 }
 
-bool AimedTask::takeNext() {
+bool TriggeredTask::takeNext() {
     if (given_pose.connected()) return takeGiven();
     if (settings.connected()) return takeAsked();
     types::SnapshotPtr sample;
@@ -115,7 +115,7 @@ bool AimedTask::takeNext() {
     return true;
 }
 
-void AimedTask::takeScene(const types::Snapshot& scene) {
+void TriggeredTask::takeScene(const types::Snapshot& scene) {
     taken_.begun = now();
     taken_.scene = scene;
     if (activity().realtime() && taken_.scene.max_extrapolation > 0) {
@@ -125,7 +125,7 @@ void AimedTask::takeScene(const types::Snapshot& scene) {
     taken_.used = taken_.scene.sonar;
 }
 
-const char* AimedTask::refusal() {
+const char* TriggeredTask::refusal() {
     if (!taken_.scene.geometry) return "the snapshot has no geometry";
     if (std::ranges::any_of(taken_.scene.moved, [count = taken_.scene.geometry->objects.size()](const auto& moved) {
             return moved.object >= count;
@@ -137,7 +137,7 @@ const char* AimedTask::refusal() {
     if (activity().realtime() && (taken_.scene.time - now()).seconds() > 1)
         return "the snapshot's time is ahead of the clock by more than a second";
     followSnapshot(taken_.scene);
-    return steer(taken_.scene);
+    return setLook(taken_.scene);
 }
 
 }  // namespace insonify::sonar

@@ -19,12 +19,13 @@ namespace insonify::sonar {
 namespace {
 
 /** Min slant range that is rasterised [m]. Surfaces nearer than the blanking are rasterised: they cast shadows. */
-constexpr double nearest_drawn = 1e-3;
+constexpr double nearest_rasterised = 1e-3;
 
-/** Returns the distance of an image plane that is nowhere beyond `nearest_drawn`, even in the picture's corners. */
+/** Returns the distance of an image plane that is nowhere beyond `nearest_rasterised`, even in the picture's corners.
+ */
 double nearPlane(const ViewFrustum& frustum) {
     const double corner = std::sqrt(1 + frustum.extent_u * frustum.extent_u + frustum.extent_v * frustum.extent_v);
-    return nearest_drawn / corner;
+    return nearest_rasterised / corner;
 }
 
 DepositSetup depositSetup(const RenderPlan& plan, const PingEffects& effects) {
@@ -38,20 +39,20 @@ DepositSetup depositSetup(const RenderPlan& plan, const PingEffects& effects) {
     return setup;
 }
 
-std::string outOfView(const LeftOut& what, const BinGrid& /*grid*/) {
+std::string outOfView(const Omitted& what, const BinGrid& /*grid*/) {
     return std::string("outside the fan or the range at the first ping") +
            (what.effect == "triangles" ? ", or on the far side of a closed mesh" : "");
 }
 
-class DrawnEchoes final : public EchoRenderer {
+class RasterEchoes final : public EchoRenderer {
 public:
-    DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
-    ~DrawnEchoes() override;
+    RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
+    ~RasterEchoes() override;
     void takeQuality() override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
-    std::vector<LeftOut> culled() const override;
+    std::vector<Omitted> culled() const override;
     const std::string& device() const override { return device_; }
     std::string notice() const override { return why_on_processor_.empty() ? context_.fallback() : why_on_processor_; }
 
@@ -85,10 +86,10 @@ private:
     ThreadPool threads_;
     SurfacePass surface_;
     std::unique_ptr<BinDeposit> deposit_;
-    types::SonarTruth* truth_ = nullptr;      ///< Truth to be filled; null: none.
-    std::optional<TruthTable> shown_;         ///< Made at the first ping with truth.
-    std::unique_ptr<PictureDeposit> beside_;  ///< Made for truth, where the device deposits.
-    PictureDeposit* telling_ = nullptr;       ///< The deposit on the processor that records the truth.
+    types::SonarTruth* truth_ = nullptr;           ///< Truth to be filled; null: none.
+    std::optional<TruthTable> shown_;              ///< Made at the first ping with truth.
+    std::unique_ptr<PictureDeposit> cpu_deposit_;  ///< Made for truth, where the device deposits.
+    PictureDeposit* truth_deposit_ = nullptr;      ///< The deposit on the processor that records the truth.
     std::optional<EchoGrid> grid_;
     EchoRules rules_;
     std::span<const uint64_t> sums_;  ///< Sums of the last ping, until the quality changes.
@@ -96,7 +97,7 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
+RasterEchoes::RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects)
     : plan_(plan),
       geometry_(std::move(geometry)),
       effects_(effects),
@@ -104,20 +105,20 @@ DrawnEchoes::DrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry, co
       why_on_processor_(checkDevice()),
       device_(fmt::format("{}, OpenGL {}", context_.renderer(), context_.driver())),
       levels_(plan.config, plan.grid),
-      culler_(*geometry_, {nearest_drawn, reachOf(plan), plan.config.draw_all}),
+      culler_(*geometry_, {nearest_rasterised, reachOf(plan), plan.config.draw_all}),
       threads_(plan.options.threads),
       surface_(context_, surfaceSetup(), culler_, threads_) {
     makeDeposit();
     context_.check();
 }
 
-DrawnEchoes::~DrawnEchoes() = default;
+RasterEchoes::~RasterEchoes() = default;
 
-bool DrawnEchoes::wantsProcessor() const {
+bool RasterEchoes::wantsProcessor() const {
     return plan_.config.deposit == Deposit::Cpu || (plan_.config.deposit == Deposit::Auto && context_.isSoftware());
 }
 
-std::string DrawnEchoes::checkDevice() const {
+std::string RasterEchoes::checkDevice() const {
     requireDrawing(context_.limits(), drawingNeeds(plan_, *geometry_), context_.renderer());
     if (wantsProcessor()) return {};
     if (const std::string why = effects_.whyNotOnDevice(); !why.empty())
@@ -126,17 +127,17 @@ std::string DrawnEchoes::checkDevice() const {
                           depositNeeds(depositSetup(plan_, effects_), *geometry_), context_.renderer());
 }
 
-SurfacePass::Setup DrawnEchoes::surfaceSetup() const {
+SurfacePass::Setup RasterEchoes::surfaceSetup() const {
     return {.geometry = *geometry_,
             .laws = plan_.laws,
             .frusta = plan_.frusta,
             .defines = plan_.defines(),
             .near_plane = nearPlane(plan_.frusta.front()),
-            .empty_too = plan_.config.published || plan_.hears_misses,
+            .empty_too = plan_.config.published || plan_.echoes_from_misses,
             .cull_on_device = !depositsOnProcessor()};
 }
 
-void DrawnEchoes::makeDeposit() {
+void RasterEchoes::makeDeposit() {
     DepositSetup setup = depositSetup(plan_, effects_);
     grid_.emplace(plan_, threads_.size());
     rules_ = setup.rules;
@@ -144,41 +145,41 @@ void DrawnEchoes::makeDeposit() {
         deposit_ = std::make_unique<PictureDeposit>(std::move(setup), surface_, context_, threads_);
     else
         deposit_ = makeGpuDeposit(setup, context_);
-    beside_.reset();
+    cpu_deposit_.reset();
     shown_.reset();
 }
 
-void DrawnEchoes::makeTruth() {
+void RasterEchoes::makeTruth() {
     shown_.emplace(plan_.beams.size(), static_cast<size_t>(plan_.grid.bin_count));
-    telling_ = dynamic_cast<PictureDeposit*>(deposit_.get());
-    if (!telling_) {
+    truth_deposit_ = dynamic_cast<PictureDeposit*>(deposit_.get());
+    if (!truth_deposit_) {
         const auto alone = context_.transferring();
-        beside_ = std::make_unique<PictureDeposit>(depositSetup(plan_, effects_), surface_, context_, threads_);
-        telling_ = beside_.get();
+        cpu_deposit_ = std::make_unique<PictureDeposit>(depositSetup(plan_, effects_), surface_, context_, threads_);
+        truth_deposit_ = cpu_deposit_.get();
     }
-    telling_->prepareTruth(beamsOfCells(plan_));
+    truth_deposit_->prepareTruth(beamsOfCells(plan_));
 }
 
-void DrawnEchoes::prepareTruth() {
+void RasterEchoes::prepareTruth() {
     if (truth_ && !shown_) makeTruth();
-    if (shown_) telling_->setTruth(truth_ ? &*shown_ : nullptr);
+    if (shown_) truth_deposit_->setTruth(truth_ ? &*shown_ : nullptr);
 }
 
-void DrawnEchoes::fillTruth() {
-    if (beside_) beside_->finish();
+void RasterEchoes::fillTruth() {
+    if (cpu_deposit_) cpu_deposit_->finish();
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
             shown_->report(beam, beam, *truth_);
     });
 }
 
-void DrawnEchoes::lap(Stage& stage) {
+void RasterEchoes::lap(Stage& stage) {
     const auto now = std::chrono::steady_clock::now();
     stage.seconds += std::chrono::duration<double>(now - last_).count();
     last_ = now;
 }
 
-void DrawnEchoes::take(const WaterView& water) {
+void RasterEchoes::take(const WaterView& water) {
     const auto alone = context_.transferring();
     const auto takeAll = [&](BinDeposit& deposit) {
         deposit.begin(water);
@@ -186,10 +187,10 @@ void DrawnEchoes::take(const WaterView& water) {
             if (surface_.draws(i)) deposit.take(i, surface_);
     };
     takeAll(*deposit_);
-    if (truth_ && beside_) takeAll(*beside_);
+    if (truth_ && cpu_deposit_) takeAll(*cpu_deposit_);
 }
 
-void DrawnEchoes::fillBins(types::Sonar& ping) {
+void RasterEchoes::fillBins(types::Sonar& ping) {
     const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
     threads_.run([&](int part, int parts) {
         for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
@@ -198,12 +199,12 @@ void DrawnEchoes::fillBins(types::Sonar& ping) {
     grid_->finish(ping, threads_);
 }
 
-void DrawnEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
+void RasterEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
     levels_.fill(rules_, sums, pixel, bins);
     addOwnSums(rules_, sums, cell, pixel, bins);
 }
 
-void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
+void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) {
     context_.requireThread();
     prepareTruth();
     last_ = std::chrono::steady_clock::now();
@@ -224,7 +225,7 @@ void DrawnEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, St
     lap(stages[BeamStage]);
 }
 
-void DrawnEchoes::takeQuality() {
+void RasterEchoes::takeQuality() {
     context_.requireThread();
     const auto alone = context_.transferring();
     why_on_processor_ = checkDevice();
@@ -234,20 +235,20 @@ void DrawnEchoes::takeQuality() {
     context_.check();
 }
 
-bool DrawnEchoes::hasEchoes() const {
-    const bool drawn = rendered_ && !surface_.lists().empty();  // `published` also counts misses
-    return drawn && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
+bool RasterEchoes::hasEchoes() const {
+    const bool rasterised = rendered_ && !surface_.lists().empty();  // `published` also counts misses
+    return rasterised && std::ranges::any_of(sums_, [](uint64_t sum) { return sum > 0; });
 }
 
-std::vector<LeftOut> DrawnEchoes::culled() const {
-    std::vector<LeftOut> all;
+std::vector<Omitted> RasterEchoes::culled() const {
+    std::vector<Omitted> all;
     if (!rendered_) return all;
     const Shown shown = surface_.lists().shown();
     const size_t triangles = geometry_->triangleCount();
-    const auto add = [&](const char* effect, size_t left_out, size_t of) {
-        if (left_out > 0)
+    const auto add = [&](const char* effect, size_t omitted, size_t of) {
+        if (omitted > 0)
             all.push_back(
-                {effect, Reason::OutOfView, static_cast<double>(left_out), static_cast<double>(of), outOfView});
+                {effect, Reason::OutOfView, static_cast<double>(omitted), static_cast<double>(of), outOfView});
     };
     add("objects", static_cast<size_t>(std::ranges::count(shown.objects, false)), shown.objects.size());
     add("triangles", triangles - std::min(triangles, shown.triangles), triangles);
@@ -257,9 +258,9 @@ std::vector<LeftOut> DrawnEchoes::culled() const {
 
 }  // namespace
 
-std::unique_ptr<EchoRenderer> makeDrawnEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
-                                              const PingEffects& effects) {
-    return std::make_unique<DrawnEchoes>(plan, std::move(geometry), effects);
+std::unique_ptr<EchoRenderer> makeRasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry,
+                                               const PingEffects& effects) {
+    return std::make_unique<RasterEchoes>(plan, std::move(geometry), effects);
 }
 
 }  // namespace insonify::sonar

@@ -8,7 +8,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "components/study/StudyScene.hpp"
-#include "components/study/oracles/EmbreeCaster.hpp"
+#include "components/study/oracles/EmbreeTracer.hpp"
 #include "tests/support/Allocations.hpp"
 
 namespace insonify::study {
@@ -22,29 +22,29 @@ StudyScene sceneNamed(const std::string& name) {
     throw std::invalid_argument(name);
 }
 
-struct Heard {
+struct Received {
     std::vector<float> energies;
     double kappa;
 };
 
-Heard cast(StudyScene scene, int rows, int columns) {
+Received trace(StudyScene scene, int rows, int columns) {
     setSamples(scene.config, rows, columns);
-    EmbreeCaster caster(scene.snapshot);
-    caster.prepare(scene.config);
-    Heard heard;
-    caster.render(scene.snapshot.sonar, heard.energies);
-    heard.kappa = caster.kappaMax();
-    return heard;
+    EmbreeTracer tracer(scene.snapshot);
+    tracer.prepare(scene.config);
+    Received received;
+    tracer.render(scene.snapshot.sonar, received.energies);
+    received.kappa = tracer.kappaMax();
+    return received;
 }
 
 double errorOf(const StudyScene& scene, int rows, int columns) {
     const sonar::BinGrid grid = sonar::makeBinGrid(scene.config);
-    return compare(cast(scene, rows, columns).energies, trueEnergies(scene),
+    return compare(trace(scene, rows, columns).energies, trueEnergies(scene),
                    {scene.config.beam_count, grid.bin_count, grid.bin_width, scene.range_from})
         .rel_l2;
 }
 
-TEST(EmbreeCasterTest, PlanesConvergeLikeFootprints) {
+TEST(EmbreeTracerTest, PlanesConvergeLikeFootprints) {
     for (const char* name : {"flat_bottom_pitched", "tilted_plane", "wall"}) {
         const double coarse = errorOf(sceneNamed(name), 64, 1), fine = errorOf(sceneNamed(name), 256, 4);
         EXPECT_LT(coarse, 0.02) << name;
@@ -53,70 +53,70 @@ TEST(EmbreeCasterTest, PlanesConvergeLikeFootprints) {
     EXPECT_LT(errorOf(sceneNamed("flat_bottom_edge"), 64, 1), 1e-5) << "cells between equal elevations are exact here";
 }
 
-TEST(EmbreeCasterTest, SilhouettesAreCorrectToTheirPixels) {
+TEST(EmbreeTracerTest, SilhouettesAreCorrectToTheirPixels) {
     EXPECT_LT(errorOf(sceneNamed("sphere"), 256, 256), 0.005);
     EXPECT_LT(errorOf(sceneNamed("shadow_screen"), 256, 4), 0.02);
 }
 
-TEST(EmbreeCasterTest, AMovedObjectIsAtItsNewPlace) {
+TEST(EmbreeTracerTest, AMovedObjectIsAtItsNewPlace) {
     StudyScene scene = sceneNamed("sphere");
     glm::dmat4 place(1);
     place[3] = glm::dvec4(11.05, 0, 0, 1);
     scene.snapshot.moved = {{0, place}};
     scene.config.range = 15;
     scene.config.bin_count = 150;
-    const std::vector<float> moved = cast(scene, 128, 128).energies;
+    const std::vector<float> moved = trace(scene, 128, 128).energies;
     const auto first = std::ranges::find_if(moved, [](float e) { return e > 0; }) - moved.begin();
     EXPECT_EQ(first, 100);  // 10.05 m
 }
 
-TEST(EmbreeCasterTest, BlankedSurfacesStillHide) {
+TEST(EmbreeTracerTest, BlankedSurfacesStillHide) {
     StudyScene scene{"", "", fan(60, 20, 7, 15), lookingAt(sceneOf({facingWall(10), facingWall(0.5f)})), {}};
     scene.config.range_min = 0.6;
-    const std::vector<float> heard = cast(scene, 64, 2).energies;
-    for (int bin = 7; bin < scene.config.bin_count; ++bin) EXPECT_EQ(heard[static_cast<size_t>(bin)], 0) << bin;
+    const std::vector<float> received = trace(scene, 64, 2).energies;
+    for (int bin = 7; bin < scene.config.bin_count; ++bin) EXPECT_EQ(received[static_cast<size_t>(bin)], 0) << bin;
 }
 
-TEST(EmbreeCasterTest, ReportsTheLongestCellInBins) {
-    const double coarse = cast(sceneNamed("wall"), 32, 2).kappa, fine = cast(sceneNamed("wall"), 128, 8).kappa;
+TEST(EmbreeTracerTest, ReportsTheLongestCellInBins) {
+    const double coarse = trace(sceneNamed("wall"), 32, 2).kappa, fine = trace(sceneNamed("wall"), 128, 8).kappa;
     EXPECT_GT(coarse, 1);
     EXPECT_NEAR(coarse / fine, 4, 1);
 }
 
-TEST(EmbreeCasterTest, ItsSumsDoNotDependOnTheOrderOfThreads) {
+TEST(EmbreeTracerTest, ItsSumsDoNotDependOnTheOrderOfThreads) {
     StudyScene many = sceneNamed("tilted_plane"), one = sceneNamed("two_spheres");
     for (const StudyScene& scene : {many, one}) {
-        const std::vector<float> first = cast(scene, 128, 8).energies;
-        for (int i = 0; i < 3; ++i) EXPECT_EQ(cast(scene, 128, 8).energies, first) << scene.name;
+        const std::vector<float> first = trace(scene, 128, 8).energies;
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(trace(scene, 128, 8).energies, first) << scene.name;
     }
 }
 
-TEST(EmbreeCasterTest, TracesRaysWithoutEnergies) {
+TEST(EmbreeTracerTest, TracesRaysWithoutEnergies) {
     StudyScene scene = sceneNamed("flat_bottom");
     setSamples(scene.config, 66, 3);  // not a multiple of tiles
     scene.config.beam_count = 33;
-    EmbreeCaster caster(scene.snapshot);
-    caster.prepare(scene.config);
-    EXPECT_EQ(caster.castOnly(scene.snapshot.sonar), 32u * 33 * 3) << "33 rows look down, one beyond the ground's end";
+    EmbreeTracer tracer(scene.snapshot);
+    tracer.prepare(scene.config);
+    EXPECT_EQ(tracer.traceOnly(scene.snapshot.sonar), 32u * 33 * 3) << "33 rows look down, one beyond the ground's end";
 }
 
-TEST(EmbreeCasterTest, APingAllocatesNothing) {
+TEST(EmbreeTracerTest, APingAllocatesNothing) {
     const StudyScene scene = sceneNamed("tilted_plane");
-    EmbreeCaster caster(scene.snapshot);
-    caster.prepare(scene.config);
+    EmbreeTracer tracer(scene.snapshot);
+    tracer.prepare(scene.config);
     std::vector<float> energies;
-    caster.render(scene.snapshot.sonar, energies);
+    tracer.render(scene.snapshot.sonar, energies);
     test::takeCounted();
     test::countHere(true);
-    caster.render(scene.snapshot.sonar, energies);
+    tracer.render(scene.snapshot.sonar, energies);
     test::countHere(false);
     EXPECT_THAT(test::takeCounted(), testing::IsEmpty());
 }
 
-TEST(EmbreeCasterTest, AnEmptySceneIsSilent) {
+TEST(EmbreeTracerTest, AnEmptySceneIsSilent) {
     StudyScene scene = sceneNamed("wall");
     scene.snapshot.geometry = std::make_shared<types::Geometry>();
-    const std::vector<float> energies = cast(scene, 64, 2).energies;
+    const std::vector<float> energies = trace(scene, 64, 2).energies;
     EXPECT_EQ(std::ranges::count(energies, 0.0f), static_cast<std::ptrdiff_t>(energies.size()));
 }
 

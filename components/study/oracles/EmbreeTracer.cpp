@@ -1,4 +1,4 @@
-#include "components/study/oracles/EmbreeCaster.hpp"
+#include "components/study/oracles/EmbreeTracer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,12 +39,12 @@ Strip row(double low, double high) {
 }
 
 /** Returns the two-way weight of an elevation, by the patterns of `config` in elevation [1]. */
-double heardOf(const sonar::SonarConfig& config, double elevation) {
-    double heard = 1;
-    if (!config.beam_pattern) return heard;
+double receivedOf(const sonar::SonarConfig& config, double elevation) {
+    double received = 1;
+    if (!config.beam_pattern) return received;
     for (const auto* law : {&config.beam_pattern->transmit.elevation, &config.beam_pattern->receive.elevation})
-        if (*law) heard *= acoustics::BeamPattern(**law).power(elevation);
-    return heard;
+        if (*law) received *= acoustics::BeamPattern(**law).power(elevation);
+    return received;
 }
 
 /** Distribution of the inverse range over a patch of plane that fills a cell. Inverse range is a linear function over a
@@ -55,8 +55,8 @@ public:
         std::ranges::sort(w_);
         height_ = 2 / (w_[3] - w_[0] + w_[2] - w_[1]);
     }
-    double least() const { return w_[0]; }
-    double most() const { return w_[3]; }
+    double minimum() const { return w_[0]; }
+    double maximum() const { return w_[3]; }
     /** Returns whether all inverse ranges are equal to rounding. */
     bool isPoint() const { return w_[3] - w_[0] <= 1e-12 * w_[3]; }
     /** Returns the fraction below w. */
@@ -75,7 +75,7 @@ private:
 
 }  // namespace
 
-struct EmbreeCaster::Fan {
+struct EmbreeTracer::Fan {
     explicit Fan(const types::Snapshot& scene) : tree(scene) {}
 
     RayTree tree;
@@ -114,13 +114,13 @@ public:
 
     /** Calls `met` with column, row and triangle for each ray that hits something. */
     template <class Met>
-    void cast(const Met& met) {
+    void trace(const Met& met) {
         const auto rows = static_cast<int>(fan_.rows.size());
         const int tiles = (rows + tile - 1) / tile;
         const int first = tile * (tiles * stripe_ / fan_.stripes), end = tile * (tiles * (stripe_ + 1) / fan_.stripes);
         for (int column = first_column_; column < end_column_; column += tile)
             for (int row = first; row < std::min(end, rows); row += tiles_up * tile)
-                castTiles(column, row, std::min(end, rows), met);
+                traceTiles(column, row, std::min(end, rows), met);
     }
 
     void clear() {
@@ -155,7 +155,7 @@ public:
 private:
     /** Traces tiles one above the other, up to a row. */
     template <class Met>
-    void castTiles(int column, int first_row, int end_row, const Met& met) {
+    void traceTiles(int column, int first_row, int end_row, const Met& met) {
         std::array<RayTree::Rays, RayTree::packets_at_once> rays;
         std::array<RayTree::Found, RayTree::packets_at_once> found;
         const int across = std::min(tile, end_column_ - column), up = std::min(tiles_up * tile, end_row - first_row);
@@ -166,7 +166,7 @@ private:
                 rays[k].set(i, directionOf(fan_.columns[static_cast<size_t>(column + aside)].middle,
                                            fan_.rows[static_cast<size_t>(first_row + std::min(above, up - 1))].middle));
             }
-        fan_.tree.cast(from_, {rays.data(), count}, {found.data(), count});
+        fan_.tree.trace(from_, {rays.data(), count}, {found.data(), count});
         for (int j = 0; j < up; ++j)
             for (int i = 0; i < across; ++i) {
                 const RayTree::Found& in_tile = found[static_cast<size_t>(j / tile)];
@@ -193,7 +193,7 @@ private:
     /** Adds a cell's energy to the bins. Energy is proportional to the cube of inverse range; `amount` is energy over
      *  that. */
     void share(const Spread& spread, double amount, double* bins) {
-        const double near = std::min(spread.most(), fan_.nearest), far = std::max(spread.least(), fan_.farthest);
+        const double near = std::min(spread.maximum(), fan_.nearest), far = std::max(spread.minimum(), fan_.farthest);
         if (near < far || !(near > 0)) return;
         auto bin = static_cast<size_t>(1 / (near * fan_.bin_width));
         if (bin >= fan_.bins) return;
@@ -221,11 +221,11 @@ private:
 
 }  // namespace
 
-EmbreeCaster::EmbreeCaster(const types::Snapshot& scene) : fan_(std::make_unique<Fan>(scene)) {}
+EmbreeTracer::EmbreeTracer(const types::Snapshot& scene) : fan_(std::make_unique<Fan>(scene)) {}
 
-EmbreeCaster::~EmbreeCaster() = default;
+EmbreeTracer::~EmbreeTracer() = default;
 
-void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
+void EmbreeTracer::prepare(const sonar::SonarConfig& config) {
     const sonar::BinGrid grid = sonar::makeBinGrid(config);
     Fan& fan = *fan_;
     fan.tree.takeLaws(config);
@@ -240,7 +240,7 @@ void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
     const double half = types::radians(config.beam_height_deg) / 2, height = 2 * half / config.rows();
     for (int i = 0; i < config.rows(); ++i) {
         Strip& added = fan.rows.emplace_back(row(i * height - half, (i + 1) * height - half));
-        added.size *= heardOf(config, (i + 0.5) * height - half);
+        added.size *= receivedOf(config, (i + 0.5) * height - half);
     }
     fan.beams = config.beams();
     fan.stripes = fan.groups() >= 4 * fan.workers.size() ? 1 : 4 * fan.workers.size();
@@ -255,12 +255,12 @@ void EmbreeCaster::prepare(const sonar::SonarConfig& config) {
     fan.met.assign(static_cast<size_t>(fan.parts()), 0);
 }
 
-void EmbreeCaster::render(const types::Pose& sonar, std::vector<float>& energies) {
+void EmbreeTracer::render(const types::Pose& sonar, std::vector<float>& energies) {
     Fan& fan = *fan_;
     const auto work = [&](int number) {
         Part<Fan> part(fan, sonar, number);
         part.clear();
-        part.cast([&](int column, int row, uint32_t triangle) { part.deposit(column, row, triangle); });
+        part.trace([&](int column, int row, uint32_t triangle) { part.deposit(column, row, triangle); });
     };
     fan.workers.forEach(fan.parts(), work);
     const size_t all = fan.bins * static_cast<size_t>(fan.beams);
@@ -273,11 +273,11 @@ void EmbreeCaster::render(const types::Pose& sonar, std::vector<float>& energies
     fan.kappa_max = fan.longest.empty() ? 0 : *std::ranges::max_element(fan.longest);
 }
 
-size_t EmbreeCaster::castOnly(const types::Pose& sonar) {
+size_t EmbreeTracer::traceOnly(const types::Pose& sonar) {
     Fan& fan = *fan_;
     fan.workers.forEach(fan.parts(), [&](int number) {
         size_t met = 0;
-        Part<Fan>(fan, sonar, number).cast([&](int, int, uint32_t) { ++met; });
+        Part<Fan>(fan, sonar, number).trace([&](int, int, uint32_t) { ++met; });
         fan.met[static_cast<size_t>(number)] = met;
     });
     size_t sum = 0;
@@ -285,6 +285,6 @@ size_t EmbreeCaster::castOnly(const types::Pose& sonar) {
     return sum;
 }
 
-double EmbreeCaster::kappaMax() const { return fan_->kappa_max; }
+double EmbreeTracer::kappaMax() const { return fan_->kappa_max; }
 
 }  // namespace insonify::study
