@@ -4,7 +4,7 @@
     scripts/dataset_dask.py --shards 16 --workers 2 -- insonify run deploy/x.yml --pings 1600 --out DIR
     scripts/dataset_dask.py --shards 16 --scheduler tcp://HOST:8786 -- insonify dataset ...
 
-All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes what is missing.
+All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes the missing shards.
 It prints a line for each finished shard; the exit code is 1 if a shard has failed. Needs PyPI's distributed."""
 import subprocess
 import sys
@@ -28,7 +28,7 @@ def main():
     given_up = (KilledWorker, OSError)    # no worker survived it, or none has the command
     with Client(cluster) as client:
         shards = [client.submit(make, args.command, index, args.shards, pure=False) for index in range(args.shards)]
-        done = [shard_workers.tell(shard.result, given_up, args.shards) for shard in as_completed(shards)]
+        done = [shard_workers.report(shard.result, given_up, args.shards) for shard in as_completed(shards)]
     if not args.scheduler:
         cluster.close()
     return 0 if all(done) else 1

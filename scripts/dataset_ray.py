@@ -4,7 +4,7 @@
     scripts/dataset_ray.py --shards 16 --workers 2 -- insonify run deploy/x.yml --pings 1600 --out DIR
     scripts/dataset_ray.py --shards 16 --address auto -- insonify dataset ...
 
-All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes what is missing.
+All workers must see the same DIR. If a worker dies, another worker makes its shard. Called again, the script makes the missing shards.
 It prints a line for each finished shard; the exit code is 1 if a shard has failed. Needs PyPI's ray."""
 import os
 import subprocess
@@ -37,7 +37,7 @@ def main():
     all_done = True
     while waiting:
         (shard,), waiting = ray.wait(waiting)
-        all_done &= shard_workers.tell(lambda: ray.get(shard), ray.exceptions.RayError, args.shards)
+        all_done &= shard_workers.report(lambda: ray.get(shard), ray.exceptions.RayError, args.shards)
     return 0 if all_done else 1
 
 

@@ -178,7 +178,7 @@ deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
 ablated: ["near_[0-2].yml", "far_[0-2].yml"] # of these, to compare with and without an effect; absent: all
 decibels: 100               # of white over black: crops are converted to amplitudes; absent: grey levels as they are
-range_down: true            # real pictures have far ranges below; simulated ones above
+range_down: true            # far ranges are at the bottom of real pictures and at the top of simulated pictures
 margin: [0.0, 0.25]         # of a box, random, on each side
 turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
 white_share: [0, 4]         # displays are set so that this random share of a window is white [%]

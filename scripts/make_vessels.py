@@ -42,7 +42,7 @@ sand = glb.material("sand", {"sediment": "sandy_silt"}, (0.8, 0.75, 0.6))
 glb.node("floor", glb.mesh("floor", [box((12, 8, 0.2), (4, 0, -0.1))], sand), (0, 0, 0))
 for name, body, acoustics, east, yaw in VESSELS:
     material = glb.material(name, acoustics, (0.6, 0.7, 0.8))
-    if yaw is not None:  # lies on the floor
+    if yaw is not None:  # on the floor, on its side
         turn = np.radians(yaw)
         x, y, z = body.positions.T
         body = Mesh(np.c_[x * np.sin(turn) + z * np.cos(turn),

@@ -12,13 +12,13 @@ def parser(text):
     return options
 
 
-def tell(get, given_up, shards):
+def report(get, given_up, shards):
     """Prints the result of `get()`, (shard index, exit code, error output), or that it raised `given_up`;
     returns whether the shard is done."""
     try:
-        index, code, told = get()
+        index, code, errors = get()
     except given_up as error:
         print(f"a shard was given up: {error}", file=sys.stderr)
         return False
-    print(f"shard {index}/{shards}: {'done' if code == 0 else f'exit code {code}: {told}'}", flush=True)
+    print(f"shard {index}/{shards}: {'done' if code == 0 else f'exit code {code}: {errors}'}", flush=True)
     return code == 0

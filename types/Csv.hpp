@@ -26,7 +26,7 @@ using CsvValidator =
 /** Returns the rows of a CSV file of numbers, in order. The first line that is not blank has the names of all columns.
  *  A byte order mark, carriage returns, spaces around numbers and blank lines are ignored.
  *  @throws ConfigError with file, line and column of up to a hundred errors: a wrong header, missing or superfluous
- *  fields, fields that are no numbers from min to max, errors from `judge`, fewer than `least` rows */
+ *  fields, fields that are no numbers from min to max, errors from `validate`, fewer than `least` rows */
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
                                          size_t minimum, const CsvValidator& validate = {});
 

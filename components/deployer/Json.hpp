@@ -21,8 +21,7 @@ Json toJson(const std::vector<types::Omission>& omitted);
 /** Returns one line on the sonar's samples per ping. */
 std::string qualityText(const types::Plan& plan);
 
-/** Returns `{features, passes, omitted, quality: {rows, columns_per_beam, slabs, predicted_error}, device, notices}`;
- *  an error without a prediction is null. */
+/** Returns a plan as `insonify plan --json` prints it; an error without a prediction is null. */
 Json toJson(const types::Plan& plan);
 
 }  // namespace insonify::deployer

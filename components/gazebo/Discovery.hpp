@@ -55,7 +55,7 @@ private:
 };
 
 /** Reads a datagram. Returns none if the datagram is damaged, of `own_process`, without use for a receiver, or of
- *  another version. `heard` keeps other versions. */
+ *  another version. `received` keeps other versions. */
 std::optional<Announcement> readDatagram(std::string_view datagram, const std::string& own_process, Received& received);
 
 /** Returns a datagram that asks for publishers of a topic or a service. */

@@ -33,7 +33,7 @@ std::optional<VelocitySolution> solveVelocity(const BeamDirections& beams,
 class Dvl {
 public:
     explicit Dvl(const DvlConfig& config);
-    /** Fills `told` with one ping. With fewer than three good beams there is no bottom lock and no velocity. */
+    /** Fills `reported` with one ping. With fewer than three good beams there is no bottom lock and no velocity. */
     void measure(const Motion& motion, const Bottom& bottom, types::Dvl& reported) const;
 
 private:

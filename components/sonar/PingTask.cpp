@@ -43,7 +43,7 @@ std::vector<std::string> PingTask::notices() const {
             "is rendered by itself",
             shortestPeriod(), echoTime(), grid().range_max));
     if (cut_off_ > 0)
-        all.push_back(fmt::format("the last {} for pulses of other sonars when the run stopped: not written",
+        all.push_back(fmt::format("the last {} for pings of other sonars when the run stopped: not written",
                                   cut_off_ == 1 ? "ping waited" : "pings waited"));
     return all;
 }

@@ -64,11 +64,11 @@ connections:
 """
 
 
-def measure_seen(found, name, sonar, file, options, beside_rays=True, noise="", change=str, visible=None):
+def measure_seen(found, name, sonar, file, options, with_rays=True, noise="", change=str, visible=None):
     """Adds a result for each visibility, of the deployment changed by `change`."""
     for visibility in options.visibility if visible is None else visible:
         text = change(deployment(seen(sonar, visibility), file, noise=noise))
-        found[f"{name}, {visibility}"] = measure(text, options.pings, beside_rays)
+        found[f"{name}, {visibility}"] = measure(text, options.pings, with_rays)
 
 
 def under_water(text):

@@ -18,12 +18,12 @@ SONAR = {"range": 30, "beam_count": 256, "bin_count": 500, "field_of_view_deg": 
                           "receive": {"azimuth": {"weighting": "taylor", "width_deg": 0.8, "sidelobe_db": -25}}}}
 
 
-def fleet(count, hears, schedule):
+def fleet(count, crosstalk, schedule):
     """A deployment of `count` vehicles in the harbour, 3 m apart, whose pings are spread over the period."""
     tasks, connections = {}, []
     for i in range(count):
         start = [-10.0, 3.0 * i - 1.5 * count, -6.0]
-        sonar = SONAR | ({"crosstalk": {}} if hears else {})
+        sonar = SONAR | ({"crosstalk": {}} if crosstalk else {})
         tasks |= {
             f"auv{i}": {"type": "pose::TrajectoryTask", "activity": {"period": PERIOD + i * 1e-3},
                         "properties": {"waypoints": [{"time": 0, "position": start}, {"time": 600, "position":
@@ -37,15 +37,15 @@ def fleet(count, hears, schedule):
                         {"from": f"scene{i}.snapshot", "to": f"sonar{i}.snapshot"},
                         {"from": f"sonar{i}.ping", "to": f"noise{i}.clean"}]
         connections += [{"from": f"sonar{j}.transmission", "to": f"sonar{i}.others", "policy": BUFFER}
-                        for j in range(count) if hears and j != i]
+                        for j in range(count) if crosstalk and j != i]
     return yaml.safe_dump({"schedule": schedule, "tasks": tasks, "connections": connections})
 
 
-def run(count, hears, schedule, limits):
+def run(count, crosstalk, schedule, limits):
     """The summary of a run, its processor time [s] and its peak memory [MB]."""
     with tempfile.TemporaryDirectory() as folder:
         file, summary = Path(folder, "fleet.yml"), Path(folder, "summary.json")
-        file.write_text(fleet(count, hears, schedule))
+        file.write_text(fleet(count, crosstalk, schedule))
         process = subprocess.Popen([INSONIFY, "run", file, "--out", Path(folder, "out"), "--quiet", "--summary", summary,
                                     *limits])
         _, status, usage = os.wait4(process.pid, 0)
@@ -57,13 +57,13 @@ def run(count, hears, schedule, limits):
 
 def measure_fleet(options):
     results = {}
-    for hears in [False, True]:
-        for count in SIZES[1:] if hears else SIZES:
-            _, few, _ = run(count, hears, "lockstep", ["--pings", "10"])
-            summary, many, memory = run(count, hears, "lockstep", ["--pings", str(10 + options.pings)])
-            live, _, _ = run(count, hears, "realtime", ["--duration", str(options.realtime_seconds)])
+    for crosstalk in [False, True]:
+        for count in SIZES[1:] if crosstalk else SIZES:
+            _, few, _ = run(count, crosstalk, "lockstep", ["--pings", "10"])
+            summary, many, memory = run(count, crosstalk, "lockstep", ["--pings", str(10 + options.pings)])
+            live, _, _ = run(count, crosstalk, "realtime", ["--duration", str(options.realtime_seconds)])
             noises = [live["tasks"][f"noise{i}"] for i in range(count)]  # a sonar also has cycles that only receive
-            results[f"{count}{', hearing each other' if hears else ''}"] = {
+            results[f"{count}{', hearing each other' if crosstalk else ''}"] = {
                 "ms_per_ping": 1e3 * (many - few) / (options.pings * count), "mb": memory,
                 "realtime_pings": sum(noise["cycles"] for noise in noises), "sent": count * options.realtime_seconds / PERIOD}
     return results

@@ -71,14 +71,14 @@ def show_ways(scenes):
 def measure_scenes(_options):
     """Results of scene_bench for a mission over tiles of a survey, and for the memory of 1 and of 16 sonars of one
     scene."""
-    def told(*arguments):
+    def measured(*arguments):
         done = subprocess.run([ROOT / "build/bin/scene_bench", *arguments], stdout=subprocess.PIPE, text=True)
         if done.returncode != 0:
             fail("scene_bench", done.returncode)
         return json.loads(done.stdout)
     with tempfile.TemporaryDirectory(dir=BENCH) as folder:
-        mission = told("mission", folder)
-    return {"mission": mission, "memory": [told("memory", count, "708") for count in ("1", "16")]}
+        mission = measured("mission", folder)
+    return {"mission": mission, "memory": [measured("memory", count, "708") for count in ("1", "16")]}
 
 
 def show_scenes(scenes):

@@ -5,14 +5,14 @@ STAGES = ["cull", "draw", "read", "deposit", "beams"]
 CHAIN = ["sonar", "noise", "receiver"]
 
 
-def measure(text, pings, beside_rays=True):
+def measure(text, pings, with_rays=True):
     """Result of a deployment's run. Medians [ms] per stage of the sonar, per task of the chain, and of all three
     tasks in a ping; of the ping also the 99th percentile, as the sum of the tasks'; the sonar's time of the first
     ping; peak memory [MB]; quality and device. For comparison, right after the run, the same number of primary rays
     by Embree."""
     with deployment_file(text) as file:
         summary, _, resident_mb = run_pings(file, pings)
-        rays = time_rays(file, pings) if beside_rays else None
+        rays = time_rays(file, pings) if with_rays else None
     tasks = {name: summary["tasks"][name] for name in CHAIN}
     result = {stage: times["median_ms"] for stage, times in tasks["sonar"]["stages"].items()}
     result |= {name: task["median_ms"] for name, task in tasks.items()}

@@ -213,8 +213,8 @@ TEST(WedgeTest, TheFringeIsFiniteAndContinuousEverywhere) {
             const double at = wedgeEcho(faces, exterior, std::clamp(angle, 0.0, exterior)).fringe;
             ASSERT_TRUE(std::isfinite(at)) << exterior << ", " << angle;
             for (const double way : {-1.0, 1.0}) {
-                const double beside = std::clamp(angle + way * 1e-7, 0.0, exterior);
-                step = std::max(step, std::abs(wedgeEcho(faces, exterior, beside).fringe - at));
+                const double nearby = std::clamp(angle + way * 1e-7, 0.0, exterior);
+                step = std::max(step, std::abs(wedgeEcho(faces, exterior, nearby).fringe - at));
             }
             maximum = std::max(maximum, std::abs(at));
         }

@@ -38,7 +38,7 @@ for i in range(4 * len(classes)):
 
 
 class Halves(unittest.TestCase):
-    def test_no_film_and_no_picture_is_in_both(self):
+    def test_no_film_and_no_picture_is_in_both_sets(self):
         rng, cut = random.Random(3), 0
         for _ in range(300):
             films = rng.choice([[""], [f"film_{i}" for i in range(rng.randint(2, 9))]])
@@ -55,7 +55,7 @@ class Halves(unittest.TestCase):
             self.assertEqual({each.label for each in train}, {each.label for each in test})
         self.assertGreater(cut, 200)
 
-    def test_without_films_the_numbering_is_cut_once(self):
+    def test_without_films_the_pictures_are_divided_once(self):
         with tempfile.TemporaryDirectory() as folder:
             for label in "ab":
                 (Path(folder) / label).mkdir()
@@ -82,13 +82,13 @@ class Windows(unittest.TestCase):
             y, x = np.nonzero(crop > 0.5)
             self.assertAlmostEqual(np.degrees(np.arctan(np.polyfit(x, y, 1)[0])), -turn, delta=5)  # rows count downward
 
-    def test_what_is_lost_in_noise_has_no_window(self):
+    def test_an_object_below_the_noise_has_no_window(self):
         faint = self.levels.copy()
         faint[40:44, 30:80] = 0.03
         self.assertIsNone(sets.window(faint, self.box, (self.rows, self.columns), 0, 8))
         self.assertIsNotNone(sets.window(faint, self.box, (self.rows, self.columns), 0, None))
 
-    def test_the_window_is_that_of_what_stands_out(self):
+    def test_the_window_is_the_box_of_bright_pixels(self):
         self.levels[40:44, 55:80] = 0.02  # half of the bar
         left, _, width, _ = sets.window(self.levels, self.box, (self.rows, self.columns), 0, 8).box
         self.assertAlmostEqual(left, 29, delta=2)

@@ -74,18 +74,18 @@ def automatic(device, first, last, pings):
 
 def ping360(line, first=0, last=399, step=1):
     device = connected(Ping360(), line)
-    told = {"information": insist(device.get_device_information)}
+    answers = {"information": insist(device.get_device_information)}
     for setting, value in (("number_of_samples", 800), ("sample_period", 1000), ("transmit_frequency", 750),
                            ("transmit_duration", 50), ("gain_setting", 0)):
         insist(lambda: data_of(getattr(device, "set_" + setting)(value)))
-    told["scan"] = [echoes(device, angle, 800) for angle in range(int(first), int(last) + 1, int(step))]
-    told["refusals"] = [refusal(lambda: device.set_angle(400)), refusal(lambda: device.set_number_of_samples(5000))]
+    answers["scan"] = [echoes(device, angle, 800) for angle in range(int(first), int(last) + 1, int(step))]
+    answers["refusals"] = [refusal(lambda: device.set_angle(400)), refusal(lambda: device.set_number_of_samples(5000))]
     insist(device.readDeviceInformation)  # the refused values are not used
     insist(lambda: data_of(device.set_number_of_samples(400)))
     insist(lambda: data_of(device.set_sample_period(2000)))
-    told["coarser"] = echoes(device, 90, 400)
-    told["automatic"] = automatic(device, 95, 99, 8)
-    return told
+    answers["coarser"] = echoes(device, 90, 400)
+    answers["automatic"] = automatic(device, 95, 99, 8)
+    return answers
 
 
 def ping1d_set(device, message, **fields):
@@ -99,21 +99,21 @@ def ping1d_set(device, message, **fields):
 
 def ping1d(line):
     device = connected(Ping1D(payload_dict=definitions.payload_dict_ping1d), line)
-    told = {"information": insist(device.get_device_information), "general": insist(device.get_general_info)}
+    answers = {"information": insist(device.get_device_information), "general": insist(device.get_general_info)}
     for call in (lambda: device.set_mode_auto(0), lambda: device.set_gain_setting(2),
                  lambda: device.set_ping_interval(50), lambda: device.set_ping_enable(1),
                  lambda: ping1d_set(device, definitions.PING1D_SET_RANGE, scan_start=0, scan_length=6000),
                  lambda: ping1d_set(device, definitions.PING1D_SET_SPEED_OF_SOUND, speed_of_sound=1500000)):
         insist(call)
-    told["range"] = insist(device.get_range)
+    answers["range"] = insist(device.get_range)
     profile = insist(device.get_profile)
-    told["profile"] = profile | {"profile_data": list(profile["profile_data"])}
-    told["distance"] = insist(device.get_distance)
-    told["simple"] = insist(device.get_distance_simple)
+    answers["profile"] = profile | {"profile_data": list(profile["profile_data"])}
+    answers["distance"] = insist(device.get_distance)
+    answers["simple"] = insist(device.get_distance_simple)
     device.control_continuous_start(definitions.PING1D_PROFILE)
-    told["streamed"] = [insist(lambda: device.wait_message([definitions.PING1D_PROFILE], 1)).ping_number for _ in range(5)]
+    answers["streamed"] = [insist(lambda: device.wait_message([definitions.PING1D_PROFILE], 1)).ping_number for _ in range(5)]
     device.control_continuous_stop(definitions.PING1D_PROFILE)
-    return told
+    return answers
 
 
 with contextlib.redirect_stdout(io.StringIO()):  # the client prints

@@ -14,7 +14,7 @@ import wlsonar
 import wlsonar.range_image_protocol as rip
 
 port, way = int(sys.argv[1]), sys.argv[2]
-told = {}
+results = {}
 
 
 def refused(call):
@@ -42,10 +42,10 @@ def ball(points):
 
 
 sonar = wlsonar.Sonar3D("127.0.0.1", port, timeout=60)
-told["about"] = sonar.about().product_name
-told["ready"] = sonar.get_status().api.operational and sonar.get_status().time.operational
-told["temperature"] = sonar.get_temperature()
-told["enabled_at_first"] = sonar.get_acoustics_enabled()
+results["about"] = sonar.about().product_name
+results["ready"] = sonar.get_status().api.operational and sonar.get_status().time.operational
+results["temperature"] = sonar.get_temperature()
+results["enabled_at_first"] = sonar.get_acoustics_enabled()
 
 sonar.set_speed_of_sound(1500)
 sonar.set_range(0.3, 8)
@@ -53,10 +53,10 @@ sonar.set_mode("low-frequency")
 sonar.set_salinity("fresh")
 sonar.set_output_imu_batch_enabled(True)
 sonar.set_time_ntp(wlsonar.NTPConfiguration("10.0.0.1"))
-told["kept"] = [sonar.get_speed_of_sound(), sonar.get_range(), sonar.get_mode(), sonar.get_salinity(),
-                sonar.get_output_imu_batch_enabled(), sonar.get_time_ntp().ntp_address]
-told["refused"] = [refused(lambda: sonar.set_range(0, 1000)), refused(lambda: sonar.set_speed_of_sound(10)),
-                   refused(lambda: sonar.set_udp_unicast("nowhere", 1))]
+results["kept"] = [sonar.get_speed_of_sound(), sonar.get_range(), sonar.get_mode(), sonar.get_salinity(),
+                   sonar.get_output_imu_batch_enabled(), sonar.get_time_ntp().ntp_address]
+results["refused"] = [refused(lambda: sonar.set_range(0, 1000)), refused(lambda: sonar.set_speed_of_sound(10)),
+                      refused(lambda: sonar.set_udp_unicast("nowhere", 1))]
 
 if way == "unicast":
     sock = wlsonar.open_sonar_udp_unicast_socket(udp_port=0, iface_ip="127.0.0.1")
@@ -69,23 +69,23 @@ else:
         sys.exit()
     sonar.set_udp_multicast()
 sock.settimeout(60)
-told["udp"] = sonar.get_udp_config().mode
+results["udp"] = sonar.get_udp_config().mode
 sonar.set_acoustics_enabled(True)
 
 image = image_of(sock, rip.RangeImage, lambda image: image.range == 8)
 bitmap = image_of(sock, rip.BitmapImageGreyscale8, lambda bitmap: True)
-told["size"] = [image.width, image.height, bitmap.width, bitmap.height]
-told["view"] = [image.fov_horizontal, image.fov_vertical]
-told["frequency"], told["speed"] = image.frequency, image.speed_of_sound
+results["size"] = [image.width, image.height, bitmap.width, bitmap.height]
+results["view"] = [image.fov_horizontal, image.fov_vertical]
+results["frequency"], results["speed"] = image.frequency, image.speed_of_sound
 strengths = wlsonar.bitmap_image_to_strength_linear(bitmap)
-told["strongest"] = max(strengths)
-told["same_pixels"] = all((a == 0) == (b == 0) for a, b in zip(image.image_pixel_data, strengths))
+results["strongest"] = max(strengths)
+results["same_pixels"] = all((a == 0) == (b == 0) for a, b in zip(image.image_pixel_data, strengths))
 stamp = image.header.timestamp.ToDatetime(tzinfo=datetime.timezone.utc)
-told["age"] = (datetime.datetime.now(datetime.timezone.utc) - stamp).total_seconds()
+results["age"] = (datetime.datetime.now(datetime.timezone.utc) - stamp).total_seconds()
 
 voxels = wlsonar.range_image_to_xyz(image)
 points = numpy.array([voxel for voxel in voxels if voxel is not None])
-told["heard"] = len(points)
+results["heard"] = len(points)
 if len(sys.argv) > 3:
     ranges = numpy.array(wlsonar.range_image_to_distance(image)).reshape(image.height, image.width)
     numpy.savez(sys.argv[3], ranges=ranges, strengths=numpy.array(strengths).reshape(ranges.shape), points=points)
@@ -94,22 +94,22 @@ near = points[points[:, 0] < 4.6]
 centre, radius = ball(near)
 front = near[((near - centre) * -centre).sum(1) > 0.5 * radius * numpy.linalg.norm(centre)]  # not its rim
 centre, radius = ball(front)
-told["ball"] = {"voxels": len(front), "centre": list(map(float, centre)), "radius": radius}
+results["ball"] = {"voxels": len(front), "centre": list(map(float, centre)), "radius": radius}
 
 wall = points[points[:, 0] > 4.8]
 ways = wall / numpy.linalg.norm(wall, axis=1, keepdims=True)
 whole = numpy.linalg.norm(numpy.cross(ways, centre), axis=1) > radius + 0.1  # past the ball by more than half a beam
-told["wall"] = {"voxels": int(whole.sum()), "mean": float(wall[:, 0].mean()),
-                "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
+results["wall"] = {"voxels": int(whole.sum()), "mean": float(wall[:, 0].mean()),
+                   "worst": float(abs(wall[whole, 0] - 5).max()), "worst_beside_ball": float(abs(wall[:, 0] - 5).max())}
 
 sonar.set_mode("high-frequency")
 sonar.set_range(0.3, 6)
 image = image_of(sock, rip.RangeImage, lambda image: image.range == 6)
-told["high"] = [image.frequency, image.fov_horizontal]
+results["high"] = [image.frequency, image.fov_horizontal]
 points = numpy.array([voxel for voxel in wlsonar.range_image_to_xyz(image) if voxel is not None])
 wall = points[points[:, 0] > 4.8]
-told["high_wall"] = float(wall[:, 0].mean())
+results["high_wall"] = float(wall[:, 0].mean())
 
-told["synchronised"] = sonar.force_sync_ntp(1).success
+results["synchronised"] = sonar.force_sync_ntp(1).success
 sonar.set_acoustics_enabled(False)
-print(json.dumps(told))
+print(json.dumps(results))

@@ -221,11 +221,11 @@ TEST(EglContextTest, TheSoftwareRendererRasterisesConcurrentlyAndTransfersExclus
     const EglContext context("software");
     auto drawing = context.drawing();
     std::atomic<bool> rasterised = false, transferred = false;
-    std::thread beside([&] {
+    std::thread other([&] {
         const auto another = context.drawing();
         rasterised = true;
     });
-    beside.join();
+    other.join();
     EXPECT_TRUE(rasterised);
     std::thread alone([&] {
         const auto transfer = context.transferring();

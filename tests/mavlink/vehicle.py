@@ -39,13 +39,13 @@ def send(message):
             pass  # no receiver yet, or no longer
 
 
-def hear():
+def receive():
     """Returns the requests of a ground station."""
     try:
-        heard = mavlink.parse_buffer(link.recv(2048)) or []
+        messages = mavlink.parse_buffer(link.recv(2048)) or []
     except OSError:
         return
-    for message in heard:
+    for message in messages:
         if message.get_type() == "COMMAND_LONG" and message.command == 511 and message.target_system == SYSTEM:
             assert message.get_srcSystem() == 255 and message.param2 in (20000, 50000), message
             streamed.add(int(message.param1))
@@ -63,5 +63,5 @@ for count in range(10**9):
         send(common.MAVLink_local_position_ned_message(boot, NORTH + 0.02 * k, 2, 3, 0, 0, 0))
     if WORK != "vision" and 31 in streamed:
         send(common.MAVLink_attitude_quaternion_message(boot, *QuaternionBase([roll, pitch, yaw]).q, 0.1, 0.2, 0.3))
-    hear()
+    receive()
     time.sleep(0.02)

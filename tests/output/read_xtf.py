@@ -1,4 +1,4 @@
-"""Reads an XTF file with PyPI's pyxtf and prints what it holds as JSON: python3 read_xtf.py FILE"""
+"""Reads an XTF file with PyPI's pyxtf and prints its content as JSON: python3 read_xtf.py FILE"""
 
 import json
 import sys

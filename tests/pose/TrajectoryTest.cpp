@@ -172,7 +172,7 @@ TEST(TrajectoryTest, ReportsEveryErrorOfAFileWithItsPlace) {
                                            "3,0,0,0,1,0,0,0,9\n"    // 5: too many
                                            "4,0,0,0,0,0,1e-7,0\n"   // 6: no direction
                                            "4,0,0,nan,1,0,0,0x1\n"  // 7: two diagnostics
-                                           "4,0,0,0,1,0,0,0\n");    // 8: time stands still
+                                           "4,0,0,0,1,0,0,0\n");    // 8: time does not advance
     struct Place {
         int line, column;
         const char *path, *message;

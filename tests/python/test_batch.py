@@ -22,7 +22,7 @@ def pose(numbers):
 
 
 @pytest.mark.parametrize("seed", [0, 7])
-def test_each_pings_as_a_single_one(deploy, seed):
+def test_each_ping_equals_that_of_a_single_simulation(deploy, seed):
     file, rng = deploy / "harbour_fls.yml", np.random.default_rng(3)
     batch = insonify.SimulationBatch(file, 5, seed=seed, overrides=QUICK)
     assert len(batch) == 5 and batch.seeds[0] == seed and len(set(batch.seeds)) == 5
@@ -40,7 +40,7 @@ def test_each_pings_as_a_single_one(deploy, seed):
     assert not np.array_equal(pings.bins[0], pings.bins[1])
 
 
-def test_some_begin_anew_and_the_others_go_on(deploy):
+def test_some_simulations_are_reset_and_the_others_continue(deploy):
     file, rng = deploy / "harbour_fls.yml", np.random.default_rng(4)
     batch = insonify.SimulationBatch(file, 3, seed=2, overrides=QUICK)
     first, second = random_poses(rng, 3), random_poses(rng, 3)
@@ -54,7 +54,7 @@ def test_some_begin_anew_and_the_others_go_on(deploy):
     np.testing.assert_array_equal(batch.step(first).bins, insonify.SimulationBatch(file, 3, 2, QUICK).step(first).bins)
 
 
-def test_the_truth_comes_along(deploy):
+def test_pings_have_their_truth(deploy):
     batch = insonify.SimulationBatch(deploy / "harbour_fls.yml", 2, overrides=QUICK, truth=True)
     poses = random_poses(np.random.default_rng(5), 2)
     truth = batch.step(poses).truth
@@ -75,7 +75,7 @@ def test_poses_may_be_numbers_matrices_or_poses(deploy):
         np.testing.assert_allclose(batch.step(given).bins, by_numbers, rtol=1e-4, atol=1e-12)
 
 
-def test_arrays_stay_when_the_batch_goes_on(deploy):
+def test_arrays_keep_their_values_during_later_steps(deploy):
     batch = insonify.SimulationBatch(deploy / "minimal.yml", 2, overrides=QUICK)
     here = np.tile([0, 0, 0, 1.0, 0, 0, 0], (2, 1))
     bins = batch.step(here).bins
@@ -87,7 +87,7 @@ def test_arrays_stay_when_the_batch_goes_on(deploy):
     np.testing.assert_array_equal(bins, kept)
 
 
-def test_what_is_wrong_has_one_clear_error(deploy):
+def test_each_wrong_argument_has_one_clear_error(deploy):
     file = deploy / "minimal.yml"
     with pytest.raises(ValueError, match="a batch has at least one simulation"):
         insonify.SimulationBatch(file, 0)
@@ -123,7 +123,7 @@ def test_one_scene_is_loaded_for_all(deploy):
     assert (memory() - before) / 20 < 8e6  # the scene alone takes more
 
 
-def test_the_vector_environment_is_many_single_ones(deploy):
+def test_the_vector_environment_equals_single_environments(deploy):
     gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed; scripts/setup installs it")
     import insonify.gym
 

@@ -16,7 +16,7 @@ def made(deploy, **more):
     return insonify.gym.SonarEnv(deploy / "minimal.yml", insonify.Pose([0, 0, 0]), overrides=QUICK, **more)
 
 
-def test_gymnasiums_checker_is_content(deploy):
+def test_gymnasiums_checker_passes(deploy):
     check_env(made(deploy, scatter=1.0), skip_render_check=True)
 
 
@@ -41,7 +41,7 @@ def test_actions_move_the_vehicle_in_its_own_axes(deploy):
     np.testing.assert_allclose(info["pose"].position, [0, 1, 0], atol=1e-12)  # turned to port by 90 degrees
 
 
-def test_it_is_cut_off_in_time_and_ends_at_a_wall(deploy):
+def test_an_episode_is_truncated_in_time_and_ends_at_a_wall(deploy):
     env = made(deploy, max_steps=2)
     env.reset(seed=1)
     assert env.step(np.zeros(4))[3] is False and env.step(np.zeros(4))[3] is True
@@ -50,7 +50,7 @@ def test_it_is_cut_off_in_time_and_ends_at_a_wall(deploy):
     assert near.step(np.zeros(4))[2] is True
 
 
-def test_several_go_side_by_side(deploy):
+def test_several_environments_step_together(deploy):
     envs = gymnasium.vector.SyncVectorEnv([lambda: made(deploy), lambda: made(deploy)])
     observations, _ = envs.reset(seed=[1, 2])
     assert observations.shape == (2, 32, 100)

@@ -30,7 +30,7 @@ def test_every_block_runs(folder):
         assert done.returncode == 0, block + done.stderr
 
 
-def test_the_example_draws(tmp_path):
+def test_the_example_plots(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "look.png"
     example = ROOT / "components/python/examples/look.py"

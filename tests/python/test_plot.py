@@ -19,7 +19,7 @@ def study(tmp_path, *arguments):
     return out
 
 
-def test_an_error_is_drawn_for_each_scene_and_printed(tmp_path):
+def test_an_error_is_plotted_for_each_scene_and_printed(tmp_path):
     out = study(tmp_path, "error", "--scene", "flat_bottom", "--levels", "2", "--pings", "1")
     done = plot(out)
     assert done.returncode == 0, done.stderr
@@ -28,14 +28,14 @@ def test_an_error_is_drawn_for_each_scene_and_printed(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["multipath", "speckle"])
-def test_other_studies_are_drawn_into_a_folder(tmp_path, name):
+def test_other_studies_are_plotted_into_a_folder(tmp_path, name):
     drawn = tmp_path / "drawn"
     done = plot(study(tmp_path, name), "--to", drawn)
     assert done.returncode == 0, done.stderr
     assert "<svg" in (drawn / f"{name}.svg").read_text()
 
 
-def test_a_beam_is_drawn(tmp_path):
+def test_a_beam_is_plotted(tmp_path):
     file = tmp_path / "beam.json"
     command = [INSONIFY, "beam", ROOT / "deploy/harbour_recording.yml", "--json"]
     file.write_bytes(subprocess.run(command, check=True, capture_output=True, timeout=300).stdout)

@@ -121,7 +121,7 @@ def test_a_list_may_be_read_in_part():
     assert (done.stdout, done.stderr) == ("[\n", "")
 
 
-def test_without_the_packages_the_answer_says_what_installs_them(tmp_path):
+def test_missing_packages_are_reported_with_the_command_that_installs_them(tmp_path):
     python = tmp_path / "python3"
     python.write_text("#!/bin/sh\nexit 97\n")  # as the package exits if an import fails
     python.chmod(0o755)

@@ -11,9 +11,9 @@ SCRIPTS = [
 
 
 @pytest.mark.parametrize("file", SCRIPTS, ids=lambda file: str(file.relative_to(ROOT)))
-def test_it_compiles(file):
+def test_script_compiles(file):
     compile(file.read_text(), str(file), "exec")
 
 
-def test_the_benchmarks_are_among_them():
+def test_the_benchmarks_are_among_the_scripts():
     assert {"bench", "build.py", "wheel.py"} <= {file.name for file in SCRIPTS}

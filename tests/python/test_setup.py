@@ -72,11 +72,11 @@ def installed(lines):
     return [line.split("--no-install-recommends ")[1].split() for line in lines if " install " in line]
 
 
-def test_with_all_there_the_core_is_built_and_nothing_else(system):
+def test_with_all_packages_only_the_core_is_built(system):
     assert asked(system, "setup", "insonify") == (0, ["cmake --build build --target insonify"], "")
 
 
-def test_what_the_core_lacks_is_installed_first(system):
+def test_missing_packages_of_the_core_are_installed_first(system):
     lacks = ["libyaml-cpp-dev", "libepoxy-dev"]
     there = (system / "installed").read_text().split()
     assert set(lacks) <= set(there)
@@ -87,21 +87,21 @@ def test_what_the_core_lacks_is_installed_first(system):
     assert lines[-2:] == ["cmake -S . -B build -G Ninja", "cmake --build build --target insonify"], "CMake searches again"
 
 
-def test_a_component_library_brings_its_own_packages_alone(system):
+def test_a_component_library_installs_only_its_own_packages(system):
     code, lines, _ = asked(system, "setup", "survey")
     assert code == 0
     assert installed(lines) == [packages("components/survey")]
     assert lines[-1] == "cmake --build build --target insonify_component_survey"
 
 
-def test_sdf_brings_the_files_of_meshes_that_it_names(system):
+def test_sdf_installs_the_library_of_its_meshes(system):
     code, lines, _ = asked(system, "setup", "sdf")
     assert code == 0
     assert sorted(installed(lines)[0]) == sorted(packages("components/sdf", "components/meshes"))
     assert lines[-1] == "cmake --build build --target insonify_component_sdf insonify_component_meshes"
 
 
-def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
+def test_a_package_unknown_to_the_system_omits_its_library(system):
     (system / "unknown").write_text("\n".join(packages("components/sdf")) + "\n")
     (system / "left_out").write_text("insonify_component_sdf\n")
     code, lines, said = asked(system, "setup", "sdf")
@@ -113,7 +113,7 @@ def test_a_package_that_the_system_does_not_know_leaves_its_library_out(system):
         assert f"this system has no package {name}; the parts of components/sdf that need it are omitted" in said
 
 
-def test_without_a_package_of_the_core_it_ends_and_says_so(system):
+def test_without_a_package_of_the_core_setup_fails_with_a_message(system):
     there = (system / "installed").read_text().split()
     (system / "installed").write_text("\n".join(name for name in there if name != "libyaml-cpp-dev") + "\n")
     (system / "unknown").write_text("libyaml-cpp-dev\n")
@@ -123,7 +123,7 @@ def test_without_a_package_of_the_core_it_ends_and_says_so(system):
     assert not installed(lines)
 
 
-def test_a_run_sets_up_what_its_deployment_names(system):
+def test_a_run_sets_up_the_libraries_of_its_deployment(system):
     (system / "libraries").write_text("viewer\nsurvey\n")
     code, lines, _ = asked(system, "run", "mine.yml", "--duration", "1")
     assert code == 0

@@ -26,7 +26,7 @@ def test_a_step_gives_a_ping_with_its_grid(minimal):
     assert ping.bins.max() > 0 and ping.truth is None
 
 
-def test_bins_are_the_pings_own_memory_and_stay_when_it_goes(minimal):
+def test_bins_share_the_pings_memory_and_outlive_the_ping(minimal):
     ping = minimal.step(HERE)
     bins, again = ping.bins, ping.bins
     assert np.shares_memory(bins, again) and not bins.flags.owndata
@@ -52,7 +52,7 @@ def test_the_command_makes_the_same_pings_of_the_same_poses(deploy, tmp_path):
         np.testing.assert_array_equal(stepped.bins, ping.bins)
 
 
-def test_a_reset_is_as_good_as_new(deploy):
+def test_a_reset_equals_a_new_simulation(deploy):
     file = deploy / "harbour_fls.yml"
     poses = [insonify.Pose([0.3 * step, 0, -5.5]) for step in range(3)]
     simulation = insonify.Simulation(file, seed=3)
@@ -122,20 +122,20 @@ def test_overrides_reach_the_tasks(deploy):
     assert ping.ranges[-1] == pytest.approx(30, rel=0.02)
 
 
-def test_errors_tell_file_line_and_column(tmp_path, deploy):
+def test_errors_have_file_line_and_column(tmp_path, deploy):
     file = tmp_path / "wrong.yml"
     text = (deploy / "minimal.yml").read_text().replace("scenes/wall.glb", str(deploy / "scenes/wall.glb"))
     file.write_text(text.replace("sonar::SonarTask}", "sonar::SonarTask, properties: {rnge: 20}}"))
-    with pytest.raises(insonify.ConfigError, match="did you mean range") as told:
+    with pytest.raises(insonify.ConfigError, match="did you mean range") as caught:
         insonify.Simulation(file)
     line = 1 + next(i for i, text in enumerate(file.read_text().splitlines()) if "rnge" in text)
-    assert told.value.file == str(file) and told.value.line == line and told.value.column > 0
-    assert told.value.diagnostics[0]["path"].endswith(".rnge")
+    assert caught.value.file == str(file) and caught.value.line == line and caught.value.column > 0
+    assert caught.value.diagnostics[0]["path"].endswith(".rnge")
     with pytest.raises(insonify.ConfigError, match="nowhere.yml"):
         insonify.Simulation(tmp_path / "nowhere.yml")
 
 
-def test_a_pose_that_cannot_be_is_an_error_and_the_next_is_good(minimal):
+def test_after_an_invalid_pose_the_next_pose_works(minimal):
     with pytest.raises(RuntimeError, match="finite"):
         minimal.step(insonify.Pose([np.nan, 0, 0]))
     assert minimal.step(HERE).bins.max() > 0
@@ -145,7 +145,7 @@ def test_a_pose_that_cannot_be_is_an_error_and_the_next_is_good(minimal):
         insonify.Pose([1, 2])
 
 
-def test_several_simulations_do_not_meet(deploy):
+def test_several_simulations_are_independent(deploy):
     """Each runs on its own thread, interleaved with the poses of the others."""
     poses = [insonify.Pose([0.2 * step, 0, 0]) for step in range(10)]
     alone = insonify.Simulation(deploy / "minimal.yml", seed=2)
@@ -195,21 +195,21 @@ def test_two_threads_in_one_simulation_are_an_error(deploy):
     simulation = insonify.Simulation(
         deploy / "minimal.yml", overrides={"sonar.quality": {"rows": 2048, "columns_per_beam": 16}}
     )
-    told = []
+    errors = []
 
     def run(ahead):
         for step in range(3):
             try:
                 simulation.step(insonify.Pose([0.1 * step, 0, 0]))
             except RuntimeError as error:
-                told.append(str(error))
+                errors.append(str(error))
 
     threads = [threading.Thread(target=run, args=(index,)) for index in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert told and set(told) == {"another thread uses this simulation"}
+    assert errors and set(errors) == {"another thread uses this simulation"}
     assert simulation.step(HERE).bins.max() > 0
 
 
@@ -229,7 +229,7 @@ def test_two_vehicles_take_a_dictionary(deploy):
     assert len(pings) == len(simulation.pings) == 2
 
 
-def test_times_that_no_step_can_have_are_errors(deploy, minimal):
+def test_impossible_times_are_errors(deploy, minimal):
     with pytest.raises(ValueError, match="finite"):
         minimal.step(HERE, time=float("nan"))
     with pytest.raises(ValueError, match="deployment's own"):
@@ -287,7 +287,7 @@ def test_threads_read_one_log(deploy, tmp_path):
             pings[none]
 
 
-def test_a_log_that_is_none_is_an_error(tmp_path):
+def test_a_file_that_is_not_a_log_is_an_error(tmp_path):
     (tmp_path / "x.log").write_bytes(b"not a log")
     with pytest.raises(insonify.ConfigError):
         insonify.read_log(tmp_path / "x.log")

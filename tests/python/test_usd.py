@@ -47,7 +47,7 @@ MESH = """def Mesh "{name}" {more}
 """
 
 
-def test_units_axes_and_transforms_are_those_of_the_world(tmp_path):
+def test_units_axes_and_transforms_are_converted_to_the_world(tmp_path):
     body = """def Xform "rov"
 {
     double3 xformOp:translate = (500, -200, 100)
@@ -133,7 +133,7 @@ def test_materials_of_subsets_have_their_names_and_acoustics(tmp_path):
     assert materials["rubber_black"]["triangles"] == 2
 
 
-def test_references_instances_and_instancers_are_all_there(tmp_path):
+def test_references_instances_and_instancers_are_converted(tmp_path):
     (tmp_path / "rock.usda").write_text('#usda 1.0\n(\n defaultPrim = "rock"\n)\ndef Xform "rock"\n{\n def Sphere "ball"\n {\n double radius = 0.5\n }\n}\n')
     body = ""
     for i in range(3):
@@ -156,7 +156,7 @@ def test_references_instances_and_instancers_are_all_there(tmp_path):
     assert "2 meshes" in done.stdout  # one for all instances of a prototype
 
 
-def test_what_is_not_seen_is_left_out_aloud(tmp_path):
+def test_omitted_prims_are_reported(tmp_path):
     body = """def Cube "there"
 {
 }
@@ -190,7 +190,7 @@ def BasisCurves "hair"
          "/m: has 24 corners; its faces have 25"),
     ],
 )
-def test_what_is_wrong_is_one_line_and_exit_2(tmp_path, text, message):
+def test_an_error_is_one_line_and_exit_code_2(tmp_path, text, message):
     if text is not None:
         (tmp_path / "bad.usda").write_text(text)
     done, _ = run(tmp_path, "bad.usda")

@@ -77,7 +77,7 @@ def test_things_are_closed_and_face_outwards(one_of_each, name):
         (["moored_mine", "diameter_m=1", "line_m=5", "lean_deg=0"], (1.04, 1.04, 6.77)),
     ],
 )
-def test_things_have_the_size_that_is_asked_for(tmp_path, words, size):
+def test_things_have_the_requested_size(tmp_path, words, size):
     name, *settings = words
     out = tmp_path / "thing.glb"
     answer("scene", "make", "--thing", name, *itertools.chain.from_iterable(("--set", each) for each in settings), "--out", out)
@@ -109,10 +109,10 @@ def random_recipe(rng):
 
 
 @pytest.mark.parametrize("number", range(6))
-def test_things_of_random_recipes_stand_on_the_floor_and_keep_clear(tmp_path, number):
+def test_things_of_random_recipes_rest_on_the_floor_and_do_not_overlap(tmp_path, number):
     rng = np.random.default_rng(number)
     recipe = random_recipe(rng)
-    recipe["things"][-1], recipe["things"][0] = recipe["things"][0], recipe["things"][-1]  # what is largest first
+    recipe["things"][-1], recipe["things"][0] = recipe["things"][0], recipe["things"][-1]  # the largest thing first
     glb = Glb(make(tmp_path, json.dumps(recipe), seed=number))
     ground = FloorGrid(glb.nodes.pop("sea_floor"))
     counted = {}
@@ -152,7 +152,7 @@ def test_the_same_seed_makes_the_same_bytes_and_another_one_other_places(tmp_pat
     assert all(np.abs(np.array(a) - np.array(b)).max() > 0.5 for a, b in itertools.combinations(places, 2))
 
 
-def test_places_are_within_what_is_asked_for(tmp_path):
+def test_places_are_within_the_requested_bounds(tmp_path):
     text = "floor: {size_m: [40, 40]}\nthings: [{thing: ball, count: 20, x_m: [5, 15], y_m: {choice: [-3, 3]}, buried: 0, gap_m: 0.3}]"
     middles = np.array([node.positions.mean(0) for name, node in Glb(make(tmp_path, text)).nodes.items() if name != "sea_floor"])
     assert len(middles) == 20
@@ -161,7 +161,7 @@ def test_places_are_within_what_is_asked_for(tmp_path):
     assert np.allclose(middles[:, 2], -10 + 0.15, atol=0.01)
 
 
-def test_another_thing_leaves_the_others_where_they_are(tmp_path):
+def test_an_additional_thing_does_not_move_the_others(tmp_path):
     head = "floor: {size_m: [30, 30]}\nthings:\n  - {thing: tire, count: 3}\n"
     before = Glb(make(tmp_path, head, name="a"))
     after = Glb(make(tmp_path, head + "  - {thing: can, count: 2}\n", name="b"))
@@ -180,7 +180,7 @@ def radial_spectrum(z, cell):
 
 
 @pytest.mark.parametrize("slope, rms", [(2.2, 0.05), (3.2, 0.2), (4.0, 0.5)])
-def test_a_fractal_floor_has_the_slope_and_height_that_are_asked_for(tmp_path, slope, rms):
+def test_a_fractal_floor_has_the_requested_slope_and_height(tmp_path, slope, rms):
     slopes = []
     for seed in range(3):
         text = f"floor: {{size_m: [50, 40], depth_m: 12, cell_m: 0.2, fractal: {{slope: {slope}, rms_m: {rms}}}}}"
@@ -217,7 +217,7 @@ def test_ripples_below_six_cells_are_a_normal_map(tmp_path):
     assert np.ptp(uv[:, 0]) == pytest.approx(20 / (16 * 0.3), rel=1e-3), "a tile is 16 ripples wide"
 
 
-def test_pockmarks_are_as_many_and_as_deep_as_asked_for(tmp_path):
+def test_pockmarks_have_the_requested_number_and_depth(tmp_path):
     text = "floor: {size_m: [40, 40], cell_m: 0.2, pockmarks: {count: 4, diameter_m: 5, depth_m: 0.8}}"
     z = FloorGrid(Glb(make(tmp_path, text)).nodes["sea_floor"]).z
     assert z.min() == pytest.approx(-10.8, abs=0.02)
@@ -242,7 +242,7 @@ def test_rocks_and_pebbles_have_their_number_and_sizes(tmp_path):
     assert unbalanced_edges(*pebbles.parts[0]) == 0
 
 
-def test_the_simulator_knows_all_that_is_made(tmp_path):
+def test_the_simulator_knows_all_materials(tmp_path):
     things = "\n".join(f"  - {{thing: {name}, surface: {{choice: [clean, weathered, fouled]}}}}" for name in THINGS if name not in ("tank", "quay", "jetty"))
     text = ("floor: {size_m: [120, 100], depth_m: 15, cell_m: 0.5, ripples: {length_m: 0.3}, rocks: {per_m2: 0.01}, pebbles: {per_m2: 0.1}}\n"
             "things:\n  - {thing: quay, y_m: 46}\n  - {thing: jetty, y_m: 40}\n  - {thing: tank, y_m: -40}\n" + things)
@@ -281,7 +281,7 @@ def test_floors_may_be_of_every_sediment_that_the_simulator_has(tmp_path):
         assert material["sediment"] == meant
 
 
-def test_the_recipe_of_the_page_makes_what_the_page_says(tmp_path):
+def test_the_recipe_of_the_page_makes_the_described_scene(tmp_path):
     page = (ROOT / "components/worlds/README.md").read_text()
     recipe = page.split("```yaml\n")[1].split("```")[0]
     glb = Glb(make(tmp_path, recipe, seed=3))

@@ -82,7 +82,7 @@ struct Second<Task> {
 template <class Task, class Config>
 void expectNoAllocation(const Config& config, Truth truth = Truth::NotRead) {
     Task task("sonar");
-    const Second<Task> beside(task);
+    const Second<Task> second(task);
     test::Writer<types::SnapshotPtr> in;
     test::Reader<types::SonarPtr> out;
     test::Reader<types::SonarTruthPtr> truths{"truths"};

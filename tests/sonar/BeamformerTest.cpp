@@ -106,7 +106,7 @@ acoustics::BeamLaw widthOf(double degrees, acoustics::Weighting weighting = acou
     return law;
 }
 
-TEST(DirectivityTest, AStraightArraysBeamsWidenAsTheyAreSteeredAndACurvedOnesDoNot) {
+TEST(DirectivityTest, AStraightArraysBeamsWidenAsTheyAreSteeredAndThoseOfACurvedArrayDoNot) {
     SonarConfig config = sonarWith(widthOf(2));
     const Directivity curved(config);
     config.beam_geometry = BeamGeometry::Conical;

@@ -374,7 +374,7 @@ TEST(EdgeDiffractionTest, EverythingIsFiniteForRandomBoxesAndSonarsOnTheirEdges)
     }
 }
 
-/** An edge of a sheet along y at the origin, whose face goes along x. */
+/** An edge of a sheet along y at the origin, whose face extends along x. */
 PlacedEdge edgeOf(double length, double slope) {
     return {.from = {0, -length / 2, 0},
             .to = {0, length / 2, 0},

@@ -79,14 +79,14 @@ Met rayThrough(const Shape& near, const Shape& far, const glm::dvec3& look, doub
  *  spreading of a bundle of rays on the way out and on the way back. */
 double levelOf(const Shape& near, const Shape& far, const glm::dvec3& look, double speed) {
     const Met met = rayThrough(near, far, look, speed);
-    const glm::dvec3 up = glm::normalize(glm::cross(look, glm::dvec3(0, 1, 0.1))), beside = glm::cross(look, up);
+    const glm::dvec3 up = glm::normalize(glm::cross(look, glm::dvec3(0, 1, 0.1))), across = glm::cross(look, up);
     constexpr double step = 1e-5;
     const auto change = [&](const glm::dvec3& aside) {
         return (rayThrough(near, far, glm::normalize(look + step * aside), speed).at -
                 rayThrough(near, far, glm::normalize(look - step * aside), speed).at) /
                (2 * step);
     };
-    const double area = std::abs(glm::dot(glm::cross(change(up), change(beside)), met.way));
+    const double area = std::abs(glm::dot(glm::cross(change(up), change(across)), met.way));
     return met.cosine * speed * speed / area;  // Lambert's law over the cosine, and the n^2 law of radiance
 }
 

@@ -83,7 +83,7 @@ TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     const auto map = mapOf(test::snapshotOf(sceneOf({test::sphere(radius)}, 0, {centre})));
     ASSERT_TRUE(map) << task_.lastError();
     double worst = 0;
-    int met = 0, beside = 0;
+    int met = 0, weak = 0;
     for (size_t row = 0; row < 80; ++row)
         for (size_t column = 0; column < 180; ++column) {
             const float got = map->distances[row * 180 + column];
@@ -91,7 +91,7 @@ TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
             const double along = glm::dot(centre, direction), off = glm::length(centre - along * direction);
             if (off > radius + 0.1) {
                 EXPECT_EQ(got, types::DepthMap::too_far) << row << " " << column;
-                ++beside;
+                ++weak;
             } else if (off < 0.9 * radius) {
                 worst = std::max(worst, std::abs(got - (along - std::sqrt(radius * radius - off * off))));
                 ++met;
@@ -99,7 +99,7 @@ TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
         }
     std::cout << "sphere: " << met << " ranges at most " << worst << " m off, bins of " << cloud_bin << " m\n";
     EXPECT_GT(met, 1000);
-    EXPECT_GT(beside, 8000);
+    EXPECT_GT(weak, 8000);
     EXPECT_LT(worst, 0.6 * cloud_bin);
 }
 

@@ -101,7 +101,7 @@ def _quaternion(rotation: np.ndarray) -> np.ndarray:
             1 - r[0, 0] - r[1, 1] + r[2, 2],
         ]
     )
-    largest = int(np.argmax(squares))
+    pivot = int(np.argmax(squares))
     rows = np.array(
         [
             [squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
@@ -110,7 +110,7 @@ def _quaternion(rotation: np.ndarray) -> np.ndarray:
             [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], squares[3]],
         ]
     )
-    return rows[largest] / np.linalg.norm(rows[largest])
+    return rows[pivot] / np.linalg.norm(rows[pivot])
 
 
 class Truth(Mapping):

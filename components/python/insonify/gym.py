@@ -26,9 +26,9 @@ def distance_ahead(ping: Ping, half_sector: float = np.radians(15), below_loudes
 def _distances_ahead(bins, bearings, ranges, half_sector: float = np.radians(15), below_loudest_db: float = 20) -> np.ndarray:
     """The same for pings [pings, beams, bins]."""
     loudest = np.nan_to_num(bins[:, np.abs(bearings) <= half_sector]).max(axis=1, initial=0)
-    least = np.maximum(loudest.max(axis=1, keepdims=True, initial=0) * 10 ** (-below_loudest_db / 10), 0)
-    heard = loudest > least
-    return np.where(heard.any(axis=1), np.append(ranges, np.inf)[np.where(heard.any(axis=1), heard.argmax(axis=1), -1)], np.inf)
+    threshold = np.maximum(loudest.max(axis=1, keepdims=True, initial=0) * 10 ** (-below_loudest_db / 10), 0)
+    is_echo = loudest > threshold
+    return np.where(is_echo.any(axis=1), np.append(ranges, np.inf)[np.where(is_echo.any(axis=1), is_echo.argmax(axis=1), -1)], np.inf)
 
 
 def _levels(bins: np.ndarray, reference: float, floor_db: float) -> np.ndarray:

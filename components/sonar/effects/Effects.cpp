@@ -21,7 +21,7 @@ const Effect& volume();
 const Effect& speckle();
 const Effect& multipath();
 const Effect& thinWalls();
-const Effect& frusta();
+const Effect& furtherFrusta();
 const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
@@ -38,9 +38,9 @@ namespace {
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
     std::vector<const Effect*> all{
-        &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),        &ringDown(),
-        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &frusta(),       &refraction(),
-        &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(), &edgeDiffraction(),
+        &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
+        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &furtherFrusta(), &refraction(),
+        &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(),  &edgeDiffraction(),
         &imperfections(), &crosstalk(),   &truth()};
 };
 

@@ -148,10 +148,10 @@ class Floor:
         self.shape = tuple(int(round(side / values["cell_m"])) + 1 for side in self.size)
         if min(self.shape) < 3 or (self.shape[0] - 1) * (self.shape[1] - 1) > MAX_CELLS:
             cells = (self.shape[0] - 1) * (self.shape[1] - 1)
-            smallest = math.sqrt(self.size[0] * self.size[1] / MAX_CELLS)
+            min_cell = math.sqrt(self.size[0] * self.size[1] / MAX_CELLS)
             block.get("cell_m", item).fail(
                 f"makes {cells} cells of a floor of {self.size[0]:g} x {self.size[1]:g} m; must make 3 points on a side and at "
-                f"most {MAX_CELLS} cells: from {smallest:.2g} m to {min(self.size) / 2:g} m"
+                f"most {MAX_CELLS} cells: from {min_cell:.2g} m to {min(self.size) / 2:g} m"
             )
         self.steps = tuple(side / (n - 1) for side, n in zip(self.size, self.shape))
         self.low = tuple(middle - side / 2 for middle, side in zip(self.centre, self.size))
@@ -267,16 +267,16 @@ class Floor:
                 None if uvs is None else uvs[keep].reshape(-1, 2),
             )
 
-    def stones(self, seed, name, word, most):
+    def stones(self, seed, name, word, max_count):
         """Diameters and values of rocks or pebbles, the largest first; none if the recipe has none."""
         for item, laws in self.laws[name]:
             rng = generator(seed, word)
             values = laws.draw(rng)
             count = int(round(values["per_m2"] * self.size[0] * self.size[1]))
-            if count > most:
+            if count > max_count:
                 item.fail(
-                    f"are {count} on {self.size[0] * self.size[1]:g} m2; at most {most}: give per_m2 up to "
-                    f"{most / (self.size[0] * self.size[1]):.3g}"
+                    f"are {count} on {self.size[0] * self.size[1]:g} m2; at most {max_count}: give per_m2 up to "
+                    f"{max_count / (self.size[0] * self.size[1]):.3g}"
                 )
             if values["min_m"] > values["max_m"]:
                 item.fail(f"have min_m {values['min_m']:g} above max_m {values['max_m']:g}")

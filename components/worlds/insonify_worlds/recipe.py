@@ -15,16 +15,16 @@ def make_world(recipe, seed):
     block = recipe.block(KEYS)
     if "floor" not in block and "things" not in block:
         recipe.fail("is empty; a recipe has a floor, things or both")
-    most = number_in(block["max_triangles"], 1, MAX_TRIANGLES, True) if "max_triangles" in block else 2_000_000
+    max_triangles = number_in(block["max_triangles"], 1, MAX_TRIANGLES, True) if "max_triangles" in block else 2_000_000
 
     def refuse(count):
         raise RecipeError(
             recipe.place,
             "max_triangles",
-            f"is {most}; the recipe makes at least {count}: give a larger cell_m, fewer things, or up to {MOST_TRIANGLES}",
+            f"is {max_triangles}; the recipe makes at least {count}: give a larger cell_m, fewer things, or up to {MAX_TRIANGLES}",
         )
 
-    world = World(seed, most, refuse)
+    world = World(seed, max_triangles, refuse)
     if "floor" in block:
         world.add_floor(block["floor"])
     things = block.get("things", Item([], recipe.place, "things"))

@@ -100,16 +100,16 @@ ANYWHERE = Spot()
 
 
 class World:
-    """A budget of `most` triangles. Beyond it, `refuse` is called with their number."""
+    """A world with a budget of `max_triangles`. Beyond it, `refuse` is called with the number of triangles."""
 
-    def __init__(self, seed, most=math.inf, refuse=None):
-        self.seed, self.most, self.refuse, self.triangles = seed, most, refuse, 0
+    def __init__(self, seed, max_triangles=math.inf, refuse=None):
+        self.seed, self.max_triangles, self.refuse, self.triangles = seed, max_triangles, refuse, 0
         self.ground = FlatGround()
         self.placed, self.taken, self.numbers = [], Taken(), {}
 
     def add(self, name, surfaces, at=(0, 0, 0), turn=np.eye(3)):
         self.triangles += sum(len(surface.faces) for surface, _ in surfaces)
-        if self.triangles > self.most:
+        if self.triangles > self.max_triangles:
             self.refuse(self.triangles)
         self.placed.append(Placed(name, surfaces, at, turn))
 

@@ -139,8 +139,8 @@ def main(path):
     if found is not None:
         modified = os.stat(path).st_mtime_ns // 1000
         assert found == expected_index(data, streams, modified), "the index is another"
-    told = {s["name"]: {key: s[key] for key in ("type", "metadata", "samples")} for s in streams}
-    print(json.dumps({"streams": told, "index": found is not None}))
+    summary = {s["name"]: {key: s[key] for key in ("type", "metadata", "samples")} for s in streams}
+    print(json.dumps({"streams": summary, "index": found is not None}))
 
 
 main(sys.argv[1])

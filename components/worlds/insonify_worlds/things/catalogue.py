@@ -24,7 +24,7 @@ class Model:
 
 @dataclass
 class Thing:
-    """A thing. `kind` sets how it is placed and built: a body (rng, values) stands on the floor; a line (rng,
+    """A thing. `kind` sets how it is placed and built: a body (rng, values) rests on the floor; a line (rng,
     values, ground, path) is laid along a path on it; a structure (rng, values, depth) has its z from the water
     surface."""
 

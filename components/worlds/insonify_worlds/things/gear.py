@@ -43,7 +43,7 @@ def lying_path(ground, path, radius, buried, smooth_m, step):
     Number("diameter_m", 0.4, "", 0.05, 3),
     Number("length_m", 20.0, "where an end is drawn", 1, 2000),
     Number("wall_mm", 12, "of steel", 1, 60),
-    Choice("fill", "oil", "what is in it", ("oil", "water", "air", "sand")),
+    Choice("fill", "oil", "content", ("oil", "water", "air", "sand")),
     Number("buried", 0.2, "share of its diameter below the floor", 0, 0.95),
     Number("stiffness_m", 6.0, "length over which it bridges the relief", 0, 100),
     kind="line",

@@ -47,7 +47,7 @@ def tire(rng, p):
     Number("diameter_m", 0.066, "", 0.04, 0.3),
     Number("length_m", 0.115, "", 0.05, 0.5),
     Number("wall_mm", 0.1, "of aluminium", 0.05, 5),
-    Choice("fill", "water", "what is in it", ("water", "air", "sand")),
+    Choice("fill", "water", "content", ("water", "air", "sand")),
     Switch("upright", "false", "stands instead of lying on its side"),
 )
 def can(rng, p):
@@ -69,7 +69,7 @@ def can(rng, p):
 
 
 def lying(body, p, materials, radius=None):
-    """A round body, lying on its side unless it stands."""
+    """A round body, on its side unless it is upright."""
     if not p["upright"]:
         body = moved(body, turn=rotation(pitch=90))
     return Model([(body, materials[0])])
@@ -81,7 +81,7 @@ def lying(body, p, materials, radius=None):
     Number("diameter_m", 0.075, "", 0.04, 0.4),
     Number("length_m", 0.3, "", 0.1, 1.2),
     Number("wall_mm", 3, "of glass", 0.5, 15),
-    Choice("fill", "water", "what is in it", ("water", "air", "sand")),
+    Choice("fill", "water", "content", ("water", "air", "sand")),
     Switch("upright", "false", "stands instead of lying on its side"),
 )
 def bottle(rng, p):
@@ -110,7 +110,7 @@ def bottle(rng, p):
     Number("diameter_m", 0.585, "", 0.2, 1.5),
     Number("length_m", 0.88, "", 0.3, 3),
     Number("wall_mm", 1.2, "of steel", 0.3, 10),
-    Choice("fill", "water", "what is in it", ("water", "air", "oil", "mud", "sand")),
+    Choice("fill", "water", "content", ("water", "air", "oil", "mud", "sand")),
     Switch("upright", "false", "stands instead of lying on its side"),
 )
 def barrel(rng, p):
@@ -129,7 +129,7 @@ def barrel(rng, p):
     Number("diameter_m", 0.23, "", 0.08, 0.6),
     Number("length_m", 1.4, "without its valve", 0.3, 3),
     Number("wall_mm", 6, "of steel", 1, 30),
-    Choice("fill", "air", "what is in it", ("air", "water")),
+    Choice("fill", "air", "content", ("air", "water")),
     Switch("upright", "false", "stands instead of lying on its side"),
 )
 def gas_cylinder(rng, p):
@@ -330,7 +330,7 @@ def log(rng, p):
     "amphora",
     "an amphora of fired clay, which counts as concrete, with two handles",
     Number("tall_m", 0.9, "", 0.3, 1.6),
-    Choice("fill", "sand", "what is in it", ("water", "sand", "mud")),
+    Choice("fill", "sand", "content", ("water", "sand", "mud")),
     Number("wall_mm", 15, "of fired clay", 4, 40),
     Switch("upright", "false", "stands instead of lying on its side"),
 )

@@ -23,7 +23,7 @@ public:
 
 }  // namespace
 
-const Effect& frusta() {
+const Effect& furtherFrusta() {
     static const Frusta effect;
     return effect;
 }
