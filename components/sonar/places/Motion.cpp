@@ -125,19 +125,18 @@ void Motion::addShape(const types::Snapshot& snapshot, const types::DeformedObje
     own.places.resize(of_vertices_.size());
     own.velocities.resize(of_vertices_.size());
     const Drift whole = drifts_[object].value_or(Drift());
-    glm::dvec3 sum(0);
+    Drift drift;  // constant, so that the ways of rays about the object are as straight as before
     double fastest = 0;
     for (size_t i = 0; i < of_vertices_.size(); ++i) {
         own.places[i] = origin + turn * glm::dvec3(mesh->positions[i]);
         const glm::dvec3 bends = turn * glm::dvec3(of_vertices_[i]);
         own.velocities[i] = whole.at(own.places[i]) + bends;
-        sum += bends;
+        drift.constant += own.velocities[i];
         fastest = std::max(fastest, glm::length(own.velocities[i]));
     }
     if (!(fastest > 0) || !(fastest <= fastest_allowed_)) return;
     own.moves = true;
-    Drift drift = whole;
-    drift.constant += sum / static_cast<double>(of_vertices_.size());
+    drift.constant /= static_cast<double>(of_vertices_.size());
     drift.fastest = fastest;
     fastest_ = std::max(fastest_, fastest);
     drifts_[object] = drift;

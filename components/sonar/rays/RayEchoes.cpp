@@ -187,9 +187,12 @@ void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     for (const uint32_t object : meshes->objects())
         triangles += geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
     bends_ = triangles <= max_bent;
+<<<<<<< HEAD:components/sonar/rays/RayEchoes.cpp
     const auto flat = std::make_shared<const std::vector<CurveRecord>>();
     for (const uint32_t object : meshes->objects())
         curves_[static_cast<size_t>(geometry_->objects[object].mesh)] = flat;
+=======
+>>>>>>> animate:components/sonar/rays/CastEchoes.cpp
 }
 
 void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
@@ -219,11 +222,16 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     std::vector<MeshFacts::Planes> planes;
     std::vector<MeshFacts::Facets> facets;
     std::vector<MeshFacts::Curves> curves;
+    std::vector<bool> deforms(geometry_->meshes.size());
+    if (deformed_)
+        for (const uint32_t object : deformed_->objects())
+            deforms[static_cast<size_t>(geometry_->objects[object].mesh)] = true;
+    const auto flat = std::make_shared<const std::vector<CurveRecord>>();  // until the shape of the ping is there
     for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
         const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
         planes.push_back(facts->planes());
         facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
-        curves.push_back(facts->curves(worldFromMesh(*geometry_, i)));
+        curves.push_back(deforms[i] ? flat : facts->curves(worldFromMesh(*geometry_, i)));
     }
     planes_ = std::move(planes);
     facets_ = std::move(facets);
