@@ -23,7 +23,7 @@ BEAT_KEYS, PATH_KEYS = 24, 48
 
 
 def body():
-    """A fish along x, its nose at LENGTH / 2: rings about the spine, which end in a tail that stands upright."""
+    """A fish along x, its nose at LENGTH / 2: rings about the spine, which end in an upright tail."""
     s = (np.arange(RINGS) + 0.5) / RINGS  # from nose to tail
     height = 0.13 * np.sin(np.pi * s**0.6) ** 0.8 + 0.1 * np.exp(-(((s - 1) / 0.07) ** 2))
     width = 0.055 * np.sin(np.pi * s**0.6) ** 0.8 * (1 - 0.5 * s) + 0.004
@@ -118,7 +118,7 @@ class School:
 
 
 def read_scene(path):
-    """A Glb that goes on where a file ends."""
+    """A Glb that continues an existing file."""
     glb = Glb()
     data = path.read_bytes()
     length, = struct.unpack_from("<I", data, 12)

@@ -98,27 +98,28 @@ struct ClusterNode {
     glm::vec3 half{0};           ///< Half the box's size [m].
 };
 
-/** How much a vertex follows one joint. */
+/** Weight of one joint for a vertex. */
 struct JointShare {
-    uint32_t joint;  ///< Of the pose [1].
+    uint32_t joint;  ///< Index in the pose [1].
     float weight;    ///< Above 0 [1].
 };
 
-/** What a morph target at weight 1 adds to each vertex of a mesh. Each list is empty or has one entry per vertex. */
+/** Offsets that a morph target at weight 1 adds to the vertices of a mesh. Each list is empty or has one entry per
+ * vertex. */
 struct MorphTarget {
     std::vector<glm::vec3> positions;  ///< [m]
     std::vector<glm::vec3> normals;    ///< [1]
     std::vector<glm::vec3> tangents;   ///< [1]
 };
 
-/** How the vertices of a mesh follow the joints of a skin and the weights of morph targets. Its lists are in the order
- *  of the mesh's vertices. */
+/** Data that pose a mesh by the joints of a skin and the weights of morph targets. Lists are in the order of the mesh's
+ *  vertices. */
 struct Deformation {
-    std::vector<glm::vec3> positions;   ///< Before joints and targets move them [m].
+    std::vector<glm::vec3> positions;   ///< Unposed [m].
     std::vector<glm::vec3> normals;     ///< Empty, or one per vertex [1].
     std::vector<glm::vec4> tangents;    ///< Empty, or one per vertex [1].
-    uint32_t joint_count = 0;           ///< Joints that a pose has; 0: there is no skin.
-    std::vector<uint32_t> share_begin;  ///< First of each vertex among `shares`, and their end; empty without a skin.
+    uint32_t joint_count = 0;           ///< Joints of a pose; 0: no skin.
+    std::vector<uint32_t> share_begin;  ///< Start of each vertex's `shares`, and the end; empty without a skin.
     std::vector<JointShare> shares;     ///< Weights of one vertex add up to 1.
     std::vector<MorphTarget> targets;
 };

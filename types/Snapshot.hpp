@@ -15,11 +15,11 @@ namespace insonify::types {
 struct MovedObject {
     uint32_t object = 0;  ///< Index into Geometry::objects [1].
     glm::dmat4 world_from_object{1};
-    /** Rate of the matrix, where an animation says it; absent: it follows from the snapshot before [1/s]. */
+    /** Rate of the matrix from an animation; absent: it follows from the snapshot before [1/s]. */
     std::optional<glm::dmat4> rate = {};
 };
 
-/** Where a joint of a skin is. */
+/** Pose of a joint of a skin. */
 struct JointPose {
     glm::dmat4x3 mesh_from_bind{1};  ///< Moves a vertex that follows this joint alone, in the axes of the mesh.
     glm::dmat4x3 rate{0};            ///< [1/s]
@@ -27,7 +27,7 @@ struct JointPose {
     bool operator==(const JointPose&) const = default;
 };
 
-/** How far a morph target is taken. */
+/** Weight of a morph target. */
 struct MorphPose {
     double weight = 0;  ///< [1]
     double rate = 0;    ///< [1/s]
@@ -38,8 +38,8 @@ struct MorphPose {
 /** An object whose mesh has another shape than in the geometry (PosedMesh.hpp). */
 struct DeformedObject {
     uint32_t object = 0;       ///< Index into Geometry::objects; its mesh has a Deformation [1].
-    uint32_t first_joint = 0;  ///< Of its joints in Snapshot::joints, as many as the Deformation has [1].
-    uint32_t first_morph = 0;  ///< Of its targets in Snapshot::morphs [1].
+    uint32_t first_joint = 0;  ///< Index of its first joint in Snapshot::joints [1].
+    uint32_t first_morph = 0;  ///< Index of its first target in Snapshot::morphs [1].
 
     bool operator==(const DeformedObject&) const = default;
 };
@@ -64,8 +64,8 @@ struct Snapshot {
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
     std::vector<DeformedObject> deformed;  ///< Ascending by object, each at most once.
-    std::vector<JointPose> joints;         ///< Of all deformed objects.
-    std::vector<MorphPose> morphs;         ///< Of all deformed objects.
+    std::vector<JointPose> joints;         ///< Joints or targets of all deformed objects.
+    std::vector<MorphPose> morphs;         ///< Joints or targets of all deformed objects.
     std::vector<PointTarget> targets;
     std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that may reach this sonar; none is null.
     std::shared_ptr<const std::vector<std::string>> target_names;  ///< Names of `targets`; may be null without targets.

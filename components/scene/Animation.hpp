@@ -9,26 +9,27 @@
 
 namespace insonify::scene {
 
-/** What an animation changes of a node. */
+/** Properties of a node that an animation changes. */
 enum class AnimatedPath { Translation, Rotation, Scale, Weights };
 
-/** How values between two keys follow from the keys. */
+/** Rule for the values between two keys. */
 enum class Interpolation { Step, Linear, CubicSpline };
 
-/** Keys of an animation: values over time, as glTF 2.0 has them (appendix C). */
+/** Keys of an animation: values over time (glTF 2.0, appendix C). */
 struct KeyFrames {
     Interpolation interpolation = Interpolation::Linear;
     bool is_rotation = false;   ///< Values are unit quaternions x, y, z, w.
     size_t width = 3;           ///< Numbers of a value [1].
     std::vector<double> times;  ///< Ascending, at least one [s].
-    /** Value after value; of a cubic spline three a key: the tangent before it, the value, the tangent behind it. */
+    /** Values in sequence. A cubic spline has three per key: in-tangent, value, out-tangent. */
     std::vector<double> values;
 
-    /** Fills in the value at a time, and its rate [1/s]. Before the first key and after the last their values stay. */
+    /** Fills in the value at a time, and its rate [1/s]. Before the first key and after the last the value is constant.
+     */
     void at(double time, std::span<double> value, std::span<double> rate) const;
 };
 
-/** Translation, rotation and scale of a node, and how fast they change. */
+/** Translation, rotation and scale of a node, with their rates. */
 struct NodeShape {
     glm::dvec3 translation{0};
     glm::dquat rotation{1, 0, 0, 0};
@@ -41,7 +42,7 @@ struct NodeShape {
     glm::dmat4 matrixRate() const;  ///< [1/s]
 };
 
-/** What one animation does to one property of one node. */
+/** Connects one property of one node with its keys. */
 struct Channel {
     int node = 0;  ///< Index into Scene::nodes.
     AnimatedPath path = AnimatedPath::Translation;
@@ -50,13 +51,13 @@ struct Channel {
 
 /** An animation of a file. */
 struct Animation {
-    std::string name;  ///< Unique: the file's, else "animation_3".
+    std::string name;  ///< Unique name from the file, else "animation_3".
     std::vector<KeyFrames> keys;
     std::vector<Channel> channels;
     double duration = 0;  ///< Time of the last key of all channels [s].
 };
 
-/** A node that animations may move. `Node::parent_from_node` is before * rest.matrix() * after. */
+/** A node that animations may move. Its `Node::parent_from_node` is before * rest.matrix() * after. */
 struct AnimatedNode {
     int node = 0;          ///< Index into Scene::nodes.
     glm::dmat4 before{1};  ///< Placement and turn to z-up of a node at the root.
@@ -68,11 +69,11 @@ struct AnimatedNode {
 struct DeformingObject {
     size_t object = 0;                        ///< Index into Geometry::objects.
     std::vector<int> joints;                  ///< Indices into Scene::nodes; empty without a skin.
-    std::vector<glm::dmat4> joint_from_bind;  ///< Of each joint.
-    std::vector<double> rest_weights;         ///< Of each morph target, where no animation has another [1].
+    std::vector<glm::dmat4> joint_from_bind;  ///< One per joint.
+    std::vector<double> rest_weights;         ///< One per morph target, for weights that are not animated [1].
 };
 
-/** All of a scene that moves by itself, or may be deformed. */
+/** Animations of a scene, with the nodes that they move and the objects that deform. */
 struct Animations {
     std::vector<Animation> all;            ///< In the order of the file.
     std::vector<AnimatedNode> nodes;       ///< Ascending.

@@ -64,7 +64,7 @@ void SonarRenderer::Parts::describePlan() {
     if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
 }
 
-/** Rays alone see what deforms. */
+/** Only rays show deforming meshes. */
 void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
     if (!plan.traces_rays) return;
     if (!deformed || !deformed->serves(snapshot)) {

@@ -28,8 +28,8 @@ def measure_fish(options):
     pings = min(options.pings, harbour.LAST_PING)
     runs = {"at rest": [], "swimming": []}
     for _ in range(RUNS):
-        runs["at rest"].append(table.measure(deployment(REST), pings, beside_rays=False))
-        runs["swimming"].append(table.measure(deployment("{}"), pings, beside_rays=False))
+        runs["at rest"].append(table.measure(deployment(REST), pings, with_rays=False))
+        runs["swimming"].append(table.measure(deployment("{}"), pings, with_rays=False))
     found = {name: min(all_of, key=lambda run: run["sonar"]) for name, all_of in runs.items()}
     return {"pings": found, "ratio": found["swimming"]["sonar"] / found["at rest"]["sonar"]}
 

@@ -68,8 +68,8 @@ struct Tube {
     size_t count() const { return positions.size() / 3; }
 };
 
-/** A tube with a skin of three joints: `waves` turns the last two, `goes` moves the root. Nodes: 0 "eel" above all, 1
- *  "skin" with the mesh, 2 to 4 "joint_0" and on. */
+/** A tube with a skin of three joints: `waves` turns the last two, `advance` moves the root. Nodes: 0 "eel" above all,
+ * 1 "skin" with the mesh, 2 to 4 "joint_0" and on. */
 inline std::string eelText(const Tube& tube, const std::string& more_nodes = "") {
     Arrays arrays;
     const int positions = arrays.floats("VEC3", tube.positions), indices = arrays.indices(tube.indices);
@@ -103,7 +103,7 @@ inline std::string eelText(const Tube& tube, const std::string& more_nodes = "")
         "animations":[{{"name":"waves","samplers":[{{"input":{},"output":{}}}],
                        "channels":[{{"sampler":0,"target":{{"node":3,"path":"rotation"}}}},
                                    {{"sampler":0,"target":{{"node":4,"path":"rotation"}}}}]}},
-                      {{"name":"goes","samplers":[{{"input":{},"output":{}}}],
+                      {{"name":"advance","samplers":[{{"input":{},"output":{}}}],
                        "channels":[{{"sampler":0,"target":{{"node":0,"path":"translation"}}}}]}}],)",
                more_nodes, positions, joints_0, weights_0, indices, inverse, times, turns, long_times, way) +
            arrays.text();

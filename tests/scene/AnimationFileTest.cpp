@@ -95,7 +95,7 @@ TEST_F(AnimationFileTest, MorphTargetsAddUpByWeight) {
 TEST_F(AnimationFileTest, AnimationsPlayInALoopUnlessConfiguredOtherwise) {
     const auto scene = shared(eelText(tube));
     const auto placeAt = [&](double seconds, const AnimationConfig& config) {
-        const auto snapshot = at(scene, seconds, {{"goes", config}});
+        const auto snapshot = at(scene, seconds, {{"advance", config}});
         return snapshot.moved.empty() ? -1 : snapshot.moved[0].world_from_object[3].x;
     };
     EXPECT_NEAR(placeAt(2.5, {}), 0.25, 1e-12);
@@ -191,7 +191,7 @@ TEST_F(AnimationFileTest, TwoAnimationsThatMoveTheSameAreReported) {
     types::Diagnostics diagnostics;
     const Animator animator(scene, {}, {}, diagnostics);
     ASSERT_EQ(animator.notices().size(), 2u);
-    EXPECT_NE(animator.notices()[1].find("goes (1 of 1 channels)"), std::string::npos) << animator.notices()[1];
+    EXPECT_NE(animator.notices()[1].find("advance (1 of 1 channels)"), std::string::npos) << animator.notices()[1];
     Animator(scene, {{"swims", {}}}, {}, diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_EQ(diagnostics[0].path, "animations.swims");

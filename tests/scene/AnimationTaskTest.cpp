@@ -58,7 +58,7 @@ TEST_F(AnimationTaskTest, AllAnimationsPlayFromTheStartOfTheRun) {
     EXPECT_NEAR(*wayAt(2.5), 0.25, 1e-12);
     EXPECT_EQ(at(0.5)->deformed.size(), 1u);
     EXPECT_THAT(task_.notices(),
-                testing::Contains(testing::HasSubstr("animations that play: waves (1 s), goes (2 s)")));
+                testing::Contains(testing::HasSubstr("animations that play: waves (1 s), advance (2 s)")));
 }
 
 TEST_F(AnimationTaskTest, AnimationsThatAreNotToPlayLeaveTheSceneAtRest) {
@@ -72,7 +72,7 @@ TEST_F(AnimationTaskTest, AnimationsThatAreNotToPlayLeaveTheSceneAtRest) {
 
 TEST_F(AnimationTaskTest, APortSetsTheTimeWithinAnAnimation) {
     task_.config.set(config_);
-    auto* const port = task_.makeInput("goes.time", clock_.port);
+    auto* const port = task_.makeInput("advance.time", clock_.port);
     ASSERT_NE(port, nullptr);
     EXPECT_EQ(port->need(), framework::Need::Optional);
     EXPECT_EQ(task_.makeInput("runs.time", clock_.port), nullptr);
@@ -126,7 +126,7 @@ TEST_F(AnimationTaskTest, AnUnknownAnimationIsRefused) {
     ASSERT_EQ(diagnostics.size(), 1u);
     EXPECT_EQ(diagnostics[0].path, "animations.goez");
     EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("did you mean"));
-    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("may be waves, goes"));
+    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("may be waves, advance"));
 }
 
 TEST_F(AnimationTaskTest, AnimationsAllocateNothingAfterTheFirstPoses) {

@@ -249,7 +249,7 @@ double centreOf(const types::Sonar& ping) {
 }
 
 /** |p + v t1| = c t1, and the same way back: the range of the echo of a plate in front of the sonar. */
-TEST(DeformingMotionTest, AJointThatComesNearerEchoesAsAnObjectThatDoes) {
+TEST(DeformingMotionTest, AnApproachingJointEchoesLikeAnApproachingObject) {
     glm::dmat4 place(1), rate(0);
     place[3] = {200, 0, 0, 1};
     rate[3] = {-12, 0, 0, 0};

@@ -9,7 +9,7 @@ std::string withoutDeforming(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no mesh has a skin or morph targets";
 }
 std::string deformingNeedsRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
-    return "the scene is drawn, with skins and morph targets at rest; they deform with `visibility: cpu`";
+    return "rasterised scenes show skins and morph targets at rest; they deform with `visibility: cpu`";
 }
 
 /** Meshes that skins and morph targets deform from ping to ping. RayEchoes poses them. */

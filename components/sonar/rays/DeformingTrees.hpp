@@ -9,9 +9,9 @@
 
 namespace insonify::sonar {
 
-/** Embree's trees of the objects that deform: one for each, and a tree of these trees. The shape of an object's tree
- *  follows from its mesh as the file has it, and is fitted to the triangles of each ping. Triangles are copied to where
- *  they are, as those of a StillTree are: the same triangles are met in the same places, whether they deform or not. */
+/** Embree's trees of the objects that deform: one per object, and a tree of these trees. The structure of an object's
+ *  tree follows from its mesh in the file; its boxes are refitted to the triangles of each ping. Triangles are copied
+ * at their places, like those of a StillTree: rays meet them in the same places, whether they deform or not. */
 class DeformingTrees {
 public:
     struct Object {
@@ -20,7 +20,7 @@ public:
     };
 
     DeformingTrees();
-    /** Throws std::runtime_error with Embree's error. */
+    /** Builds the trees. Throws std::runtime_error with Embree's error. */
     explicit DeformingTrees(std::vector<Object> objects);
     ~DeformingTrees();
     DeformingTrees(DeformingTrees&&) noexcept;
@@ -29,17 +29,17 @@ public:
     bool isEmpty() const { return objects_.empty(); }
     size_t size() const { return objects_.size(); }
     uint32_t object(size_t i) const { return objects_[i].object; }
-    /** Fits the tree of one object. Several threads may do so at a time, each with another object.
-     *  @param place  of the object about the origin of the rays */
+    /** Refits the tree of one object. Several threads may call this concurrently, each with another object.
+     *  @param place  place of the object about the origin of the rays */
     void fit(size_t i, const glm::dmat4& place);
-    /** Fits the tree of trees, once all of them are fitted. */
+    /** Refits the tree of trees, after all objects are refitted. */
     void join();
 
     RTCScene scene() const { return top_->scene(); }
     RTCScene scene(size_t i) const;
-    /** The command and triangle of a hit in scene(). */
+    /** Returns the command and triangle of a hit in scene(). */
     TreePart meaning(uint32_t geometry, uint32_t instance) const { return meaningIn(instance, geometry); }
-    /** The same of a hit in scene(i). */
+    /** Returns the command and triangle of a hit in scene(i). */
     TreePart meaningIn(size_t i, uint32_t geometry) const;
 
 private:

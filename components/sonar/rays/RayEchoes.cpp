@@ -187,12 +187,6 @@ void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
     for (const uint32_t object : meshes->objects())
         triangles += geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
     bends_ = triangles <= max_bent;
-<<<<<<< HEAD:components/sonar/rays/RayEchoes.cpp
-    const auto flat = std::make_shared<const std::vector<CurveRecord>>();
-    for (const uint32_t object : meshes->objects())
-        curves_[static_cast<size_t>(geometry_->objects[object].mesh)] = flat;
-=======
->>>>>>> animate:components/sonar/rays/CastEchoes.cpp
 }
 
 void RayEchoes::takeShapes(const types::Snapshot& snapshot) {

@@ -26,7 +26,7 @@ struct TreePart {
 class EmbreeScene {
 public:
     enum class Kind {
-        Built,     ///< Once, to be fast.
+        Built,     ///< Built once, for fast rays.
         Refitted,  ///< Its parts keep the shape of their trees when their vertices move.
     };
 
@@ -43,7 +43,7 @@ public:
     void add(const EmbreeScene& other, const glm::dmat4& place);
     /** Builds the tree. Throws std::runtime_error with Embree's error. */
     void commit();
-    /** The same after vertices have moved, of a scene that is refitted. */
+    /** Refits a Kind::Refitted scene after vertices have moved. */
     void recommit();
 
 private:
@@ -52,7 +52,7 @@ private:
     std::shared_ptr<RTCDeviceTy> device_;
     Kind kind_;
     RTCScene scene_;
-    std::vector<bool> has_vertices_;  ///< Of each part; else it is another scene.
+    std::vector<bool> has_vertices_;  ///< Whether each part has vertices; else it is another scene.
 };
 
 /** The tree of a mesh in its own axes, with a part for each run of one material. Commands are counted from the object's
