@@ -21,7 +21,7 @@ MOTION_SHIFTS = APERTURE * np.array([0, 0.05, 0.1, 0.1464, 0.2, 0.3, 0.45])   # 
 MOTION_DEPTH = 3.0                        # of the floor below the sonar
 MOTION_RANGES = (5.5, 7.5)
 MOTION_BEARINGS = np.arcsin(np.array([-1, 0, 1]) * WAVELENGTH / APERTURE)     # apart by the first null
-MOTION_PLACES = 6                         # patches of floor that the correlation is a mean over
+MOTION_PLACES = 4                         # patches of floor that the correlation is a mean over
 
 EXPERIMENTS = {
     "points": "range_m [bins], truth_m [targets], intensity [targets, bins]",
@@ -30,5 +30,5 @@ EXPERIMENTS = {
     "sphere": "intensity [bins] of the sphere, reference [bins] of a point target of 0 dB at the sphere's nearest point",
     "speckle": "range_m [bins], intensity [pings, beams, bins]: of the floor, from places that have nothing in common",
     "motion": "shift_m [shifts], intensity [places, shifts, beams, bins]",
-    "times": "seconds [pings] of the pings of `motion`, cores",
+    "times": "seconds and processor [pings]: times of the pings of `motion` by the clock and of all threads; cores",
 }

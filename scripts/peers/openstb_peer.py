@@ -17,7 +17,7 @@ import distributed
 import numpy as np
 from openstb.simulator.plugin import abc, loader
 
-SAMPLE_RATE, CHIRP = 45e3, 1e-3           # [Hz], [s]
+SAMPLE_RATE, CHIRP = 40e3, 1e-3           # [Hz], [s]
 SPACING = case.WAVELENGTH / 2
 ARRAY = (np.arange(case.ELEMENTS) - (case.ELEMENTS - 1) / 2) * SPACING
 BEAM_STEP = 0.2 * case.RESOLUTION         # of the ranges at which beams are formed
@@ -50,7 +50,7 @@ class Sonar:
     """openSTB with the sonar of `case`. Its axes are x along the array, y ahead and z down."""
 
     def __init__(self, cluster, folder):
-        self.cluster, self.folder, self.seconds = cluster, folder, []
+        self.cluster, self.folder = cluster, folder
 
     def signal(self):
         half = case.BANDWIDTH / 2
@@ -89,9 +89,7 @@ class Sonar:
         controller = loader.controller({"name": "simple_points", "parameters": {
             "result_filename": f"{out}.zarr", "points_per_chunk": 4000, "sample_rate": SAMPLE_RATE,
             "baseband_frequency": case.FREQUENCY, "max_samples": samples}})
-        began = time.perf_counter()
         controller.run(config)
-        self.seconds.append(time.perf_counter() - began)
         with np.load(f"{out}.npz") as found:
             return found["pressure"]
 
@@ -157,7 +155,7 @@ def beam(sonar):
 def floor_slope(sonar, short):
     low, high = case.FLOOR_RANGES
     reach = np.sqrt((high + 0.5) ** 2 - case.FLOOR_DEPTH ** 2)
-    density, count = (5, 2) if short else (60, 8)
+    density, count = (5, 2) if short else (60, 6)
     ranges = grid(low, high)
     found = [np.abs(beams(sonar.echoes([floor(101 + i, case.FLOOR_DEPTH, 2 * reach, -reach, reach, density)], high + 1), [0.0], ranges,
                           np.zeros(1))[0, 0]) ** 2 for i in range(count)]
@@ -192,19 +190,21 @@ def motion(sonar, short):
     near, far = (np.sqrt(r ** 2 - case.MOTION_DEPTH ** 2) for r in (low - 0.15, high + 0.15))
     width = 2 * far * np.tan(np.radians(10))                     # two sidelobes and more
     ranges = np.arange(low, high, case.RESOLUTION)
-    density, places, elements = (60, 2, ARRAY[::16]) if short else (1900, case.MOTION_PLACES, ARRAY)
-    found, seconds = [], []
+    # Every second element: grating lobes are at 90 degrees, where there are no points.
+    density, places, elements = (60, 2, ARRAY[::16]) if short else (1500, case.MOTION_PLACES, ARRAY[::2] + SPACING / 2)
+    found, seconds, processor = [], [], []
     for place in range(places):
         rows = []
         for shift in case.MOTION_SHIFTS:
-            began = time.perf_counter()
+            began = time.perf_counter(), time.process_time()
             targets = [floor(201 + place, case.MOTION_DEPTH, width, near, far, density, -shift)]
             echoes = sonar.echoes(targets, high + 0.3, elements)
             rows.append(np.abs(beams(echoes, elements, ranges, case.MOTION_BEARINGS)[0]) ** 2)
-            seconds.append(time.perf_counter() - began)
+            seconds.append(time.perf_counter() - began[0])
+            processor.append(time.process_time() - began[1])
         found.append(rows)
     count = round(width * (far - near) * density)
-    return {"range_m": ranges, "shift_m": case.MOTION_SHIFTS, "intensity": np.array(found)}, seconds, count
+    return {"range_m": ranges, "shift_m": case.MOTION_SHIFTS, "intensity": np.array(found)}, {"seconds": seconds, "processor": processor}, count
 
 
 def about(slope, count):
@@ -213,7 +213,7 @@ def about(slope, count):
         "notes": {
             "floor": f"points reflect alike from all sides; its plugin `lambertian`, which no controller calls yet, has {slope:.2f}",
             "sphere": "no surfaces: a point is given the reflectivity a/2",
-            "times": f"{count} points, {case.ELEMENTS} receivers on a Dask cluster; beams are formed by the adapter",
+            "times": f"{count} points, {case.ELEMENTS // 2} receivers; beams are formed by the adapter",
         },
     }
 
@@ -236,10 +236,10 @@ def main():
     save("beam", beam(sonar))
     save("sphere", sphere(sonar))
     save("floor", floor_slope(sonar, options.short))
-    arrays, seconds, count = motion(sonar, options.short)
+    arrays, times, count = motion(sonar, options.short)
     save("motion", arrays)
     save("speckle", {"range_m": arrays["range_m"], "intensity": arrays["intensity"][:, 0]})
-    save("times", {"seconds": seconds, "cores": cores})
+    save("times", {**times, "cores": cores})
     (options.folder / "about.json").write_text(json.dumps(about(lambert_plugin(), count), indent=1))
     cluster.terminate()
 
