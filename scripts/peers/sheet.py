@@ -88,8 +88,9 @@ def table(peers):
     return lines + [""] + [f"({i + 1}) {note}." for i, note in enumerate(notes)]
 
 
-def write(folders, file):
-    """Prints the sheet of adapters' folders, and writes it to a file."""
+def write(folders, out):
+    """Prints the sheet of adapters' folders, and writes it to sheet.md in the folder `out`."""
+    file = Path(out) / "sheet.md"
     peers = [Peer(Path(folder)) for folder in folders]
     text = "\n".join(table(peers)) + "\n"
     print(text, end="")
