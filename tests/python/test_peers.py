@@ -57,7 +57,7 @@ def test_target_strength_is_relative_to_the_reference():
     assert metrics.target_strength(np.array([0, 1, 3.0]), np.array([40.0])) == pytest.approx(-10)
 
 
-def test_speckle_of_rayleigh_amplitudes_is_told_from_other_laws():
+def test_speckle_of_rayleigh_amplitudes_differs_from_other_laws():
     mean = 1 + np.arange(160) / 50                                # which normalised() takes out
     exponential = mean * rng.exponential(size=(60, 3, 160))
     assert metrics.contrast(exponential) == pytest.approx(1, abs=0.03)
@@ -85,7 +85,7 @@ def test_correlations_of_an_array_that_moves_follow_the_closed_form():
     assert found[0] == pytest.approx(1)
 
 
-def test_the_correlation_of_the_closed_form_halves_where_it_is_said_to():
+def test_the_closed_form_is_a_half_at_0_146_of_the_aperture():
     assert metrics.aperture_correlation(0.1464, 1.0) == pytest.approx(0.5, abs=1e-3)
     assert metrics.aperture_correlation(0.6, 1.0) == 0
 
