@@ -166,7 +166,7 @@ def beam(sonar):
 def floor_slope(sonar, short):
     low, high = case.FLOOR_RANGES
     reach = np.sqrt((high + 0.5) ** 2 - case.FLOOR_DEPTH ** 2)
-    density, count = (5, 2) if short else (60, 6)
+    density, count = (5, 2) if short else (15, 40)
     ranges = grid(low, high)
     found = [np.abs(beams(sonar.echoes([floor(101 + i, case.FLOOR_DEPTH, 2 * reach, -reach, reach, density)], high + 1), [0.0], ranges,
                           np.zeros(1))[0]) ** 2 for i in range(count)]
@@ -206,7 +206,7 @@ def motion(sonar, short):
     """Places are other points of the floor. The sonar stays at 0, and the floor moves by a shift the other way."""
     low, high = case.MOTION_RANGES
     near, far = (np.sqrt(r ** 2 - case.MOTION_DEPTH ** 2) for r in (low - 0.15, high + 0.15))
-    width = 2 * far * np.tan(np.radians(10))                     # two sidelobes and more
+    width = 2 * far * np.tan(np.radians(20))                     # five sidelobes: farther ones have 2 % of the energy
     ranges = np.arange(low, high, case.RESOLUTION)
     # Every second element: grating lobes are at 90 degrees, where there are no points.
     density, places, elements = (60, 2, ARRAY[::16]) if short else (1500, case.MOTION_PLACES, ARRAY[::2] + SPACING / 2)

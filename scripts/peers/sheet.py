@@ -35,7 +35,8 @@ def _motion(a):
 
 
 def _times(a):
-    return [f"{1e3 * np.median(a[name]):.3g}" for name in ("processor", "seconds")]
+    medians = [1e3 * np.median(a[name]) for name in ("processor", "seconds")]
+    return [f"{ms:.0f}" if ms > 100 else f"{ms:.1f}" for ms in medians]
 
 
 # Experiment, function, and for each of its figures what it is and the closed form.
@@ -85,7 +86,7 @@ def table(peers):
         for i, (figure, theory) in enumerate(rows):
             cells = [peer.cells[experiment][i] + mark for peer, mark in zip(peers, marks)]
             lines.append("| " + " | ".join([figure, theory, *cells]) + " |")
-    return lines + [""] + [f"({i + 1}) {note}." for i, note in enumerate(notes)]
+    return lines + [""] + [f"- ({i + 1}) {note}." for i, note in enumerate(notes)]
 
 
 def write(folders, out):
