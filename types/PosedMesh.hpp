@@ -20,8 +20,8 @@ MeshPose poseOf(const Snapshot& snapshot, const DeformedObject& deformed, const 
 bool deformsRightly(const Snapshot& snapshot);
 
 /** Moves positions, normals, tangents and the boxes of clusters of a mesh that has a Deformation: first morph targets,
- *  then joints, as glTF 2.0 has it (3.7.3, 3.7.2.2). Sums are in double precision. Positions that are not finite, or
- *  beyond 1e15 m, go to the origin. Allocates nothing. */
+ *  then joints, as glTF 2.0 has it (3.7.3, 3.7.2.2). Sums are in double precision. Positions that are not finite go to
+ *  the origin. Allocates nothing. */
 void poseMesh(const MeshPose& pose, Mesh& mesh);
 
 /** Fills in the velocity of each vertex, in the axes of the mesh [m/s]. */
