@@ -56,7 +56,12 @@ glm::dmat3 linearOf(const MeshPose& pose, const Deformation& deformation, size_t
     return sum;
 }
 
-bool isFinite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+/** Squares of what is larger leave the range of float [m]. */
+constexpr float max_coordinate = 1e15f;
+
+bool isUsable(const glm::vec3& p) {
+    return std::abs(p.x) < max_coordinate && std::abs(p.y) < max_coordinate && std::abs(p.z) < max_coordinate;
+}
 
 glm::vec3 unitOr(const glm::dvec3& vector, const glm::vec3& otherwise) {
     const double length = glm::length(vector);
@@ -71,7 +76,7 @@ void posePositions(const MeshPose& pose, const Deformation& deformation, std::ve
         for (const JointShare& share : shares)
             sum += static_cast<double>(share.weight) * (pose.joints[share.joint].mesh_from_bind * glm::dvec4(p, 1));
         const glm::vec3 posed(sum);
-        positions[i] = isFinite(posed) ? posed : glm::vec3(0);
+        positions[i] = isUsable(posed) ? posed : glm::vec3(0);
     }
 }
 

@@ -28,6 +28,8 @@ namespace {
 
 /** Max number of instances and nodes together. */
 constexpr size_t max_objects = 1'000'000;
+/** A small file may let any number of nodes share a mesh that deforms, of which each has a copy. */
+constexpr size_t max_posed = 200'000'000;
 
 /** A node whose mesh has a skin or morph targets. */
 struct DeformingNode {
@@ -269,6 +271,13 @@ private:
                     fail(fmt::format("skins[{}].joints[{}]", node.skin, k),
                          fmt::format("is nodes[{}], which is not in the scene", joint));
             }
+            posed_ += from.mesh->positions.size() + from.mesh->indices.size();
+            if (posed_ > max_posed)
+                fail(
+                    from.path,
+                    fmt::format("brings the file over {} vertices and indices of meshes that deform, one mesh for each "
+                                "node",
+                                max_posed));
             deforming.rest_weights = restWeights(gltf_, node, from.path);
             types::Mesh mesh = *from.mesh;
             scene::poseAtRest(deforming, scene_.object_nodes[i], places, mesh);
@@ -350,6 +359,7 @@ private:
     std::vector<int> node_in_scene_;           ///< Of each node of the file, -1 for one that is not there.
     std::vector<glm::dmat4> world_from_node_;  ///< Of each node of the scene.
     std::vector<DeformingNode> deforming_;
+    size_t posed_ = 0;  ///< Vertices and indices of meshes that were posed.
     /** Meshes before joints and targets move them, by mesh and skin of the file. */
     std::map<std::pair<int, int>, std::shared_ptr<const types::Mesh>> deforming_meshes_;
 };

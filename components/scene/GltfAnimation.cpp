@@ -93,12 +93,15 @@ private:
             fail(path + ".interpolation",
                  fmt::format("is \"{}\"; may be LINEAR, STEP or CUBICSPLINE", sampler.interpolation));
         keys.times = timesOf(sampler.input, path + ".input");
-        keys.values = valuesOf(sampler.output, property, path + ".output");
         const size_t per_key = keys.interpolation == Interpolation::CubicSpline ? 3 : 1;
-        if (keys.values.size() != keys.times.size() * per_key * width)
+        const size_t per_element = property == AnimatedPath::Weights ? 1 : width;
+        accessors_.componentType(sampler.output);  // refuses an accessor that does not exist
+        const size_t count = gltf_.model.accessors[static_cast<size_t>(sampler.output)].count;
+        if (count != keys.times.size() * per_key * width / per_element)  // before a bad count takes memory
             fail(path + ".output",
-                 fmt::format("has {} numbers; {} keys of {} values with {} numbers need {}", keys.values.size(),
-                             keys.times.size(), per_key, width, keys.times.size() * per_key * width));
+                 fmt::format("has {} elements; {} keys of {} values need {}", count, keys.times.size(), per_key,
+                             keys.times.size() * per_key * width / per_element));
+        keys.values = valuesOf(sampler.output, property, path + ".output");
         if (keys.is_rotation) normaliseRotations(keys, path + ".output");
         return keys;
     }

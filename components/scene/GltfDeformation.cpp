@@ -10,6 +10,8 @@
 namespace insonify::scene {
 namespace {
 
+constexpr size_t max_joints = 65'536;  ///< Of a skin, as many as indices of 16 bits can name [1].
+
 bool isFiniteVector(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /** The list in the order of a mesh, empty where it is empty. */
@@ -44,10 +46,11 @@ GltfSkin readSkin(const GltfFile& gltf, const GltfAccessors& accessors, int skin
     if (from.inverseBindMatrices < 0) return result;
     if (accessors.componentType(from.inverseBindMatrices) != TINYGLTF_COMPONENT_TYPE_FLOAT)
         fail(here + ".inverseBindMatrices", "are not of componentType 5126; must be floats");
-    const std::vector<float> numbers = accessors.numbers(from.inverseBindMatrices, TINYGLTF_TYPE_MAT4);
-    if (numbers.size() / 16 < from.joints.size())
+    const size_t count = gltf.model.accessors[static_cast<size_t>(from.inverseBindMatrices)].count;
+    if (count < from.joints.size() || count > max_joints)
         fail(here + ".inverseBindMatrices",
-             fmt::format("are {}; the skin has {} joints", numbers.size() / 16, from.joints.size()));
+             fmt::format("are {}; the skin has {} joints, and may have {}", count, from.joints.size(), max_joints));
+    const std::vector<float> numbers = accessors.numbers(from.inverseBindMatrices, TINYGLTF_TYPE_MAT4);
     for (size_t i = 0; i < result.joints.size(); ++i) {
         for (int k = 0; k < 16; ++k)
             result.joint_from_bind[i][k / 4][k % 4] = static_cast<double>(numbers[16 * i + static_cast<size_t>(k)]);

@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"interpolation", R"("samplers":[{)", R"("samplers":[{"interpolation":"BEZIER",)",
                 "animations[0].samplers[0].interpolation: is \"BEZIER\"; may be LINEAR, STEP or CUBICSPLINE"},
         BadFile{"counts", R"("samplers":[{)", R"("samplers":[{"interpolation":"CUBICSPLINE",)",
-                "animations[0].samplers[0].output: has 16 numbers; 4 keys of 3 values with 4 numbers need 48"},
+                "animations[0].samplers[0].output: has 4 elements; 4 keys of 3 values need 12"},
         BadFile{"input", R"("input":5)", R"("input":99)", "accessors[99]: does not exist"},
         BadFile{"type", R"("input":5)", R"("input":0)",
                 "accessors[0].type: is not the one needed here; must be SCALAR"},
@@ -243,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"few_joints", R"("joints":[2,3,4])", R"("joints":[2,3])",
                 "meshes[0].primitives[0].attributes.JOINTS_0: is 2 at vertex"},
         BadFile{"matrices", R"("joints":[2,3,4])", R"("joints":[2,3,4,0])",
-                "skins[0].inverseBindMatrices: are 3; the skin has 4 joints"},
+                "skins[0].inverseBindMatrices: are 3; the skin has 4 joints, and may have 65536"},
         BadFile{"no_weights", R"(,"WEIGHTS_0":3)", "", "meshes[0].primitives[0].attributes: has no WEIGHTS_0"},
         BadFile{"no_joints", R"(,"JOINTS_0":2,"WEIGHTS_0":3)", "", "has no JOINTS_0 and no WEIGHTS_0"},
         BadFile{"joint_type", R"("JOINTS_0":2)", R"("JOINTS_0":3)",
@@ -283,7 +283,7 @@ TEST_F(AnimationFileTest, BadMorphTargetsAreRefused) {
         "meshes[0].weights: has 1 numbers; the mesh has 2 morph targets");
     has(R"({"POSITION":2})", R"({"POSITION":4})", "accessors[4].type");
     has(R"("name":"kelp")", R"("name":"kelp","weights":[1,2,3])", "nodes[0].weights: has 3 numbers; the mesh has 2");
-    has(R"("output":5)", R"("output":4)", "animations[0].samplers[0].output: has 3 numbers; 3 keys of 1 values with 2");
+    has(R"("output":5)", R"("output":4)", "animations[0].samplers[0].output: has 3 elements; 3 keys of 1 values need 6");
     has(R"(,{"POSITION":3}])", R"(,{"POSITION":1}])", "accessors[1].type");
 }
 

@@ -162,6 +162,21 @@ TEST_F(DeformingMeshTest, APingDoesNotDependOnThoseBeforeIt) {
     EXPECT_EQ(ping.bins, pingOf(eelFan(), plain).bins);
 }
 
+TEST_F(DeformingMeshTest, AnObjectThatIsScaledToNothingIsNotThere) {
+    types::Snapshot snapshot = at(read(eelText(tube_)), 0.3);
+    snapshot.targets = {{{1, 0, 0}, 0}};
+    glm::dmat4& place = snapshot.moved[0].world_from_object;
+    for (int axis = 0; axis < 3; ++axis) place[axis] = glm::dvec4(0);
+    types::Snapshot target = test::snapshotOf(test::openWater(), snapshot.sonar.position);
+    target.sonar = snapshot.sonar;
+    target.targets = snapshot.targets;
+    const types::Sonar expected = pingOf(eelFan(), target);
+    ASSERT_GT(echoesOf(expected), 0u);
+    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+    snapshot.deformed.clear();  // by the path of objects that move
+    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+}
+
 TEST_F(DeformingMeshTest, ThreadsChangeNothing) {
     const types::Snapshot snapshot = at(read(eelText(tube_)), 0.35);
     RenderOptions one, four;
