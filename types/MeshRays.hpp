@@ -88,13 +88,14 @@ struct TrianglesOnLine {
     const glm::dvec3 &from, &way;
     bool mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0;
 
-    /** Calls `use(share, is_back)` for each triangle among `index_count` indices that the line meets. The share of the
-     *  way [1] is above 0 and below 1. Ends when `use` returns true, and returns that. */
+    /** Calls `use(share, is_back, index)` for each triangle among `index_count` indices that the line meets. The share
+     *  of the way [1] is above 0 and below 1, `index` is that of the triangle's first corner. Ends when `use` returns
+     *  true, and returns that. */
     template <class Use>
     bool any(size_t first_index, size_t index_count, const Use& use) const {
         for (size_t i = first_index; i < first_index + index_count; i += 3) {
             const auto met = meetTriangle(way, corner(i), corner(i + 1), corner(i + 2));
-            if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored)) return true;
+            if (met && met->share > 0 && met->share < 1 && use(met->share, met->is_back != mirrored, i)) return true;
         }
         return false;
     }

@@ -61,7 +61,7 @@ std::optional<double> Bottom::rangeOfScene(const glm::dvec3& from, const glm::dv
             !types::meetsBox(from, way, (placed.low + placed.high) / 2.0, (placed.high - placed.low) / 2.0))
             continue;
         double share = 1;
-        types::anyTriangleMet(meshOf(i), placed.world_from_object, from, way, [&](double met, bool) {
+        types::anyTriangleMet(meshOf(i), placed.world_from_object, from, way, [&](double met, bool, size_t) {
             share = std::min(share, met);
             return false;
         });

@@ -10,7 +10,7 @@
 namespace insonify::scene {
 namespace {
 
-constexpr size_t max_joints = 65'536;  ///< Of a skin, as many as indices of 16 bits can name [1].
+constexpr size_t max_joints = 65'536;  ///< Max joints of a skin: indices have 16 bits [1].
 
 bool isFiniteVector(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

@@ -28,6 +28,7 @@ struct SonarRenderer::Parts {
     bool takeScene(types::GeometryPtr given);
     void takeShapes(const types::Snapshot& snapshot);
     void describePlan();
+    types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
 
     types::GeometryPtr scene;                  ///< Of the snapshots.
     std::unique_ptr<DeformedMeshes> deformed;  ///< Null: no mesh deforms.
@@ -134,7 +135,7 @@ void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) 
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     parts_->fillHeader(snapshot, ping);
-    types::SonarTruth* const truth = &ping == parts_->reported_ping ? parts_->truth : nullptr;
+    types::SonarTruth* const truth = parts_->truthOf(ping);
     if (truth) truth->takeGrid(ping);
     parts_->effects.begin({snapshot, truth});
     parts_->echoes->setTruth(truth);
@@ -155,7 +156,7 @@ void SonarRenderer::setTruth(const types::Sonar& ping, types::SonarTruth* truth)
 void SonarRenderer::finish(const types::Snapshot& snapshot, types::Sonar& ping) {
     const auto start = std::chrono::steady_clock::now();
     EchoField* const field = parts_->echoes->field();
-    PingInMaking made{snapshot, ping, field, parts_->echoes->bent()};
+    PingInMaking made{snapshot, ping, field, parts_->echoes->bent(), parts_->truthOf(ping)};
     parts_->effects.addEchoes(made);
     if (field) field->detect(ping);
     parts_->effects.addToBins(ping);

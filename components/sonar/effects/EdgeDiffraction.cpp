@@ -27,7 +27,7 @@ public:
     void takeShapes(const types::Snapshot& snapshot) override { edges_->takeShapes(snapshot); }
     void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
-        received_ = edges_->add(ping.snapshot, ping.ping, ping.field);
+        received_ = edges_->add(ping);
         pinged_ = true;
     }
     size_t received() const override { return received_; }

@@ -42,9 +42,10 @@ struct CellBatch {
 /** A ping that has the echoes of its surfaces. */
 struct PingInMaking {
     const types::Snapshot& snapshot;
-    types::Sonar& ping;    ///< Its bins hold intensities of the sorted beams, unless `field` is given.
-    EchoField* field;      ///< The field that is squared into the bins; null where energies are summed.
-    const RayPaths* bent;  ///< The sound paths; null where they are straight.
+    types::Sonar& ping;        ///< Its bins hold intensities of the sorted beams, unless `field` is given.
+    EchoField* field;          ///< The field that is squared into the bins; null where energies are summed.
+    const RayPaths* bent;      ///< The sound paths; null where they are straight.
+    types::SonarTruth* truth;  ///< That of its surfaces, of the sorted beams; null where no truth is recorded.
 };
 
 /** An effect in the pings of one renderer, with the state that it keeps from ping to ping. No call for a ping

@@ -28,7 +28,7 @@ public:
         pinged_ = true;
         if (all_ == 0) return;
         if (!targets_) targets_.emplace(plan_, *geometry_);
-        received_ = targets_->add(ping.snapshot, ping.ping, ping.field, ping.bent);
+        received_ = targets_->add(ping);
     }
     size_t received() const override { return received_; }
     std::optional<Omitted> omissions() const override {

@@ -45,6 +45,12 @@ private:
     glm::dvec3 from_, inverse_, rounding_;
 };
 
+/** Returns the material of the triangle with a first index. */
+int materialAt(const types::Mesh& mesh, size_t index) {
+    const auto next = std::ranges::upper_bound(mesh.clusters, index, {}, &types::Cluster::first_index);
+    return std::prev(next)->material;
+}
+
 bool isFinite(const glm::dmat3& matrix) {
     const glm::dvec3 sum = glm::abs(matrix[0]) + glm::abs(matrix[1]) + glm::abs(matrix[2]);
     return std::isfinite(sum.x + sum.y + sum.z);
@@ -110,10 +116,41 @@ bool Sightlines::anyMet(size_t object, const glm::dvec3& from, const glm::dvec3&
 bool Sightlines::isOpen(const glm::dvec3& from, const glm::dvec3& to) const {
     const glm::dvec3 end = to - from;
     const double range = glm::length(end);
-    const auto hides = [&](double share, bool) { return share * range > nearest && (1 - share) * range > nearest; };
+    const auto hides = [&](double share, bool, size_t) {
+        return share * range > nearest && (1 - share) * range > nearest;
+    };
     for (size_t i = 0; i < placed_.size(); ++i)
         if (anyMet(i, from, end, hides)) return false;
     return true;
+}
+
+bool Sightlines::findWalls(const glm::dvec3& from, const glm::dvec3& to, const std::vector<bool>& are_walls,
+                           std::vector<WallMet>& walls) const {
+    const glm::dvec3 end = to - from;
+    const double range = glm::length(end);
+    walls.clear();
+    for (size_t i = 0; i < placed_.size(); ++i) {
+        const auto hides = [&](double share, bool, size_t index) {
+            if (!(share * range > nearest && (1 - share) * range > nearest)) return false;
+            const auto material = static_cast<size_t>(materialAt(meshOf(i), index));
+            if (!are_walls[material]) return true;
+            walls.push_back({share * range, std::abs(glm::dot(normalAt(i, index), end)) / range, material});
+            return false;
+        };
+        if (anyMet(i, from, end, hides)) return false;
+    }
+    std::ranges::sort(walls, {}, &WallMet::range);
+    return true;
+}
+
+glm::dvec3 Sightlines::normalAt(size_t object, size_t index) const {
+    const types::Mesh& mesh = meshOf(object);
+    const auto corner = [&](size_t i) {
+        return glm::dvec3(placed_[object].world_from_object * glm::dvec4(mesh.positions[mesh.indices[i]], 1));
+    };
+    const glm::dvec3 a = corner(index), across = glm::cross(corner(index + 1) - a, corner(index + 2) - a);
+    const double area = glm::length(across);
+    return area > 0 ? across / area : glm::dvec3(0);
 }
 
 std::optional<uint32_t> Sightlines::enclosing() const {
@@ -122,7 +159,7 @@ std::optional<uint32_t> Sightlines::enclosing() const {
         if (glm::any(glm::greaterThan(glm::abs(sonar_ - placed.centre), placed.half))) return false;
         return std::ranges::all_of(ways_out, [&](const glm::dvec3& way) {
             int backs = 0;  // number in excess of fronts: inside, the line leaves once more than it enters
-            anyMet(object, sonar_, way * (4 * glm::length(placed.half)), [&](double, bool is_back) {
+            anyMet(object, sonar_, way * (4 * glm::length(placed.half)), [&](double, bool is_back, size_t) {
                 backs += is_back ? 1 : -1;
                 return false;
             });

@@ -26,6 +26,17 @@ public:
     bool isOpen(const glm::dvec3& point) const { return isOpen(sonar_, point); }
     /** Returns whether one point in the world is visible from another. */
     bool isOpen(const glm::dvec3& from, const glm::dvec3& to) const;
+    /** A wall that a line of sight crosses. */
+    struct WallMet {
+        double range;     ///< From the line's start [m].
+        double cosine;    ///< Of the angle between the line and the wall's normal [1].
+        size_t material;  ///< [1]
+    };
+    /** Finds the walls between two points, by their range. `are_walls` has a value for each material. Returns false
+     *  where a surface of another material hides one point from the other. A line through the common edge of two
+     *  triangles crosses both. */
+    bool findWalls(const glm::dvec3& from, const glm::dvec3& to, const std::vector<bool>& are_walls,
+                   std::vector<WallMet>& walls) const;
     /** Returns the object that encloses the sonar, of which it sees only back faces; none where it is in open water. */
     std::optional<uint32_t> enclosing() const;
 
@@ -39,8 +50,11 @@ private:
     };
     void placeObject(size_t object, const glm::dmat4& world_from_object);
     const types::Mesh& meshOf(size_t object) const;
-    /** Calls `use(share, is_back)` for each triangle of an object that the line from `from` along the vector `end`
-     *  hits; `share` is the hit's part of its length [1]. Stops when `use` returns true. Returns whether it did. */
+    /** Returns the unit normal of the triangle with a first index, in the world; 0 where it has no area. */
+    glm::dvec3 normalAt(size_t object, size_t index) const;
+    /** Calls `use(share, is_back, index)` for each triangle of an object that the line from `from` along the vector
+     *  `end` hits; `share` is the hit's part of its length [1], `index` that of the triangle's first corner. Stops when
+     *  `use` returns true. Returns whether it did. */
     template <class Use>
     bool anyMet(size_t object, const glm::dvec3& from, const glm::dvec3& end, const Use& use) const;
 

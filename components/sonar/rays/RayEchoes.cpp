@@ -120,7 +120,7 @@ private:
     /** Follows rays through the walls that they have hit. Returns whether there are any. */
     bool traceThrough(std::span<TracedTile> tiles, Worker& worker) const;
     bool traceThrough(TracedTile& tile) const;
-    /** Follows rays through walls that ring or have a fill; deposits their echoes. */
+    /** Follows rays through walls that ring or have a fill, and between walls; deposits their echoes. */
     void followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const;
     void work(Worker& worker, types::Sonar& ping);
     void workOn(const Part& part, Worker& worker, types::Sonar& ping);
@@ -148,6 +148,7 @@ private:
     std::vector<MeshFacts::Planes> planes_;  ///< One for each mesh.
     std::vector<MeshFacts::Facets> facets_;  ///< One for each mesh.
     std::vector<MeshFacts::Curves> curves_;  ///< One for each mesh.
+    Reverberation reverberation_;
     std::unique_ptr<NormalMapping> normal_maps_;
     std::optional<SurfaceMapping> surface_maps_;  ///< None if the plan has none.
     DeformedMeshes* deformed_ = nullptr;          ///< Null: no mesh deforms.
@@ -230,6 +231,7 @@ bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     planes_ = std::move(planes);
     facets_ = std::move(facets);
     curves_ = std::move(curves);
+    reverberation_ = Reverberation(plan_, *geometry_, facets_);
     surface_maps_.reset();
     if (plan_.has(Pass::SurfaceMaps)) surface_maps_.emplace(*geometry_, visibility_.commands());
     runs_.reserve(scene().commands.size());
@@ -407,7 +409,7 @@ bool RayEchoes::traceThrough(std::span<TracedTile> tiles, Worker& worker) const 
 
 void RayEchoes::followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const {
     const PlacedScene scene = this->scene();
-    WallRays rays(rules_, visibility_, scene, surface_, plan_.config.max_walls, levels_.lossOfWater());
+    WallRays rays(rules_, visibility_, scene, surface_, reverberation_, plan_.config.max_walls, levels_.lossOfWater());
     for (const TracedTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
             while (const TracedTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);
@@ -438,7 +440,7 @@ void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worke
     std::fill(worker.sums.begin(), worker.sums.end(), 0);
     if (truth_) worker.shown->clear();
     deposit(tiles, false, part.first_beam, worker);
-    const bool apart = plan_.has(Pass::Walls) && rules_.laws.hasReturns();
+    const bool apart = plan_.has(Pass::Walls) && (rules_.laws.hasReturns() || reverberation_.is_there);
     if (apart) followWalls(tiles, part.first_beam, worker);
     const int walls = plan_.has(Pass::Walls) && !apart ? plan_.config.max_walls : 0;
     for (int wall = 0; wall < walls && traceThrough(tiles, worker); ++wall)

@@ -2,31 +2,38 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 namespace insonify::sonar {
 
-void EchoTrain::append(const Echo& echo, double resolution) {
-    const bool is_close = size_ > 0 && echo.late - echoes_[size_ - 1].late < resolution;
-    if (is_close || size_ == max_echoes)
-        echoes_[size_ - 1].weight += echo.weight;
-    else
-        echoes_[size_++] = echo;
+double Reverberation::mirrored(const MaterialLaws& laws, size_t material) {
+    constexpr double steepest = 0.3;  // as for the second bounce (ACOUSTICS.md 5.25)
+    const auto strength = static_cast<double>(laws.records[material].law.y),
+               square_slope = static_cast<double>(laws.records[material].law.z);
+    if (!(strength > 0) || !(square_slope < steepest * steepest)) return 0;
+    const WallLaw& wall = laws.walls[material];
+    const double first = wall.rings() ? static_cast<double>(wall.outside.front()) : 1;  // takeReturnsApart()
+    return std::min(4 * std::numbers::pi * strength / first, 1.0);
 }
 
-EchoTrain EchoTrain::then(const Returns& returns, double spacing, double resolution) const {
-    std::array<Echo, max_echoes * max_echoes> all;
-    size_t count = 0;
-    for (size_t i = 0; i < size_; ++i)
-        for (size_t k = 0; k < std::min(returns.size(), max_echoes); ++k)
-            all[count++] = {echoes_[i].late + static_cast<double>(k) * spacing,
-                            echoes_[i].weight * static_cast<double>(returns[k])};
-    if (size_ > 1)
-        std::stable_sort(all.begin(), all.begin() + count,
-                         [](const Echo& a, const Echo& b) { return a.late < b.late; });
-    EchoTrain train;
-    train.size_ = 0;
-    for (size_t i = 0; i < count; ++i) train.append(all[i], resolution);
-    return train;
+Reverberation::Reverberation(const RenderPlan& plan, const types::Geometry& geometry,
+                             std::span<const MeshFacts::Facets> facets) {
+    if (!plan.has(Pass::Walls)) return;
+    const auto isMirrorWall = [&](const types::Cluster& cluster) {
+        const auto material = static_cast<size_t>(cluster.material);
+        return plan.laws.walls[material].letsThrough() && mirrored(plan.laws, material) > 0;
+    };
+    for (size_t i = 0; i < plan.laws.walls.size() && plan.has(Pass::SurfaceMaps); ++i)
+        is_there |= plan.laws.walls[i].letsThrough() && mirrored(plan.laws, i) > 0;
+    for (size_t mesh = 0; mesh < facets.size() && !is_there; ++mesh)
+        for (const types::Cluster& cluster : geometry.meshes[mesh].clusters)
+            is_there |= facets[mesh] && isMirrorWall(cluster) &&
+                        std::any_of(facets[mesh]->begin() + cluster.first_index / 3,
+                                    facets[mesh]->begin() + (cluster.first_index + cluster.index_count) / 3, isFlat);
+    if (!plan.has(Pass::Paths)) return;
+    bounces = plan.config.multipath->bounces;
+    for (const types::Material& material : geometry.materials)
+        in_paths.push_back(reflectedPower(material, bounces) > 0);
 }
 
 bool WallRays::begin(const TracedTile& tile, const TileRays& rays) {
@@ -48,6 +55,7 @@ bool WallRays::begin(const TracedTile& tile, const TileRays& rays) {
         ray.across[1] = glm::cross(ray.look, ray.across[0]);
         for (int k = 0; k < 2; ++k) ray.per_from[k] = glm::dvec3(0), ray.per_way[k] = ray.across[k];
         ray.is_bent = false;
+        ray.is_in_paths = true;
         ray.range = 0;
         ray.power = 1;
         ray.medium = {};
@@ -58,7 +66,7 @@ bool WallRays::begin(const TracedTile& tile, const TileRays& rays) {
     tile_ = tile;
     tile_.hits = &shown_;
     tile_.passed = passed_.data();
-    walls_ = 0;
+    walls_ = reflections_ = 0;
     for (int i = 0; i < tile_samples; ++i)
         if (rays_[static_cast<size_t>(i)].is_there) meet(i);
     countEchoes();
@@ -170,12 +178,19 @@ void WallRays::pass(int i, PathRays& on) {
         // The wall delays sound like d c cos(theta_l) / c_l of water, and replaces d cos(theta) of it.
         if (spacing > 0) ray.train.moveAway(spacing - wall.thickness * cosine);
     }
+    ray.is_in_paths &= !wall.fill && !reverberation_.isInPaths(scene_.ranges[hits_.command[i]].material);
     enter(ray, objectOf(i), wall);
     const Medium next = ray.bodies_count > 0 ? ray.bodies[ray.bodies_count - 1].fill : Medium{};
     if (next.speed != ray.medium.speed && !refract(i, next.speed)) return;
     ray.medium = next;
+    send(i, on);
+}
+
+void WallRays::send(int i, PathRays& on) const {
+    const Ray& ray = rays_[static_cast<size_t>(i)];
     const double begin = RayVisibility::nearest / 10 + 1e-5 * ray.range,
-                 end = std::min((rules_.bins.range_max - ray.range) * next.speed, surface_.distance(ray.from, ray.way));
+                 end = std::min((rules_.bins.range_max - ray.range) * ray.medium.speed,
+                                surface_.distance(ray.from, ray.way));
     if (!(begin < end)) return;
     const glm::vec3 from(ray.from), way(ray.way);
     on.from_x[i] = from.x, on.from_y[i] = from.y, on.from_z[i] = from.z;
@@ -185,24 +200,73 @@ void WallRays::pass(int i, PathRays& on) {
     on.towards.active |= 1u << i;
 }
 
-bool WallRays::goOn() {
-    if (walls_ == max_walls_) return false;
+double WallRays::mirrored(int i) const {
+    const PlacedRun& run = scene_.ranges[hits_.command[i]];
+    if (!run.facets || !Reverberation::isFlat(run.facets[hits_.triangle[i]])) return 0;
+    const bool from_within = bodyOf(rays_[static_cast<size_t>(i)], objectOf(i)) >= 0;
+    const double within = from_within && wallOf(i).fill ? wallOf(i).fill->within : 1;
+    return std::min(Reverberation::mirrored(rules_.laws, run.material) * within, 1.0);
+}
+
+void WallRays::reflect(int i, PathRays& on) {
+    Ray& ray = rays_[static_cast<size_t>(i)];
+    const double share = mirrored(i);
+    ray.is_there = false;
+    ray.power *= share * share;
+    if (!(ray.power >= min_passed)) return;
+    ray.way -= 2 * glm::dot(ray.normal, ray.way) * ray.normal;
+    for (glm::dvec3& per_way : ray.per_way) per_way -= 2 * glm::dot(ray.normal, per_way) * ray.normal;
+    ray.is_bent = true;
+    ray.is_in_paths &= reverberation_.isInPaths(scene_.ranges[hits_.command[i]].material);
+    send(i, on);
+}
+
+bool WallRays::advance(void (WallRays::*step)(int, PathRays&)) {
     PathRays on{};
     on.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
         on.nearest[i] = 1;  // ray that ends
-        if (rays_[static_cast<size_t>(i)].is_there) pass(i, on);
+        if (rays_[static_cast<size_t>(i)].is_there) (this->*step)(i, on);
     }
     if (!on.towards.active) return false;
     visibility_.trace(on, hits_);
-    ++walls_;
     for (int i = 0; i < tile_samples; ++i) {
         Ray& ray = rays_[static_cast<size_t>(i)];
         ray.is_there = (on.towards.active >> i & 1) && hits_.command[i] != TileHits::nothing;
         if (ray.is_there) meet(i);
     }
+    return true;
+}
+
+bool WallRays::goOn() {
+    if (!goBackAndForth()) {
+        if (walls_ == max_walls_ || !advance(&WallRays::pass)) return false;
+        ++walls_;
+    }
     countEchoes();
     return true;
+}
+
+bool WallRays::goBackAndForth() {
+    if (!reverberation_.is_there || walls_ == 0) return false;
+    const auto isMirror = [&](int i) { return rays_[static_cast<size_t>(i)].is_there && mirrored(i) > 0; };
+    bool any = false;
+    for (int i = 0; i < tile_samples; ++i) any |= isMirror(i);
+    if (any && reflections_ == 0) {
+        rays_at_wall_ = rays_;
+        hits_at_wall_ = hits_;
+    }
+    if (any && reflections_ < max_reflections && advance(&WallRays::reflect)) {
+        ++reflections_;
+        for (int i = 0; i < tile_samples; ++i) rays_[static_cast<size_t>(i)].is_there = isMirror(i);
+        return true;
+    }
+    if (any || reflections_ > 0) {
+        rays_ = rays_at_wall_;
+        hits_ = hits_at_wall_;
+    }
+    reflections_ = 0;
+    return false;
 }
 
 ApparentPlane WallRays::apparent(const Ray& ray) const {
@@ -226,7 +290,8 @@ const TracedTile* WallRays::show(size_t echo) {
         const Ray& ray = rays_[k];
         passed_[k] = late_[k] = 0;
         apparent_[k] = {};
-        if (!ray.is_there || echo >= ray.echoes.size() || !(ray.echoes[echo].weight > min_passed)) {
+        const bool is_known = ray.is_in_paths && reflections_ > 0 && reflections_ <= reverberation_.bounces;
+        if (!ray.is_there || is_known || echo >= ray.echoes.size() || !(ray.echoes[echo].weight > min_passed)) {
             shown_.command[i] = TileHits::nothing;
             continue;
         }

@@ -1,60 +1,53 @@
 #pragma once
 #include <array>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
+#include "components/sonar/echo/EchoTrain.hpp"
+#include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
 
-/** Successive echoes from one hit of a ray, because sound rings in walls. */
-class EchoTrain {
-public:
-    static constexpr size_t max_echoes = WallLaw::max_returns;  ///< [1]
+/** Sound back and forth between flat, smooth surfaces behind walls (ACOUSTICS.md 5.26). */
+struct Reverberation {
+    bool is_there = false;
+    /** For each material: paths by mirrors (5.23) include its reflections; empty: there are no such paths. */
+    std::vector<bool> in_paths;
+    int bounces = 0;  ///< Max reflections of these paths [1].
 
-    struct Echo {
-        double late;    ///< Slant range beyond that of the surface [m].
-        double weight;  ///< Share of the energy [1].
-    };
+    Reverberation() = default;
+    /** Reverberation with a plan's walls, if a flat facet of the scene is one. `facets` has those of each mesh. */
+    Reverberation(const RenderPlan& plan, const types::Geometry& geometry, std::span<const MeshFacts::Facets> facets);
 
-    /** Makes a train of one echo without delay. */
-    EchoTrain() { echoes_[0] = {0, 1}; }
-    size_t size() const { return size_; }
-    const Echo& operator[](size_t i) const { return echoes_[i]; }
-    /** Returns the train of a wall whose returns follow each echo of this train at a spacing [m]. Echoes closer than
-     *  `resolution` [m] merge, at the range of the first. Echoes beyond max_echoes are added to the last. The sum of
-     *  the weights becomes the product of the sums. */
-    EchoTrain then(const Returns& returns, double spacing, double resolution) const;
-    void moveAway(double range) {
-        for (size_t i = 0; i < size_; ++i) echoes_[i].late += range;
+    bool isInPaths(uint32_t material) const { return !in_paths.empty() && in_paths[material]; }
+    /** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns
+     * of its wall together [1]; 0: its lobe is wide, or it has none. */
+    static double mirrored(const MaterialLaws& laws, size_t material);
+    static bool isFlat(const FacetRecord& facet) {
+        return facet.first.x == 0 && facet.first.z == 0 && facet.second.x == 0 && facet.second.z == 0;
     }
-    /** Subtracts from the first echo. */
-    void take(double weight) { echoes_[0].weight -= weight; }
-    void scale(double by) {
-        for (size_t i = 0; i < size_; ++i) echoes_[i].weight *= by;
-    }
-
-private:
-    void append(const Echo& echo, double resolution);
-
-    size_t size_ = 1;
-    std::array<Echo, max_echoes> echoes_;
 };
 
-/** Follows the rays of a tile through walls that ring and into bodies with a fill (ACOUSTICS.md 5.26). Surfaces are
+/** Follows the rays of a tile through walls that ring, into bodies with a fill, and back and forth between walls
+ *  (ACOUSTICS.md 5.26). Surfaces are
  *  processed layer by layer, each layer once per echo. Allocates nothing. */
 class WallRays {
 public:
     static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].
     static constexpr double max_focus = 30;     ///< Bound at caustics, where ray theory gives infinity [1].
+    static constexpr int max_reflections = 16;  ///< Of a ray back and forth between walls [1].
 
     /** `surface`: where rays end. `loss_of_water`: loss of energy in the sonar's water, one way [Np/m]. */
     WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
-             const WaterMirror& surface, int max_walls, double loss_of_water)
+             const WaterMirror& surface, const Reverberation& reverberation, int max_walls, double loss_of_water)
         : rules_(rules),
           visibility_(visibility),
           scene_(scene),
           surface_(surface),
+          reverberation_(reverberation),
           max_walls_(max_walls),
           loss_of_water_(loss_of_water) {}
 
@@ -81,6 +74,7 @@ private:
     struct Ray {
         bool is_there = false;  ///< It has hit a surface in this layer.
         bool is_bent = false;
+        bool is_in_paths = false;            ///< Paths by mirrors (5.23) have all its walls and reflections.
         glm::dvec3 from, way, look;          ///< [m], unit, unit: its initial direction.
         glm::dvec3 across[2];                ///< Normal to `look`.
         glm::dvec3 per_from[2], per_way[2];  ///< Change of `from` and `way` with the look direction [m], [1].
@@ -105,9 +99,18 @@ private:
     void setEchoes(int i);
     /** Continues a ray through the wall that it has hit; drops a ray that ends there. */
     void pass(int i, PathRays& on);
+    /** Reflects a ray at the flat, smooth surface that it has hit; drops a ray that has hit another. */
+    void reflect(int i, PathRays& on);
+    /** Returns the share of the energy that the surface that a ray has hit reflects like a mirror [1]. */
+    double mirrored(int i) const;
+    void send(int i, PathRays& on) const;
     void enter(Ray& ray, uint32_t object, const WallLaw& wall) const;
     bool refract(int i, double speed);
+    /** Moves all rays to their next surface by pass() or reflect(). Returns whether any ray is left. */
+    bool advance(void (WallRays::*step)(int, PathRays&));
     bool goOn();
+    /** Continues between the surfaces behind the last wall. Returns false, with the rays at that wall, at the end. */
+    bool goBackAndForth();
     void countEchoes();
     const TracedTile* show(size_t echo);
     ApparentPlane apparent(const Ray& ray) const;
@@ -116,13 +119,16 @@ private:
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
     const WaterMirror& surface_;
+    const Reverberation& reverberation_;
     int max_walls_;
     double loss_of_water_;
-    int walls_ = 0;  ///< Walls that the rays of this layer have passed [1].
+    int walls_ = 0;        ///< Walls that the rays of this layer have passed [1].
+    int reflections_ = 0;  ///< Their reflections behind these walls [1].
     size_t echo_ = 0, echoes_ = 0;
     TileHits hits_{}, shown_{};
     TracedTile tile_{};
-    std::array<Ray, tile_samples> rays_;
+    std::array<Ray, tile_samples> rays_, rays_at_wall_;
+    TileHits hits_at_wall_{};
     std::array<float, tile_samples> passed_{}, late_{};
     std::array<ApparentPlane, tile_samples> apparent_{};
 };

@@ -122,6 +122,7 @@ EdgeEchoes::EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry)
       geometry_(geometry),
       points_(plan, geometry),
       sightlines_(geometry, Sightlines::Lines::Many),
+      walls_(plan),
       spacing_((plan.beams[plan.beams.size() - 1].high - plan.beams[0].low) / static_cast<double>(plan.beams.size())) {
     for (size_t i = 0; i < geometry.meshes.size(); ++i)
         of_meshes_.push_back(MeshFacts::of(geometry.meshes.shared(i))
@@ -169,7 +170,8 @@ void EdgeEchoes::addObject(size_t object) {
     }
 }
 
-size_t EdgeEchoes::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field) {
+size_t EdgeEchoes::add(PingInMaking& to) {
+    const types::Snapshot& snapshot = to.snapshot;
     std::ranges::copy(still_, places_.begin());
     for (const types::MovedObject& moved : snapshot.moved) places_[moved.object] = moved.world_from_object;
     sightlines_.place(snapshot);
@@ -197,8 +199,11 @@ size_t EdgeEchoes::add(const types::Snapshot& snapshot, types::Sonar& ping, Echo
             way.length = glm::distance(sonar, echo.at);
             if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
             way.direction = sonar_from_world * ((echo.at - sonar) / way.length);
-            if (points_.mayReceive(way.direction) && sightlines_.isOpen(echo.at))
-                any |= points_.addAlong(way, 10 * std::log10(echo.section), ping, field);
+            if (!points_.mayReceive(way.direction)) continue;
+            EchoTrain train;
+            way.power = walls_.passed(sightlines_, sonar, echo.at, way.walls, &train);
+            if (train.isDelayed()) way.train = &train;
+            if (way.power > 0) any |= points_.addAlong(way, 10 * std::log10(echo.section), to);
         }
         received += any ? 1 : 0;
     }

@@ -46,7 +46,7 @@ public:
     void takeShapes(const types::Snapshot& snapshot);
     /** Adds the echoes once the bins, or `field` if there is one, are filled. Returns the number of edges with an echo
      *  in any beam. */
-    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field);
+    size_t add(PingInMaking& to);
     size_t count() const { return edges_.size(); }  ///< Edges of the scene [1].
 
 private:
@@ -61,6 +61,7 @@ private:
     const types::Geometry& geometry_;
     PointTargets points_;
     Sightlines sightlines_;
+    WallSights walls_;
     std::vector<std::shared_ptr<const StraightEdges>> of_meshes_;
     std::vector<OwnEdge> edges_;
     std::vector<glm::dmat4> still_, places_;  ///< Places of the objects in the geometry, and in the ping.

@@ -18,7 +18,11 @@ PointTargets::PointTargets(const RenderPlan& plan, const types::Geometry& geomet
     takeScene(geometry);
 }
 
-void PointTargets::takeScene(const types::Geometry& geometry) { ways_.emplace(plan_.config, geometry); }
+void PointTargets::takeScene(const types::Geometry& geometry) {
+    walls_.reset();
+    if (plan_.has(Pass::Walls)) walls_.emplace(plan_);
+    ways_.emplace(plan_.config, geometry, walls_ ? &*walls_ : nullptr);
+}
 
 std::optional<BeamAngles> PointTargets::directionOf(const glm::dvec3& way) const {
     const bool conical = plan_.features.has(Feature::Conical);
@@ -38,7 +42,8 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out,
                   *received,
                   intensity,
                   out.by_surface == back.by_surface ? 1.0 : -1.0,
-                  inPhase(out) * inPhase(back)};
+                  inPhase(out) * inPhase(back),
+                  out.walls + back.walls > 0};
 }
 
 double PointTargets::inPhase(const TargetWay& way) const {
@@ -98,16 +103,26 @@ bool PointTargets::spread(double range) {
     return !means_.empty();
 }
 
-bool PointTargets::addTo(types::Sonar& ping, const Return& echo) const {
+bool PointTargets::addTo(PingInMaking& to, const Return& echo) const {
     bool received = false;
     for (size_t beam = 0; beam < plan_.beams.size(); ++beam) {
         const double power = powerIn(plan_.beams[beam], echo);
         if (!(power > 0)) continue;
-        float* bins = &ping.bins[beam * ping.bin_count + first_bin_];
-        for (size_t i = 0; i < means_.size(); ++i) bins[i] += static_cast<float>(echo.intensity * power * means_[i]);
+        const size_t first = beam * to.ping.bin_count + first_bin_;
+        float* bins = &to.ping.bins[first];
+        for (size_t i = 0; i < means_.size(); ++i) {
+            const auto added = static_cast<float>(echo.intensity * power * means_[i]);
+            bins[i] += added;
+            if (to.truth && added > bins[i] / 2) report(*to.truth, echo, first + i);
+        }
         received = true;
     }
     return received;
+}
+
+void PointTargets::report(types::SonarTruth& truth, const Return& echo, size_t bin) {
+    if (truth.object[bin] == types::SonarTruth::no_object)
+        truth.path[bin] = echo.passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
 }
 
 bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {
@@ -137,7 +152,8 @@ std::optional<TargetWay> PointTargets::bentWay(const RayPaths& bent, const types
     return way;
 }
 
-size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent) {
+size_t PointTargets::add(PingInMaking& to) {
+    const types::Snapshot& snapshot = to.snapshot;
     ways_->place(snapshot, plan_.grid.range_max + (shape_ ? shape_->reach() : 0));
     size_t received = 0;
     const auto time = static_cast<uint64_t>(snapshot.time.microseconds);
@@ -145,24 +161,41 @@ size_t PointTargets::add(const types::Snapshot& snapshot, types::Sonar& ping, Ec
         const types::PointTarget& target = snapshot.targets[i];
         bool any = false;
         std::span<const TargetWay> ways = ways_->waysTo(target.position);
-        const auto way = bent && !ways.empty() ? bentWay(*bent, snapshot, i) : std::nullopt;
-        if (bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
+        const auto way = to.bent && !ways.empty() ? bentWay(*to.bent, snapshot, i) : std::nullopt;
+        if (to.bent) ways = {way ? &*way : nullptr, way ? 1u : 0u};
         for (const TargetWay& out : ways)
             for (const TargetWay& back : ways) {
-                const auto echo = returnOf(out, back, target.strength_db);
-                if (!echo || !spread(echo->range)) continue;
                 const auto pair =
                     static_cast<uint64_t>((&out - ways.data()) * std::ssize(ways) + (&back - ways.data()));
-                any |= field ? addTo(*field, *echo, types::hashed(time, i, pair)) : addTo(ping, *echo);
+                any |= addPair(out, back, target.strength_db, to, types::hashed(time, i, pair));
             }
         received += any ? 1 : 0;
     }
     return received;
 }
 
-bool PointTargets::addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field) {
-    const auto echo = returnOf(way, way, strength_db);
-    return echo && spread(echo->range) && (field ? addTo(*field, *echo, 0) : addTo(ping, *echo));
+bool PointTargets::addPair(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to,
+                           uint64_t key) {
+    if (&out == &back && out.train) return addRinging(out, strength_db, to, key);
+    const auto echo = returnOf(out, back, strength_db);
+    if (!echo || !spread(echo->range)) return false;
+    return to.field ? addTo(*to.field, *echo, key) : addTo(to, *echo);
+}
+
+bool PointTargets::addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key) {
+    bool any = false;
+    for (size_t k = 0; k < way.train->size(); ++k) {
+        TargetWay rung = way;
+        rung.train = nullptr;
+        rung.length += (*way.train)[k].late;
+        rung.power *= std::sqrt(std::max((*way.train)[k].weight, 0.0));
+        if (rung.length > 0) any |= addPair(rung, rung, strength_db, to, key);
+    }
+    return any;
+}
+
+bool PointTargets::addAlong(const TargetWay& way, double strength_db, PingInMaking& to) {
+    return addPair(way, way, strength_db, to, 0);
 }
 
 }  // namespace insonify::sonar

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "components/sonar/echo/EchoShape.hpp"
+#include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "components/sonar/rays/RayPaths.hpp"
@@ -17,7 +18,7 @@ class EchoField;
 
 /** Adds the point targets of a scene to pings by the active sonar equation at each target's own place. The pattern of
  *  each beam is evaluated there, and the pulse about its own range (ACOUSTICS.md 5.14). Surfaces in front of a target
- *  hide it. */
+ *  hide it, except for thin walls. */
 class PointTargets {
 public:
     /** Needs a plan for model `physical`. Plan and geometry must outlive it. */
@@ -25,14 +26,13 @@ public:
 
     /** Switches to another geometry from the next ping on; the plan may have changed as well. */
     void takeScene(const types::Geometry& geometry);
-    /** Adds the echoes once the bins, or `field` if there is one, are filled. Returns the number of targets with an
-     *  echo in any beam. `bent`: the paths of this ping, null where they are straight. Allocates nothing where nothing
-     *  reflects. */
-    size_t add(const types::Snapshot& snapshot, types::Sonar& ping, EchoField* field, const RayPaths* bent);
+    /** Adds the echoes once the bins or the field are filled. Returns the number of targets with an echo in any beam.
+     *  Allocates nothing where nothing reflects. */
+    size_t add(PingInMaking& to);
 
     /** Adds an echo that returns along the same path, within the same ping, ignoring occlusion. Returns
      *  whether any beam has it. */
-    bool addAlong(const TargetWay& way, double strength_db, types::Sonar& ping, EchoField* field);
+    bool addAlong(const TargetWay& way, double strength_db, PingInMaking& to);
 
     /** Returns whether any beam may receive from a direction, a unit vector in the sonar's axes. Quick: false is
      *  certain. */
@@ -46,6 +46,7 @@ private:
         double intensity;  ///< Without patterns and pulse [1/m^2].
         double sign;       ///< -1 where the water surface has inverted its pressure [1].
         double in_phase;   ///< Share of its amplitude that rough mirrors leave in phase [1].
+        bool passes_walls;
     };
     /** Returns the beam angles of a path; none behind a straight array. */
     std::optional<BeamAngles> directionOf(const glm::dvec3& way) const;
@@ -57,12 +58,19 @@ private:
     std::complex<double> phaseIn(const Beam& beam, const Return& echo) const;
     /** Fills means_ for bins from `first_bin_`. Returns whether there are any. */
     bool spread(double range);
-    bool addTo(types::Sonar& ping, const Return& echo) const;
+    /** Adds the echo of a pair of paths; `key` identifies the pair. Returns whether any beam has it. */
+    bool addPair(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to, uint64_t key);
+    /** Adds the echoes along a path through walls that ring. */
+    bool addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key);
+    bool addTo(PingInMaking& to, const Return& echo) const;
+    /** Records in the truth that most of a bin without a surface has passed walls, or not. */
+    static void report(types::SonarTruth& truth, const Return& echo, size_t bin);
     bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
     /** Returns the share of the amplitude that rough mirrors leave in phase along a path [1]. */
     double inPhase(const TargetWay& way) const;
 
     const RenderPlan& plan_;
+    std::optional<WallSights> walls_;  ///< None where no sound passes walls.
     std::optional<TargetWays> ways_;
     double absorption_;  ///< Two-way loss of intensity [1/m].
     std::optional<EchoShape> shape_;

@@ -37,10 +37,11 @@ bool holds(const Box& box, const glm::dvec3& point, double margin) {
 
 }  // namespace
 
-TargetWays::TargetWays(const SonarConfig& config, const types::Geometry& geometry)
+TargetWays::TargetWays(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls)
     : bounces_(config.tracesPaths() ? config.multipath->bounces : 0),
       flat_(geometry, bounces_),
       sightlines_(geometry, flat_.all().empty() ? Sightlines::Lines::Few : Sightlines::Lines::Many),
+      walls_(walls),
       water_(config),
       mirrors_(bounces_ > 0 ? flat_.all().size() + 1 : 0),
       reach_(bounces_ > 1 ? mirrors_.size() : 0),
@@ -147,11 +148,22 @@ void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
         stops[k + 1] = *at;
     }
     stops[chain.size() + 1] = point;
-    for (size_t k = 0; k <= chain.size(); ++k)
-        if (!sightlines_.isOpen(stops[k], stops[k + 1])) return;
+    for (size_t k = 0; k <= chain.size(); ++k) {
+        way.power *= passed(stops[k], stops[k + 1], way, chain.empty());
+        if (!(way.power > 0)) return;
+    }
     const glm::dvec3 first = stops[chain.size()] - point;
     way.from_point = first / std::max(glm::length(first), std::numeric_limits<double>::min());
     addOnce(way);
+}
+
+double TargetWays::passed(const glm::dvec3& from, const glm::dvec3& to, TargetWay& way, bool is_straight) {
+    if (!walls_) return sightlines_.isOpen(from, to) ? 1 : 0;
+    if (!is_straight) return walls_->passed(sightlines_, from, to, way.walls);
+    train_ = {};
+    const double share = walls_->passed(sightlines_, from, to, way.walls, &train_);
+    if (train_.isDelayed()) way.train = &train_;
+    return share;
 }
 
 std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,

@@ -6,6 +6,7 @@
 
 #include "components/sonar/places/Sightlines.hpp"
 #include "components/sonar/ways/MirrorReach.hpp"
+#include "components/sonar/ways/WallSights.hpp"
 
 namespace insonify::sonar {
 
@@ -13,13 +14,15 @@ namespace insonify::sonar {
 struct TargetWay {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
-    double length = 0;         ///< [m]
-    glm::dvec3 direction{0};   ///< Unit direction from the sonar, sonar axes [1].
-    glm::dvec3 from_point{0};  ///< Unit direction from the point along the path, world axes [1].
-    double power = 1;          ///< Share of the sound's power after its mirrors [1].
-    int reflections = 0;       ///< Number of mirrors [1].
-    bool by_surface = false;   ///< Whether one of the mirrors is the water surface.
-    double sine_grazing = 0;   ///< Sine of the grazing angle at the water surface [1].
+    double length = 0;                 ///< [m]
+    glm::dvec3 direction{0};           ///< Unit direction from the sonar, sonar axes [1].
+    glm::dvec3 from_point{0};          ///< Unit direction from the point along the path, world axes [1].
+    double power = 1;                  ///< Share of the sound's power after its mirrors and walls [1].
+    int reflections = 0;               ///< Number of mirrors [1].
+    int walls = 0;                     ///< Number of thin walls that the sound passes [1].
+    bool by_surface = false;           ///< Whether one of the mirrors is the water surface.
+    double sine_grazing = 0;           ///< Sine of the grazing angle at the water surface [1].
+    const EchoTrain* train = nullptr;  ///< Echoes out and back along it; null: one without delay.
     /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};
 };
@@ -28,8 +31,8 @@ struct TargetWay {
  *  those via the water surface and triangles of mirrors. Uses the image method, in double. */
 class TargetWays {
 public:
-    /** `geometry` must outlive it. */
-    TargetWays(const SonarConfig& config, const types::Geometry& geometry);
+    /** `geometry` must outlive it, and so must `walls`; null: all surfaces hide. */
+    TargetWays(const SonarConfig& config, const types::Geometry& geometry, WallSights* walls = nullptr);
 
     /** Places mirrors and objects; call it once per ping. Ignores paths longer than twice `range_max` [m]. */
     void place(const types::Snapshot& snapshot, double range_max);
@@ -48,6 +51,8 @@ private:
      *  that of the image with inverted sign [m]. */
     bool mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
                  double image_distance) const;
+    /** Returns the one-way share of the energy that passes between two stops of a path [1], and counts its walls. */
+    double passed(const glm::dvec3& from, const glm::dvec3& to, TargetWay& way, bool is_straight);
     /** Adds the path via the mirrors of a chain, if there is one. */
     void addWay(const glm::dvec3& point, Chain chain);
     /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
@@ -58,6 +63,8 @@ private:
     int bounces_;
     FlatMirrors flat_;
     Sightlines sightlines_;
+    WallSights* walls_;
+    EchoTrain train_;  ///< Of the straight path.
     WaterMirror water_;
     std::vector<PlacedMirror> mirrors_;  ///< The water surface and all flat mirrors.
     MirrorReach reach_;
