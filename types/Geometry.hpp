@@ -98,6 +98,32 @@ struct ClusterNode {
     glm::vec3 half{0};           ///< Half the box's size [m].
 };
 
+/** Weight of one joint for a vertex. */
+struct JointShare {
+    uint32_t joint;  ///< Index in the pose [1].
+    float weight;    ///< Above 0 [1].
+};
+
+/** Offsets that a morph target at weight 1 adds to the vertices of a mesh. Each list is empty or has one entry per
+ * vertex. */
+struct MorphTarget {
+    std::vector<glm::vec3> positions;  ///< [m]
+    std::vector<glm::vec3> normals;    ///< [1]
+    std::vector<glm::vec3> tangents;   ///< [1]
+};
+
+/** Data that pose a mesh by the joints of a skin and the weights of morph targets. Lists are in the order of the mesh's
+ *  vertices. */
+struct Deformation {
+    std::vector<glm::vec3> positions;   ///< Unposed [m].
+    std::vector<glm::vec3> normals;     ///< Empty, or one per vertex [1].
+    std::vector<glm::vec4> tangents;    ///< Empty, or one per vertex [1].
+    uint32_t joint_count = 0;           ///< Joints of a pose; 0: no skin.
+    std::vector<uint32_t> share_begin;  ///< Start of each vertex's `shares`, and the end; empty without a skin.
+    std::vector<JointShare> shares;     ///< Weights of one vertex add up to 1.
+    std::vector<MorphTarget> targets;
+};
+
 /** Triangles in their own coordinates (z up, x north-like). Every index is below positions.size(); positions are
  *  finite. */
 struct Mesh {
@@ -112,6 +138,7 @@ struct Mesh {
     std::vector<Cluster> clusters;     ///< Together they cover all indices, in order.
     std::vector<ClusterNode> cluster_nodes;  ///< Trees over all clusters, each node before its parts; may be empty.
     std::vector<uint32_t> coarse_indices;    ///< A large mesh in few triangles, for display only.
+    std::shared_ptr<const Deformation> deformation = {};  ///< Shape by pose (PosedMesh.hpp); null: rigid.
 };
 
 using MeshPtr = std::shared_ptr<const Mesh>;

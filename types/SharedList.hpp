@@ -75,6 +75,7 @@ public:
     iterator end() { return {this, size()}; }
     void push_back(T item) { items_.push_back(std::make_shared<T>(std::move(item))); }
     void push_back(Ptr item) { items_.push_back(std::move(item)); }
+    void replace(size_t index, Ptr item) { items_.at(index) = std::move(item); }
     template <class... Arguments>
     T& emplace_back(Arguments&&... arguments) {
         push_back(T{std::forward<Arguments>(arguments)...});

@@ -1,4 +1,5 @@
 #pragma once
+#include <glm/mat4x3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,33 @@ namespace insonify::types {
 struct MovedObject {
     uint32_t object = 0;  ///< Index into Geometry::objects [1].
     glm::dmat4 world_from_object{1};
+    /** Rate of the matrix from an animation; absent: it follows from the snapshot before [1/s]. */
+    std::optional<glm::dmat4> rate = {};
+};
+
+/** Pose of a joint of a skin. */
+struct JointPose {
+    glm::dmat4x3 mesh_from_bind{1};  ///< Moves a vertex that follows this joint alone, in the axes of the mesh.
+    glm::dmat4x3 rate{0};            ///< [1/s]
+
+    bool operator==(const JointPose&) const = default;
+};
+
+/** Weight of a morph target. */
+struct MorphPose {
+    double weight = 0;  ///< [1]
+    double rate = 0;    ///< [1/s]
+
+    bool operator==(const MorphPose&) const = default;
+};
+
+/** An object whose mesh has another shape than in the geometry (PosedMesh.hpp). */
+struct DeformedObject {
+    uint32_t object = 0;       ///< Index into Geometry::objects; its mesh has a Deformation [1].
+    uint32_t first_joint = 0;  ///< Index of its first joint in Snapshot::joints [1].
+    uint32_t first_morph = 0;  ///< Index of its first target in Snapshot::morphs [1].
+
+    bool operator==(const DeformedObject&) const = default;
 };
 
 /** A target with an echo that is too small to be resolved. */
@@ -35,6 +63,9 @@ struct Snapshot {
     /** Meshes that later geometries may have, so that their data can be prepared. Null: none known. */
     std::shared_ptr<const std::vector<MeshPtr>> ahead;
     std::vector<MovedObject> moved;
+    std::vector<DeformedObject> deformed;  ///< Ascending by object, each at most once.
+    std::vector<JointPose> joints;         ///< Joints or targets of all deformed objects.
+    std::vector<MorphPose> morphs;         ///< Joints or targets of all deformed objects.
     std::vector<PointTarget> targets;
     std::vector<TransmissionPtr> transmissions;  ///< Pulses of other sonars that may reach this sonar; none is null.
     std::shared_ptr<const std::vector<std::string>> target_names;  ///< Names of `targets`; may be null without targets.

@@ -33,11 +33,9 @@ public:
     double lobeShare() const { return lobe_share_; }
     /** Returns the mean square slope of the lobe [1]. */
     double squareSlope() const { return square_slope_; }
-    /** Returns the Lambert parameter of the energy that the lobe has lost, the bound of diffuse() [1]. */
-    double maxLambert() const { return max_lambert_; }
 
     /** Returns the cross section of the shorter relief at a grazing angle [rad], without the lobe [m^2 at 1 m per m^2].
-     *  It is perturbation(), but at most Lambert's law with maxLambert(). */
+     *  It is perturbation(), but at most Lambert's law of the energy that the lobe has lost. */
     double diffuse(double grazing) const;
     /** Returns the cross section by the first order of small perturbations, unbounded [m^2 at 1 m per m^2]. */
     double perturbation(double grazing) const;

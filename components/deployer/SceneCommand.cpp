@@ -143,11 +143,22 @@ std::string axesOf(const std::string& file) {
                         : "SDF, z up: x, y, z of the file are those of the world";
 }
 
+/** Returns the animations of a scene: [{name, duration_s, channels}]. */
+Json animationsOf(const scene::Scene& scene) {
+    Json all = Json::array();
+    if (!scene.animations) return all;
+    for (const scene::Animation& animation : scene.animations->all)
+        all.push_back(
+            {{"name", animation.name}, {"duration_s", animation.duration}, {"channels", animation.channels.size()}});
+    return all;
+}
+
 /** Returns a scene file in the world's axes, as a sonar uses it: {file, axes, bounds: {min, max, size, centre} [m] or
  *  null, triangles, materials: [{name, source: file, name or default, matter or null, lambert_db [dB], reflection,
  *  roughness_slope or null, sediment or null, measured_angles, reflectivity, normal_map, surface_map, triangles,
  *  area_m2}], objects: [{name, materials: [names], triangles, bounds}], nodes: [names that a connection may move],
- *  not_understood: [], warnings: []}. Throws types::ConfigError for a file that cannot be read. */
+ *  animations: [{name, duration_s, channels}], deforming: objects with a skin or morph targets, not_understood: [],
+ *  warnings: []}. Throws types::ConfigError for a file that cannot be read. */
 Json sceneReport(const std::string& file) {
     const scene::Scene scene = scene::readScene(file);
     const types::GeometryPtr named = scene::takeNames(scene.geometry);
@@ -166,6 +177,8 @@ Json sceneReport(const std::string& file) {
             {"materials", materials},
             {"objects", objectsOf(geometry)},
             {"nodes", nodes},
+            {"animations", animationsOf(scene)},
+            {"deforming", scene.animations ? scene.animations->objects.size() : 0},
             {"not_understood", geometry.notices},
             {"warnings", warningsOf(file, extent, surfaces, materials)}};
 }
@@ -215,12 +228,26 @@ void printObjects(const Json& objects) {
     if (objects.size() > shown) fmt::print("  and {} more, which --json names\n", objects.size() - shown);
 }
 
+void printAnimations(const Json& scene) {
+    constexpr size_t shown = 20;
+    const Json& animations = scene["animations"];
+    if (const auto count = scene["deforming"].get<size_t>(); count > 0)
+        fmt::print("objects with a skin or morph targets, {}\n", count);
+    if (animations.empty()) return;
+    fmt::print("animations, {}\n", animations.size());
+    for (size_t i = 0; i < animations.size() && i < shown; ++i)
+        fmt::print("  {:20} {:.4g} s, {} channels\n", animations[i]["name"].get<std::string>(),
+                   animations[i]["duration_s"].get<double>(), animations[i]["channels"].get<size_t>());
+    if (animations.size() > shown) fmt::print("  and {} more, which --json names\n", animations.size() - shown);
+}
+
 void printScene(const Json& scene) {
     fmt::print("{}: {}\n", scene["file"].get<std::string>(), scene["axes"].get<std::string>());
     printExtent(scene["bounds"]);
     fmt::print("triangles: {}\nmaterials, {}\n", scene["triangles"].get<size_t>(), scene["materials"].size());
     for (const Json& material : scene["materials"]) printMaterial(material);
     printObjects(scene["objects"]);
+    printAnimations(scene);
     for (const Json& line : scene["not_understood"]) fmt::print("omitted or repaired: {}\n", line.get<std::string>());
     for (const Json& line : scene["warnings"]) fmt::print("warning: {}\n", line.get<std::string>());
 }

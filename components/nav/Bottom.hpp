@@ -16,7 +16,6 @@ public:
 
     /** Replaces the bottom by the scene of this snapshot. Objects that are not moved are placed once per geometry. */
     void take(types::SnapshotPtr snapshot);
-    bool hasScene() const { return snapshot_ != nullptr; }
     /** Returns whether a place is under the water surface; true when the scene has no surface. */
     bool isUnderWater(const glm::dvec3& place) const;
 

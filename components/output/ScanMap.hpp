@@ -29,7 +29,6 @@ public:
 
     /** Echoes of the pings, 32-bit floats; NaN where there was no ping. */
     const cv::Mat& cells() const { return cells_; }
-    double cellSize() const { return cell_; }  ///< [m]
     /** Returns column and row of a place in the world; whole numbers are the middles of cells. */
     cv::Point2d cellOf(const glm::dvec2& place) const;
 

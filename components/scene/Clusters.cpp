@@ -12,6 +12,8 @@
 #include <span>
 #include <utility>
 
+#include "types/PosedMesh.hpp"
+
 namespace insonify::scene {
 namespace {
 
@@ -98,31 +100,6 @@ void splitRuns(types::Mesh& mesh) {
     }
 }
 
-/** Takes a box, rounded up, so that centre +- half holds all of it. */
-template <class Part>
-void setBox(Part& part, const Box& box) {
-    part.centre = box.low + (box.high - box.low) / 2.0f;
-    const glm::vec3 half = glm::max(box.high - part.centre, part.centre - box.low);
-    for (int axis = 0; axis < 3; ++axis)
-        part.half[axis] = std::nextafter(half[axis], std::numeric_limits<float>::infinity());
-}
-
-void bound(const types::Mesh& mesh, types::Cluster& cluster) {
-    Box box;
-    for (const uint32_t index : std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count))
-        box.add(mesh.positions[index]);
-    setBox(cluster, box);
-}
-
-void bound(const types::Mesh& mesh, types::ClusterNode& node) {
-    Box box;
-    for (const types::Cluster& cluster : std::span(mesh.clusters).subspan(node.first_cluster, node.cluster_count)) {
-        box.add(cluster.centre - cluster.half);
-        box.add(cluster.centre + cluster.half);
-    }
-    setBox(node, box);
-}
-
 template <class T>
 void remap(std::vector<T>& values, const std::vector<uint32_t>& new_place, size_t count) {
     if (values.empty()) return;
@@ -153,7 +130,7 @@ void orderTriangles(std::span<uint32_t> indices) {
 }
 
 /** Orders vertices by their first use and removes unused vertices. */
-void orderVertices(types::Mesh& mesh) {
+void orderVertices(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
     std::vector<uint32_t> new_place(mesh.positions.size());
     const size_t used = meshopt_optimizeVertexFetchRemap(new_place.data(), mesh.indices.data(), mesh.indices.size(),
                                                          mesh.positions.size());
@@ -163,6 +140,7 @@ void orderVertices(types::Mesh& mesh) {
     remap(mesh.tangents, new_place, used);
     remap(mesh.uvs, new_place, used);
     remap(mesh.map_uvs, new_place, used);
+    if (numbers) remap(*numbers, new_place, used);
 }
 
 std::span<const uint32_t> trianglesOf(const types::Mesh& mesh, const types::ClusterNode& node) {
@@ -248,21 +226,19 @@ void findCones(types::Mesh& mesh) {
 
 }  // namespace
 
-void buildClusters(types::Mesh& mesh) {
+void buildClusters(types::Mesh& mesh, std::vector<uint32_t>* numbers) {
     if (mesh.indices.size() / 3 > clustered_from) {
         for (glm::vec3& position : mesh.positions) position += 0.0f;  // -0 becomes 0, so that both are the same place
-        if (mesh.uvs.empty() && mesh.map_uvs.empty()) weld(mesh);
+        if (mesh.uvs.empty() && mesh.map_uvs.empty() && !numbers) weld(mesh);
         splitRuns(mesh);
     }
-    for (types::Cluster& cluster : mesh.clusters) {
+    for (const types::Cluster& cluster : mesh.clusters)
         orderTriangles(std::span(mesh.indices).subspan(cluster.first_index, cluster.index_count));
-        bound(mesh, cluster);
-    }
-    orderVertices(mesh);
+    orderVertices(mesh, numbers);
+    types::boundClusters(mesh);
     if (mesh.cluster_nodes.empty()) return;
-    for (types::ClusterNode& node : mesh.cluster_nodes) bound(mesh, node);
     findCoarseMesh(mesh);
-    findCones(mesh);
+    if (!numbers) findCones(mesh);
 }
 
 }  // namespace insonify::scene

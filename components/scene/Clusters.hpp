@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "types/Geometry.hpp"
 
@@ -18,7 +20,9 @@ constexpr size_t max_coarse_triangles = 4000;
 
 /** Orders triangles and vertices for the GPU. On entry `mesh.clusters` are runs of one material. On return each has its
  *  box. Runs of a large mesh are split where their triangles are far apart, with patches over them and an outline of
- *  few triangles. If such a mesh is closed, its clusters have the cones from which only their backs are visible. */
-void buildClusters(types::Mesh& mesh);
+ *  few triangles. If such a mesh is closed, its clusters have the cones from which only their backs are visible.
+ *  @param numbers  of a mesh that deforms: one for each vertex, which takes the vertex's new place. Such a mesh keeps
+ *  vertices apart that are in one place, and has no cones. */
+void buildClusters(types::Mesh& mesh, std::vector<uint32_t>* numbers = nullptr);
 
 }  // namespace insonify::scene

@@ -176,6 +176,30 @@ template std::vector<glm::vec2> GltfAccessors::vectors(int) const;
 template std::vector<glm::vec3> GltfAccessors::vectors(int) const;
 template std::vector<glm::vec4> GltfAccessors::vectors(int) const;
 
+std::vector<float> GltfAccessors::numbers(int accessor, int type) const {
+    const std::string path = fmt::format("accessors[{}]", accessor);
+    const tinygltf::Accessor& from = checked(accessor, path);
+    if (from.type != type)
+        fail(path + ".type",
+             fmt::format("is not the one needed here; must be {}", type == TINYGLTF_TYPE_SCALAR ? "SCALAR"
+                                                                   : type == TINYGLTF_TYPE_VEC3 ? "VEC3"
+                                                                   : type == TINYGLTF_TYPE_VEC4 ? "VEC4"
+                                                                                                : "MAT4"));
+    const Layout base = layout(from, path);
+    const size_t step = componentSize(from.componentType),
+                 width = static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+    std::vector<float> result(from.count * width, 0.0f);
+    forEach(from, base, path, [&](size_t i, const uint8_t* bytes) {
+        for (size_t c = 0; c < width; ++c)
+            result[i * width + c] = loadFloat(bytes + c * step, from.componentType, from.normalized);
+    });
+    return result;
+}
+
+int GltfAccessors::componentType(int accessor) const {
+    return checked(accessor, fmt::format("accessors[{}]", accessor)).componentType;
+}
+
 std::vector<uint32_t> GltfAccessors::indices(int accessor) const {
     const std::string path = fmt::format("accessors[{}]", accessor);
     const tinygltf::Accessor& from = checked(accessor, path);

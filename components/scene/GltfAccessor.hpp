@@ -22,6 +22,10 @@ public:
     template <class Vector>
     std::vector<Vector> vectors(int accessor) const;
     std::vector<uint32_t> indices(int accessor) const;
+    /** All numbers of an accessor of one type, TINYGLTF_TYPE_SCALAR for example, element after element. */
+    std::vector<float> numbers(int accessor, int type) const;
+    /** The type of an accessor's components, TINYGLTF_COMPONENT_TYPE_FLOAT for example. */
+    int componentType(int accessor) const;
     /** Returns the bytes [begin, end) of a bufferView. */
     std::pair<const uint8_t*, const uint8_t*> bytes(int buffer_view, const std::string& path) const;
     /** Returns the max value of the accessor's component type: the index that restarts a strip. */

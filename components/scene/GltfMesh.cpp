@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
+#include <numeric>
 
+#include "components/scene/Clusters.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::scene {
@@ -133,7 +136,9 @@ void GltfMeshes::append(const tinygltf::Primitive& primitive, const std::string&
 
     Surface surface = surfaceOf(primitive, positions->second, path);
     if (surface.indices.empty()) return;
-    appendSurface(surface, mapped(primitive, path, surface, mesh), mesh);
+    const int material = mapped(primitive, path, surface, mesh);
+    numbers_.insert(numbers_.end(), surface.numbers.begin(), surface.numbers.end());
+    appendSurface(surface, material, mesh);
 }
 
 Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int positions, const std::string& path) {
@@ -141,6 +146,12 @@ Surface GltfMeshes::surfaceOf(const tinygltf::Primitive& primitive, int position
     surface.positions = accessors_.vectors<glm::vec3>(positions);
     const size_t count = surface.positions.size();
     charge(count, path);
+    if (deformation_) {
+        charge(count * primitive.targets.size(), path);
+        surface.numbers.resize(count);
+        std::iota(surface.numbers.begin(), surface.numbers.end(), deformation_->next());
+        deformation_->add(primitive, path, count);
+    }
     constexpr uint32_t no_restart = ~0u;
     std::vector<uint32_t> corners;
     uint32_t restart = no_restart;
@@ -190,10 +201,20 @@ types::Mesh GltfMeshes::read(size_t index) {
     mesh.name = from.name;
     for (size_t i = 0; i < from.primitives.size(); ++i)
         append(from.primitives[i], fmt::format("meshes[{}].primitives[{}]", index, i), mesh);
-    const bool morphed =
-        std::ranges::any_of(from.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
-    if (morphed) ++omissions_.morphed_meshes;
     fillAttributes(mesh);
+    return mesh;
+}
+
+types::Mesh GltfMeshes::readDeforming(size_t index, size_t joints) {
+    GltfDeformation deformation(gltf_, accessors_, index, joints);
+    deformation_ = &deformation;
+    numbers_.clear();
+    types::Mesh mesh = read(index);
+    deformation_ = nullptr;
+    omissions_.unweighted_vertices += deformation.unweighted();
+    if (mesh.indices.empty()) return mesh;
+    buildClusters(mesh, &numbers_);
+    mesh.deformation = std::make_shared<const types::Deformation>(deformation.make(mesh, numbers_));
     return mesh;
 }
 

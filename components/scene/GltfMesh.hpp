@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/scene/GltfAccessor.hpp"
+#include "components/scene/GltfDeformation.hpp"
 #include "components/scene/GltfMaterials.hpp"
 #include "components/scene/Surface.hpp"
 #include "types/Geometry.hpp"
@@ -16,7 +17,7 @@ struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
     size_t unmapped_primitives = 0;  ///< Primitives with a map but without texture coordinates for it.
-    size_t morphed_meshes = 0;       ///< With morph targets, loaded unmorphed.
+    size_t unweighted_vertices = 0;  ///< Of skins: they follow no joint.
 };
 
 /** Converts the meshes of a file to types::Mesh, one at a time. */
@@ -30,6 +31,9 @@ public:
     /** Returns a mesh of the file with one cluster per primitive; the mesh may have no triangles.
      *  Throws types::ConfigError for wrong indices. */
     types::Mesh read(size_t mesh);
+    /** The same of a mesh that deforms, in clusters, with its types::Deformation.
+     *  @param joints  of its skin; 0: it has none */
+    types::Mesh readDeforming(size_t mesh, size_t joints);
     const Omissions& omissions() const { return omissions_; }
 
 private:
@@ -52,6 +56,8 @@ private:
     std::vector<MaterialMaps> maps_;
     types::Geometry& geometry_;
     Omissions omissions_;
+    GltfDeformation* deformation_ = nullptr;  ///< Of the mesh at hand; null: it keeps its shape.
+    std::vector<uint32_t> numbers_;           ///< Of the vertices of that mesh.
     size_t elements_ = 0;
     int default_material_ = -1;
     std::map<std::pair<int, bool>, int> unmapped_;  ///< Material without normal map, or surface map, by material with.

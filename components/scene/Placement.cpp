@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
+#include "components/scene/Animator.hpp"
 #include "components/scene/Gltf.hpp"
 #include "types/Angle.hpp"
 #include "types/DidYouMean.hpp"
@@ -52,6 +53,12 @@ Scene placed(const Scene& scene, const Placement& placement) {
         object.world_from_object = placed_from_scene * object.world_from_object;
     for (Node& node : result.nodes)
         if (node.parent < 0) node.parent_from_node = placed_from_scene * node.parent_from_node;
+    if (scene.animations) {
+        Animations animations = *scene.animations;
+        for (AnimatedNode& node : animations.nodes)
+            if (scene.nodes[static_cast<size_t>(node.node)].parent < 0) node.before = placed_from_scene * node.before;
+        result.animations = std::make_shared<const Animations>(std::move(animations));
+    }
     result.geometry = std::move(geometry);
     result.z_up_from_file = z_up_from_file;
     return result;
@@ -66,7 +73,9 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
         if (findNode(scene, name) < 0)
             diagnostics.push_back({"scale." + name, "is no node of the scene; " + types::didYouMean(name, names) +
                                                         "insonify scene lists them"});
-    std::vector<glm::dmat4> world_from_node;                             // with the nodes above at their scaled size
+    std::shared_ptr<Animations> animations;
+    if (scene.animations) animations = std::make_shared<Animations>(*scene.animations);
+    std::vector<glm::dmat4> world_from_node;  // with the nodes above at their scaled size
     std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // below each node, in the world
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = result.nodes[i];
@@ -78,6 +87,9 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
         if (factor == factors.end()) continue;
         const glm::dmat4 about_origin = glm::scale(glm::dmat4(1), glm::dvec3(factor->second));
         resized[i] = world_from_node[i] * about_origin * glm::inverse(world_from_node[i]) * resized[i];
+        if (animations)
+            for (AnimatedNode& animated : animations->nodes)
+                if (animated.node == static_cast<int>(i)) animated.after = animated.after * about_origin;
         node.parent_from_node = node.parent_from_node * about_origin;
         node.scale *= factor->second;
         world_from_node[i] = world_from_node[i] * about_origin;
@@ -88,6 +100,13 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
             geometry->objects[i].world_from_object =
                 resized[static_cast<size_t>(node)] * geometry->objects[i].world_from_object;
     }
+    if (animations) {
+        const NodePlaces places{world_from_node, std::vector<glm::dmat4>(world_from_node.size(), glm::dmat4(0))};
+        for (const DeformingObject& object : animations->objects)
+            poseAtRest(object, result.object_nodes[object.object], places,
+                       geometry->meshes[static_cast<size_t>(geometry->objects[object.object].mesh)]);
+    }
+    result.animations = std::move(animations);
     result.geometry = std::move(geometry);
     return result;
 }

@@ -85,13 +85,6 @@ glm::dmat4 aboveFromNode(const Scene& scene, int above, int node) {
     return above_from_node;
 }
 
-/** What a body that has the node's place makes of it: scale, shear, and the turn to z-up. */
-glm::dmat4 bodyFromNode(const Scene& scene, int node) {
-    const glm::dmat3 world_from_node(aboveFromNode(scene, -1, node));
-    return scene.z_up_from_file *
-           glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
-}
-
 /** Returns the reader of the component library sdf. */
 auto* sdfReader(const std::filesystem::path& file) try {
     return loader::load("sdf").entry<void(const std::filesystem::path&, Scene&)>("insonify_read_scene");
@@ -155,6 +148,12 @@ int findNode(const Scene& scene, const std::string& name) {
     return found == scene.nodes.end() ? -1 : static_cast<int>(found - scene.nodes.begin());
 }
 
+glm::dmat4 bodyFromNode(const Scene& scene, int node) {
+    const glm::dmat3 world_from_node(aboveFromNode(scene, -1, node));
+    return scene.z_up_from_file *
+           glm::dmat4(withoutRotation(world_from_node, scene.nodes[static_cast<size_t>(node)].scale));
+}
+
 std::vector<Part> partsOf(const Scene& scene, int node) {
     // body_from_node of the nodes at and below; children come after their parents
     std::vector<glm::dmat4> body_from_node(scene.nodes.size());
@@ -179,6 +178,10 @@ glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& poi
     if (node == body) return point;
     glm::dmat4 body_from_node = aboveFromNode(scene, body, node);
     if (body >= 0) body_from_node = bodyFromNode(scene, body) * body_from_node;
+    return placeIn(scene, node, body_from_node, point);
+}
+
+glm::dvec3 placeIn(const Scene& scene, int node, const glm::dmat4& body_from_node, const glm::dvec3& point) {
     const glm::dvec3 origin(body_from_node[3]);
     if (point == glm::dvec3(0)) return origin;
     const glm::dmat3 linear(body_from_node);

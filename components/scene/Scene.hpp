@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "components/scene/Animation.hpp"
 #include "types/Geometry.hpp"
 
 namespace insonify::scene {
@@ -20,9 +21,10 @@ struct Node {
 struct Scene {
     types::GeometryPtr geometry;
     std::vector<Node> nodes;
-    std::vector<int> object_nodes;             ///< For each object of the geometry, its node.
-    std::vector<glm::dmat4> node_from_object;  ///< For each object; 1 except for instances and visuals.
-    glm::dmat4 z_up_from_file{1};              ///< The turn of the file's axes to the world's.
+    std::vector<int> object_nodes;                      ///< For each object of the geometry, its node.
+    std::vector<glm::dmat4> node_from_object;           ///< For each object; 1 except for instances and visuals.
+    glm::dmat4 z_up_from_file{1};                       ///< The turn of the file's axes to the world's.
+    std::shared_ptr<const Animations> animations = {};  ///< Null: nothing moves by itself, nor is deformed.
 };
 
 /** An object that moves with a node. */
@@ -55,6 +57,9 @@ bool isFinite(const glm::dmat4& matrix);
 /** Returns the index of the node with that name, -1 if there is none. */
 int findNode(const Scene& scene, const std::string& name);
 
+/** What a body that has the node's place makes of the node: scale, shear, and the turn to z-up. */
+glm::dmat4 bodyFromNode(const Scene& scene, int node);
+
 /** Returns the objects at and below a node. With a pose of the body, world_from_object = world_from_body *
  *  body_from_object. */
 std::vector<Part> partsOf(const Scene& scene, int node);
@@ -63,5 +68,7 @@ std::vector<Part> partsOf(const Scene& scene, int node);
  *  world. The point is given in the node's axes, without scale [m]; they are the body's axes where neither is turned.
  *  The result is not finite if the node is scaled to zero and the point is not its origin. */
 glm::dvec3 placeOf(const Scene& scene, int node, int body, const glm::dvec3& point);
+/** The same of a node that is where a matrix has it. */
+glm::dvec3 placeIn(const Scene& scene, int node, const glm::dmat4& body_from_node, const glm::dvec3& point);
 
 }  // namespace insonify::scene

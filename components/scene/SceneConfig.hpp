@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/scene/Acoustics.hpp"
+#include "components/scene/Animator.hpp"
 #include "components/scene/GazeboWorld.hpp"
 #include "components/scene/Placement.hpp"
 #include "components/scene/SurfaceMaps.hpp"
@@ -97,6 +98,7 @@ struct SceneConfig {
     std::map<std::string, Acoustics> materials;
     bool materials_by_name = true;
     std::vector<TargetConfig> targets;
+    AnimationConfigs animations;
 
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
@@ -136,6 +138,11 @@ struct SceneConfig {
                     "Steel.001; false: they are medium sand"},
               self.materials_by_name);
         visit(Field{"targets", "", "point targets, rendered by the active sonar equation; absent: none"}, self.targets);
+        visit(
+            Field{"animations", "",
+                  "by name of an animation of the file, or * for all others: how it plays; absent: all play in a loop "
+                  "from the start of the run"},
+            self.animations);
     }
     void check(types::Diagnostics& diagnostics) const;
 };

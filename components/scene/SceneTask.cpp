@@ -18,6 +18,8 @@
 namespace insonify::scene {
 namespace {
 
+constexpr std::string_view time_ending = ".time";
+
 constexpr const char* unusable =
     ": pose dropped: position and orientation must be finite, the quaternion of unit length";
 
@@ -26,6 +28,21 @@ void moveAlong(const types::Pose& body, const Mount& mount, types::Pose& sonar) 
     const glm::dvec3& turn = body.angular_velocity;
     sonar.velocity = body.velocity + glm::normalize(body.orientation) * glm::cross(turn, mount.position);
     sonar.angular_velocity = glm::inverse(mount.orientation()) * turn;
+}
+
+/** How fast a node's place changes: by the velocities of its pose, else by the pose before; 0 where neither is known.
+ */
+glm::dmat4 rateOf(const types::Pose& pose, const glm::dmat4& place, const std::optional<glm::dmat4>& before,
+                  types::Time time_before) {
+    glm::dmat4 rate(0);
+    if (std::isfinite(glm::length(pose.velocity)) && std::isfinite(glm::length(pose.angular_velocity))) {
+        const glm::dvec3 turn = pose.orientation * pose.angular_velocity;
+        for (int axis = 0; axis < 3; ++axis) rate[axis] = glm::dvec4(glm::cross(turn, glm::dvec3(place[axis])), 0);
+        rate[3] = glm::dvec4(pose.velocity, 0);
+        return rate;
+    }
+    const double seconds = (pose.time - time_before).seconds();
+    return before && seconds > 0 ? (place - *before) / seconds : rate;
 }
 
 }  // namespace
@@ -96,6 +113,7 @@ std::map<std::string, Acoustics> SceneTask::materials(types::Diagnostics& diagno
 
 framework::InputPortBase* SceneTask::makeInput(const std::string& port, framework::OutputPortBase&) {
     constexpr std::string_view ending = ".pose";
+    if (port.ends_with(time_ending)) return makeTimeInput(port);
     if (!port.ends_with(ending)) return nullptr;
     const std::string node = port.substr(0, port.size() - ending.size());
     try {
@@ -106,6 +124,20 @@ framework::InputPortBase* SceneTask::makeInput(const std::string& port, framewor
     const std::string doc = "place of " + node + " in the world";
     auto made = std::make_unique<framework::InputPort<types::Pose>>(this, port, doc, framework::Need::Optional);
     return movables_.emplace_back(Movable{std::move(made), node, -1, {}, {}, {}, {}}).port.get();
+}
+
+framework::InputPortBase* SceneTask::makeTimeInput(const std::string& port) {
+    const std::string name = port.substr(0, port.size() - time_ending.size());
+    try {
+        const auto scene = load();
+        if (!scene->animations || std::ranges::count(scene->animations->all, name, &Animation::name) == 0)
+            return nullptr;
+    } catch (const types::ConfigError&) {
+        // check() reports what is wrong with the file; the port may well be right
+    }
+    auto made = std::make_unique<framework::InputPort<double>>(this, port, "time within the animation " + name + " [s]",
+                                                               framework::Need::Optional);
+    return timed_.emplace_back(Timed{std::move(made), name, {}, {}}).port.get();
 }
 
 std::unique_ptr<Bathymetry> SceneTask::openSurvey() const {
@@ -127,6 +159,7 @@ void SceneTask::check(types::Diagnostics& diagnostics) const try {
     }
     overrideMaterials(*load(), materials(diagnostics), diagnostics);
     scene::placeTargets(*load(), config->targets, {}, diagnostics);
+    if (!config->animations.empty()) Animator(load(), config->animations, {}, diagnostics);
 } catch (const types::ConfigError& error) {
     for (const types::Diagnostic& each : error.diagnostics())
         diagnostics.push_back(config->gazebo || each.path.starts_with("scale.") || each.path.starts_with("bathymetry.")
@@ -142,6 +175,7 @@ std::string SceneTask::indivisible() const {
 std::vector<std::string> SceneTask::notices() const {
     std::vector<std::string> all = geometry_ ? geometry_->notices : std::vector<std::string>{};
     if (!lay_.empty()) all.push_back(lay_);
+    if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());
     return all;
 }
 
@@ -176,11 +210,12 @@ bool SceneTask::configureHook() {
         movable.parts = partsOf(*scene, movable.node);
     }
     placeTargets(*scene, diagnostics);
+    part_count_ = 0;
+    for (const Movable& movable : movables_) part_count_ += movable.parts.size();
+    makeAnimator(scene, diagnostics);
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     lay_ = layText(*scene);
-    part_count_ = 0;
-    for (const Movable& movable : movables_) part_count_ += movable.parts.size();
     std::ranges::sort(movables_, {}, &Movable::node);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;
@@ -195,12 +230,29 @@ void SceneTask::placeTargets(const Scene& scene, types::Diagnostics& diagnostics
     target_names_ = std::make_shared<const std::vector<std::string>>(std::move(names));
 }
 
+void SceneTask::makeAnimator(const std::shared_ptr<const Scene>& scene, types::Diagnostics& diagnostics) {
+    animator_.reset();
+    driven_.clear();
+    if (!scene->animations && config->animations.empty()) return;
+    std::vector<int> nodes;
+    for (const Movable& movable : movables_) nodes.push_back(movable.node);
+    animator_ = std::make_unique<Animator>(scene, config->animations, nodes, diagnostics);
+    driven_.resize(movables_.size());
+    part_count_ += geometry_->objects.size();
+}
+
 bool SceneTask::startHook() {
     for (Movable& movable : movables_) {
         movable.world_from_body.reset();
         movable.newest = movable.arrived = now();
+        movable.rate = glm::dmat4(0);
         if (activity().settings().trigger.empty()) movable.port->setTriggers(false);
     }
+    for (Timed& timed : timed_) {
+        timed.newest.reset();
+        if (activity().settings().trigger.empty()) timed.port->setTriggers(false);
+    }
+    if (animator_) animator_->forgetTimes();
     newest_ = arrived_ = now();
     newest_came_ = waiting_is_reported_ = is_stale_ = false;
     if (bathymetry_) bathymetry_->forget();
@@ -268,7 +320,9 @@ void SceneTask::updateHook() try {
     sample->geometry = bathymetry_ ? bathymetry_->about(sample->sonar.position, geometry_) : geometry_;
     sample->ahead = bathymetry_ ? bathymetry_->ahead() : nullptr;
     sample->water_surface = config->water_surface;
+    if (animator_) animate(body.time);
     addMoved(sample->moved);
+    if (animator_) animator_->addMoved(sample->moved), animator_->addDeformed(*sample);
     addTargets(sample->targets);
     sample->target_names = target_names_;
     pool_.stock(*sample, [this](types::Snapshot& stocked) { stocked.moved.reserve(part_count_); });
@@ -286,13 +340,47 @@ bool SceneTask::readMovables() {
         if (movable.port->readNewest(sample, false) != framework::FlowStatus::NewData) continue;
         if (isUsable(sample)) {
             sample.orientation = glm::normalize(sample.orientation);
+            const glm::dmat4 place = sample.worldFromBody();
+            if (animator_) movable.rate = rateOf(sample, place, movable.world_from_body, movable.newest);
             movable.newest = sample.time, movable.arrived = now();
-            movable.world_from_body = sample.worldFromBody();
+            movable.world_from_body = place;
         } else {
             good = false;
         }
     }
     return good;
+}
+
+void SceneTask::readTimes(types::Time time) {
+    for (Timed& timed : timed_) {
+        double sample = 0;
+        if (timed.port->readNewest(sample, false) != framework::FlowStatus::NewData) continue;
+        if (!std::isfinite(sample)) {
+            warn(timed.port->path() + ": is not a finite number, dropped");
+            continue;
+        }
+        const double since = (time - timed.taken).seconds();
+        const double rate = timed.newest && since > 0 ? (sample - *timed.newest) / since : 0;
+        timed.newest = sample;
+        timed.taken = time;
+        animator_->setTime(timed.animation, sample, rate);
+    }
+}
+
+/** Takes the shape of the scene at a time, and where ports have put nodes. */
+void SceneTask::animate(types::Time time) {
+    readTimes(time);
+    const auto scene = scene_;
+    for (size_t i = 0; i < movables_.size(); ++i) {
+        const Movable& movable = movables_[i];
+        driven_[i].node = movable.node;
+        driven_[i].world_from_node.reset();
+        if (!movable.world_from_body) continue;
+        const glm::dmat4 body_from_node = bodyFromNode(*scene, movable.node);
+        driven_[i].world_from_node = *movable.world_from_body * body_from_node;
+        driven_[i].rate = movable.rate * body_from_node;
+    }
+    animator_->take((time - environment().start_time()).seconds(), driven_);
 }
 
 /** Adds the moved objects. Each object follows the innermost of its nodes that has a pose. */
@@ -314,11 +402,16 @@ const SceneTask::Movable* SceneTask::movableOf(int node) const {
     return found == movables_.end() ? nullptr : &*found;
 }
 
-/** Adds the point targets. Each target follows the innermost node at or above its own that has a pose. */
+/** Adds the point targets. Each target follows the innermost node at or above its own that has a pose or is
+ *  animated. */
 void SceneTask::addTargets(std::vector<types::PointTarget>& targets) const {
     targets.clear();
     for (const PlacedTarget& placed : targets_) {
         types::PointTarget& target = targets.emplace_back(placed.in_world, placed.strength_db);
+        if (animator_ && placed.node >= 0 && animator_->isAnimated(placed.node)) {
+            target.position = animator_->placeOf(placed.node, placed.offset);
+            continue;
+        }
         for (const PlacedTarget::Carrier& carrier : placed.carriers)
             if (const auto& body = movableOf(carrier.node)->world_from_body) {
                 target.position = glm::dvec3(*body * glm::dvec4(carrier.place, 1));
@@ -331,6 +424,7 @@ void SceneTask::cleanupHook() {
     geometry_.reset();
     bathymetry_.reset();
     scene_.reset();
+    animator_.reset();
     pool_ = {};
 }
 

@@ -12,6 +12,7 @@
 #include "components/framework/Registry.hpp"
 #include "components/framework/SamplePool.hpp"
 #include "components/framework/TaskContext.hpp"
+#include "components/scene/Animator.hpp"
 #include "components/scene/Bathymetry.hpp"
 #include "components/scene/Scene.hpp"
 #include "components/scene/SceneConfig.hpp"
@@ -25,6 +26,8 @@ namespace insonify::scene {
 /** Holds a scene and publishes, for each pose of the vehicle, a snapshot of what the sonar has in front of it.
  *
  *  In: `pose`, body in the world (x north, y west, z up); each new one gives one `snapshot`, with its time.
+ *  In: `<animation>.time` for any animation of the file that a connection names: time within the animation [s], in
+ *  place of the time since the start of the run. The newest is taken; it does not trigger.
  *  In: `<node>.pose` for any node of the file (in SDF any model or link, "rov", "rov::arm") that a connection names:
  *  the node's place in the world, which replaces its translation and rotation in the file. Its axes are turned like
  *  the world's; its scale stays; nodes below it move along. The newest pose is taken; it does not trigger. Before the
@@ -79,6 +82,14 @@ private:
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
         types::Time newest;                         ///< Stamp of that pose; the start time before the first.
         types::Time arrived;                        ///< When that pose came; the start before the first.
+        glm::dmat4 rate{0};                         ///< Of world_from_body, by the pose or the one before [1/s].
+    };
+    /** An animation that follows a port. */
+    struct Timed {
+        std::unique_ptr<framework::InputPort<double>> port;
+        std::string animation;
+        std::optional<double> newest;  ///< [s]; none before the first.
+        types::Time taken;             ///< Stamp of the snapshot that had it first.
     };
 
     std::shared_ptr<const Scene> load() const;
@@ -95,6 +106,10 @@ private:
     void addMoved(std::vector<types::MovedObject>& moved);
     void addTargets(std::vector<types::PointTarget>& targets) const;
     const Movable* movableOf(int node) const;
+    framework::InputPortBase* makeTimeInput(const std::string& port);
+    void makeAnimator(const std::shared_ptr<const Scene>& scene, types::Diagnostics& diagnostics);
+    void animate(types::Time time);
+    void readTimes(types::Time time);
 
     mutable std::shared_ptr<const Scene> scene_;  ///< Read once for check, ports and configure.
     mutable std::string scene_file_;
@@ -108,9 +123,12 @@ private:
     mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.
     std::unique_ptr<Bathymetry> bathymetry_;
-    std::vector<Movable> movables_;      ///< Outer nodes before inner nodes, once configured.
-    size_t part_count_ = 0;              ///< Parts of all movables; their memory is allocated before they move.
-    std::vector<const Movable*> mover_;  ///< For each object, the movable that moves it now.
+    std::vector<Movable> movables_;       ///< Outer nodes before inner nodes, once configured.
+    size_t part_count_ = 0;               ///< Parts of all movables; their memory is allocated before they move.
+    std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
+    std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
+    std::vector<Timed> timed_;
+    std::vector<DrivenNode> driven_;  ///< Of each movable, for the animator.
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;

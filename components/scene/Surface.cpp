@@ -61,6 +61,7 @@ std::vector<bool> separateMirrored(Surface& surface) {
                     surface.normals.push_back(surface.normals[index]);
                     surface.uvs.push_back(surface.uvs[index]);
                     if (!surface.map_uvs.empty()) surface.map_uvs.push_back(surface.map_uvs[index]);
+                    if (!surface.numbers.empty()) surface.numbers.push_back(surface.numbers[index]);
                     mirrored.push_back(is_mirrored);
                 }
                 index = twin[index];
@@ -102,7 +103,7 @@ void cleanUp(Surface& surface, DroppedTriangles& dropped) {
             continue;
         }
         const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-        if (normal == glm::dvec3(0)) {
+        if (normal == glm::dvec3(0) && surface.numbers.empty()) {
             ++dropped.empty;
             continue;
         }
@@ -142,13 +143,15 @@ void makeFlatNormals(Surface& surface) {
     for (size_t i = 0; i < surface.indices.size(); i += 3) {
         const uint32_t* corner = &surface.indices[i];
         const glm::dvec3 origin = surface.positions[corner[0]];
-        const glm::vec3 normal = glm::normalize(glm::cross(glm::dvec3(surface.positions[corner[1]]) - origin,
-                                                           glm::dvec3(surface.positions[corner[2]]) - origin));
+        const glm::dvec3 across = glm::cross(glm::dvec3(surface.positions[corner[1]]) - origin,
+                                             glm::dvec3(surface.positions[corner[2]]) - origin);
+        const glm::vec3 normal = glm::length(across) > 0 ? glm::normalize(across) : glm::dvec3(0, 1, 0);
         for (size_t k = 0; k < 3; ++k) {
             flat.positions.push_back(surface.positions[corner[k]]);
             flat.normals.push_back(normal);
             if (!surface.uvs.empty()) flat.uvs.push_back(surface.uvs[corner[k]]);
             if (!surface.map_uvs.empty()) flat.map_uvs.push_back(surface.map_uvs[corner[k]]);
+            if (!surface.numbers.empty()) flat.numbers.push_back(surface.numbers[corner[k]]);
             flat.indices.push_back(static_cast<uint32_t>(i + k));
         }
     }

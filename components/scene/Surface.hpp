@@ -16,6 +16,7 @@ struct Surface {
     std::vector<glm::vec4> tangents;  ///< Empty, or one unit vector and handedness per position.
     std::vector<glm::vec2> uvs;       ///< Empty, or one per position.
     std::vector<glm::vec2> map_uvs;   ///< Empty, or one per position: of a surface map.
+    std::vector<uint32_t> numbers;    ///< Empty, or one per position: vertices in the file's mesh that deforms.
     std::vector<uint32_t> indices;
 };
 
@@ -27,8 +28,8 @@ struct DroppedTriangles {
     void addTo(std::vector<std::string>& notices) const;
 };
 
-/** Drops triangles that cannot be rasterised, and counts them. A damaged vertex, which is no longer used, is set to
- *  0. */
+/** Drops triangles that cannot be rasterised, and counts them. A damaged vertex, which is no longer used, is set to 0.
+ *  Triangles without area stay where the surface has `numbers`, for a pose may open them. */
 void cleanUp(Surface& surface, DroppedTriangles& dropped);
 
 /** Calls `use(a, b, c, d)` for each cell of a grid whose vertices are stored row by row. a and b are neighbours in one

@@ -33,6 +33,8 @@ std::string attach(const Scene& scene, const TargetConfig& config, const std::ve
     if (node < 0) return unknown(scene, config.attached_to);
     const glm::dvec3 offset = config.position.value_or(glm::dvec3(0));
     target.in_world = placeOf(scene, node, -1, offset);
+    target.node = node;
+    target.offset = offset;
     for (int body = node; body >= 0; body = scene.nodes[static_cast<size_t>(body)].parent)
         if (std::ranges::count(moving, body) > 0) target.carriers.push_back({body, placeOf(scene, node, body, offset)});
     const bool placed = isFinite(target.in_world) &&

@@ -17,6 +17,8 @@ struct PlacedTarget {
     glm::dvec3 in_world{0};         ///< Place before any node has moved [m].
     double strength_db = 0;         ///< [dB re 1 m^2]
     std::vector<Carrier> carriers;  ///< Inner nodes before outer nodes.
+    int node = -1;                  ///< The target's node, -1 for none.
+    glm::dvec3 offset{0};           ///< Place in the axes of that node, as in the configuration [m].
 };
 
 /** Places targets in a scene whose nodes `moving` move. Adds errors to `diagnostics` at path

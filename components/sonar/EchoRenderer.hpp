@@ -12,6 +12,7 @@
 
 namespace insonify::sonar {
 
+class DeformedMeshes;
 class EchoField;
 class PingEffects;
 class RayPaths;
@@ -34,6 +35,11 @@ public:
     /** Switches to another geometry and keeps what has not changed. Returns false where another renderer is needed.
      *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
+    /** Switches to the geometry of `meshes`, whose objects deform, and takes their shapes in each ping from then on;
+     *  null: to `geometry`, in which no object deforms. Rasterising renderers ignore deformation. */
+    virtual void deform(DeformedMeshes* /*meshes*/, types::GeometryPtr /*geometry*/) {}
+    /** Poses the meshes by a snapshot, before any part of a ping reads them. */
+    virtual void takeShapes(const types::Snapshot& /*snapshot*/) {}
     /** Forgets all pings, as if the renderer and the effects had just been made. Returns false where a new renderer is
      *  needed. */
     virtual bool forget() { return false; }

@@ -10,6 +10,7 @@
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/field/EchoField.hpp"
 #include "components/sonar/field/LineArray.hpp"
+#include "components/sonar/places/DeformedMeshes.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 
 namespace insonify::sonar {
@@ -20,15 +21,18 @@ constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0},
 }  // namespace
 
 struct SonarRenderer::Parts {
-    Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options);
+    Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
     void makeEchoes();
-    bool takeScene(types::GeometryPtr scene);
+    bool takeScene(types::GeometryPtr given);
+    void takeShapes(const types::Snapshot& snapshot);
     void describePlan();
     types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
 
-    types::GeometryPtr geometry;
+    types::GeometryPtr scene;                  ///< Of the snapshots.
+    std::unique_ptr<DeformedMeshes> deformed;  ///< Null: no mesh deforms.
+    types::GeometryPtr geometry;               ///< That is rendered: the scene, or that of `deformed`.
     RenderPlan plan;
     PingEffects effects;
     types::Plan reported;
@@ -39,8 +43,8 @@ struct SonarRenderer::Parts {
     std::optional<LineArray> array;      ///< Made at the first ping whose signals are taken.
 };
 
-SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr scene, const RenderOptions& options)
-    : geometry(scene), plan(makeRenderPlan(config, *scene, options)), effects(plan, *scene) {
+SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options)
+    : scene(given), geometry(given), plan(makeRenderPlan(config, *given, options)), effects(plan, *given) {
     makeEchoes();
     describePlan();
 }
@@ -61,18 +65,37 @@ void SonarRenderer::Parts::describePlan() {
     if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
 }
 
-bool SonarRenderer::Parts::takeScene(types::GeometryPtr scene) {
-    if (scene == geometry) return false;
-    const bool same_plan =
-        scene->materials == geometry->materials && scene->normal_maps.sharesAll(geometry->normal_maps);
-    if (same_plan) {
-        effects.takeScene(*scene);
-    } else {
-        plan = makeRenderPlan(plan.config, *scene, plan.options);
-        effects = PingEffects(plan, *scene);
+/** Only rays show deforming meshes. */
+void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
+    if (!plan.traces_rays) return;
+    if (!deformed || !deformed->serves(snapshot)) {
+        const auto before = std::exchange(
+            deformed,
+            std::make_unique<DeformedMeshes>(snapshot, deformed ? deformed->objects() : std::vector<uint32_t>()));
+        const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
+        effects.takeScene(*geometry);
+        echoes->deform(deformed.get(), geometry);
     }
-    const types::GeometryPtr before = std::exchange(geometry, scene);  // kept until unused
-    if (!echoes->takeScene(std::move(scene), same_plan)) makeEchoes();
+    if (!deformed->changes(snapshot)) return;
+    echoes->takeShapes(snapshot);
+    effects.takeShapes(snapshot);
+}
+
+bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
+    if (given == scene) return false;
+    const std::unique_ptr<DeformedMeshes> deformed_before = std::move(deformed);
+    if (deformed_before && plan.traces_rays) echoes->deform(nullptr, scene);
+    scene = given;
+    const bool same_plan =
+        given->materials == geometry->materials && given->normal_maps.sharesAll(geometry->normal_maps);
+    if (same_plan) {
+        effects.takeScene(*given);
+    } else {
+        plan = makeRenderPlan(plan.config, *given, plan.options);
+        effects = PingEffects(plan, *given);
+    }
+    const types::GeometryPtr before = std::exchange(geometry, given);  // kept until unused
+    if (!echoes->takeScene(std::move(given), same_plan)) makeEchoes();
     if (!same_plan) describePlan();
     return !same_plan;
 }
@@ -105,6 +128,12 @@ SonarRenderer::~SonarRenderer() = default;
 
 void SonarRenderer::render(const types::Snapshot& snapshot, types::Sonar& ping) {
     parts_->stages = no_time;
+    if (!snapshot.deformed.empty() || parts_->deformed) {
+        const auto start = std::chrono::steady_clock::now();
+        parts_->takeShapes(snapshot);
+        parts_->stages[CullStage].seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
     parts_->fillHeader(snapshot, ping);
     types::SonarTruth* const truth = parts_->truthOf(ping);
     if (truth) truth->takeGrid(ping);
@@ -146,6 +175,7 @@ void SonarRenderer::takeElements(const types::Sonar& ping, types::SonarElements&
 
 bool SonarRenderer::forget() {
     parts_->effects = PingEffects(parts_->plan, *parts_->geometry);
+    if (parts_->deformed) parts_->deformed->forget();
     return parts_->echoes->forget();
 }
 

@@ -10,6 +10,7 @@
 #include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "types/Pose.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -130,6 +131,8 @@ const char* TriggeredTask::refusal() {
             return moved.object >= count;
         }))
         return "the snapshot moves an object that its geometry does not have";
+    if (!types::deformsRightly(taken_.scene))
+        return "the snapshot deforms an object that its geometry does not have so";
     if (const char* why = normalisePose(taken_.scene.sonar)) return why;
     if (activity().realtime() && (taken_.scene.time - now()).seconds() > 1)
         return "the snapshot's time is ahead of the clock by more than a second";

@@ -7,6 +7,7 @@
 #include "components/acoustics/BeamPattern.hpp"
 #include "tests/acoustics/Degree.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Weightings.hpp"
 #include "types/ConfigError.hpp"
 
@@ -163,12 +164,7 @@ TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
         std::ofstream(folder / "beam.csv") << text;
         BeamLaw law;
         law.file = folder / "beam.csv";
-        try {
-            BeamPattern pattern(law);
-        } catch (const types::ConfigError& error) {
-            return std::string(error.what());
-        }
-        return std::string();
+        return test::errorOf<types::ConfigError>([&] { BeamPattern pattern(law); });
     };
     EXPECT_THAT(diagnosticOf("angle,level\n"),
                 HasSubstr("beam.csv:1:1: is 'angle,level'; the header must be angle_deg,level_db"));
@@ -186,31 +182,26 @@ TEST_F(BeamPatternTest, DiagnosticsOfATableHaveFileLineAndColumn) {
 }
 
 TEST_F(BeamPatternTest, ALawHasOneWidthAndOnlyTheParametersOfItsWeighting) {
-    const auto diagnosticsOf = [](const BeamLaw& law) {
-        types::Diagnostics diagnostics;
-        law.check(diagnostics);
-        return diagnostics;
-    };
-    EXPECT_EQ(diagnosticsOf({}).size(), 1u);
+    EXPECT_EQ(test::refusalsOf(BeamLaw{}).size(), 1u);
     BeamLaw law;
     law.width_deg = 1;
-    EXPECT_TRUE(diagnosticsOf(law).empty());
+    EXPECT_TRUE(test::refusalsOf(law).empty());
     law.sidelobe_db = -30;
-    EXPECT_EQ(diagnosticsOf(law).at(0).path, "sidelobe_db");
+    EXPECT_THAT(test::refusalsOf(law).at(0), testing::StartsWith("sidelobe_db: "));
     law.weighting = Weighting::Dolph;
-    EXPECT_TRUE(diagnosticsOf(law).empty());
+    EXPECT_TRUE(test::refusalsOf(law).empty());
     law.sidelobe_db = -5;
     law.nbar = 4;
-    EXPECT_EQ(diagnosticsOf(law).size(), 2u);
+    EXPECT_EQ(test::refusalsOf(law).size(), 2u);
     law.sidelobe_db = -30;
     law.weighting = Weighting::Taylor;
-    EXPECT_TRUE(diagnosticsOf(law).empty());
+    EXPECT_TRUE(test::refusalsOf(law).empty());
     law.aperture_m = 0.1;
-    EXPECT_EQ(diagnosticsOf(law).size(), 1u);
+    EXPECT_EQ(test::refusalsOf(law).size(), 1u);
     BeamLaw gaussian;
     gaussian.weighting = Weighting::Gaussian;
     gaussian.aperture_m = 0.1;
-    EXPECT_EQ(diagnosticsOf(gaussian).at(0).path, "aperture_m");
+    EXPECT_THAT(test::refusalsOf(gaussian).at(0), testing::StartsWith("aperture_m: "));
 }
 
 }  // namespace

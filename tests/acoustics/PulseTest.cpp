@@ -1,8 +1,9 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "components/acoustics/Pulse.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::acoustics {
 namespace {
@@ -99,21 +100,16 @@ TEST(PulseTest, ExtentReachesToTheFloor) {
 }
 
 TEST(PulseTest, NeedsEitherABandwidthOrADuration) {
-    const auto diagnosticsOf = [](const PulseConfig& config) {
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        return diagnostics;
-    };
     PulseConfig config;
-    EXPECT_EQ(diagnosticsOf(config).size(), 1u);
+    EXPECT_EQ(test::refusalsOf(config).size(), 1u);
     config.duration_us = 100;
-    EXPECT_TRUE(diagnosticsOf(config).empty());
+    EXPECT_TRUE(test::refusalsOf(config).empty());
     config.window = PulseWindow::Hann;
-    EXPECT_EQ(diagnosticsOf(config).at(0).path, "window");
+    EXPECT_THAT(test::refusalsOf(config).at(0), testing::StartsWith("window: "));
     config.bandwidth_khz = 50;
-    EXPECT_EQ(diagnosticsOf(config).at(0).path, "duration_us");
+    EXPECT_THAT(test::refusalsOf(config).at(0), testing::StartsWith("duration_us: "));
     config.duration_us.reset();
-    EXPECT_TRUE(diagnosticsOf(config).empty());
+    EXPECT_TRUE(test::refusalsOf(config).empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "components/acoustics/SoundProfile.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::acoustics {
@@ -120,12 +121,7 @@ std::string diagnosticOf(const std::string& text) {
     const Folder folder;
     const std::string file = folder / "profile.csv";
     std::ofstream(file) << text;
-    try {
-        SoundProfile::read(file);
-    } catch (const types::ConfigError& error) {
-        return error.what();
-    }
-    return {};
+    return test::errorOf<types::ConfigError>([&] { SoundProfile::read(file); });
 }
 
 TEST(SoundProfileTest, ReportsAnErrorInAFileWithItsPlace) {

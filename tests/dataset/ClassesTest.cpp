@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/dataset/Classes.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -46,14 +47,9 @@ TEST(ClassesTest, APatternThatMatchesNothingIsRefused) {
     Sweep sweep;
     sweep.file = "sweep.yml";
     sweep.classes = {{"wreck", {"hul"}, 3, 1}};
-    try {
-        const Classes classes(sweep, objects);
-        FAIL() << "there is no hul";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.diagnostics().front().text(),
-                    HasSubstr("sweep.yml:3:1: classes.wreck[0]: is hul, which is no "
-                              "name in the scene; did you mean hull?"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { const Classes classes(sweep, objects); }),
+                HasSubstr("sweep.yml:3:1: classes.wreck[0]: is hul, which is no "
+                          "name in the scene; did you mean hull?"));
 }
 
 }  // namespace

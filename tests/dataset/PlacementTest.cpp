@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "components/dataset/Placement.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -203,14 +204,10 @@ TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
 
 TEST(PlacementTest, ReportsTheNumberOfObjectsThatFit) {
     const Sweep sweep = sweepOf({2, 4}, {2, 4});
-    try {
-        placed(sweep, stones(30), 30, 8);
-        FAIL() << "30 stones of a metre on 4 m2";
-    } catch (const types::ConfigError& error) {
-        const types::Diagnostic& reported = error.diagnostics().front();
-        EXPECT_THAT(reported.text(), HasSubstr("sweep.yml:4:5: objects[0]: has room for "));
-        EXPECT_THAT(reported.text(), HasSubstr("of its 30 objects at pose 8"));
-    }
+    EXPECT_THAT(
+        test::errorOf<types::ConfigError>([&] { placed(sweep, stones(30), 30, 8); }),
+        testing::AllOf(HasSubstr("sweep.yml:4:5: objects[0]: has room for "), HasSubstr("of its 30 objects at pose 8")))
+        << "30 stones of a metre on 4 m2";
 }
 
 }  // namespace

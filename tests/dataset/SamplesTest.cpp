@@ -6,6 +6,7 @@
 #include <set>
 
 #include "components/dataset/Samples.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -143,12 +144,7 @@ TEST(SamplesTest, RefusesMissingAndRepeatedObjectsWithTheirPlace) {
     sweep.objects.resize(2);
     for (ObjectGroup& group : sweep.objects) group.names = {"stone_1"}, group.x = group.y = {0, 1}, group.line = 9;
     const auto messageOf = [&] {
-        try {
-            const Samples samples(sweep, {}, {stoneParts(2)});
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics().front().text();
-        }
-        return std::string("none");
+        return test::errorOf<types::ConfigError>([&] { const Samples samples(sweep, {}, {stoneParts(2)}); });
     };
     EXPECT_EQ(messageOf(), "sweep.yml:9: objects[1].names: places stone_1 for the second time");
     sweep.objects[1].names = {"stne_0"};
@@ -168,12 +164,7 @@ TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
     EXPECT_THAT(samples.objectsOf(0), ElementsAre("stone_0"));
     EXPECT_THAT(samples.objectsOf(1), ElementsAre("stone_0", "stone_3"));
     const auto messageOf = [&] {
-        try {
-            const Samples refused(sweep, {}, {few, many});
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics().front().text();
-        }
-        return std::string("none");
+        return test::errorOf<types::ConfigError>([&] { const Samples refused(sweep, {}, {few, many}); });
     };
     group.avoid = {"wal"};
     EXPECT_THAT(messageOf(), HasSubstr("objects[0].avoid[0]: is wal, which is no name in any of the scenes"));

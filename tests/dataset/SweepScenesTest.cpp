@@ -4,6 +4,7 @@
 #include <set>
 
 #include "components/dataset/commands/SweepScenes.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::dataset {
@@ -51,13 +52,8 @@ TEST(SweepScenesTest, AGroundIsOfAllNodesThatItsPatternMatches) {
 }
 
 TEST(SweepScenesTest, AGroundWithoutASurfaceIsRefusedAtItsPlace) {
-    try {
-        partsOf(standingOn("frame"), floors());
-        FAIL() << "a node without meshes was taken for a ground";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(),
-                    HasSubstr("sweep.yml:4:5: objects[0].ground: is frame, which has no surface to stand on"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([] { partsOf(standingOn("frame"), floors()); }),
+                HasSubstr("sweep.yml:4:5: objects[0].ground: is frame, which has no surface to stand on"));
 }
 
 TEST(SweepScenesTest, AnObjectHasItsNodesNamesUpToTheRoot) {

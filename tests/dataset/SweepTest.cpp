@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "components/dataset/Sweep.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Hash.hpp"
 
 namespace insonify::dataset {
@@ -21,14 +22,6 @@ std::vector<double> stepsOf(const Axis& axis) {
     std::vector<double> steps;
     for (uint64_t i = 0; i < axis.stepCount(); ++i) steps.push_back(axis.step(i));
     return steps;
-}
-
-std::vector<std::string> diagnosticsOf(const auto& checked) {
-    types::Diagnostics diagnostics;
-    checked.check(diagnostics);
-    std::vector<std::string> texts;
-    for (const types::Diagnostic& each : diagnostics) texts.push_back(each.text());
-    return texts;
 }
 
 TEST(SweepTest, StepsGoEvenlyFromOneValueToTheOther) {
@@ -92,25 +85,26 @@ TEST(SweepTest, AStarMatchesAnyLetters) {
 }
 
 TEST(SweepTest, RefusesContradictoryKeys) {
-    EXPECT_THAT(diagnosticsOf(Axis{}), testing::SizeIs(1));
+    EXPECT_THAT(test::refusalsOf(Axis{}), testing::SizeIs(1));
     Axis axis = drawnFrom({4, 2}, {});
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("uniform: must be two numbers, [min, max]"));
+    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("uniform: must be two numbers, [min, max]"));
     axis = drawnFrom({}, {1, -1});
-    EXPECT_THAT(diagnosticsOf(axis),
+    EXPECT_THAT(test::refusalsOf(axis),
                 ElementsAre("normal: must be two numbers, [mean, deviation], the deviation not below 0"));
     axis = {};
     axis.from = 1;
-    EXPECT_THAT(diagnosticsOf(axis), ElementsAre("needs all of from, to and count for steps"));
+    EXPECT_THAT(test::refusalsOf(axis), ElementsAre("needs all of from, to and count for steps"));
     Split split;
     split.val = 0.2;
-    EXPECT_THAT(diagnosticsOf(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
+    EXPECT_THAT(test::refusalsOf(split), ElementsAre("adds up to 1.2; train, val and test must add up to 1"));
     ObjectGroup group;
     group.names = {"a"};
     group.x = {0, 1};
-    EXPECT_THAT(diagnosticsOf(group), ElementsAre("y: is missing; give [min, max]"));
+    EXPECT_THAT(test::refusalsOf(group), ElementsAre("y: is missing; give [min, max]"));
     TrajectoryPoses poses;
     poses.file = "a.csv";
-    EXPECT_THAT(diagnosticsOf(poses), ElementsAre("must have one of count and period, which set the number of poses"));
+    EXPECT_THAT(test::refusalsOf(poses),
+                ElementsAre("must have one of count and period, which set the number of poses"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/ros/GeometryMessages.hpp"
 #include "tests/dds/Loopback.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 using namespace insonify;
@@ -16,15 +17,6 @@ using testing::HasSubstr;
 namespace {
 
 class DomainTest : public Loopback {};
-
-std::string errorOf(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const types::ConfigError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 }  // namespace
 
@@ -54,7 +46,9 @@ TEST_F(DomainTest, TakesTheGivenDomainOrThatOfTheEnvironment) {
     EXPECT_EQ(domainId({}), 0u);
     for (const char* bad : {"x", "-1", "233", "1 ", "99999999999999"}) {
         setenv("ROS_DOMAIN_ID", bad, 1);
-        EXPECT_THAT(errorOf([] { domainId({}); }), HasSubstr("ROS_DOMAIN_ID is " + std::string(bad))) << bad;
+        EXPECT_THAT(test::errorOf<types::ConfigError>([] { domainId({}); }),
+                    HasSubstr("ROS_DOMAIN_ID is " + std::string(bad)))
+            << bad;
     }
 }
 
@@ -63,11 +57,11 @@ TEST_F(DomainTest, ReportsWhyADomainCannotBeJoined) {
            "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"nothere0\"/></Interfaces></General>"
            "</Domain></CycloneDDS>",
            1);
-    const std::string text = errorOf([] { joinDomain(domainId({}), ""); });
+    const std::string text = test::errorOf<types::ConfigError>([] { joinDomain(domainId({}), ""); });
     EXPECT_THAT(text, HasSubstr("DDS domain " + std::to_string(domainId({})) + " cannot be joined"));
     EXPECT_THAT(text, HasSubstr("nothere0"));
     setenv("CYCLONEDDS_URI", "<CycloneDDS><Domain><Nonsense/></Domain></CycloneDDS>", 1);
-    EXPECT_THAT(errorOf([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
+    EXPECT_THAT(test::errorOf<types::ConfigError>([] { joinDomain(domainId({}), ""); }), HasSubstr("Nonsense"));
 }
 
 TEST_F(DomainTest, LeavesAndJoinsADomainAgain) {

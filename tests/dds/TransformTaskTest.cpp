@@ -7,6 +7,7 @@
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 #include "tests/support/Listening.hpp"
+#include "tests/support/Refused.hpp"
 
 using namespace insonify;
 using namespace insonify::dds;
@@ -128,22 +129,13 @@ TEST_F(TransformTaskTest, CanStampTransformsWithTheirArrival) {
 TEST_F(TransformTaskTest, ReportsWrongPropertiesWithTheirPlace) {
     TransformTask other("other");
     TransformConfig config;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "frames");
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("frames: ")));
     config.frames = {{"a", "map"}, {"a", "base_link"}};
     config.topic = "a b";
-    diagnostics.clear();
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 3u);
-    EXPECT_EQ(diagnostics[0].path, "topic");
-    EXPECT_THAT(diagnostics[1].message, HasSubstr("is map, the world_frame_id itself"));
-    EXPECT_THAT(diagnostics[2].message, HasSubstr("is a a second time"));
+    EXPECT_THAT(test::refusalsOf(config),
+                testing::ElementsAre(testing::StartsWith("topic: "), HasSubstr("is map, the world_frame_id itself"),
+                                     HasSubstr("is a a second time")));
     other.config.set(config);
     other.environment().lockstep = true;
-    diagnostics.clear();
-    other.check(diagnostics);
-    ASSERT_FALSE(diagnostics.empty());
-    EXPECT_THAT(diagnostics[0].message, HasSubstr("set schedule: realtime"));
+    EXPECT_THAT(test::refusalsOf(other), testing::Contains(HasSubstr("set schedule: realtime")));
 }

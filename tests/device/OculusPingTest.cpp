@@ -6,6 +6,7 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
 
@@ -91,12 +92,7 @@ TEST(OculusPingTest, AFileWithoutAPingIsRefusedWithTheReason) {
     const auto messageOf = [&](const Bytes& bytes) -> std::string {
         std::ofstream(folder / "a.raw", std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        try {
-            readOculusPings(folder / "a.raw");
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics()[0].text();
-        }
-        return "";
+        return test::errorOf<types::ConfigError>([&] { readOculusPings(folder / "a.raw"); });
     };
     EXPECT_THAT(messageOf({1, 2, 3}), HasSubstr("a.raw: holds no ping of an Oculus"));
     Bytes cut = Sent{}.bytes();

@@ -9,6 +9,7 @@
 #include "tests/support/Folder.hpp"
 #include "tests/support/OculusMessage.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -214,12 +215,7 @@ TEST_F(OculusRecordingTest, AnIncompleteMessageAtTheEndOfACaptureCostsNoOther) {
 
 TEST_F(OculusRecordingTest, RefusesOtherFiles) {
     const auto messageOf = [](const auto& make) -> std::string {
-        try {
-            make();
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics()[0].text();
-        }
-        return "";
+        return test::errorOf<types::ConfigError>([&] { make(); });
     };
     writeBytes(file_, std::vector<char>(100, 'S'));
     EXPECT_THAT(messageOf([&] { OculusRecording recording(file_); }), HasSubstr("does not begin as a recording"));

@@ -1,5 +1,6 @@
 #include "components/device/Ping360Emulator.hpp"
 #include "tests/device/PingBench.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::device {
 namespace {
@@ -349,13 +350,10 @@ TEST_F(Ping360EmulatorTest, DiscoveryHasTheTextOfFinders) {
 }
 
 TEST_F(Ping360EmulatorTest, RequiresThreeGains) {
-    types::Diagnostics diagnostics;
     Ping360Config config;
-    config.check(diagnostics);
-    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_THAT(test::refusalsOf(config), IsEmpty());
     config.gain_db = {1, 2};
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
+    EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(1));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "components/device/SeaNet.hpp"
 #include "tests/device/ByteStrings.hpp"
 #include "tests/support/OculusDriver.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::device {
@@ -30,12 +31,7 @@ TEST(ProbeTest, AnAddressIsAHostAPortOrALine) {
     EXPECT_EQ(probeAddress("::1").host, "::1");
     EXPECT_EQ(probeAddress("/dev/ttyUSB0").serial, "/dev/ttyUSB0");
     const auto why = [](const std::string& text) -> std::string {
-        try {
-            probeAddress(text);
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics()[0].text();
-        }
-        return "";
+        return test::errorOf<types::ConfigError>([&] { probeAddress(text); });
     };
     EXPECT_THAT(why(""), HasSubstr("names no host"));
     EXPECT_THAT(why(":5"), HasSubstr("names no host"));

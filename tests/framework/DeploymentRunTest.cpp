@@ -3,7 +3,6 @@
 #include "components/framework/Wiring.hpp"
 #include "tests/framework/Tasks.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/Sonar.hpp"
 
 namespace insonify::framework {
 namespace {
@@ -133,25 +132,6 @@ connections:
     EXPECT_EQ(run.notes("relay").size(), 3u);
     EXPECT_EQ(run.deployment->task("throwing")->state(), TaskState::Exception);
     EXPECT_EQ(run.deployment->task("source")->state(), TaskState::Stopped);
-}
-
-/** A sonar: writes a ping each cycle. */
-struct Sonar : TaskContext {
-    using TaskContext::TaskContext;
-    OutputPort<types::SonarPtr> ping{this, "ping", "empty"};
-    void updateHook() override { ping.write(nullptr); }
-    bool finished() const override { return true; }
-};
-
-TEST(DeploymentRunTest, RunEndsWhenEverySonarHasWrittenThePings) {
-    Registry registry;
-    registry.add<Sonar>("test::Sonar", "pings");
-    const char* yaml =
-        "tasks: {a: {type: test::Sonar, activity: {period: 0.1}}, b: {type: test::Sonar, activity: {period: 0.2}}}";
-    Deployment deployment(DeploymentSpec::parse(yaml, "a.yml"), registry);
-    deployment.configure();
-    EXPECT_EQ(deployment.run({.samples = 4}, never).samples, 4u);
-    EXPECT_EQ(deployment.task("a")->cycles().count(), 7u);
 }
 
 /** Records its transitions in a shared list; "bad" refuses to be configured, "writer" writes on start. */

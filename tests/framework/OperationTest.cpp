@@ -56,15 +56,18 @@ TEST(OperationTest, AThrowReachesTheCallerAndLeavesTheTask) {
     EXPECT_EQ(motor.state(), TaskState::Stopped);
 }
 
+/** Returns the result of a call of "task.operation", or why it fails. */
+std::string called(TaskContext& task, const std::string& operation, const std::vector<std::string>& arguments) {
+    try {
+        return task.operation(operation)->callText(arguments);
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+}
+
 TEST(OperationTest, TransitionsAreOperationsThatReportWhyTheyAreRefused) {
     Motor motor("motor");
-    const auto call = [&](const char* name) {
-        try {
-            return motor.operation(name)->callText({});
-        } catch (const std::runtime_error& error) {
-            return std::string(error.what());
-        }
-    };
+    const auto call = [&](const char* name) { return called(motor, name, {}); };
     EXPECT_EQ(call("start"), "cannot start: motor is PreOperational, must be Stopped");
     EXPECT_EQ(call("configure"), "");
     EXPECT_EQ(call("start"), "");
@@ -100,15 +103,6 @@ struct Wheel : TaskContext {
         return config->radius < 9;
     }
 };
-
-/** Returns the result of a call of "task.operation", or why it fails. */
-std::string called(TaskContext& task, const std::string& operation, const std::vector<std::string>& arguments) {
-    try {
-        return task.operation(operation)->callText(arguments);
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-}
 
 TEST(OperationTest, EveryPropertyHasASetterThatChecksItsArgument) {
     Wheel wheel("wheel");

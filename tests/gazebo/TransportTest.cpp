@@ -4,6 +4,7 @@
 #include "components/gazebo/Discovery.hpp"
 #include "components/gazebo/TransportOptions.hpp"
 #include "tests/gazebo/Recordings.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
@@ -51,12 +52,7 @@ TEST_F(TransportTest, ThePropertyHasPrecedenceOverHarmonicsVariablesAndTheseOver
 
 TEST_F(TransportTest, InvalidVariablesAreAnError) {
     const auto diagnosticOf = [](const std::string& partition) -> std::string {
-        try {
-            TransportOptions::fromEnvironment(partition);
-            return "";
-        } catch (const types::ConfigError& error) {
-            return error.what();
-        }
+        return test::errorOf<types::ConfigError>([&] { TransportOptions::fromEnvironment(partition); });
     };
     EXPECT_THAT(diagnosticOf("a@b"), HasSubstr("partition: is a@b, which Gazebo's transport does not take"));
     for (const char* port : {"0", "65536", "x", "80x"}) {

@@ -9,6 +9,7 @@
 #include "components/scene/MaterialNames.hpp"
 #include "tests/gazebo/Recordings.hpp"
 #include "tests/sdf/SdfFiles.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::gazebo {
@@ -179,12 +180,7 @@ TEST_F(WorldTest, ReportsDuplicateNames) {
 
 TEST_F(WorldTest, InvalidBytesAndTooLargeWorldsAreErrors) {
     const auto diagnosticOf = [&](const std::string& bytes) -> std::string {
-        try {
-            gazebo::worldOf(bytes, folder_);
-            return "";
-        } catch (const types::ConfigError& error) {
-            return error.what();
-        }
+        return test::errorOf<types::ConfigError>([&] { gazebo::worldOf(bytes, folder_); });
     };
     EXPECT_THAT(diagnosticOf("no message"), HasSubstr("world: has a service that answers bytes which are no message"));
     const std::string whole = recording("scene");

@@ -10,7 +10,7 @@
 
 #include "components/gpu/EglContext.hpp"
 #include "components/gpu/Objects.hpp"
-#include "tests/gpu/ErrorOf.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::gpu {
 namespace {
@@ -24,7 +24,7 @@ using ::testing::Not;
 template <class Job>
 std::string errorElsewhere(const Job& job) {
     std::string text;
-    std::thread([&] { text = errorOf(job); }).join();
+    std::thread([&] { text = test::errorOf<GlError>(job); }).join();
     return text;
 }
 
@@ -75,14 +75,14 @@ TEST(EglContextTest, WithoutADeviceTheVariableChooses) {
 
 TEST(EglContextTest, AnUnknownDeviceIsReportedWithTheAllowedNames) {
     for (const char* device : {"quantum", "4000000000", "99999999999999999999", "-1", "0x", "1.5", " software", "Auto"})
-        EXPECT_THAT(errorOf([&] { EglContext context(device); }),
+        EXPECT_THAT(test::errorOf<GlError>([&] { EglContext context(device); }),
                     AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
 }
 
 TEST(EglContextTest, AnUnknownDeviceInTheVariableIsReportedToo) {
     for (const char* device : {"quantum", "4000000000"}) {
         const DeviceVariable variable(device);
-        EXPECT_THAT(errorOf([] { EglContext context; }),
+        EXPECT_THAT(test::errorOf<GlError>([] { EglContext context; }),
                     AllOf(HasSubstr("'" + std::string(device) + "'"), HasSubstr("auto, software or a number below ")));
     }
 }
@@ -101,34 +101,34 @@ TEST(EglContextTest, RejectsUseOnAnotherThread) {
     EglContext context("software");
     EXPECT_THAT(errorElsewhere([&] { context.requireThread(); }), HasSubstr("made on another thread"));
     EXPECT_THAT(errorElsewhere([&] { context.check(); }), HasSubstr("made on another thread"));
-    EXPECT_EQ(errorOf([&] { context.check(); }), "") << "its own thread may go on";
+    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "") << "its own thread may go on";
 }
 
 TEST(EglContextTest, RejectsAContextThatIsNoLongerCurrent) {
     EglContext first("software");
     {
         EglContext second("software");
-        EXPECT_THAT(errorOf([&] { first.requireThread(); }), HasSubstr("one at a time"));
-        EXPECT_EQ(errorOf([&] { second.check(); }), "");
+        EXPECT_THAT(test::errorOf<GlError>([&] { first.requireThread(); }), HasSubstr("one at a time"));
+        EXPECT_EQ(test::errorOf<GlError>([&] { second.check(); }), "");
     }
-    EXPECT_THAT(errorOf([&] { first.check(); }), HasSubstr("one at a time"));
+    EXPECT_THAT(test::errorOf<GlError>([&] { first.check(); }), HasSubstr("one at a time"));
 }
 
 TEST(EglContextTest, TheNextCheckThrowsAnErrorOnceWithGlsTextIfTheVariableIsSet) {
     const DebugVariable debug("1");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);  // not in the core profile
-    EXPECT_THAT(errorOf([&] { context.check(); }), AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
-    EXPECT_EQ(errorOf([&] { context.check(); }), "");
+    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }), AllOf(HasSubstr("OpenGL: "), HasSubstr("glEnable")));
+    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, WithoutTheVariableAnErrorIsThrownWithItsNumberAndARemedy) {
     const DebugVariable debug("0");
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
-    EXPECT_THAT(errorOf([&] { context.check(); }),
+    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }),
                 AllOf(HasSubstr("OpenGL: error 1280"), HasSubstr("INSONIFY_GL_DEBUG=1")));
-    EXPECT_EQ(errorOf([&] { context.check(); }), "");
+    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, NamesTheDriver) { EXPECT_THAT(EglContext("software").driver(), HasSubstr("Mesa")); }
@@ -147,7 +147,7 @@ TEST(EglContextTest, ReportsTheFirstOfTwoErrors) {
     EglContext context("software");
     glEnable(GL_TEXTURE_2D);
     glBindFramebuffer(GL_FRAMEBUFFER, 4711);
-    EXPECT_THAT(errorOf([&] { context.check(); }), HasSubstr("glEnable"));
+    EXPECT_THAT(test::errorOf<GlError>([&] { context.check(); }), HasSubstr("glEnable"));
 }
 
 TEST(EglContextTest, RecognisesSoftwareRenderersByTheirNames) {
@@ -178,7 +178,7 @@ TEST(EglContextTest, PrefersACardToADisplayChipOnTheProcessor) {
 TEST(EglContextTest, TheSearchForACardLeavesTheContextCurrent) {
     EglContext context("software");
     EglContext::hasCard();
-    EXPECT_EQ(errorOf([&] { context.check(); }), "");
+    EXPECT_EQ(test::errorOf<GlError>([&] { context.check(); }), "");
 }
 
 TEST(EglContextTest, ASecondContextOnAnotherThreadSharesTheBuffersOfTheFirst) {

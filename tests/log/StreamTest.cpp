@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/log/Stream.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::log {
@@ -24,12 +25,9 @@ TEST(StreamTest, AReadableTimeIsReadBackToTheMicrosecond) {
 }
 
 TEST(StreamTest, RefusesInvalidTimesByName) {
-    for (const char* text : {"noon", "", "2023-11-14", "2023-11-14T22:13:20Zulu", "1e300", "nan", "3 s"}) try {
-            readTime(text, "--until");
-            ADD_FAILURE() << text;
-        } catch (const types::ConfigError& error) {
-            EXPECT_THAT(error.what(), testing::HasSubstr("--until: is " + std::string(text))) << text;
-        }
+    for (const char* text : {"noon", "", "2023-11-14", "2023-11-14T22:13:20Zulu", "1e300", "nan", "3 s"})
+        EXPECT_THAT(test::errorOf<types::ConfigError>([&] { readTime(text, "--until"); }),
+                    testing::HasSubstr("--until: is " + std::string(text)));
 }
 
 }  // namespace

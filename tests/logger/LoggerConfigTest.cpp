@@ -1,23 +1,22 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "components/logger/LoggerConfig.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::logger {
 namespace {
 
-size_t diagnosticsOf(const std::string& file) {
+size_t refusalsOf(const std::string& file) {
     LoggerConfig config;
     config.file = file;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    return diagnostics.size();
+    return test::refusalsOf(config).size();
 }
 
 TEST(LoggerConfigTest, AcceptsOnlyNamesThatEndInLog) {
     for (const char* good : {"harbour.0.log", "harbour.log", "day/harbour.1.log"})
-        EXPECT_EQ(diagnosticsOf(good), 0u) << good;
+        EXPECT_EQ(refusalsOf(good), 0u) << good;
     for (const char* bad : {"", ".log", "harbour", "harbour.log.gz", "harbour.log/"})
-        EXPECT_EQ(diagnosticsOf(bad), 1u) << bad;
+        EXPECT_EQ(refusalsOf(bad), 1u) << bad;
 }
 
 TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
@@ -25,9 +24,7 @@ TEST(LoggerConfigTest, ALogOfSeveralFilesHasANumber) {
     config.max_file_size = 1e6;
     for (const auto& [file, count] : {std::pair{"harbour.0.log", 0u}, {"harbour.17.log", 0u}, {"harbour.log", 1u}}) {
         config.file = file;
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        EXPECT_EQ(diagnostics.size(), count) << file;
+        EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(count)) << file;
     }
     EXPECT_EQ(nextInSequence("day/harbour.9.log"), "day/harbour.10.log");
 }
@@ -38,9 +35,7 @@ TEST(LoggerConfigTest, PropertiesHaveTheirOwnFile) {
     for (const auto& [file, count] :
          {std::pair{"properties.0.log", 0u}, {"", 0u}, {"x.0.log", 1u}, {"a/b.0.log", 1u}, {"properties", 1u}}) {
         config.property_file = file;
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        EXPECT_EQ(diagnostics.size(), count) << file;
+        EXPECT_THAT(test::refusalsOf(config), testing::SizeIs(count)) << file;
     }
 }
 

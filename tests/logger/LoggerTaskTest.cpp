@@ -7,6 +7,7 @@
 #include "components/logger/LoggerTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Waiting.hpp"
 #include "types/Snapshot.hpp"
 
@@ -134,12 +135,8 @@ TEST(LoggerTaskTest, EveryTypeOfTheListCanBeLogged) {
 TEST(LoggerTaskTest, RefusesATypeThatALogCannotStore) {
     Bench bench;
     test::Writer<types::SnapshotPtr> scene("scene");
-    try {
-        bench.task.makeInput("snapshot", scene.port);
-        FAIL() << "a snapshot was accepted";
-    } catch (const types::ConfigError& error) {
-        EXPECT_STREQ(error.what(), "scene.port is /insonify/Snapshot, which a log cannot hold");
-    }
+    EXPECT_EQ(test::errorOf<types::ConfigError>([&] { bench.task.makeInput("snapshot", scene.port); }),
+              "scene.port is /insonify/Snapshot, which a log cannot hold");
     EXPECT_TRUE(bench.task.inputs().empty());
 }
 

@@ -11,6 +11,7 @@
 #include "tests/support/Allocations.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Mount.hpp"
 
 namespace insonify::logger {
@@ -189,9 +190,7 @@ TEST_F(McapLogTest, ValidatesTheNameOfTheFile) {
     for (const auto& [file, right] :
          {std::pair{"x.mcap", true}, {"a/x.0.mcap", true}, {".mcap", false}, {"x.bag", false}}) {
         config.file = file;
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        EXPECT_EQ(diagnostics.empty(), right) << file;
+        EXPECT_EQ(test::refusalsOf(config).empty(), right) << file;
     }
 }
 

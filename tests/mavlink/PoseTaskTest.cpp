@@ -7,6 +7,7 @@
 #include "components/mavlink/PoseTask.hpp"
 #include "tests/mavlink/Vehicle.hpp"
 #include "tests/support/Listening.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Mount.hpp"
 
 using namespace insonify;
@@ -118,9 +119,6 @@ TEST_F(PoseTaskTest, LockstepIsRefusedWithAReason) {
     config.bodies.resize(1);
     other.config.set(config);
     other.environment().lockstep = true;
-    types::Diagnostics diagnostics;
-    other.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 2u);
-    EXPECT_THAT(diagnostics[0].message, HasSubstr("set schedule: realtime"));
-    EXPECT_THAT(diagnostics[1].message, HasSubstr("no connection leads from other.pose"));
+    EXPECT_THAT(test::refusalsOf(other), testing::ElementsAre(HasSubstr("set schedule: realtime"),
+                                                              HasSubstr("no connection leads from other.pose")));
 }

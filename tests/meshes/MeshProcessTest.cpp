@@ -14,6 +14,7 @@
 #include "tests/meshes/Dae.hpp"
 #include "tests/sdf/SdfFiles.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::meshes {
 
@@ -127,21 +128,12 @@ TEST_F(MeshProcessTest, AFileThatTakesTooLongIsRefused) {
     }
     const auto file = write("star.obj", obj + face + "\n");
     ReadLimits limits = ReadLimits::forFile(std::filesystem::file_size(file));
+    const auto read = [&] { readMeshesApart(file, false, limits); };
     limits.processor_s = 1;
-    try {
-        readMeshesApart(file, false, limits);
-        FAIL() << "nothing was limited";
-    } catch (const types::ConfigError& error) {
-        expectPart(error.what(), "star.obj: takes more than 1 s to compute; open the model");
-    }
+    expectPart(test::errorOf<types::ConfigError>(read), "star.obj: takes more than 1 s to compute; open the model");
     limits.processor_s = 100;
     limits.wall_s = 1;
-    try {
-        readMeshesApart(file, false, limits);
-        FAIL() << "nothing was limited";
-    } catch (const types::ConfigError& error) {
-        expectPart(error.what(), "star.obj: was not read within 1 s; open the model");
-    }
+    expectPart(test::errorOf<types::ConfigError>(read), "star.obj: was not read within 1 s; open the model");
 }
 
 TEST_F(MeshProcessTest, ReportsEveryEndOfTheReader) {

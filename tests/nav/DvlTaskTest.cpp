@@ -2,6 +2,7 @@
 
 #include "components/nav/DvlTask.hpp"
 #include "tests/nav/Paths.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
 
@@ -99,10 +100,8 @@ TEST_F(DvlTaskTest, RejectsAPoseThatIsNotFiniteUntilAValidPose) {
 }
 
 TEST_F(DvlTaskTest, RejectsAnEmptyIntervalOfAltitudes) {
-    types::Diagnostics diagnostics;
-    DvlConfig{.min_altitude = 5, .max_altitude = 5}.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "min_altitude");
+    EXPECT_THAT(test::refusalsOf(DvlConfig{.min_altitude = 5, .max_altitude = 5}),
+                testing::ElementsAre(testing::StartsWith("min_altitude: ")));
 }
 
 }  // namespace

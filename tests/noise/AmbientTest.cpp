@@ -1,9 +1,10 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "components/acoustics/AmbientNoise.hpp"
 #include "components/noise/NoiseConfig.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::noise {
 namespace {
@@ -29,21 +30,14 @@ TEST(AmbientTest, NoiseInABinIsThatOfTheBandMinusTheDirectivityRelativeToTheSour
 }
 
 TEST(AmbientTest, NeedsEitherALevelOrAllInputsOfTheFormula) {
-    const auto diagnosticsOf = [](const AmbientConfig& config) {
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        return diagnostics;
-    };
-    EXPECT_TRUE(diagnosticsOf(windy(0)).empty());
-    ASSERT_EQ(diagnosticsOf({}).size(), 1u);
-    EXPECT_EQ(diagnosticsOf({})[0].message,
-              "has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db");
+    EXPECT_THAT(test::refusalsOf(windy(0)), testing::IsEmpty());
+    EXPECT_THAT(test::refusalsOf(AmbientConfig{}),
+                testing::ElementsAre("has no value; give level_db, or wind_m_s, bandwidth_khz and source_level_db"));
     AmbientConfig both = windy(3), half = windy(3);
     both.level_db = -100;
-    EXPECT_EQ(diagnosticsOf(both).size(), 3u);
+    EXPECT_THAT(test::refusalsOf(both), testing::SizeIs(3));
     half.bandwidth_khz.reset();
-    ASSERT_EQ(diagnosticsOf(half).size(), 1u);
-    EXPECT_EQ(diagnosticsOf(half)[0].message, "has no bandwidth_khz, which is needed without level_db");
+    EXPECT_THAT(test::refusalsOf(half), testing::ElementsAre("has no bandwidth_khz, which is needed without level_db"));
 }
 
 }  // namespace

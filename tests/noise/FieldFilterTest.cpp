@@ -1,10 +1,11 @@
 // Noise after a receiver's filter and averaging of looks, compared with closed forms.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <optional>
 
 #include "components/noise/FieldFilter.hpp"
 #include "tests/noise/Distributions.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::noise {
 namespace {
@@ -143,21 +144,17 @@ TEST(FieldFilterTest, NaNStaysAndNoBinBecomesNegative) {
         EXPECT_TRUE(i == 7 ? std::isnan(ping.bins[i]) : ping.bins[i] >= 0) << i;
 }
 
-std::string diagnosticOf(const NoiseConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    return diagnostics.empty() ? "" : diagnostics[0].path + " " + diagnostics[0].message;
-}
-
 TEST(FieldFilterTest, RejectsAFilterWithoutNoiseOrWithoutAField) {
-    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}})), "");
-    EXPECT_EQ(diagnosticOf({}), "");
-    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, {})),
-              "filter has nothing to filter; give speckle, ambient or additive");
-    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
-              "filter is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages");
-    EXPECT_EQ(diagnosticOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gaussian})),
-              "filter is given with speckle.law: gaussian, which is no field; give rayleigh or k");
+    using testing::ElementsAre, testing::IsEmpty, test::refusalsOf;
+    EXPECT_THAT(refusalsOf(filtered({4, 1, {}})), IsEmpty());
+    EXPECT_THAT(refusalsOf(NoiseConfig{}), IsEmpty());
+    EXPECT_THAT(refusalsOf(filtered({4, 1, {}}, {})),
+                ElementsAre("filter: has nothing to filter; give speckle, ambient or additive"));
+    EXPECT_THAT(
+        refusalsOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gamma, .looks = 4})),
+        ElementsAre("filter: is given with speckle.law: gamma; give law: rayleigh, whose looks filter.looks averages"));
+    EXPECT_THAT(refusalsOf(filtered({4, 1, {}}, SpeckleConfig{.law = SpeckleLaw::Gaussian})),
+                ElementsAre("filter: is given with speckle.law: gaussian, which is no field; give rayleigh or k"));
 }
 
 }  // namespace

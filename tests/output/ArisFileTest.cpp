@@ -3,7 +3,7 @@
 
 #include "components/output/ArisBeams.hpp"
 #include "components/output/ArisFile.hpp"
-#include "tests/output/FanFileTest.hpp"
+#include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/ArisRecording.hpp"
 
 namespace insonify::output {
@@ -23,9 +23,9 @@ ArisFrame smallFrame(uint64_t after_us = 0) {
     return frame;
 }
 
-class ArisFileTest : public FanFileTest {
+class ArisFileTest : public RecordedFileTest<FanFile> {
 protected:
-    ArisFileTest() : FanFileTest("fish.aris") {}
+    ArisFileTest() : RecordedFileTest("fish.aris", openFan) {}
 };
 
 TEST_F(ArisFileTest, EveryModelHasItsPublishedBearingsFromStarboard) {

@@ -1,7 +1,8 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "components/output/PictureConfig.hpp"
 #include "components/output/PictureFiles.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -21,17 +22,11 @@ TEST(FilePatternTest, RefusesAnythingElse) {
 }
 
 TEST(RecordingConfigTest, ReportsNamesThatCannotBeWritten) {
-    const auto diagnosticsOf = [](const RecordingConfig& config) {
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        return diagnostics;
-    };
-    EXPECT_TRUE(diagnosticsOf({}).empty());
-    EXPECT_TRUE(diagnosticsOf({.file = "a%d.png", .video = "b.mp4", .video_rate = {}}).empty());
-    const auto diagnostics = diagnosticsOf({.file = "%s%n", .video = "b.mkv", .video_rate = {}});
-    ASSERT_EQ(diagnostics.size(), 2u);
-    EXPECT_EQ(diagnostics[0].path, "file");
-    EXPECT_EQ(diagnostics[1].path, "video");
+    using testing::ElementsAre, testing::IsEmpty, testing::StartsWith;
+    EXPECT_THAT(test::refusalsOf(RecordingConfig{}), IsEmpty());
+    EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "a%d.png", .video = "b.mp4", .video_rate = {}}), IsEmpty());
+    EXPECT_THAT(test::refusalsOf(RecordingConfig{.file = "%s%n", .video = "b.mkv", .video_rate = {}}),
+                ElementsAre(StartsWith("file: "), StartsWith("video: ")));
 }
 
 }  // namespace

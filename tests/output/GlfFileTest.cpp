@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "components/output/GlfFile.hpp"
-#include "tests/output/FanFileTest.hpp"
+#include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/GlfRecording.hpp"
 
 namespace insonify::output {
@@ -47,9 +47,9 @@ GlfImage smallImage(double after_s = 0) {
     return image;
 }
 
-class GlfFileTest : public FanFileTest {
+class GlfFileTest : public RecordedFileTest<FanFile> {
 protected:
-    GlfFileTest() : FanFileTest("dive.glf") {}
+    GlfFileTest() : RecordedFileTest("dive.glf", openFan) {}
 };
 
 TEST_F(GlfFileTest, OrdersBeamsFromStarboardWithTheirBearings) {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "components/output/JsfFile.hpp"
-#include "tests/output/SideScanFileTest.hpp"
+#include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/RecordedBytes.hpp"
 #include "types/ConfigError.hpp"
@@ -57,9 +57,9 @@ std::vector<char> joined(const std::vector<std::vector<char>>& messages) {
     return bytes;
 }
 
-class JsfFileTest : public SideScanFileTest {
+class JsfFileTest : public RecordedFileTest<SideScanFile> {
 protected:
-    JsfFileTest() : SideScanFileTest("line.jsf") {}
+    JsfFileTest() : RecordedFileTest("line.jsf", openSideScan) {}
 };
 
 TEST_F(JsfFileTest, JoinsBothSidesOfAPing) {
@@ -144,34 +144,12 @@ TEST_F(JsfFileTest, KeepsWholeMessagesOfATruncatedFile) {
     for (size_t size = good.size() - 1; size > 2; --size) {
         std::filesystem::resize_file(path, size);
         EXPECT_EQ(readFile(path).size(), size < 264 ? 0u : 1u) << size;
-        const bool is_noticed = std::ranges::any_of(
-            notices_, [](const std::string& text) { return text.find("is cut off") != std::string::npos; });
-        EXPECT_EQ(is_noticed, size % 264 != 0) << size;
+        EXPECT_EQ(isNoticed("is cut off"), size % 264 != 0) << size;
     }
 }
 
 TEST_F(JsfFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    const std::vector<char> good = joined({sonarData(0, 0, 1), sonarData(0, 1, 1)});
-    const auto path = write(good);
-    const auto damage = [&](size_t at, char byte) {
-        std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-        file.seekp(static_cast<std::streamoff>(at)).put(byte);
-    };
-    size_t refused = 0;
-    for (size_t at = 2; at < good.size(); ++at) {
-        for (const int flip : {0x01, 0x80, 0xFF}) {
-            damage(at, static_cast<char>(good[at] ^ flip));
-            try {
-                for (const SideScanLine& line : readFile(path)) EXPECT_NO_THROW(line.ping.validate()) << at;
-            } catch (const types::ConfigError& error) {
-                ++refused;
-                EXPECT_EQ(error.diagnostics().size(), 1u);
-                EXPECT_THAT(error.what(), HasSubstr("line.jsf: byte ")) << at;
-            }
-        }
-        damage(at, good[at]);
-    }
-    EXPECT_GT(refused, 10u);
+    EXPECT_GT(refusedOf(joined({sonarData(0, 0, 1), sonarData(0, 1, 1)}), 2, ": byte "), 10u);
 }
 
 }  // namespace

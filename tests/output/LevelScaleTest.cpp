@@ -1,9 +1,10 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
 #include "components/output/LevelScale.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -52,13 +53,9 @@ TEST(LevelScaleTest, ShowsCodesUnchanged) {
 TEST(LevelScaleTest, CodesHaveNoReferenceLevel) {
     PictureConfig config;
     config.scale = BinScale::Code;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
     config.reference_db = 255;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "reference_db");
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("reference_db: ")));
 }
 
 TEST(LevelScaleTest, ShowsBinsInDecibelsUnchanged) {

@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
@@ -7,6 +7,7 @@
 #include "components/output/PictureFiles.hpp"
 #include "components/output/PictureWriter.hpp"
 #include "tests/output/Pixels.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -68,12 +69,8 @@ TEST(PictureFilesTest, WritesAVideoOfOnePicture) {
 }
 
 TEST(PictureFilesTest, NamesAFileThatCannotBeWritten) {
-    try {
-        writePng("/dev/full", fanPicture());
-        FAIL();
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
-    }
+    EXPECT_THAT(test::errorOf<std::runtime_error>([] { writePng("/dev/full", fanPicture()); }),
+                testing::HasSubstr("/dev/full"));
     EXPECT_THROW(writePng("no/such/folder.png", fanPicture()), std::runtime_error);
 }
 

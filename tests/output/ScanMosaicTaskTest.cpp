@@ -3,6 +3,7 @@
 #include "components/output/ScanMosaicTask.hpp"
 #include "tests/output/PictureBench.hpp"
 #include "tests/output/Room.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -112,13 +113,9 @@ TEST_F(ScanMosaicTaskTest, ReportsALatePose) {
 
 TEST_F(ScanMosaicTaskTest, RefusesHalvesThatAreTooNarrow) {
     MosaicConfig config;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    EXPECT_THAT(diagnostics, IsEmpty());
+    EXPECT_THAT(test::refusalsOf(config), IsEmpty());
     config.width = 511;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "width");
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("width: ")));
 }
 
 TEST_F(ScanMosaicTaskTest, ARestartForgetsEarlierPings) {

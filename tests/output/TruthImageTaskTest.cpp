@@ -4,6 +4,7 @@
 #include "tests/output/PictureBench.hpp"
 #include "tests/output/Pixels.hpp"
 #include "tests/support/Allocations.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -112,12 +113,9 @@ TEST_F(TruthImageTaskTest, RefusesTheTruthOfAnotherSonar) {
 }
 
 TEST_F(TruthImageTaskTest, TwoPicturesTake512Pixels) {
-    types::Diagnostics diagnostics;
     TruthImageConfig config;
     config.width = 511;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "width");
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::StartsWith("width: ")));
 }
 
 TEST_F(TruthImageTaskTest, ASteadyStreamAllocatesNothingOfOurs) {

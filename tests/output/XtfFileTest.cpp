@@ -5,7 +5,7 @@
 
 #include "components/output/XtfFile.hpp"
 #include "components/output/XtfLayout.hpp"
-#include "tests/output/SideScanFileTest.hpp"
+#include "tests/output/RecordedFileTest.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Paths.hpp"
 #include "tests/support/Pings.hpp"
@@ -48,18 +48,17 @@ types::Pose headed(double yaw_deg) {
     return pose;
 }
 
-class XtfFileTest : public SideScanFileTest {
+class XtfFileTest : public RecordedFileTest<SideScanFile> {
 protected:
-    XtfFileTest() : SideScanFileTest("line.xtf") {}
+    XtfFileTest()
+        : RecordedFileTest("line.xtf",
+                           [](const std::filesystem::path& path) { return std::make_unique<XtfFile>(path); }) {}
     /** Returns a file of these lines, all at one place. */
     static std::vector<char> fileOf(const std::vector<types::Sonar>& lines, XtfSamples samples = XtfSamples::Uint16) {
         const XtfFormat format{samples, 450, "line.xtf"};
         std::vector<char> bytes = xtfHeader(format, lines.front());
         for (const types::Sonar& line : lines) appendXtfPing(format, line, {headed(30), 6.5, 0.5, 0}, bytes);
         return bytes;
-    }
-    std::unique_ptr<SideScanFile> open(const std::filesystem::path& path) const override {
-        return std::make_unique<XtfFile>(path);
     }
 };
 
@@ -205,34 +204,12 @@ TEST_F(XtfFileTest, KeepsWholePingsOfATruncatedFile) {
         }
         EXPECT_EQ(readFile(path).size(), (size - first_ping) / packet) << size;
         const bool is_whole = (size - first_ping) % packet == 0;
-        const bool is_noticed = std::ranges::any_of(
-            notices_, [](const std::string& text) { return text.find("is cut off") != std::string::npos; });
-        EXPECT_EQ(is_noticed, !is_whole) << size;
+        EXPECT_EQ(isNoticed("is cut off"), !is_whole) << size;
     }
 }
 
 TEST_F(XtfFileTest, EveryDamagedByteGivesPingsOrOneError) {
-    const std::vector<char> good = fileOf({line(0), line(1)});
-    const auto path = write(good);
-    size_t refused = 0;
-    const auto damage = [&](size_t at, char byte) {
-        std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-        file.seekp(static_cast<std::streamoff>(at)).put(byte);
-    };
-    for (size_t at = 0; at < good.size(); ++at) {
-        for (const int flip : {0x01, 0x80, 0xFF}) {
-            damage(at, static_cast<char>(good[at] ^ flip));
-            try {
-                for (const SideScanLine& line : readFile(path)) EXPECT_NO_THROW(line.ping.validate()) << at;
-            } catch (const types::ConfigError& error) {
-                ++refused;
-                EXPECT_EQ(error.diagnostics().size(), 1u);
-                EXPECT_THAT(error.what(), HasSubstr("line.xtf: byte ")) << at;
-            }
-        }
-        damage(at, good[at]);
-    }
-    EXPECT_GT(refused, 20u);
+    EXPECT_GT(refusedOf(fileOf({line(0), line(1)}), 0, ": byte "), 20u);
 }
 
 TEST_F(XtfFileTest, ReadsAllPingsOfARealFile) {

@@ -9,6 +9,7 @@
 #include "tests/support/Pings.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Python.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 namespace {
@@ -177,13 +178,9 @@ TEST_F(XtfTest, WritesAndReportsAPingBeforeAnyPose) {
 
 TEST(XtfConfigTest, RequiresTheFileExtension) {
     XtfConfig config;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
     config.file = "line.jsf";
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].message, "is line.jsf; must end in .xtf");
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("is line.jsf; must end in .xtf")));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Motion of a carrier on waves: its root mean square, spectrum, derivative and seed.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 
 #include "components/pose/SeaMotion.hpp"
 #include "components/pose/TrajectoryTask.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::pose {
@@ -139,13 +140,9 @@ TEST(SeaMotionTest, ExtremesAreFinite) {
 }
 
 TEST(SeaMotionTest, RejectsAMotionWithoutAmplitudes) {
-    types::Diagnostics diagnostics;
-    SeaMotionConfig{}.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].message, "moves nothing; give heave_m, roll_deg or pitch_deg");
-    diagnostics.clear();
-    SeaMotionConfig{.heave_m = 1}.check(diagnostics);
-    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_THAT(test::refusalsOf(SeaMotionConfig{}),
+                testing::ElementsAre("moves nothing; give heave_m, roll_deg or pitch_deg"));
+    EXPECT_THAT(test::refusalsOf(SeaMotionConfig{.heave_m = 1}), testing::IsEmpty());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,6 +8,7 @@
 #include "components/pose/TrajectoryTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::pose {
 namespace {
@@ -117,10 +118,7 @@ TEST_F(TrajectoryTaskTest, FindsAFileNextToTheDeployment) {
 
 TEST_F(TrajectoryTaskTest, AMissingFileIsADiagnosticAndAnErrorOfConfigure) {
     task_.config.set({.file = "no_such.csv", .waypoints = {}});
-    types::Diagnostics diagnostics;
-    task_.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "file");
+    EXPECT_THAT(test::refusalsOf(task_), testing::ElementsAre(testing::StartsWith("file: ")));
     EXPECT_FALSE(task_.configure());
     EXPECT_NE(task_.configError(), nullptr);
 }

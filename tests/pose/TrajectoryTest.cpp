@@ -9,6 +9,7 @@
 
 #include "components/pose/Trajectory.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::pose {
@@ -206,19 +207,13 @@ TEST(TrajectoryTest, AHundredDiagnosticsAreEnough) {
 }
 
 TEST(TrajectoryConfigTest, NeedsExactlyOneSourceAndIncreasingTimes) {
-    const auto diagnosticsOf = [](const TrajectoryConfig& config) {
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        return diagnostics;
-    };
-    EXPECT_EQ(diagnosticsOf({}).size(), 1u);
-    EXPECT_EQ(diagnosticsOf({.file = "a.csv", .waypoints = {Waypoint{}}}).size(), 1u);
-    EXPECT_TRUE(diagnosticsOf({.file = "a.csv", .waypoints = {}}).empty());
-    const auto diagnostics =
-        diagnosticsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}});
-    ASSERT_EQ(diagnostics.size(), 2u);
-    EXPECT_EQ(diagnostics[0].path, "waypoints[2].time");
-    EXPECT_EQ(diagnosticsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}).size(), 1u);
+    const auto refusalsOf = [](const TrajectoryConfig& config) { return test::refusalsOf(config); };
+    EXPECT_THAT(refusalsOf({}), testing::SizeIs(1));
+    EXPECT_THAT(refusalsOf({.file = "a.csv", .waypoints = {Waypoint{}}}), testing::SizeIs(1));
+    EXPECT_THAT(refusalsOf({.file = "a.csv", .waypoints = {}}), testing::IsEmpty());
+    EXPECT_THAT(refusalsOf({.file = {}, .waypoints = {{.time = 1}, {.time = 2}, {.time = 2}, {.time = 1}}}),
+                testing::ElementsAre(testing::StartsWith("waypoints[2].time: "), testing::_));
+    EXPECT_THAT(refusalsOf({.file = {}, .waypoints = {{.time = 0}, {.time = std::nan("")}}}), testing::SizeIs(1));
 }
 
 }  // namespace

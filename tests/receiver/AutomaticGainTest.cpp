@@ -6,6 +6,7 @@
 
 #include "components/receiver/Receiver.hpp"
 #include "tests/support/Pings.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::receiver {
 namespace {
@@ -111,11 +112,8 @@ TEST(AutomaticGainTest, BrightnessExcludesAutomaticGainAndSaturation) {
     config.brightness.emplace();
     config.automatic_gain.emplace();
     config.saturation_db = 0;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 2u);
-    EXPECT_EQ(diagnostics[0].path, "automatic_gain");
-    EXPECT_EQ(diagnostics[1].path, "saturation_db");
+    EXPECT_THAT(test::refusalsOf(config),
+                testing::ElementsAre(testing::StartsWith("automatic_gain: "), testing::StartsWith("saturation_db: ")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "components/receiver/Receiver.hpp"
 #include "components/receiver/ReceiverTask.hpp"
 #include "tests/support/Pings.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::receiver {
 namespace {
@@ -63,22 +64,17 @@ TEST(ChainTest, AReceiverBeforeTheNoiseIsAnErrorOfTheDeployment) {
     framework::Registry registry;
     noise::registerTasks(registry);
     receiver::registerTasks(registry);
-    try {
-        framework::Deployment(framework::DeploymentSpec::parse(R"(
+    const char* yaml = R"(
 tasks:
   receiver: {type: receiver::ReceiverTask}
   noise: {type: noise::NoiseTask}
 connections:
   - {from: receiver.ping, to: noise.clean}
-)",
-                                                               "a.yml"),
-                              registry);
-        FAIL() << "is taken";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(),
-                    testing::HasSubstr("a.yml:6:5: connections[0]: receiver.ping gives what a receiver has amplified, "
-                                       "noise.clean takes intensities that reach a receiver"));
-    }
+)";
+    EXPECT_THAT(
+        test::refused([&] { framework::Deployment(framework::DeploymentSpec::parse(yaml, "a.yml"), registry); }),
+        testing::Contains(testing::HasSubstr("a.yml:6:5: connections[0]: receiver.ping gives what a receiver has "
+                                             "amplified, noise.clean takes intensities that reach a receiver")));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "components/receiver/Receiver.hpp"
 #include "tests/support/Pings.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Geometry.hpp"
 #include "types/VectorMath.hpp"
 
@@ -39,15 +40,6 @@ ReceiverConfig coding(const CodeConfig& code) {
     ReceiverConfig config = giving(Output::Code);
     config.code = code;
     return config;
-}
-
-std::vector<std::string> diagnosticsOf(const ReceiverConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    std::vector<std::string> texts;
-    for (const types::Diagnostic& diagnostic : diagnostics)
-        texts.push_back(diagnostic.path + ": " + diagnostic.message);
-    return texts;
 }
 
 TEST(ReceiverTest, NeutralValuesGiveTheSameBins) {
@@ -180,14 +172,12 @@ TEST(ReceiverTest, FullScaleIsTheLevelOfTheMaxCodeWithAllGain) {
 }
 
 TEST(ReceiverTest, RejectsContradictionsAndReportsUnusedConfiguration) {
-    types::Diagnostics diagnostics;
-    CodeConfig({.law = CodeLaw::Log, .gamma = 0.5}).check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].message, "is given with law log; it bends law linear and sqrt");
+    EXPECT_THAT(test::refusalsOf(CodeConfig{.law = CodeLaw::Log, .gamma = 0.5}),
+                testing::ElementsAre("gamma: is given with law log; it bends law linear and sqrt"));
     ReceiverConfig config = giving(Output::LevelDb);
     config.brightness.emplace();
     config.tvg.emplace();
-    EXPECT_THAT(diagnosticsOf(config),
+    EXPECT_THAT(test::refusalsOf(config),
                 testing::ElementsAre("brightness: is given with tvg; it compensates for spreading itself",
                                      "brightness: is given with another output; it scales output: intensity"));
     config = {};

@@ -2,6 +2,7 @@
 
 #include "components/log/pocolog/Reader.hpp"
 #include "tests/replay/Bench.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::replay {
 namespace {
@@ -101,22 +102,15 @@ TEST(ReplayTaskTest, StreamsThatAreNotReplayedAreListed) {
 
 TEST(ReplayTaskTest, AMissingStreamIsReportedWithTheExistingStreams) {
     Bench bench;
-    try {
-        bench.task.makeOutput("sonar.pong");
-        FAIL() << "found a missing stream";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("vehicle.pose, sonar.ping"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { bench.task.makeOutput("sonar.pong"); }),
+                HasSubstr("vehicle.pose, sonar.ping"));
 }
 
 TEST(ReplayTaskTest, ReportsAFileThatIsNotALogBeforeAnythingStarts) {
     Bench bench;
     writeBytes(bench.folder / "x.0.log", std::vector<char>(100, 'g'));
-    types::Diagnostics diagnostics;
-    bench.task.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "file");
-    EXPECT_THAT(diagnostics[0].message, HasSubstr("is not a pocolog file"));
+    EXPECT_THAT(test::refusalsOf(bench.task),
+                ElementsAre(testing::AllOf(testing::StartsWith("file: "), HasSubstr("is not a pocolog file"))));
     EXPECT_FALSE(bench.task.configure());
     EXPECT_NE(bench.task.configError(), nullptr);
 }

@@ -2,6 +2,7 @@
 
 #include "components/ros/Cdr.hpp"
 #include "tests/ros/Samples.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -28,13 +29,8 @@ std::string bodyOf(const T& message) {
 
 template <class T>
 std::string diagnosticOf(const std::vector<char>& bytes) {
-    try {
-        T message;
-        decode(bytes, message);
-        return "";
-    } catch (const CdrError& error) {
-        return error.what();
-    }
+    T message;
+    return test::errorOf<CdrError>([&] { decode(bytes, message); });
 }
 
 PointCloud2 smallCloud() {

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "components/ros/Clouds.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -76,12 +77,7 @@ TEST(CloudsTest, RefusesInvalidCloudsWithAReason) {
     const auto reason = [&](const auto& spoil) -> std::string {
         convert(twoPoints(), WorldFrame::AsIs, message);
         spoil();
-        try {
-            convert(message, WorldFrame::AsIs, cloud);
-            return "";
-        } catch (const std::invalid_argument& error) {
-            return error.what();
-        }
+        return test::errorOf<std::invalid_argument>([&] { convert(message, WorldFrame::AsIs, cloud); });
     };
     EXPECT_EQ(reason([&] {}), "");
     EXPECT_EQ(reason([&] { message.data.pop_back(); }), "the cloud does not hold the points that it announces");

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "components/ros/Pictures.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -17,13 +18,8 @@ types::Image smallPicture(types::ImageMode mode, uint32_t pixel_size) {
 }
 
 std::string refusalOf(const types::Image& picture) {
-    try {
-        Image message;
-        convert(picture, "", message);
-        return "";
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
+    Image message;
+    return test::errorOf<std::invalid_argument>([&] { convert(picture, "", message); });
 }
 
 TEST(PicturesTest, ConvertsColoursAndGreysToRosEncodingsAndBack) {

@@ -8,6 +8,7 @@
 #include "components/ros/Pings.hpp"
 #include "tests/ros/Samples.hpp"
 #include "tests/support/Fans.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::ros {
 namespace {
@@ -38,22 +39,12 @@ std::vector<float> floatsOf(const std::vector<uint8_t>& bytes) {
 }
 
 std::string diagnosticOf(const types::Sonar& ping) {
-    try {
-        messageOf<LaserScan>(ping);
-        return "";
-    } catch (const std::exception& error) {
-        return error.what();
-    }
+    return test::errorOf<std::exception>([&] { messageOf<LaserScan>(ping); });
 }
 
 std::string diagnosticOf(const ProjectedSonarImage& message) {
-    try {
-        types::Sonar ping;
-        convert(message, {}, ping);
-        return "";
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
+    types::Sonar ping;
+    return test::errorOf<std::invalid_argument>([&] { convert(message, {}, ping); });
 }
 
 TEST(PingsTest, AnImageHasTimeSoundSpeedAndBeamWidths) {

@@ -2,8 +2,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
+#include "components/scene/Animator.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Paths.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -112,9 +114,54 @@ TEST_F(CorpusTest, MirroredNodesReflectTheSameMesh) {
     EXPECT_TRUE(hasNotice(*by_scale, "without its normal map"));
 }
 
-TEST_F(CorpusTest, ModelsWithSkinsAnimationsAndNormalMapsLoadAtRest) {
-    EXPECT_TRUE(hasNotice(*load("valid/Fox/Fox.gltf"), "skins not applied"));
-    EXPECT_TRUE(hasNotice(*load("valid/CesiumMilkTruck/CesiumMilkTruck.glb"), "animations not played"));
+/** The scene of a file at a time after the start, by one of its animations. */
+types::Snapshot playedAt(const std::shared_ptr<const Scene>& scene, const std::string& animation, double seconds) {
+    types::Diagnostics diagnostics;
+    Animator animator(scene, {{animation, {}}, {"*", {.play = false}}}, {}, diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    animator.take(seconds, {});
+    types::Snapshot snapshot;
+    snapshot.geometry = scene->geometry;
+    animator.addMoved(snapshot.moved);
+    animator.addDeformed(snapshot);
+    return snapshot;
+}
+
+TEST_F(CorpusTest, AFoxWalks) {
+    const auto scene = std::make_shared<const Scene>(readScene(models_ / "valid/Fox/Fox.gltf"));
+    ASSERT_TRUE(scene->animations);
+    ASSERT_EQ(scene->animations->all.size(), 3u);
+    const double duration = scene->animations->all[1].duration;
+    EXPECT_EQ(scene->animations->all[1].name, "Walk");
+    const Bounds rest = boundsOf(*scene->geometry);
+    for (const double share : {0.0, 0.3, 0.7}) {
+        const types::Snapshot snapshot = playedAt(scene, "Walk", share * duration);
+        ASSERT_EQ(snapshot.deformed.size(), 1u);
+        const auto posed = types::posedGeometry(snapshot);
+        expectSoundMesh(posed->meshes[1], posed->materials.size());
+        const Bounds bounds = boundsOf(*posed);
+        const double size = glm::length(bounds.high - bounds.low) / glm::length(rest.high - rest.low);
+        EXPECT_NEAR(size, 1, 0.15) << share;
+        EXPECT_NE(posed->meshes[1].positions, scene->geometry->meshes[0].positions);
+    }
+    const auto first = playedAt(scene, "Walk", 0), again = playedAt(scene, "Walk", duration);
+    EXPECT_EQ(types::posedGeometry(first)->meshes[1].positions, types::posedGeometry(again)->meshes[1].positions);
+}
+
+TEST_F(CorpusTest, TheWheelsOfATruckTurn) {
+    const auto scene = std::make_shared<const Scene>(readScene(models_ / "valid/CesiumMilkTruck/CesiumMilkTruck.glb"));
+    const types::Snapshot snapshot = playedAt(scene, scene->animations->all.at(0).name, 0.4);
+    EXPECT_EQ(snapshot.moved.size(), 2u);
+    EXPECT_TRUE(snapshot.deformed.empty());
+    for (const types::MovedObject& wheel : snapshot.moved) {
+        const glm::dmat4& rest = scene->geometry->objects[wheel.object].world_from_object;
+        EXPECT_NE(wheel.world_from_object, rest);
+        EXPECT_LT(glm::distance(wheel.world_from_object[3], rest[3]), 1e-9);
+        EXPECT_TRUE(wheel.rate.has_value());
+    }
+}
+
+TEST_F(CorpusTest, AModelWithANormalMapHasTangents) {
     const auto bottle = load("valid/WaterBottle/WaterBottle.gltf");
     EXPECT_EQ(bottle->normal_maps.size(), 1u);
     EXPECT_FALSE(bottle->meshes.at(0).tangents.empty());

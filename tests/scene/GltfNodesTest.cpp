@@ -122,15 +122,6 @@ TEST_F(GltfNodesTest, OmitsAnObjectOfScaleZeroWithANotice) {
     EXPECT_TRUE(hasNotice(*geometry, "scale is zero"));
 }
 
-TEST_F(GltfNodesTest, SkinsMorphsAndAnimationsRestWithANotice) {
-    const auto geometry = load(R"("skins":[{"joints":[0]}],"nodes":[{"mesh":0,"skin":0}],
-        "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":0,"output":0}]}],)" +
-                               triangle);
-    EXPECT_EQ(geometry->triangleCount(), 1u);
-    EXPECT_TRUE(hasNotice(*geometry, "skins not applied"));
-    EXPECT_TRUE(hasNotice(*geometry, "animations not played"));
-}
-
 TEST_F(GltfNodesTest, APartIsTheNodeWithoutItsPlaceAndRotationButWithItsScale) {
     const Scene scene = readScene(write("case.gltf", gltf(R"("nodes":[
         {"name":"boat","mesh":0,"translation":[9,9,9],"rotation":[0.6,0,0,0.8],"scale":[-2,3,4],"children":[1]},

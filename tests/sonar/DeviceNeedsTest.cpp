@@ -1,10 +1,11 @@
 // The limits of OpenGL that rasterising needs, compared with drivers that do not exist.
 #include <gmock/gmock.h>
 
+#include "components/gpu/EglContext.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/pictures/DeviceNeeds.hpp"
-#include "tests/gpu/ErrorOf.hpp"
 #include "tests/support/PromisedLimits.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -34,7 +35,7 @@ DepositSetup setupOf(const RenderPlan& plan) {
 }
 
 std::string drawingError(const gpu::Limits& limits, const gpu::Limits& needs) {
-    return gpu::errorOf([&] { requireDrawing(limits, needs, renderer); });
+    return test::errorOf<gpu::GlError>([&] { requireDrawing(limits, needs, renderer); });
 }
 
 TEST(DeviceNeedsTest, ADriverOfOpenGl45RasterisesAndSums) {
@@ -82,7 +83,7 @@ TEST(DeviceNeedsTest, TheProcessorSumsIfTheDeviceCannotUnlessTheDeviceIsRequired
         low.*limit = 0;
         EXPECT_THAT(whyOnProcessor(Deposit::Auto, low, needs, renderer),
                     AllOf(HasSubstr("summed on the processor"), HasSubstr(renderer), HasSubstr(words)));
-        EXPECT_THAT(gpu::errorOf([&] { whyOnProcessor(Deposit::Gpu, low, needs, renderer); }),
+        EXPECT_THAT(test::errorOf<gpu::GlError>([&] { whyOnProcessor(Deposit::Gpu, low, needs, renderer); }),
                     AllOf(HasSubstr(renderer), HasSubstr(words), HasSubstr("deposit: cpu")));
     }
 }

@@ -7,6 +7,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "components/sonar/field/LineArray.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/TaskBench.hpp"
 #include "types/Angle.hpp"
@@ -146,35 +147,27 @@ TEST(ElementSignalsTest, FewerElementsAreFartherApartAndReceiveTheSamePlaces) {
                 static_cast<double>(dense.positions.size()) * (dense.positions[1] - dense.positions[0]), 1e-9);
 }
 
-std::vector<std::string> refusalsOf(const SonarConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    std::vector<std::string> texts;
-    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.path + " " + diagnostic.message);
-    return texts;
-}
-
 TEST(ElementSignalsTest, RejectsInvalidArraysWithTheReason) {
-    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
+    EXPECT_THAT(test::refusalsOf(arrayOf(Weighting::Taylor)), testing::IsEmpty());
     SonarConfig config = arrayOf(Weighting::Uniform);
     config.speckle.reset();
-    EXPECT_THAT(refusalsOf(config),
-                ElementsAre("elements need speckle: {coherent: true}; without it energies are summed, "
+    EXPECT_THAT(test::refusalsOf(config),
+                ElementsAre("elements: need speckle: {coherent: true}; without it energies are summed, "
                             "not fields"));
     config = arrayOf(Weighting::Uniform);
     config.beam_geometry = BeamGeometry::Planar;
-    EXPECT_THAT(refusalsOf(config),
-                ElementsAre("elements need beam_geometry: conical, because a straight array receives cones"));
+    EXPECT_THAT(test::refusalsOf(config),
+                ElementsAre("elements: need beam_geometry: conical, because a straight array receives cones"));
     config = arrayOf(Weighting::Uniform);
     config.beam_pattern.reset();
-    EXPECT_THAT(refusalsOf(config),
-                ElementsAre("elements need beam_pattern.receive.azimuth, whose aperture they fill"));
-    EXPECT_THAT(refusalsOf(arrayOf(Weighting::Gaussian)), ElementsAre(HasSubstr("a measured table, gaussian")));
+    EXPECT_THAT(test::refusalsOf(config),
+                ElementsAre("elements: need beam_pattern.receive.azimuth, whose aperture they fill"));
+    EXPECT_THAT(test::refusalsOf(arrayOf(Weighting::Gaussian)), ElementsAre(HasSubstr("a measured table, gaussian")));
     config = arrayOf(Weighting::Uniform);
     config.elements->count = 20;
     config.elements->spacing_m = 0.01;
-    EXPECT_THAT(refusalsOf(config),
-                ElementsAre(HasSubstr("elements are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
+    EXPECT_THAT(test::refusalsOf(config),
+                ElementsAre(HasSubstr("elements: are 20 that are 0.01 m apart, 0.2 m in all; the aperture of "
                                       "beam_pattern.receive.azimuth is 0.0846")));
 }
 

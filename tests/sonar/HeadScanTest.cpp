@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "components/sonar/fan/HeadScan.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -52,9 +53,7 @@ TEST(HeadScanTest, AFullTurnContinuesToStarboard) {
 TEST(HeadScanTest, AContinuousHeadDoesNotLookAtItsRightLimit) {
     const HeadConfig published{
         .left_deg = -180, .right_deg = 179.9, .step_deg = 90, .continuous = true, .speed_deg_per_s = {}};
-    types::Diagnostics diagnostics;
-    published.check(diagnostics);
-    EXPECT_THAT(diagnostics, testing::IsEmpty());
+    EXPECT_THAT(test::refusalsOf(published), testing::IsEmpty());
     EXPECT_THAT(bearings(published, 5), ElementsAre(-180, -270, -360, -450, -180));
     EXPECT_EQ(HeadScan(published).pingsPerTurn(), 4);
 }

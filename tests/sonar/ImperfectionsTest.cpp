@@ -7,6 +7,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/Directivity.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
@@ -313,56 +314,48 @@ TEST(ImperfectionsTest, AClockThatJittersSamplesAllBeamsAtTheSameWrongTimes) {
     EXPECT_NEAR(std::sqrt(square / count), 0.3, 0.08);
 }
 
-std::vector<std::string> diagnosticsOf(const SonarConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    std::vector<std::string> texts;
-    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.path + " " + diagnostic.message);
-    return texts;
-}
-
 TEST(ImperfectionsTest, RejectsImpossibleConfigurationsWithTheReason) {
     const ImperfectionsConfig gains{.gain_error_db = 1};
-    EXPECT_THAT(diagnosticsOf(withErrors(imperfectFan(), gains)), IsEmpty());
+    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), gains)), IsEmpty());
     SonarConfig boxes = withErrors(imperfectFan(), gains);
     boxes.beam_pattern.reset();
-    EXPECT_THAT(diagnosticsOf(boxes),
-                ElementsAre("imperfections needs beam_pattern.receive.azimuth, whose aperture the elements fill"));
+    EXPECT_THAT(test::refusalsOf(boxes),
+                ElementsAre("imperfections: needs beam_pattern.receive.azimuth, whose aperture the elements fill"));
     boxes.imperfections = ImperfectionsConfig{.dead_beams = {3}};
-    EXPECT_THAT(diagnosticsOf(boxes), IsEmpty()) << "beams need no pattern";
-    EXPECT_THAT(diagnosticsOf(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
-                ElementsAre("imperfections.dead_beams[1] is 41; there are 41 beams, 0 to 40"));
-    EXPECT_THAT(diagnosticsOf(withErrors(imperfectFan(), {.dead_elements = {64}})),
-                ElementsAre("imperfections.dead_elements[0] is 64; there are 64 elements, 0 to 63"));
-    EXPECT_THAT(diagnosticsOf(withErrors(imperfectFan(), {.dead_element_share = 1})),
-                ElementsAre("imperfections leaves none of 64 elements alive"));
-    EXPECT_THAT(diagnosticsOf(withErrors(imperfectFan(), {.dead_beam_share = 1})),
-                ElementsAre("imperfections leaves none of 41 beams alive"));
+    EXPECT_THAT(test::refusalsOf(boxes), IsEmpty()) << "beams need no pattern";
+    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_beams = {0, 41}})),
+                ElementsAre("imperfections.dead_beams[1]: is 41; there are 41 beams, 0 to 40"));
+    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_elements = {64}})),
+                ElementsAre("imperfections.dead_elements[0]: is 64; there are 64 elements, 0 to 63"));
+    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_element_share = 1})),
+                ElementsAre("imperfections: leaves none of 64 elements alive"));
+    EXPECT_THAT(test::refusalsOf(withErrors(imperfectFan(), {.dead_beam_share = 1})),
+                ElementsAre("imperfections: leaves none of 41 beams alive"));
     SonarConfig measured = withErrors(imperfectFan(), gains);
     measured.beam_pattern->receive.azimuth = acoustics::BeamLaw{};
     measured.beam_pattern->receive.azimuth->file = "pattern.csv";
-    EXPECT_THAT(diagnosticsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
+    EXPECT_THAT(test::refusalsOf(measured), testing::Contains(HasSubstr("which has its device's errors")));
     SonarConfig gaussian = withErrors(imperfectFan(Weighting::Gaussian), {.focus_m = 3});
     gaussian.beam_pattern->receive.azimuth->aperture_m.reset();
     gaussian.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(diagnosticsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m needs a weighted line")));
+    EXPECT_THAT(test::refusalsOf(gaussian), ElementsAre(HasSubstr("imperfections.focus_m: needs a weighted line")));
     SonarConfig toneless = withErrors(imperfectFan(), {.focus_m = 3});
     toneless.frequency_khz.reset();
     toneless.beam_pattern->receive.azimuth->aperture_m.reset();
     toneless.beam_pattern->receive.azimuth->width_deg = 2;
-    EXPECT_THAT(diagnosticsOf(toneless),
-                ElementsAre("imperfections.focus_m is given without frequency_khz, which it needs"));
+    EXPECT_THAT(test::refusalsOf(toneless),
+                ElementsAre("imperfections.focus_m: is given without frequency_khz, which it needs"));
     SonarConfig published = withErrors(imperfectFan(), {.dead_beams = {1}});
     published.beam_pattern.reset();
     published.model = Model::Cerqueira2017;
-    EXPECT_THAT(diagnosticsOf(published),
-                ElementsAre("imperfections is given with model: cerqueira2017; it belongs to physical"));
+    EXPECT_THAT(test::refusalsOf(published),
+                ElementsAre("imperfections: is given with model: cerqueira2017; it belongs to physical"));
     SonarConfig elements = withErrors(imperfectFan(), {.elements = 20, .gain_error_db = 1, .focus_m = 3});
     elements.beam_geometry = BeamGeometry::Conical;
     elements.speckle.emplace().coherent = true;
     elements.elements.emplace();
-    EXPECT_THAT(diagnosticsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
-                                                     HasSubstr("their number is that of `elements`")));
+    EXPECT_THAT(test::refusalsOf(elements), ElementsAre(HasSubstr("whose signals are those of the far field"),
+                                                        HasSubstr("their number is that of `elements`")));
 }
 
 }  // namespace

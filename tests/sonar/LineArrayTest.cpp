@@ -65,7 +65,7 @@ TEST(LineArrayTest, ElementsReceiveTheSumOfEchoesWithThePhasesOfTheirPaths) {
         }
 }
 
-TEST(LineArrayTest, AWideCellEchoesAsManyNarrowCells) {
+TEST(LineArrayTest, AWideCellEqualsTheSumOfNarrowCells) {
     const LineArray array = halfWave(32);
     ComplexRows one(1, 1), many(1000, 1);
     one.values[0] = 1;

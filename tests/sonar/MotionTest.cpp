@@ -10,6 +10,7 @@
 #include "components/sonar/effects/MotionInPing.hpp"
 #include "components/sonar/places/Motion.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/TaskBench.hpp"
@@ -19,7 +20,10 @@ namespace insonify::sonar {
 namespace {
 
 using test::pingOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using types::radians;
 
 constexpr double c = 1500;
@@ -246,40 +250,26 @@ TEST(MotionTest, ThePlanStatesTheMinSpeedForMotion) {
     EXPECT_TRUE(makeRenderPlan(without, *geometry).findOmitted("motion within a ping"));
 }
 
-/** Returns the errors of a configuration, joined. */
-std::string diagnosticOf(const SonarConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    std::string all;
-    for (const types::Diagnostic& each : diagnostics) all += each.path + ": " + each.message + "\n";
-    return all;
-}
-
 TEST(MotionTest, ReportsMissingRequirements) {
-    EXPECT_EQ(diagnosticOf(movingFan()), "");
+    EXPECT_THAT(test::refusalsOf(movingFan()), testing::IsEmpty());
     SonarConfig config = movingFan();
     config.visibility = Visibility::Auto;
     EXPECT_TRUE(config.tracesRays()) << "on any device";
     config.visibility = Visibility::Gl;
     config.device = "software";
-    EXPECT_THAT(diagnosticOf(config), HasSubstr("visibility: is gl with motion_in_ping, which needs rays"));
+    EXPECT_THAT(test::refusalsOf(config),
+                Contains(HasSubstr("visibility: is gl with motion_in_ping, which needs rays")));
     config = movingFan();
     config.pulse.emplace().bandwidth_khz = 50;
     config.pulse->chirp_us = 1000;
-    EXPECT_THAT(diagnosticOf(config),
-                HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz"));
-    types::Diagnostics diagnostics;
+    EXPECT_THAT(test::refusalsOf(config),
+                Contains(HasSubstr("pulse.chirp_us: is given without motion_in_ping: true and frequency_khz")));
     acoustics::PulseConfig tone;
     tone.duration_us = tone.chirp_us = 100;
-    tone.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "chirp_us");
+    EXPECT_THAT(test::refusalsOf(tone), ElementsAre(StartsWith("chirp_us: ")));
     ScanningSonarConfig head;
     head.head.sweeps = true;
-    diagnostics.clear();
-    head.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "head.sweeps");
+    EXPECT_THAT(test::refusalsOf(head), ElementsAre(StartsWith("head.sweeps: ")));
 }
 
 TEST(MotionTest, AJumpIsAPlacementAndNotAMotion) {

@@ -108,7 +108,9 @@ TEST(OmissionTest, EveryOmittedEffectIsTestedHere) {
                                                // in CrosstalkTest.cpp and CrosstalkRunTest.cpp:
                                                "crosstalk",
                                                // in SurfaceMapTest.cpp:
-                                               "surface maps"};
+                                               "surface maps",
+                                               // in DeformingMeshTest.cpp:
+                                               "deforming meshes"};
     SonarConfig absorbing = plainSonar(), published = plainSonar(Model::Cerqueira2017);
     absorbing.absorption.emplace().db_per_m = 0.1;
     absorbing.field_of_view_deg = 50;

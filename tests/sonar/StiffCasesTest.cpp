@@ -6,6 +6,7 @@
 
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 
@@ -124,12 +125,8 @@ TEST(StiffCasesTest, RejectsATooLargePictureWithAMessage) {
     config.quality.rows = 16384;
     config.quality.columns_per_beam = 256;
     config.visibility = Visibility::Gl;
-    try {
-        stiffBins(config, test::sceneOf({test::wall(10)}));
-        FAIL() << "was rasterised";
-    } catch (const std::exception& error) {
-        EXPECT_THAT(error.what(), HasSubstr("cannot render"));
-    }
+    EXPECT_THAT(test::errorOf<std::exception>([&] { stiffBins(config, test::sceneOf({test::wall(10)})); }),
+                HasSubstr("cannot render"));
 }
 
 }  // namespace insonify::sonar

@@ -11,6 +11,7 @@
 #include "components/sonar/pictures/SurfacePass.hpp"
 #include "components/sonar/rays/RayVisibility.hpp"
 #include "tests/support/ClosedForms.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
 #include "types/Angle.hpp"
@@ -267,30 +268,10 @@ TEST(VisibilityTest, AnApertureOf120And170DegOfElevationFollowsTheClosedForm) {
 TEST(VisibilityTest, RejectsATallImageThatRaysAccept) {
     SonarConfig config = seenFan(Visibility::Gl);
     config.beam_height_deg = 170;
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("rays (visibility: cpu) 180"));
-    diagnostics.clear();
+    EXPECT_THAT(test::refusalsOf(config), testing::ElementsAre(testing::HasSubstr("rays (visibility: cpu) 180")));
     config.visibility = Visibility::Cpu;
     config.device.clear();
-    config.check(diagnostics);
-    EXPECT_THAT(diagnostics, testing::IsEmpty());
-}
-
-TEST(VisibilityTest, ObjectsNearerThanTheBlankingAreSilentAndCastShadows) {
-    const auto snapshot = test::snapshotOf(test::sceneOf(
-        {test::quad({0.5, -2, -2}, {0, 4, 0}, {0, 0, 4}), test::quad({5, -9, -9}, {0, 18, 0}, {0, 0, 18})}));
-    for (Visibility visibility : {Visibility::Cpu, Visibility::Gl}) {
-        SonarConfig config = seenFan(visibility);
-        config.field_of_view_deg = 40;
-        config.range_min = 0.45;
-        const types::Sonar received = pingOf(config, snapshot);
-        EXPECT_GT(*std::max_element(received.bins.begin(), received.bins.end()), 0);
-        config.range_min = 1.5;
-        const types::Sonar blanked = pingOf(config, snapshot);
-        EXPECT_THAT(blanked.bins, testing::Each(0.0f)) << "the plate hides the wall";
-    }
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
 }
 
 }  // namespace insonify::sonar

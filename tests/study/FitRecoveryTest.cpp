@@ -8,6 +8,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "tests/study/FitBench.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -162,12 +163,8 @@ TEST(FitSpeckleTest, MeasuresSidelobesOfIsolatedTargetsButNotOfSpeckle) {
 
 TEST(RecordingFitTest, RefusesUnusableRecordingsWithAReason) {
     const auto refusal = [](const std::vector<CodedPing>& recorded, FitChain chain) -> std::string {
-        try {
-            fitRecording(recorded, std::move(chain), false, [](const std::string&) {});
-        } catch (const types::ConfigError& error) {
-            return error.diagnostics().front().message;
-        }
-        return "";
+        return test::errorOf<types::ConfigError>(
+            [&] { fitRecording(recorded, std::move(chain), false, [](const std::string&) {}); });
     };
     CodedPing ping = simulatedPings(guess(), 1).front();
     FitChain without = guess();

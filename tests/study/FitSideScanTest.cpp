@@ -6,6 +6,7 @@
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
 #include "tests/study/FitBench.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 
 namespace insonify::study {
@@ -189,12 +190,8 @@ TEST(LinePlaceTest, RefusesLinesBeyondTheFloorWithAReason) {
     FitChain chain = guessedSideScan();
     CodedPing lines = linesOf();
     lines.places.back().along = 1e5;
-    try {
-        layLines(lines, chain);
-        FAIL() << "is not refused";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.diagnostics().front().message, HasSubstr("no floor below the last of 96 lines"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { layLines(lines, chain); }),
+                HasSubstr("no floor below the last of 96 lines"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(fitSeeds({2, 4})));

@@ -10,6 +10,7 @@
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/study/SpeckleStatistics.hpp"
 #include "tests/support/EveryWay.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/Angle.hpp"
@@ -434,23 +435,17 @@ TEST(SpecklePingTest, StiffCasesAreFinite) {
 }
 
 TEST(SpecklePingTest, ReportsMissingRequirements) {
-    const auto wordsOf = [](const SonarConfig& config) {
-        types::Diagnostics diagnostics;
-        config.check(diagnostics);
-        std::string all;
-        for (const auto& diagnostic : diagnostics) all += diagnostic.path + " " + diagnostic.message + "\n";
-        return all;
-    };
-    EXPECT_EQ(wordsOf(coherent(boxes())), "");
+    using testing::Contains, testing::HasSubstr;
+    EXPECT_THAT(test::refusalsOf(coherent(boxes())), testing::IsEmpty());
     SonarConfig silent = coherent(boxes());
     silent.frequency_khz.reset();
-    EXPECT_THAT(wordsOf(silent), ::testing::HasSubstr("without frequency_khz"));
+    EXPECT_THAT(test::refusalsOf(silent), Contains(HasSubstr("without frequency_khz")));
     SonarConfig rasterised = coherent(boxes());
     rasterised.visibility = Visibility::Gl;
-    EXPECT_THAT(wordsOf(rasterised), ::testing::HasSubstr("needs rays"));
+    EXPECT_THAT(test::refusalsOf(rasterised), Contains(HasSubstr("needs rays")));
     SonarConfig mean = coherent(boxes());
     mean.model = Model::Cerqueira2017;
-    EXPECT_THAT(wordsOf(mean), ::testing::HasSubstr("cerqueira2017"));
+    EXPECT_THAT(test::refusalsOf(mean), Contains(HasSubstr("cerqueira2017")));
 }
 
 }  // namespace

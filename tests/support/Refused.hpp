@@ -7,16 +7,40 @@
 
 namespace insonify::test {
 
-/** Returns the text of the types::ConfigError that a call throws; empty if it throws none. */
+inline std::vector<std::string> textsOf(const types::Diagnostics& diagnostics) {
+    std::vector<std::string> texts;
+    for (const types::Diagnostic& diagnostic : diagnostics) texts.push_back(diagnostic.text());
+    return texts;
+}
+
+/** Returns the texts of the diagnostics that check() of a configuration or task reports. */
+template <class Checked>
+std::vector<std::string> refusalsOf(const Checked& checked) {
+    types::Diagnostics diagnostics;
+    checked.check(diagnostics);
+    return textsOf(diagnostics);
+}
+
+/** Returns the texts of the types::ConfigError that a call throws; empty if it throws none. */
 template <class Call>
 std::vector<std::string> refused(Call&& call) {
-    std::vector<std::string> texts;
     try {
         call();
     } catch (const types::ConfigError& error) {
-        for (const types::Diagnostic& diagnostic : error.diagnostics()) texts.push_back(diagnostic.text());
+        return textsOf(error.diagnostics());
     }
-    return texts;
+    return {};
+}
+
+/** Returns the message of the `Error` that a call throws; empty if it throws none. */
+template <class Error, class Call>
+std::string errorOf(Call&& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
 }
 
 }  // namespace insonify::test

@@ -14,6 +14,7 @@
 #include "components/scene/SceneTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/ConfigError.hpp"
 #include "types/Extent.hpp"
 
@@ -346,20 +347,19 @@ TEST_F(BathymetryTest, AWrongMosaicIsReportedAtItsKey) {
     MosaicConfig& map = config.bathymetry->map.emplace();
     map.file = "none.tif";
     map.meaning.classes = {{"1", "rock"}};
-    const auto diagnosticOf = [&] {
+    const auto refusals = [&] {
         SceneTask task("scene");
         task.config.set(config);
-        types::Diagnostics diagnostics;
-        task.check(diagnostics);
-        return diagnostics.empty() ? std::string() : diagnostics.front().text();
+        return test::refusalsOf(task);
     };
-    EXPECT_THAT(diagnosticOf(), testing::AllOf(HasSubstr("bathymetry.map.file"), HasSubstr("is not there")));
+    EXPECT_THAT(refusals(),
+                testing::Contains(testing::AllOf(HasSubstr("bathymetry.map.file"), HasSubstr("is not there"))));
     map.file = mosaic("fine", 2000, 20, 1000, 5000, 0.001, [](double, double) { return 1; });
-    EXPECT_THAT(diagnosticOf(), HasSubstr("values on a tile of the survey; at most 4096 a side"));
+    EXPECT_THAT(refusals(), testing::Contains(HasSubstr("values on a tile of the survey; at most 4096 a side")));
     map.file = mosaic("classes", 30, 30, 1000, 5000, 2, [](double, double) { return 1; });
-    EXPECT_EQ(diagnosticOf(), "");
+    EXPECT_THAT(refusals(), testing::IsEmpty());
     map.meaning.classes = {{"1", "rok"}};
-    EXPECT_THAT(diagnosticOf(), HasSubstr("bathymetry.map.classes.1: is rok; did you mean rock?"));
+    EXPECT_THAT(refusals(), testing::Contains(HasSubstr("bathymetry.map.classes.1: is rok; did you mean rock?")));
 }
 
 TEST_F(BathymetryTest, OutsideOfTheSurveyThereIsTheSceneAlone) {
@@ -442,14 +442,10 @@ TEST_F(BathymetryTest, TheFloorHasTheConfiguredMaterialAndAWrongNameIsReported) 
     config.materials["bathymetry"].lambert_db = -27;
     SceneTask task("scene");
     task.config.set(config);
-    types::Diagnostics diagnostics;
-    task.check(diagnostics);
-    EXPECT_THAT(diagnostics, testing::IsEmpty());
+    EXPECT_THAT(test::refusalsOf(task), testing::IsEmpty());
     config.materials["bathimetry"].lambert_db = -20;
     task.config.set(config);
-    task.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_THAT(diagnostics[0].text(), HasSubstr("did you mean bathymetry?"));
+    EXPECT_THAT(test::refusalsOf(task), testing::ElementsAre(HasSubstr("did you mean bathymetry?")));
 }
 
 }  // namespace

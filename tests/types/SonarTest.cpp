@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "tests/support/Refused.hpp"
 #include "types/Sonar.hpp"
 
 namespace insonify::types {
@@ -19,12 +20,7 @@ Sonar ping(uint32_t bins, uint32_t beams) {
 }
 
 std::string diagnosticOf(const Sonar& sample) {
-    try {
-        sample.validate();
-        return "";
-    } catch (const std::logic_error& error) {
-        return error.what();
-    }
+    return test::errorOf<std::logic_error>([&] { sample.validate(); });
 }
 
 TEST(SonarTest, BinsStartAtOneWayTimeTimesSpeed) {

@@ -8,6 +8,7 @@
 #include "components/ros/Cdr.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 #include "tests/viewer/Bench.hpp"
 #include "tests/viewer/Client.hpp"
 #include "tests/viewer/Running.hpp"
@@ -15,15 +16,9 @@
 namespace insonify::viewer {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
-
-std::string diagnosticsOf(const ViewerConfig& config) {
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    std::string all;
-    for (const types::Diagnostic& diagnostic : diagnostics) all += diagnostic.path + ": " + diagnostic.message + "\n";
-    return all;
-}
+using testing::IsEmpty;
 
 ViewerConfig viewerAt(const std::string& address, const std::string& token = "") {
     ViewerConfig config;
@@ -33,13 +28,14 @@ ViewerConfig viewerAt(const std::string& address, const std::string& token = "")
 }
 
 TEST(ViewerTaskTest, AnAddressReachableByOthersNeedsAToken) {
-    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"}) EXPECT_EQ(diagnosticsOf(viewerAt(local)), "") << local;
+    for (const char* local : {"127.0.0.1", "127.1.2.3", "::1"})
+        EXPECT_THAT(test::refusalsOf(viewerAt(local)), IsEmpty()) << local;
     for (const char* open : {"0.0.0.0", "192.168.0.1", "::"}) {
-        EXPECT_THAT(diagnosticsOf(viewerAt(open)), HasSubstr("token: is missing")) << open;
-        EXPECT_EQ(diagnosticsOf(viewerAt(open, "secret")), "") << open;
+        EXPECT_THAT(test::refusalsOf(viewerAt(open)), Contains(HasSubstr("token: is missing"))) << open;
+        EXPECT_THAT(test::refusalsOf(viewerAt(open, "secret")), IsEmpty()) << open;
     }
-    EXPECT_THAT(diagnosticsOf(viewerAt("localhost", "secret")),
-                HasSubstr("address: is 'localhost'; it must be a numeric address"));
+    EXPECT_THAT(test::refusalsOf(viewerAt("localhost", "secret")),
+                Contains(HasSubstr("address: is 'localhost'; it must be a numeric address")));
 }
 
 TEST(ViewerTaskTest, ReportsAPortInUse) {
@@ -70,18 +66,11 @@ TEST(ViewerTaskTest, ReadsATokenFromAFile) {
     bench.viewer.environment().input_folder = folder.path();
     ViewerConfig config;
     config.token_file = "token.txt";
-    EXPECT_EQ(diagnosticsOf([&] {
-                  auto open = config;
-                  open.address = "0.0.0.0";
-                  return open;
-              }()),
-              "");
-    EXPECT_THAT(diagnosticsOf([&] {
-                    auto both = config;
-                    both.token = "x";
-                    return both;
-                }()),
-                HasSubstr("token_file: is given in addition to token"));
+    ViewerConfig open = config, both = config;
+    open.address = "0.0.0.0";
+    EXPECT_THAT(test::refusalsOf(open), IsEmpty());
+    both.token = "x";
+    EXPECT_THAT(test::refusalsOf(both), Contains(HasSubstr("token_file: is given in addition to token")));
     config.port = 0;
     bench.viewer.config.set(config);
     EXPECT_FALSE(bench.viewer.configure());
@@ -114,12 +103,8 @@ struct Unknown {
 TEST(ViewerTaskTest, RefusesATypeThatItCannotShowByName) {
     ViewerTask viewer("viewer");
     test::Writer<std::shared_ptr<const Unknown>> source("depth");
-    try {
-        viewer.makeInput("x", source.port);
-        FAIL();
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("depth.port is /unknown, which a viewer cannot show"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { viewer.makeInput("x", source.port); }),
+                HasSubstr("depth.port is /unknown, which a viewer cannot show"));
 }
 
 TEST(ViewerTaskTest, APingOfTheWrongShapeIsAnErrorUntilTheNext) {

@@ -20,7 +20,6 @@ public:
     const std::string& layout(size_t stream) const override { return registries_[stream]; }
     /** Its metadata as written. */
     const std::string& yaml(size_t stream) const { return yamls_[stream]; }
-    bool isCompressed(const SampleRef& at) const { return stored_[at.number].compressed; }
 
 private:
     struct Stored {

@@ -4,6 +4,7 @@
 
 #include "components/sonar/effects/Effect.hpp"
 #include "components/sonar/effects/Places.hpp"
+#include "components/sonar/fan/Directivity.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -18,17 +19,6 @@ void checkLaws(const SonarConfig& config, types::Diagnostics& diagnostics) {
     checkLaw("transmit.elevation", config.beam_pattern->transmit.elevation);
     checkLaw("receive.azimuth", config.beam_pattern->receive.azimuth);
     checkLaw("receive.elevation", config.beam_pattern->receive.elevation);
-}
-
-/** Elements of the receiving array. */
-size_t receivingElements(const SonarConfig& config) {
-    if (config.imperfections && config.imperfections->elements)
-        return static_cast<size_t>(*config.imperfections->elements);
-    std::optional<double> wavelength;
-    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
-    const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
-    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
-    return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
 }
 
 /** Checks a receiving array whose law can be evaluated. */

@@ -24,6 +24,7 @@ public:
     EdgesInPings(const RenderPlan& plan, const types::Geometry& geometry)
         : plan_(plan), edges_(std::make_unique<EdgeEchoes>(plan, geometry)) {}
 
+    void takeShapes(const types::Snapshot& snapshot) override { edges_->takeShapes(snapshot); }
     void takeScene(const types::Geometry& geometry) override { edges_ = std::make_unique<EdgeEchoes>(plan_, geometry); }
     void addEchoes(PingInMaking& ping) override {
         received_ = edges_->add(ping);

@@ -58,6 +58,9 @@ public:
     virtual void takeQuality() {}
     /** Switches to another scene with the same materials. The scene before ends its life after the call. */
     virtual void takeScene(const types::Geometry& /*geometry*/) {}
+    /** Takes new shapes of deforming meshes. They changed in place, in the objects that this and earlier snapshots
+     *  deform. Called before begin() if any mesh deforms. */
+    virtual void takeShapes(const types::Snapshot& /*snapshot*/) {}
     /** Begins a ping, before all else. */
     virtual void begin(const PingStart& /*start*/) {}
 

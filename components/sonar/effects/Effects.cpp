@@ -26,6 +26,7 @@ const Effect& refraction();
 const Effect& motionInPing();
 const Effect& normalMaps();
 const Effect& surfaceMaps();
+const Effect& deformingMeshes();
 const Effect& pointTargets();
 const Effect& edgeDiffraction();
 const Effect& imperfections();
@@ -36,11 +37,11 @@ namespace {
 
 struct List {
     std::vector<std::unique_ptr<const Effect>> added;
-    std::vector<const Effect*> all{&absorption(),      &backscatter(),   &publishedMeans(), &beamPatterns(),
-                                   &pulse(),           &ringDown(),      &volume(),         &speckle(),
-                                   &multipath(),       &thinWalls(),     &furtherFrusta(),         &refraction(),
-                                   &motionInPing(),    &normalMaps(),    &surfaceMaps(),    &pointTargets(),
-                                   &edgeDiffraction(), &imperfections(), &crosstalk(),      &truth()};
+    std::vector<const Effect*> all{
+        &absorption(),    &backscatter(), &publishedMeans(), &beamPatterns(),    &pulse(),         &ringDown(),
+        &volume(),        &speckle(),     &multipath(),      &thinWalls(),       &furtherFrusta(), &refraction(),
+        &motionInPing(),  &normalMaps(),  &surfaceMaps(),    &deformingMeshes(), &pointTargets(),  &edgeDiffraction(),
+        &imperfections(), &crosstalk(),   &truth()};
 };
 
 List& list() {
@@ -113,6 +114,10 @@ void PingEffects::takeQuality() {
 
 void PingEffects::takeScene(const types::Geometry& geometry) {
     for (const auto& effect : all_) effect->takeScene(geometry);
+}
+
+void PingEffects::takeShapes(const types::Snapshot& snapshot) {
+    for (const auto& effect : all_) effect->takeShapes(snapshot);
 }
 
 void PingEffects::begin(const PingStart& start) {

@@ -27,6 +27,7 @@ public:
 
     void takeQuality();
     void takeScene(const types::Geometry& geometry);
+    void takeShapes(const types::Snapshot& snapshot);
     void begin(const PingStart& start);
     void giveRules(EchoRules& rules) const;
     /** Returns why a compute shader cannot make the sums of the effects, as a clause. Empty: it can. */

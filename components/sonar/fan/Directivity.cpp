@@ -36,17 +36,6 @@ double amplitudeOf(const std::optional<acoustics::BeamPattern>& law, double angl
     return law ? law->amplitude(angle, axis) : 1;
 }
 
-/** Elements of the receiving array. */
-size_t elementCount(const SonarConfig& config) {
-    if (config.imperfections && config.imperfections->elements)
-        return static_cast<size_t>(*config.imperfections->elements);
-    std::optional<double> wavelength;
-    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
-    const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
-    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
-    return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
-}
-
 /** A zone of range, and the phase at the ends of an array that is not focused there. */
 struct FocusZone {
     double end;    ///< [m]
@@ -96,6 +85,16 @@ double farthest(double outer, double inner, double floor, const Power& power) {
 
 }  // namespace
 
+size_t receivingElements(const SonarConfig& config) {
+    if (config.imperfections && config.imperfections->elements)
+        return static_cast<size_t>(*config.imperfections->elements);
+    std::optional<double> wavelength;
+    if (config.frequency_khz) wavelength = config.speedOfSound() / (1e3 * *config.frequency_khz);
+    const double aperture = acoustics::BeamPattern(*config.beam_pattern->receive.azimuth, wavelength).aperture();
+    if (config.elements && wavelength) return config.elements->arrayOf(aperture * *wavelength, *wavelength).count;
+    return std::clamp<size_t>(static_cast<size_t>(std::lround(2 * aperture)), 2, 4096);
+}
+
 Directivity::Directivity(const SonarConfig& config)
     : conical_(config.beam_geometry == BeamGeometry::Conical),
       floor_(std::pow(10, config.beam_pattern->floor_db / 10)) {
@@ -112,7 +111,7 @@ void Directivity::makeZones(const SonarConfig& config, std::optional<double> wav
     const ImperfectionsConfig& errors = *config.imperfections;
     const double aperture = receive_azimuth_->aperture();
     if (aperture == 0 || (!errors.hasElementErrors() && !errors.focus_m)) return;
-    const size_t count = elementCount(config);
+    const size_t count = receivingElements(config);
     const std::vector<double> weights = acoustics::elementWeights(count, aperture, receive_azimuth_->taper());
     const std::vector<std::complex<double>> factors = errors.elementFactors(count);
     std::vector<FocusZone> focus{{std::numeric_limits<double>::infinity(), 0}};

@@ -79,6 +79,9 @@ private:
     Law transmit_azimuth_, receive_azimuth_, transmit_elevation_, receive_elevation_;
 };
 
+/** Returns the number of elements of a receiving array with a law in azimuth. */
+size_t receivingElements(const SonarConfig& config);
+
 /** Returns the configuration that a sonar with a beam pattern is sampled with: azimuth cells replace the beams. Cells
  *  and aperture extend as far as the pattern is above its floor, in images at most as far as an image shows. */
 SonarConfig sampledConfig(const SonarConfig& config, const Directivity& directivity, bool traces_rays);

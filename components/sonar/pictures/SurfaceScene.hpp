@@ -11,6 +11,8 @@ namespace insonify::sonar {
 
 /** Returns the planes of a mesh's triangles. */
 std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
+/** Fills a list of that size with the planes of a mesh's triangles. */
+void findPlanes(const types::Mesh& mesh, std::vector<PlaneRecord>& planes);
 /** Returns the planes of all meshes' triangles, mesh after mesh, as SurfaceScene::planes(). */
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
 

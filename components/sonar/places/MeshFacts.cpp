@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
@@ -13,7 +14,7 @@
 namespace insonify::sonar {
 namespace {
 
-BoxTree treeOver(const types::Mesh& mesh) {
+std::vector<Box> leavesOf(const types::Mesh& mesh) {
     constexpr size_t leaf = 3 * MeshFacts::leaf_triangles;
     std::vector<Box> boxes((mesh.indices.size() + leaf - 1) / leaf);
     for (size_t i = 0; i < mesh.indices.size(); ++i) boxes[i / leaf].add(mesh.positions[mesh.indices[i]]);
@@ -21,7 +22,13 @@ BoxTree treeOver(const types::Mesh& mesh) {
         const glm::dvec3 slack = 1e-9 * (glm::max(glm::abs(box.low), glm::abs(box.high)) + box.half());
         box.low -= slack, box.high += slack;
     }
-    return BoxTree(boxes);
+    return boxes;
+}
+
+Box boxOf(const types::Mesh& mesh) {
+    Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
+    for (const glm::vec3& p : mesh.positions) box.add(p);
+    return box;
 }
 
 std::vector<float> mapDensityOf(const types::Mesh& mesh) {
@@ -53,12 +60,16 @@ std::vector<std::shared_ptr<MeshFacts>> MeshFacts::ofAll(const types::Geometry& 
     return all;
 }
 
+void MeshFacts::renew() {
+    box_.renew([this](Box& box) { box = boxOf(*mesh_); });
+    longest_edge_.renew([this](double& longest) { longest = sonar::longestEdge(*mesh_); });
+    triangles_.renew([this](BoxTree& tree) { tree.refit(leavesOf(*mesh_)); });
+    planes_.renew([this](const std::shared_ptr<std::vector<PlaneRecord>>& planes) { findPlanes(*mesh_, *planes); });
+    map_density_.renew([this](std::vector<float>& density) { density = mapDensityOf(*mesh_); });
+}
+
 const Box& MeshFacts::box() {
-    return box_.get([this] {
-        Box box{glm::dvec3(std::numeric_limits<double>::max()), glm::dvec3(std::numeric_limits<double>::lowest())};
-        for (const glm::vec3& p : mesh_->positions) box.add(p);
-        return box;
-    });
+    return box_.get([this] { return boxOf(*mesh_); });
 }
 
 double MeshFacts::longestEdge() {
@@ -66,11 +77,11 @@ double MeshFacts::longestEdge() {
 }
 
 const BoxTree& MeshFacts::triangles() {
-    return triangles_.get([this] { return treeOver(*mesh_); });
+    return triangles_.get([this] { return BoxTree(leavesOf(*mesh_)); });
 }
 
 MeshFacts::Planes MeshFacts::planes() {
-    return planes_.get([this] { return std::make_shared<const std::vector<PlaneRecord>>(planesOf(*mesh_)); });
+    return planes_.get([this] { return std::make_shared<std::vector<PlaneRecord>>(planesOf(*mesh_)); });
 }
 
 const std::vector<float>& MeshFacts::mapDensity() {
@@ -89,6 +100,15 @@ MeshFacts::Facets MeshFacts::facets(const glm::dmat3& world_from_mesh, const Mat
         return std::make_shared<const std::vector<FacetRecord>>(
             facetLobes(*mesh_, world_from_mesh, wavelength, edges.get()));
     });
+}
+
+MeshFacts::Facets MeshFacts::facetsNow(const types::Mesh& mesh, const glm::dmat3& world_from_mesh,
+                                       const MaterialLaws& laws) {
+    if (!hasLobes(mesh, laws)) return nullptr;
+    std::optional<StraightEdges> edges;
+    if (laws.sharp_turn) edges = straightEdges(mesh, world_from_mesh, *laws.sharp_turn);
+    return std::make_shared<const std::vector<FacetRecord>>(
+        facetLobes(mesh, world_from_mesh, laws.wavelength.value_or(0), edges ? &*edges : nullptr));
 }
 
 MeshFacts::Curves MeshFacts::curves(const glm::dmat3& world_from_mesh) {

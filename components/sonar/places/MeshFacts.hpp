@@ -31,6 +31,10 @@ public:
     static std::vector<std::shared_ptr<MeshFacts>> ofAll(const types::Geometry& geometry);
     explicit MeshFacts(types::MeshPtr mesh) : mesh_(std::move(mesh)) {}
 
+    /** Recomputes, in place, all facts in use except facets, curves and edges, after vertices have moved. For the owner of
+     *  the mesh, while no other thread reads facts. */
+    void renew();
+
     /** Returns the box of all positions, in the mesh's axes [m]. */
     const Box& box();
     /** Returns the longest edge of all triangles [m]. */
@@ -41,6 +45,8 @@ public:
     Planes planes();
     /** Returns the lobe record of each triangle, from facetLobes(); null where no material of the mesh has a lobe. */
     Facets facets(const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
+    /** Returns the lobe records of a mesh as it is now, computed anew. */
+    static Facets facetsNow(const types::Mesh& mesh, const glm::dmat3& world_from_mesh, const MaterialLaws& laws);
     /** Returns the curvature of each triangle, from facetCurves(); empty where no part of the mesh is a smooth body. */
     Curves curves(const glm::dmat3& world_from_mesh);
     /** Returns the straight edges with at least a turn [rad], from straightEdges(); null where no material of the mesh
@@ -56,7 +62,7 @@ private:
     Lazy<Box> box_;
     Lazy<double> longest_edge_;
     Lazy<BoxTree> triangles_;
-    Lazy<Planes> planes_;
+    Lazy<std::shared_ptr<std::vector<PlaneRecord>>> planes_;
     Lazy<std::vector<float>> map_density_;
     /** Keys: matrix, wavelength [m] and turn of sharp edges [rad]. */
     SharedValues<std::array<double, 11>, const std::vector<FacetRecord>> facets_;

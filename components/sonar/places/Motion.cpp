@@ -7,6 +7,8 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "types/PosedMesh.hpp"
+
 namespace insonify::sonar {
 namespace {
 
@@ -26,8 +28,13 @@ Motion::Motion(const types::Geometry& geometry, double fastest) : fastest_allowe
 
 void Motion::takeScene(const types::Geometry& geometry) {
     const std::vector<Thing> old = std::exchange(things_, {});
-    for (const types::Object& object : geometry.objects)
-        things_.push_back({object.name, MeshFacts::of(geometry.meshes.shared(static_cast<size_t>(object.mesh)))});
+    places_.clear();
+    deforming_.assign(geometry.objects.size(), nullptr);
+    for (const types::Object& object : geometry.objects) {
+        const types::MeshPtr& mesh = geometry.meshes.shared(static_cast<size_t>(object.mesh));
+        things_.push_back({object.name, mesh, MeshFacts::of(mesh)});
+        places_.push_back(object.world_from_object);
+    }
     const auto isNew = [&](const types::MovedObject& moved) {
         return moved.object >= things_.size() || moved.object >= old.size() ||
                things_[moved.object] != old[moved.object];
@@ -70,17 +77,18 @@ void Motion::followObjects(const types::Snapshot& snapshot) {
     std::ranges::fill(drifts_, std::nullopt);
     fastest_ = 0;
     for (const types::MovedObject& moved : snapshot.moved) {
-        if (!before_) break;
+        if (moved.rate && *moved.rate != glm::dmat4(0)) addDrift(snapshot.sonar, moved, *moved.rate);
+        if (!before_ || moved.rate) continue;
         const auto was = std::ranges::find(before_->moved, moved.object, &types::MovedObject::object);
         if (was != before_->moved.end() && was->world_from_object != moved.world_from_object)
-            driftOf(snapshot.sonar, moved, was->world_from_object);
+            addDrift(snapshot.sonar, moved, (moved.world_from_object - was->world_from_object) / seconds_);
     }
+    followShapes(snapshot);
     for (size_t i = 0; i < snapshot.targets.size(); ++i) fastest_ = std::max(fastest_, glm::length(targetVelocity(i)));
 }
 
-void Motion::driftOf(const types::Pose& sonar, const types::MovedObject& now, const glm::dmat4& before) {
+void Motion::addDrift(const types::Pose& sonar, const types::MovedObject& now, const glm::dmat4& rate) {
     const glm::dmat4& place = now.world_from_object;
-    const glm::dmat4 rate = (place - before) / seconds_;
     const glm::dmat3 inverse = glm::inverse(glm::dmat3(place));
     const glm::dmat3 world = glm::dmat3(rate) * inverse, turn = glm::mat3_cast(sonar.orientation);
     Drift drift;
@@ -94,6 +102,66 @@ void Motion::driftOf(const types::Pose& sonar, const types::MovedObject& now, co
     if (!(drift.fastest <= fastest_allowed_) || !isKnown(drift.constant)) return;
     fastest_ = std::max(fastest_, drift.fastest);
     drifts_[now.object] = drift;
+}
+
+void Motion::followShapes(const types::Snapshot& snapshot) {
+    for (const auto& one : deforming_)
+        if (one) one->moves = false;
+    for (const types::DeformedObject& deformed : snapshot.deformed) addShape(snapshot, deformed);
+}
+
+void Motion::addShape(const types::Snapshot& snapshot, const types::DeformedObject& deformed) {
+    const uint32_t object = deformed.object;
+    const types::MeshPtr& mesh = things_[object].shape;
+    types::velocitiesOf(types::poseOf(snapshot, deformed, *mesh->deformation), *mesh->deformation, of_vertices_);
+    const auto moved = std::ranges::find(snapshot.moved, object, &types::MovedObject::object);
+    const glm::dmat4& place = moved == snapshot.moved.end() ? places_[object] : moved->world_from_object;
+    const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
+    const glm::dmat3 turn = sonar_from_world * glm::dmat3(place);
+    const glm::dvec3 origin = sonar_from_world * (glm::dvec3(place[3]) - snapshot.sonar.position);
+    if (!deforming_[object]) deforming_[object] = std::make_shared<Deforming>();
+    Deforming& own = *deforming_[object];
+    own.mesh = mesh;
+    own.places.resize(of_vertices_.size());
+    own.velocities.resize(of_vertices_.size());
+    const Drift whole = drifts_[object].value_or(Drift());
+    Drift drift;  // constant, so that the ways of rays about the object are as straight as before
+    double fastest = 0;
+    for (size_t i = 0; i < of_vertices_.size(); ++i) {
+        own.places[i] = origin + turn * glm::dvec3(mesh->positions[i]);
+        const glm::dvec3 bends = turn * glm::dvec3(of_vertices_[i]);
+        own.velocities[i] = whole.at(own.places[i]) + bends;
+        drift.constant += own.velocities[i];
+        fastest = std::max(fastest, glm::length(own.velocities[i]));
+    }
+    if (!(fastest > 0) || !(fastest <= fastest_allowed_)) return;
+    own.moves = true;
+    drift.constant /= static_cast<double>(of_vertices_.size());
+    drift.fastest = fastest;
+    fastest_ = std::max(fastest_, fastest);
+    drifts_[object] = drift;
+}
+
+const Drift* Motion::driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
+    const Deforming* const deforming = deforming_[object].get();
+    if (!deforming || !deforming->moves) return drift(object);
+    const uint32_t* const corners = &deforming->mesh->indices[3 * static_cast<size_t>(triangle)];
+    const glm::dvec3 &a = deforming->places[corners[0]], &v = deforming->velocities[corners[0]];
+    const glm::dvec3 s = deforming->places[corners[1]] - a, t = deforming->places[corners[2]] - a;
+    const glm::dvec3 rate_s = deforming->velocities[corners[1]] - v, rate_t = deforming->velocities[corners[2]] - v;
+    const glm::dvec3 across = glm::cross(s, t);
+    const double square = glm::dot(across, across);
+    own = {};
+    own.constant = v;
+    if (!(square > 0)) return &own;
+    // A place of the plane is a + x s + y t; x and y are its products with two vectors of the plane. The normal turns
+    // with the plane, so that a body that only turns has the gradient of its rotation.
+    const glm::dvec3 per_s = glm::cross(t, across) / square, per_t = glm::cross(across, s) / square;
+    const glm::dvec3 normal = across / std::sqrt(square);
+    const glm::dmat3 within = glm::outerProduct(rate_s, per_s) + glm::outerProduct(rate_t, per_t);
+    own.linear = within - glm::outerProduct(glm::transpose(within) * normal, normal);
+    own.constant = v - own.linear * a;
+    return &own;
 }
 
 glm::dvec3 Motion::targetVelocity(size_t target) const {

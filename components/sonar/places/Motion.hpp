@@ -35,8 +35,11 @@ public:
 
     const glm::dvec3& velocity() const { return velocity_; }  ///< Velocity of the sonar, in the world [m/s].
     const glm::dvec3& turn() const { return turn_; }          ///< Its angular velocity, in the world [rad/s].
-    /** Returns the motion of an object in the world, about the sonar, in sonar axes; null where it is at rest. */
+    /** Returns the motion of an object in the world, about the sonar, in sonar axes; null where it is at rest.
+     *  If the object deforms: the mean motion of its vertices. */
     const Drift* drift(uint32_t object) const { return drifts_[object] ? &*drifts_[object] : nullptr; }
+    /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
+    const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const;
     /** Returns the velocity of a point target, in the world [m/s]. */
     glm::dvec3 targetVelocity(size_t target) const;
     /** Returns the max speed of objects and targets [m/s]. */
@@ -49,22 +52,35 @@ private:
         std::vector<types::MovedObject> moved;
         std::vector<types::PointTarget> targets;
     };
+    /** An object that deforms: its vertices about the sonar, sonar axes. */
+    struct Deforming {
+        std::vector<glm::dvec3> places;      ///< [m]
+        std::vector<glm::dvec3> velocities;  ///< [m/s]
+        types::MeshPtr mesh;
+        bool moves = false;  ///< In this ping.
+    };
     /** Identity of an object. */
     struct Thing {
         std::string name;
+        types::MeshPtr shape;
         std::shared_ptr<MeshFacts> mesh;
         bool operator==(const Thing&) const = default;
     };
     void followSonar(const types::Snapshot& snapshot);
     void followObjects(const types::Snapshot& snapshot);
-    void driftOf(const types::Pose& sonar, const types::MovedObject& now, const glm::dmat4& before);
+    void addDrift(const types::Pose& sonar, const types::MovedObject& now, const glm::dmat4& rate);
+    void followShapes(const types::Snapshot& snapshot);
+    void addShape(const types::Snapshot& snapshot, const types::DeformedObject& deformed);
 
-    std::vector<Thing> things_;  ///< Each object.
+    std::vector<Thing> things_;       ///< Each object.
+    std::vector<glm::dmat4> places_;  ///< Of each object in the geometry.
     std::optional<Mark> before_, now_;
     double fastest_allowed_;  ///< [m/s]
     double seconds_ = 0;      ///< Between `before_` and `now_` [s].
     glm::dvec3 velocity_{0}, turn_{0};
     std::vector<std::optional<Drift>> drifts_;
+    std::vector<std::shared_ptr<Deforming>> deforming_;  ///< Of each object; null: it keeps its shape.
+    std::vector<glm::vec3> of_vertices_;                 ///< Scratch.
     double fastest_ = 0;
 };
 

@@ -34,12 +34,21 @@ class Lazy {
 public:
     template <class Make>
     const Value& get(const Make& make) {
-        std::call_once(made_, [&] { value_ = make(); });
+        std::call_once(once_, [&] {
+            value_ = make();
+            made_ = true;
+        });
         return value_;
+    }
+    /** Calls `change(value)` where it has been made. Nobody may ask for it meanwhile. */
+    template <class Change>
+    void renew(const Change& change) {
+        if (made_) change(value_);
     }
 
 private:
-    std::once_flag made_;
+    std::once_flag once_;
+    bool made_ = false;
     Value value_{};
 };
 

@@ -61,7 +61,7 @@ bool isFinite(const glm::dmat3& matrix) {
 Sightlines::Sightlines(const types::Geometry& geometry, Lines lines)
     : geometry_(geometry), placed_(geometry.objects.size()) {
     if (lines == Lines::Many) meshes_ = MeshFacts::ofAll(geometry);
-    displaced_.reserve(placed_.size());
+    displaced_.reserve(2 * placed_.size());
     for (size_t i = 0; i < placed_.size(); ++i) placeObject(i, geometry.objects[i].world_from_object);
 }
 
@@ -89,6 +89,10 @@ void Sightlines::place(const types::Snapshot& snapshot) {
     for (const types::MovedObject& moved : snapshot.moved) {
         placeObject(moved.object, moved.world_from_object);
         displaced_.push_back(moved.object);
+    }
+    for (const types::DeformedObject& deformed : snapshot.deformed) {  // their boxes are others now
+        placeObject(deformed.object, glm::dmat4(placed_[deformed.object].world_from_object));
+        displaced_.push_back(deformed.object);
     }
 }
 

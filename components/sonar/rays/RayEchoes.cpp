@@ -11,11 +11,13 @@
 #include "components/sonar/ThreadPool.hpp"
 #include "components/sonar/echo/BinLevels.hpp"
 #include "components/sonar/echo/EchoGrid.hpp"
+#include "components/sonar/echo/FacetCurves.hpp"
 #include "components/sonar/echo/FacetLobes.hpp"
 #include "components/sonar/echo/TruthGrid.hpp"
 #include "components/sonar/effects/Effects.hpp"
 #include "components/sonar/field/EchoField.hpp"
 #include "components/sonar/pictures/SurfaceScene.hpp"
+#include "components/sonar/places/DeformedMeshes.hpp"
 #include "components/sonar/places/MeshesAhead.hpp"
 #include "components/sonar/places/ObjectPlaces.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
@@ -37,6 +39,9 @@ constexpr int part_samples = 8192;
 /** Share of the energy below which a ray behind walls ends: 60 dB [1]. */
 constexpr auto min_passed = static_cast<float>(WallRays::min_passed);
 
+/** Max triangles of deforming meshes up to which facets of smooth bodies are computed anew in each ping [1]. */
+constexpr size_t max_bent = 10'000;
+
 /** Work that one thread takes at a time: some rows of neighbouring beams, enough to fill a tile's columns. */
 struct Part {
     int first_beam, beams, first_row, rows;
@@ -56,6 +61,8 @@ public:
     RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEffects& effects);
     void takeQuality() override;
     bool takeScene(types::GeometryPtr geometry, bool same_plan) override;
+    void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) override;
+    void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     bool forget() override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
@@ -144,6 +151,8 @@ private:
     Reverberation reverberation_;
     std::unique_ptr<NormalMapping> normal_maps_;
     std::optional<SurfaceMapping> surface_maps_;  ///< None if the plan has none.
+    DeformedMeshes* deformed_ = nullptr;          ///< Null: no mesh deforms.
+    bool bends_ = true;                           ///< Whether facets of deforming meshes have curvature.
     MeshesAhead ahead_;
     std::vector<PlacedRun> runs_;  ///< Runs of the visibility's commands, placed in this ping.
     ThreadPool threads_;
@@ -171,20 +180,53 @@ RayEchoes::RayEchoes(const RenderPlan& plan, types::GeometryPtr geometry, PingEf
     takeScene(geometry_, false);
 }
 
+void RayEchoes::deform(DeformedMeshes* meshes, types::GeometryPtr geometry) {
+    deformed_ = meshes;
+    takeScene(std::move(geometry), true);
+    if (!meshes) return;
+    size_t triangles = 0;
+    for (const uint32_t object : meshes->objects())
+        triangles += geometry_->meshes[static_cast<size_t>(geometry_->objects[object].mesh)].indices.size() / 3;
+    bends_ = triangles <= max_bent;
+}
+
+void RayEchoes::takeShapes(const types::Snapshot& snapshot) {
+    visibility_.takeShapes();
+    threads_.run([&](int part, int parts) {
+        deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
+        const std::vector<uint32_t>& objects = deformed_->objects();
+        for (size_t i = static_cast<size_t>(part); i < objects.size(); i += static_cast<size_t>(parts)) {
+            const auto number = static_cast<size_t>(geometry_->objects[objects[i]].mesh);
+            const types::Mesh& mesh = geometry_->meshes[number];
+            const glm::dmat3 world_from_mesh = worldFromMesh(*geometry_, number);
+            if (facets_[number]) facets_[number] = MeshFacts::facetsNow(mesh, world_from_mesh, plan_.laws);
+            if (bends_)
+                curves_[number] = std::make_shared<const std::vector<CurveRecord>>(facetCurves(mesh, world_from_mesh));
+        }
+    });
+}
+
 bool RayEchoes::takeScene(types::GeometryPtr geometry, bool same_plan) {
     const types::GeometryPtr before = std::exchange(geometry_, std::move(geometry));  // kept until unused
-    if (before != geometry_) visibility_.takeScene(*geometry_);
+    if (before != geometry_)
+        visibility_.takeScene(
+            *geometry_, deformed_ ? std::span<const uint32_t>(deformed_->objects()) : std::span<const uint32_t>());
     // Data shared with the predecessors is kept, because these are destroyed after the new objects are made.
     places_ = std::make_unique<ObjectPlaces>(*geometry_, reachOf(plan_), true);
     normal_maps_ = std::make_unique<NormalMapping>(*geometry_);
     std::vector<MeshFacts::Planes> planes;
     std::vector<MeshFacts::Facets> facets;
     std::vector<MeshFacts::Curves> curves;
+    std::vector<bool> deforms(geometry_->meshes.size());
+    if (deformed_)
+        for (const uint32_t object : deformed_->objects())
+            deforms[static_cast<size_t>(geometry_->objects[object].mesh)] = true;
+    const auto flat = std::make_shared<const std::vector<CurveRecord>>();  // until the shape of the ping is there
     for (size_t i = 0; i < geometry_->meshes.size(); ++i) {
         const auto facts = MeshFacts::of(geometry_->meshes.shared(i));
         planes.push_back(facts->planes());
         facets.push_back(facts->facets(worldFromMesh(*geometry_, i), plan_.laws));
-        curves.push_back(facts->curves(worldFromMesh(*geometry_, i)));
+        curves.push_back(deforms[i] ? flat : facts->curves(worldFromMesh(*geometry_, i)));
     }
     planes_ = std::move(planes);
     facets_ = std::move(facets);
@@ -270,6 +312,12 @@ void RayEchoes::place(const types::Snapshot& snapshot) {
     surface_.place(snapshot, plan_.grid.range_max);
     places_->place(snapshot);
     visibility_.place(snapshot);
+    if (visibility_.needsFitting()) {
+        threads_.run([this](int part, int parts) {
+            visibility_.fitDeforming(static_cast<size_t>(part), static_cast<size_t>(parts));
+        });
+        visibility_.joinDeforming();
+    }
     if (ray_paths_) ray_paths_->place(snapshot);
     placeRuns();
     ahead_.take(snapshot.ahead, plan_.laws);

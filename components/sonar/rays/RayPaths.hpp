@@ -46,6 +46,10 @@ public:
     bool areStraight() const { return !table_ && !moves_; }
     /** Returns the motion of an object in this ping; null where it is at rest. */
     const Drift* drift(uint32_t object) const { return moves_ ? motion_->drift(object) : nullptr; }
+    /** Returns the motion of one triangle of an object; fills `own` if the object deforms. */
+    const Drift* driftOf(uint32_t object, uint32_t triangle, Drift& own) const {
+        return moves_ ? motion_->driftOf(object, triangle, own) : nullptr;
+    }
     /** Returns where an echo from a unit direction at a slant range [m] was returned: its place about the sonar when
      *  the pulse was sent [m]. `drift`: motion of its object. */
     glm::dvec3 at(const glm::dvec3& direction, double range, const Drift* drift = nullptr) const;

@@ -244,18 +244,29 @@ struct RayVisibility::Tree {
     bool is_built = false;
 };
 
-RayVisibility::RayVisibility(const types::Geometry& geometry)
+RayVisibility::RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming)
     : here_(std::make_unique<Tree>()), before_(std::make_unique<Tree>()) {
-    takeScene(geometry);
+    takeScene(geometry, deforming);
 }
 
 RayVisibility::~RayVisibility() = default;
 
-void RayVisibility::takeScene(const types::Geometry& geometry) {
+void RayVisibility::takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming) {
     geometry_ = &geometry;
     moves_.resize(geometry.objects.size());
     here_->is_built = before_->is_built = false;
     listCommands();
+    deforms_.assign(deforming.empty() ? 0 : geometry.objects.size(), false);
+    std::vector<DeformingTrees::Object> objects;
+    for (const uint32_t object : deforming) {
+        deforms_[object] = true;
+        const auto mesh = static_cast<size_t>(geometry.objects[object].mesh);
+        if (!geometry.meshes[mesh].indices.empty())
+            objects.push_back({object, first_command_[object], geometry.meshes.shared(mesh)});
+    }
+    deforming_ = DeformingTrees(std::move(objects));
+    deforming_places_.resize(deforming_.size());
+    is_fitted_ = false;
 }
 
 void RayVisibility::listCommands() {
@@ -277,7 +288,8 @@ void RayVisibility::listCommands() {
 }
 
 bool RayVisibility::hasNewMover(const types::Snapshot& snapshot) const {
-    return std::ranges::any_of(snapshot.moved, [this](const auto& moved) { return !moves_[moved.object]; });
+    return std::ranges::any_of(
+        snapshot.moved, [this](const auto& moved) { return !moves_[moved.object] && !doesDeform(moved.object); });
 }
 
 void RayVisibility::place(const types::Snapshot& snapshot) {
@@ -288,6 +300,28 @@ void RayVisibility::place(const types::Snapshot& snapshot) {
     world_from_sonar_ = glm::mat3(glm::mat3_cast(snapshot.sonar.orientation));
     place_ = glm::vec3(snapshot.sonar.position - origin);
     placeMovers(snapshot);
+    if (!deforming_.isEmpty()) placeDeforming(snapshot);
+}
+
+void RayVisibility::placeDeforming(const types::Snapshot& snapshot) {
+    for (size_t i = 0; i < deforming_.size(); ++i) {
+        const uint32_t object = deforming_.object(i);
+        const auto moved = std::ranges::find(snapshot.moved, object, &types::MovedObject::object);
+        glm::dmat4 place =
+            moved == snapshot.moved.end() ? geometry_->objects[object].world_from_object : moved->world_from_object;
+        place[3] -= glm::dvec4(here_->origin, 0);
+        is_fitted_ = is_fitted_ && place == deforming_places_[i];
+        deforming_places_[i] = place;
+    }
+}
+
+void RayVisibility::joinDeforming() {
+    deforming_.join();
+    is_fitted_ = true;
+}
+
+void RayVisibility::fitDeforming(size_t part, size_t parts) {
+    for (size_t i = part; i < deforming_.size(); i += parts) deforming_.fit(i, deforming_places_[i]);
 }
 
 void RayVisibility::forget() {
@@ -319,6 +353,7 @@ void RayVisibility::build(const glm::dvec3& origin) {
         const types::MeshPtr& shared = geometry_->meshes.shared(mesh);
         glm::dmat4 place = object.world_from_object;
         place[3] -= glm::dvec4(origin, 0);
+        if (doesDeform(i)) continue;
         if (moves_[i]) {
             Mover& mover = movers.emplace_back(static_cast<uint32_t>(i), first_command_[i], MeshTree::of(shared));
             mover.tree = mover.mesh->tree().scene();
@@ -360,8 +395,15 @@ INSONIFY_VECTOR_CLONES __attribute__((flatten)) void RayVisibility::trace(std::s
         std::fill_n(hits[i].command, tile_samples, TileHits::nothing);
         take(all[i], hits[i],
              [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
-        traceToMovers(rays[i], all[i], hits[i]);
     }
+    if (!deforming_.isEmpty()) {
+        for (size_t i = 0; i < rays.size(); ++i) forgetHits(all[i]);
+        intersect(deforming_.scene(), std::span(all).first(rays.size()));
+        for (size_t i = 0; i < rays.size(); ++i)
+            take(all[i], hits[i],
+                 [this](uint32_t geometry, uint32_t instance) { return deforming_.meaning(geometry, instance); });
+    }
+    for (size_t i = 0; i < rays.size(); ++i) traceToMovers(rays[i], all[i], hits[i]);
 }
 
 void RayVisibility::traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const {
@@ -404,6 +446,7 @@ void RayVisibility::tracePiece(const RayPaths& paths, const TileRays& rays, cons
     direct(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
     intersect(here_->trees->scene(), valid, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    if (!deforming_.isEmpty()) tracePieceAtDeforming(paths, rays, piece, valid, all, hits);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         if (const Drift* drift = paths.drift(mover.object))
@@ -416,6 +459,20 @@ void RayVisibility::tracePiece(const RayPaths& paths, const TileRays& rays, cons
     }
 }
 
+/** Each object by itself, for it moves by a drift of its own. */
+void RayVisibility::tracePieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece,
+                                          const int* valid, RTCRayHit16& all, TileHits& hits) const {
+    for (size_t i = 0; i < deforming_.size(); ++i) {
+        if (const Drift* drift = paths.drift(deforming_.object(i)))
+            direct(Rows(world_from_sonar_), place_, placesOf(paths, rays, piece.start, drift),
+                   placesOf(paths, rays, piece.end, drift), all);
+        else
+            direct(Rows(world_from_sonar_), place_, piece.from, piece.to, all);
+        intersect(deforming_.scene(i), valid, all);
+        take(all, hits, [&](uint32_t geometry, uint32_t) { return deforming_.meaningIn(i, geometry); });
+    }
+}
+
 void RayVisibility::trace(const PathRays& rays, TileHits& hits) const {
     std::fill_n(hits.command, tile_samples, TileHits::nothing);
     RTCRayHit16 all;
@@ -425,6 +482,12 @@ void RayVisibility::trace(const PathRays& rays, TileHits& hits) const {
     forgetHits(all);
     intersect(here_->trees->scene(), valid.of, all);
     take(all, hits, [this](uint32_t geometry, uint32_t instance) { return here_->trees->meaning(geometry, instance); });
+    if (!deforming_.isEmpty()) {
+        forgetHits(all);
+        intersect(deforming_.scene(), valid.of, all);
+        take(all, hits,
+             [this](uint32_t geometry, uint32_t instance) { return deforming_.meaning(geometry, instance); });
+    }
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         direct(Rows(mover.from_sonar), mover.place, rays, all.ray);
@@ -442,6 +505,7 @@ uint32_t RayVisibility::blocked(const PathRays& rays) const {
     // Embree 3.13 may never return from rtcOccluded16 of coherent rays through instances.
     const bool are_coherent = !here_->trees->hasInstances();
     occlude(here_->trees->scene(), valid.of, are_coherent, all);
+    if (!deforming_.isEmpty()) occlude(deforming_.scene(), valid.of, false, all);
     for (const Mover& mover : here_->movers) {
         if (!mover.placed) continue;
         direct(Rows(mover.from_sonar), mover.place, rays, all);

@@ -6,6 +6,7 @@
 
 #include "components/sonar/echo/Interface.hpp"
 #include "components/sonar/rays/AngularView.hpp"
+#include "components/sonar/rays/DeformingTrees.hpp"
 #include "types/Snapshot.hpp"
 
 struct RTCRayHit16;
@@ -41,19 +42,21 @@ struct PathRays {
 /** Finds the visible triangles by rays on the processor (Embree).
  *
  *  Objects at rest form one tree about an origin near the sonar, on a coarse grid, so that world coordinates may be
- *  large. Each object that moves, or is transient, has a tree of its mesh, which is placed anew and never rebuilt. All
- *  trees are shared with other renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
+ *  large. Each object that moves, or is transient, has a tree of its mesh, which is placed anew and never rebuilt.
+ *  Objects that deform have trees that are refitted to their meshes in each ping. All trees are shared with other
+ * renderers of the same meshes. Surfaces nearer than `nearest` are not seen. */
 class RayVisibility {
 public:
     static constexpr double nearest = 1e-3;     ///< [m]
     static constexpr size_t tiles_at_once = 4;  ///< Tiles that are traced together, which is faster [1].
 
-    /** The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
-    explicit RayVisibility(const types::Geometry& geometry);
+    /** @param deforming  objects whose meshes change from ping to ping, ascending.
+     *  The geometry must outlive it. Throws std::runtime_error where Embree refuses it. */
+    explicit RayVisibility(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
     ~RayVisibility();
 
     /** Switches to another geometry from the next ping on, which must outlive it. Keeps trees of unchanged objects. */
-    void takeScene(const types::Geometry& geometry);
+    void takeScene(const types::Geometry& geometry, std::span<const uint32_t> deforming = {});
 
     /** Forgets which objects have moved. Trees stay until the next ping has reused those that it needs. */
     void forget();
@@ -62,6 +65,16 @@ public:
      *  first time, or when the sonar is near another origin than the last two; allocates only then. What is seen
      *  depends on the snapshot alone, not on the pings before. */
     void place(const types::Snapshot& snapshot);
+    /** Fits the trees of every parts-th object that deforms from the part-th on, after place(). Parts may run at a
+     * time.
+     */
+    void fitDeforming(size_t part, size_t parts);
+    /** Ends the fitting, before anything is cast. */
+    void joinDeforming();
+    /** The meshes of objects that deform have other shapes now. */
+    void takeShapes() { is_fitted_ = false; }
+    /** Whether trees of objects that deform are to be fitted in this ping. */
+    bool needsFitting() const { return !deforming_.isEmpty() && !is_fitted_; }
 
     /** Traces tiles from the sonar, at most `tiles_at_once`, which should be neighbours: hits[i] are the hits of
      *  rays[i]. Thread-safe. */
@@ -95,12 +108,20 @@ private:
     void forgetTrees(const types::Snapshot& snapshot);
     void build(const glm::dvec3& origin);
     void placeMovers(const types::Snapshot& snapshot);
+    void placeDeforming(const types::Snapshot& snapshot);
+    bool doesDeform(size_t object) const { return !deforms_.empty() && deforms_[object]; }
+    void tracePieceAtDeforming(const RayPaths& paths, const TileRays& rays, const Piece& piece, const int* valid,
+                               RTCRayHit16& all, TileHits& hits) const;
     void traceToMovers(const TileRays& rays, RTCRayHit16& all, TileHits& hits) const;
 
     const types::Geometry* geometry_;
     std::vector<CommandRecord> commands_;
     std::vector<uint32_t> first_command_;  ///< First command of each object.
     std::vector<bool> moves_;              ///< Whether an object has ever moved.
+    std::vector<bool> deforms_;            ///< Whether each object deforms; empty if no object does.
+    DeformingTrees deforming_;
+    std::vector<glm::dmat4> deforming_places_;  ///< Places of the deforming objects about the origin.
+    bool is_fitted_ = false;                    ///< Whether the trees match these places and the present meshes.
     /** The scene about the current origin, and about the one before, for a sonar that moves between the two. */
     std::unique_ptr<Tree> here_, before_;
     glm::mat3 world_from_sonar_;  ///< [1]

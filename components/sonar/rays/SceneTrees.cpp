@@ -43,8 +43,13 @@ std::vector<MaterialRun> materialRuns(const types::Mesh& mesh) {
     return ranges;
 }
 
-EmbreeScene::EmbreeScene() : device_(sharedDevice()), scene_(rtcNewScene(device_.get())) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+EmbreeScene::EmbreeScene(Kind kind) : device_(sharedDevice()), kind_(kind), scene_(rtcNewScene(device_.get())) {
+    if (kind == Kind::Built) {
+        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+        return;
+    }
+    rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC));
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);  // a tree of its own for each part
 }
 
 EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
@@ -55,7 +60,8 @@ void EmbreeScene::add(const types::Mesh& mesh, const MaterialRun& run, const std
                                at.size() - 1);
     rtcSetSharedGeometryBuffer(triangles, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
                                run.first_index * sizeof(uint32_t), 3 * sizeof(uint32_t), run.index_count / 3);
-    attach(triangles);
+    if (kind_ == Kind::Refitted) rtcSetGeometryBuildQuality(triangles, RTC_BUILD_QUALITY_REFIT);
+    attach(triangles, true);
 }
 
 void EmbreeScene::add(const EmbreeScene& other, const glm::dmat4& place) {
@@ -63,19 +69,29 @@ void EmbreeScene::add(const EmbreeScene& other, const glm::dmat4& place) {
     RTCGeometry instance = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, other.scene());
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix);
-    attach(instance);
+    attach(instance, false);
 }
 
-void EmbreeScene::attach(RTCGeometry geometry) {
+void EmbreeScene::attach(RTCGeometry geometry, bool has_vertices) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);
+    has_vertices_.push_back(has_vertices);
 }
 
 void EmbreeScene::commit() {
     rtcCommitScene(scene_);
     if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
         throw std::runtime_error("Embree cannot build the scene: error " + std::to_string(error));
+}
+
+void EmbreeScene::recommit() {
+    for (size_t i = 0; i < has_vertices_.size(); ++i) {
+        RTCGeometry part = rtcGetGeometry(scene_, static_cast<unsigned>(i));
+        if (has_vertices_[i]) rtcUpdateGeometryBuffer(part, RTC_BUFFER_TYPE_VERTEX, 0);
+        rtcCommitGeometry(part);
+    }
+    commit();
 }
 
 std::shared_ptr<MeshTree> MeshTree::of(const types::MeshPtr& mesh) {

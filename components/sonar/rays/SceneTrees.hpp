@@ -25,8 +25,13 @@ struct TreePart {
  *  the same one of coincident surfaces on any machine. */
 class EmbreeScene {
 public:
+    enum class Kind {
+        Built,     ///< Built once, for fast rays.
+        Refitted,  ///< Its parts keep the shape of their trees when their vertices move.
+    };
+
     /** Throws std::runtime_error where Embree has no device. */
-    EmbreeScene();
+    explicit EmbreeScene(Kind kind = Kind::Built);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -38,12 +43,16 @@ public:
     void add(const EmbreeScene& other, const glm::dmat4& place);
     /** Builds the tree. Throws std::runtime_error with Embree's error. */
     void commit();
+    /** Refits a Kind::Refitted scene after vertices have moved. */
+    void recommit();
 
 private:
-    void attach(RTCGeometry geometry);
+    void attach(RTCGeometry geometry, bool has_vertices);
 
     std::shared_ptr<RTCDeviceTy> device_;
+    Kind kind_;
     RTCScene scene_;
+    std::vector<bool> has_vertices_;  ///< Whether each part has vertices; else it is another scene.
 };
 
 /** The tree of a mesh in its own axes, with a part for each run of one material. Commands are counted from the object's

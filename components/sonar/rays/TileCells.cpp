@@ -79,7 +79,11 @@ private:
             cells_.setCurve(i, run.curves[tile.hits->triangle[sample]]);
         if (mapped_) placeInMap(i, *tile.hits, sample, merged);
         if (mapped_ && scene_.paths) in_map_.setCosines(scene_, i, i + 1, cells_);
-        if (scene_.paths) bend(static_cast<double>(tile.hits->range[sample]), scene_.paths->drift(object));
+        if (scene_.paths) {
+            Drift own;
+            bend(static_cast<double>(tile.hits->range[sample]),
+                 scene_.paths->driftOf(object, tile.hits->triangle[sample], own));
+        }
         if (deposit_.to().truth) {
             cells_.object[i] = object | tile.path;
             cells_.hits[i] = static_cast<uint32_t>(merged);

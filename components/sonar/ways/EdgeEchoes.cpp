@@ -119,6 +119,7 @@ void appendEdgeEchoes(const PlacedEdge& edge, const glm::dvec3& sonar, double sp
 
 EdgeEchoes::EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan),
+      geometry_(geometry),
       points_(plan, geometry),
       sightlines_(geometry, Sightlines::Lines::Many),
       walls_(plan),
@@ -126,17 +127,31 @@ EdgeEchoes::EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     for (size_t i = 0; i < geometry.meshes.size(); ++i)
         of_meshes_.push_back(MeshFacts::of(geometry.meshes.shared(i))
                                  ->edges(worldFromMesh(geometry, i), plan.laws, plan.laws.sharp_turn.value()));
-    for (size_t i = 0; i < geometry.objects.size(); ++i) addObject(i, geometry);
+    for (const types::Object& object : geometry.objects) still_.push_back(object.world_from_object);
+    for (size_t i = 0; i < geometry.objects.size(); ++i) addObject(i);
     places_ = still_;
     echoes_.reserve(max_pieces + 2);
 }
 
-void EdgeEchoes::addObject(size_t object, const types::Geometry& geometry) {
-    const types::Object& placed = geometry.objects[object];
-    still_.push_back(placed.world_from_object);
-    const auto mesh = static_cast<size_t>(placed.mesh);
+void EdgeEchoes::takeShapes(const types::Snapshot& snapshot) {
+    const auto deforms = [&](const OwnEdge& own) {
+        return std::ranges::binary_search(snapshot.deformed, own.object, {}, &types::DeformedObject::object);
+    };
+    std::erase_if(edges_, deforms);
+    for (const types::DeformedObject& deformed : snapshot.deformed) {
+        const auto mesh = static_cast<size_t>(geometry_.objects[deformed.object].mesh);
+        if (!of_meshes_[mesh]) continue;
+        of_meshes_[mesh] = std::make_shared<const StraightEdges>(
+            straightEdges(geometry_.meshes[mesh], worldFromMesh(geometry_, mesh), plan_.laws.sharp_turn.value()));
+        addObject(deformed.object);
+    }
+    std::ranges::stable_sort(edges_, {}, &OwnEdge::object);
+}
+
+void EdgeEchoes::addObject(size_t object) {
+    const auto mesh = static_cast<size_t>(geometry_.objects[object].mesh);
     if (!of_meshes_[mesh]) return;
-    const glm::dmat3 mesh_from_world = glm::inverse(worldFromMesh(geometry, mesh));
+    const glm::dmat3 mesh_from_world = glm::inverse(worldFromMesh(geometry_, mesh));
     for (const StraightEdge& own : of_meshes_[mesh]->edges) {
         PlacedEdge edge{.from = own.from, .to = own.to};
         edge.wavelength = plan_.laws.wavelength.value();
@@ -144,7 +159,7 @@ void EdgeEchoes::addObject(size_t object, const types::Geometry& geometry) {
             const EdgeFace& face = own.faces[k];
             const auto material = static_cast<size_t>(face.material);
             const double power = 4 * pi * double{plan_.laws.records[material].law.y};
-            edge.reflection += std::copysign(std::sqrt(power), double{geometry.materials[material].reflection}) / 2;
+            edge.reflection += std::copysign(std::sqrt(power), double{geometry_.materials[material].reflection}) / 2;
             edge.square_slope += double{plan_.laws.records[material].law.z} / 2;
             edge.inward[k] = mesh_from_world * face.inward;
             edge.widths[k] = face.width;

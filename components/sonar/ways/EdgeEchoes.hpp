@@ -42,6 +42,8 @@ public:
     /** `plan`: its laws have a wavelength and a turn of sharp edges. Plan and geometry outlive it. */
     EdgeEchoes(const RenderPlan& plan, const types::Geometry& geometry);
 
+    /** Finds the edges of the objects that the snapshot deforms. */
+    void takeShapes(const types::Snapshot& snapshot);
     /** Adds the echoes once the bins, or `field` if there is one, are filled. Returns the number of edges with an echo
      *  in any beam. */
     size_t add(PingInMaking& to);
@@ -53,9 +55,10 @@ private:
         size_t object;
         PlacedEdge edge;
     };
-    void addObject(size_t object, const types::Geometry& geometry);
+    void addObject(size_t object);
 
     const RenderPlan& plan_;
+    const types::Geometry& geometry_;
     PointTargets points_;
     Sightlines sightlines_;
     WallSights walls_;

@@ -132,15 +132,23 @@ bool holds(const MirrorTriangle& triangle, const glm::dvec2& point, double slack
 }  // namespace
 
 FlatMirrors::FlatMirrors(const types::Geometry& geometry, int bounces)
-    : geometry_(geometry), places_(geometry.objects.size()) {
+    : geometry_(geometry), bounces_(bounces), places_(geometry.objects.size()) {
+    addAll();
+}
+
+void FlatMirrors::addAll() {
+    mirrors_.clear();
+    triangles_.clear();
+    reflects_.assign(geometry_.objects.size(), false);
     uint32_t count = 0;
-    for (size_t object = 0; bounces > 0 && object < geometry.objects.size(); ++object)
-        addObject(object, bounces, count);
+    for (size_t object = 0; bounces_ > 0 && object < geometry_.objects.size(); ++object)
+        addObject(object, bounces_, count);
 }
 
 void FlatMirrors::addObject(size_t object, int bounces, uint32_t& count) {
     const std::vector<Reflecting> all = reflectingIn(geometry_, object, bounces, count);
     if (all.empty()) return;
+    reflects_[object] = true;
     Planes planes(all);
     std::vector<size_t> by_size(all.size());
     std::iota(by_size.begin(), by_size.end(), size_t{0});
@@ -173,6 +181,7 @@ void FlatMirrors::addObject(size_t object, int bounces, uint32_t& count) {
 }
 
 void FlatMirrors::place(const types::Snapshot& snapshot) {
+    if (std::ranges::any_of(snapshot.deformed, [&](const auto& one) { return reflects_[one.object]; })) addAll();
     for (size_t i = 0; i < places_.size(); ++i) places_[i] = &geometry_.objects[i].world_from_object;
     for (size_t i = snapshot.moved.size(); i-- > 0;)
         places_[snapshot.moved[i].object] = &snapshot.moved[i].world_from_object;

@@ -44,7 +44,7 @@ public:
     /** `geometry` must outlive it. With 0 bounces there is no mirror. */
     FlatMirrors(const types::Geometry& geometry, int bounces);
 
-    /** Takes the places of a ping. Allocates nothing. */
+    /** Takes the places of a ping. Allocates nothing where no mirror deforms. */
     void place(const types::Snapshot& snapshot);
     std::span<const FlatMirror> all() const { return mirrors_; }
     /** Returns the triangle at a point of the mirror's plane, null where there is none. Triangles include their edges,
@@ -52,9 +52,12 @@ public:
     const MirrorTriangle* triangleAt(const FlatMirror& mirror, const glm::dvec3& point, double slack) const;
 
 private:
+    void addAll();
     void addObject(size_t object, int bounces, uint32_t& count);
 
     const types::Geometry& geometry_;
+    int bounces_;
+    std::vector<bool> reflects_;             ///< Whether each object has a mirror, in any shape.
     std::vector<const glm::dmat4*> places_;  ///< Place of each object.
     std::vector<FlatMirror> mirrors_;
     std::vector<MirrorTriangle> triangles_;

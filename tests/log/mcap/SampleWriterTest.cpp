@@ -8,6 +8,7 @@
 #include "components/ros/Stamps.hpp"
 #include "tests/log/mcap/SmallFile.hpp"
 #include "tests/support/CommaLocale.hpp"
+#include "tests/support/Refused.hpp"
 #include "types/Image.hpp"
 
 namespace insonify::log::mcap {
@@ -77,9 +78,7 @@ TEST(SampleWriterTest, AStreamMayHaveItsOwnTopicFramesAndFrequency) {
     const Folder folder;
     McapConfig config;
     config.streams = {{"sonar.ping", {"/auv/sonar", "sonar_link", {}}}, {"vehicle.pose", {"auv/pose", "odom", "auv"}}};
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    EXPECT_TRUE(diagnostics.empty());
+    EXPECT_THAT(test::refusalsOf(config), testing::IsEmpty());
     {
         SampleWriter log(folder / "x.mcap", config);
         const size_t ping = log.addStream<types::Sonar>("sonar.ping", {{"insonify_frequency_khz", "750"}});
@@ -167,12 +166,8 @@ TEST(SampleWriterTest, TwoStreamsOnOneTopicAreRefused) {
     config.streams["receiver.ping"].topic = "/sonar/ping";
     SampleWriter log(folder / "x.mcap", config);
     log.addStream<types::Sonar>("receiver.ping");
-    try {
-        log.addStream<types::Sonar>("sonar.ping");
-        FAIL() << "nothing was thrown";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("sonar.ping: its topic /sonar/ping belongs to another stream"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { log.addStream<types::Sonar>("sonar.ping"); }),
+                testing::HasSubstr("sonar.ping: its topic /sonar/ping belongs to another stream"));
 }
 
 TEST(SampleWriterTest, ReportsInvalidAndDuplicateTopics) {
@@ -180,11 +175,9 @@ TEST(SampleWriterTest, ReportsInvalidAndDuplicateTopics) {
     config.streams["a.ping"].topic = "/auv/1sonar";
     config.streams["b.ping"].topic = "/auv/sonar";
     config.streams["c.ping"].topic = "auv/sonar";
-    types::Diagnostics diagnostics;
-    config.check(diagnostics);
-    ASSERT_EQ(diagnostics.size(), 2u);
-    EXPECT_EQ(diagnostics[0].path, "streams.a.ping.topic");
-    EXPECT_EQ(diagnostics[1].text(), "streams.c.ping.topic: is /auv/sonar, the topic of b.ping; must be another");
+    EXPECT_THAT(test::refusalsOf(config),
+                testing::ElementsAre(testing::StartsWith("streams.a.ping.topic: "),
+                                     "streams.c.ping.topic: is /auv/sonar, the topic of b.ping; must be another"));
 }
 
 TEST(SampleWriterTest, NanosecondsOfAReadStampAreKept) {
@@ -273,14 +266,9 @@ TEST(SampleWriterTest, ASampleWithoutAMessageIsAnError) {
     const size_t stream = log.addStream<types::Image>("fan.image", {});
     types::Image jpeg;
     jpeg.frame_mode = types::ImageMode{258};
-    try {
-        log.write(stream, {1}, jpeg);
-        FAIL();
-    } catch (const std::runtime_error& error) {
-        EXPECT_THAT(error.what(), testing::EndsWith("x.mcap: a sample of fan.image cannot be written as a message: a "
-                                                    "picture of mode 258 with 0 bytes a pixel is not known: mono8, "
-                                                    "mono16, rgb8 and bgr8 are"));
-    }
+    EXPECT_THAT(test::errorOf<std::runtime_error>([&] { log.write(stream, {1}, jpeg); }),
+                testing::EndsWith("x.mcap: a sample of fan.image cannot be written as a message: a picture of mode 258 "
+                                  "with 0 bytes a pixel is not known: mono8, mono16, rgb8 and bgr8 are"));
 }
 
 TEST(SampleWriterTest, ALogOfSeveralFilesIsOneBagAndEachFileIsReadableAlone) {
@@ -331,13 +319,9 @@ TEST(SampleWriterTest, TheMetadataOfAnotherBagIsNotOverwritten) {
     const Folder folder;
     smallFile(folder / "x.0.mcap");
     smallFile(folder / "x.0.mcap");  // the same file again
-    try {
-        smallFile(folder / "y.0.mcap");
-        FAIL();
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("describes another bag, of \"x.0.mcap\"; give \"y.0.mcap\" a "
-                                                     "folder of its own, as in bag/y.0.mcap"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { smallFile(folder / "y.0.mcap"); }),
+                testing::HasSubstr("describes another bag, of \"x.0.mcap\"; give \"y.0.mcap\" a "
+                                   "folder of its own, as in bag/y.0.mcap"));
 }
 
 TEST(SampleWriterTest, MoreThanAChunkIsReadBack) {

@@ -6,6 +6,7 @@
 #include "components/log/pocolog/Wire.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::log::pocolog {
 namespace {
@@ -43,12 +44,7 @@ void appendSample(std::vector<char>& bytes, const std::vector<char>& data, bool 
 }
 
 std::string messageFor(const std::filesystem::path& path) {
-    try {
-        Reader reader(path);
-    } catch (const types::ConfigError& error) {
-        return error.what();
-    }
-    return "no error";
+    return test::errorOf<types::ConfigError>([&] { Reader reader(path); });
 }
 
 TEST(ReaderTest, SamplesOfAllStreamsAreInFileOrder) {
@@ -151,12 +147,7 @@ TEST(ReaderTest, AMissingStreamIsReportedWithTheExistingStreams) {
     writeBytes(folder / "x.0.log", foreignLog("/double"));
     Reader reader(folder / "x.0.log");
     EXPECT_EQ(reader.find("sonar.ping"), nullptr);
-    try {
-        reader.indexOf("sonar.ping");
-        FAIL() << "found a missing stream";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("other.port"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { reader.indexOf("sonar.ping"); }), HasSubstr("other.port"));
 }
 
 }  // namespace

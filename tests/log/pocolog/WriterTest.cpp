@@ -8,6 +8,7 @@
 #include "components/log/pocolog/Typelib.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/support/Folder.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::log::pocolog {
 namespace {
@@ -104,12 +105,8 @@ TEST(WriterTest, DoesNotOverwriteALogDuringItsWriting) {
     Writer log(folder / "x.0.log");
     log.write(log.addStream<double>("a.b"), {1}, 1.0);
     log.flush();
-    try {
-        Writer(folder / "x.0.log");
-        FAIL() << "two writers opened one file";
-    } catch (const types::ConfigError& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("another logger writes it"));
-    }
+    EXPECT_THAT(test::errorOf<types::ConfigError>([&] { Writer(folder / "x.0.log"); }),
+                testing::HasSubstr("another logger writes it"));
     EXPECT_EQ(Reader(folder / "x.0.log").samples().size(), 1u);
     log.close();
     EXPECT_NO_THROW(Writer(folder / "x.0.log"));
@@ -127,12 +124,7 @@ TEST(WriterTest, ReportsAFullDeviceWithTheSystemsReason) {
     std::filesystem::create_symlink("/dev/full", folder / "x.0.log");
     Writer log(folder / "x.0.log");
     log.addStream<double>("a.b");
-    try {
-        log.flush();
-        FAIL() << "a full device accepted the log";
-    } catch (const std::runtime_error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("No space left on device"));
-    }
+    EXPECT_THAT(test::errorOf<std::runtime_error>([&] { log.flush(); }), testing::HasSubstr("No space left on device"));
 }
 
 /** Writes samples of 1000 bytes, with a flush after each, to a file limited to 20000 bytes; exits 0 when the error is

@@ -1,52 +1,54 @@
 #pragma once
-// Recordings of forward-looking sonars, written and read back.
+// Recordings, written, damaged and read back.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "components/output/FanFile.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/RecordedBytes.hpp"
-#include "types/ConfigError.hpp"
+#include "tests/support/Refused.hpp"
 
 namespace insonify::output {
 
 using test::RecordedBytes;
 
-class FanFileTest : public testing::Test {
+/** Tests of the pings of a `File`, which next() returns one by one. */
+template <class File>
+class RecordedFileTest : public testing::Test {
 protected:
-    explicit FanFileTest(const char* name) : name_(name) {}
+    using Opener = std::function<std::unique_ptr<File>(const std::filesystem::path&)>;
+    using Ping = typename decltype(std::declval<File&>().next())::value_type;
+
+    RecordedFileTest(const char* name, Opener open) : name_(name), open_(std::move(open)) {}
     std::filesystem::path write(const RecordedBytes& bytes) const {
         writeBytes(folder_ / name_, bytes);
         return folder_ / name_;
     }
     /** Returns all pings of a file. Sets `notices_`. */
-    std::vector<FanFrame> read(const RecordedBytes& bytes) { return readFile(write(bytes)); }
-    std::vector<FanFrame> readFile(const std::filesystem::path& path) {
-        const auto file = openFan(path);
-        std::vector<FanFrame> all;
-        for (auto frame = file->next(); frame; frame = file->next()) all.push_back(std::move(*frame));
+    std::vector<Ping> read(const RecordedBytes& bytes) { return readFile(write(bytes)); }
+    std::vector<Ping> readFile(const std::filesystem::path& path) {
+        const auto file = open_(path);
+        std::vector<Ping> all;
+        for (auto ping = file->next(); ping; ping = file->next()) all.push_back(std::move(*ping));
         notices_ = file->notices();
         return all;
     }
     std::string refusal(const RecordedBytes& bytes) {
-        try {
-            read(bytes);
-        } catch (const types::ConfigError& error) {
-            return error.what();
-        }
-        return "";
+        return test::errorOf<types::ConfigError>([&] { read(bytes); });
     }
     bool isNoticed(const std::string& text) const {
         return std::ranges::any_of(notices_,
                                    [&](const std::string& notice) { return notice.find(text) != notice.npos; });
     }
-    /** Damages each byte from `from` on: pings or one error are read. Returns how often a file was refused. */
-    size_t refusedOf(const RecordedBytes& good, size_t from) {
+    /** Damages each byte from `from` on: pings or one error with the file's name and `place` are read. Returns how
+     *  often a file was refused. */
+    size_t refusedOf(const RecordedBytes& good, size_t from, const std::string& place = "") {
         const auto path = write(good);
         std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
         const auto put = [&](size_t at, char byte) { file.seekp(static_cast<std::streamoff>(at)).put(byte).flush(); };
@@ -55,11 +57,11 @@ protected:
             for (const int flip : {0x01, 0x80, 0xFF}) {
                 put(at, static_cast<char>(good[at] ^ flip));
                 try {
-                    for (const FanFrame& frame : readFile(path)) EXPECT_NO_THROW(frame.ping.validate()) << at;
+                    for (const Ping& one : readFile(path)) EXPECT_NO_THROW(one.ping.validate()) << at;
                 } catch (const types::ConfigError& error) {
                     ++refused;
                     EXPECT_EQ(error.diagnostics().size(), 1u);
-                    EXPECT_THAT(error.what(), testing::HasSubstr(name_)) << at;
+                    EXPECT_THAT(error.what(), testing::HasSubstr(name_ + place)) << at;
                 }
             }
             put(at, good[at]);
@@ -68,7 +70,8 @@ protected:
     }
 
     Folder folder_;
-    const char* const name_;
+    const std::string name_;
+    const Opener open_;
     std::vector<std::string> notices_;
 };
 

@@ -1,0 +1,390 @@
+// Skins and morph targets in pings: the same, bit for bit, as of files with the posed meshes; their velocities.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "components/scene/Animator.hpp"
+#include "components/sonar/SonarRenderer.hpp"
+#include "components/sonar/pictures/SurfaceScene.hpp"
+#include "components/sonar/places/DeformedMeshes.hpp"
+#include "components/sonar/places/Motion.hpp"
+#include "tests/scene/AnimatedFiles.hpp"
+#include "tests/support/Scenes.hpp"
+#include "tests/support/Sonars.hpp"
+#include "types/PosedMesh.hpp"
+
+namespace insonify::sonar {
+namespace {
+
+using test::pingOf;
+
+SonarConfig eelFan() {
+    SonarConfig config =
+        test::sonarOf({.beams = 40, .width_deg = 60, .height_deg = 40, .bins = 300, .bin = 0.02, .rows = 128});
+    config.quality.columns_per_beam = 4;
+    config.visibility = Visibility::Cpu;
+    return config;
+}
+
+class DeformingMeshTest : public scene::SceneFiles {
+protected:
+    std::shared_ptr<const scene::Scene> read(const std::string& rest) const {
+        return std::make_shared<const scene::Scene>(scene::readScene(write("case.gltf", gltf(rest))));
+    }
+    /** The scene at a time, from a sonar that looks along x. */
+    static types::Snapshot at(const std::shared_ptr<const scene::Scene>& scene, double seconds,
+                              const glm::dvec3& sonar = {-3, 0.1, 0.05}, double yaw = 0.03, double pitch = 0.02) {
+        types::Diagnostics none;
+        scene::Animator animator(scene, {}, {}, none);
+        animator.take(seconds, {});
+        types::Snapshot snapshot = test::snapshotOf(scene->geometry, sonar, yaw, pitch);
+        snapshot.time = types::Time::fromSeconds(1 + seconds);
+        animator.addMoved(snapshot.moved);
+        animator.addDeformed(snapshot);
+        return snapshot;
+    }
+    /** The same from a file without animations or skins, whose meshes are those that the snapshot shows. */
+    types::Snapshot byHand(const types::Snapshot& snapshot) const {
+        const types::GeometryPtr posed = types::posedGeometry(snapshot);
+        scene::Arrays arrays;
+        std::string nodes, meshes;
+        for (size_t i = 0; i < posed->objects.size(); ++i) {
+            const types::Mesh& mesh = posed->meshes[static_cast<size_t>(posed->objects[i].mesh)];
+            std::vector<float> positions;
+            for (const glm::vec3& p : mesh.positions) positions.insert(positions.end(), {p.x, p.y, p.z});
+            const int vertices = arrays.floats("VEC3", positions), indices = arrays.indices(mesh.indices);
+            glm::dmat4 place = posed->objects[i].world_from_object;
+            for (const auto& moved : snapshot.moved)
+                if (moved.object == i) place = moved.world_from_object;
+            nodes += fmt::format(R"({}{{"name":"object_{}","mesh":{},"translation":[{:.17g},{:.17g},{:.17g}]}})",
+                                 i ? "," : "", i, i, place[3].x, place[3].z, -place[3].y);
+            meshes += fmt::format(R"({}{{"primitives":[{{"attributes":{{"POSITION":{}}},"indices":{}}}]}})",
+                                  i ? "," : "", vertices, indices);
+        }
+        const auto file =
+            write("by_hand.gltf", gltf(fmt::format(R"("nodes":[{}],"meshes":[{}],)", nodes, meshes) + arrays.text()));
+        types::Snapshot still = snapshot;
+        auto geometry = std::make_shared<types::Geometry>(*scene::loadScene(file));
+        for (types::Material& material : geometry->materials) material = snapshot.geometry->materials.front();
+        still.geometry = geometry;
+        still.moved.clear();
+        still.deformed.clear();
+        return still;
+    }
+    /** The scene with another material for all. */
+    static std::shared_ptr<const scene::Scene> of(const std::shared_ptr<const scene::Scene>& from,
+                                                  const types::Material& material) {
+        scene::Scene scene = *from;
+        auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+        for (types::Material& one : geometry->materials) one = material;
+        scene.geometry = std::move(geometry);
+        return std::make_shared<const scene::Scene>(std::move(scene));
+    }
+    static size_t echoesOf(const types::Sonar& ping) {
+        return static_cast<size_t>(std::ranges::count_if(ping.bins, [](float bin) { return bin > 0; }));
+    }
+    const scene::Tube tube_{9, 8, 0.1f};
+};
+
+TEST_F(DeformingMeshTest, ASkinnedMeshIsTheSameMeshPosedByHandBitForBit) {
+    const auto scene = read(eelText(tube_));
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> number(-1, 1);
+    for (int trial = 0; trial < 40; ++trial) {
+        const types::Snapshot snapshot =
+            at(scene, 1 + number(random), {-3 + number(random), number(random), number(random)}, 0.1 * number(random),
+               0.1 * number(random));
+        ASSERT_EQ(snapshot.deformed.size(), 1u);
+        const types::Sonar animated = pingOf(eelFan(), snapshot), still = pingOf(eelFan(), byHand(snapshot));
+        ASSERT_GT(echoesOf(animated), 20u) << trial;
+        EXPECT_EQ(animated.bins, still.bins) << trial;
+    }
+}
+
+TEST_F(DeformingMeshTest, AMorphedMeshIsTheSameMeshPosedByHandBitForBit) {
+    const auto scene = read(kelpText(tube_));
+    for (const double time : {0.0, 0.3, 1.1, 1.9}) {
+        const types::Snapshot snapshot = at(scene, time, {2, 0.1, 0.05});
+        const types::Sonar animated = pingOf(eelFan(), snapshot), still = pingOf(eelFan(), byHand(snapshot));
+        ASSERT_GT(echoesOf(animated), 20u);
+        EXPECT_EQ(animated.bins, still.bins) << time;
+    }
+}
+
+TEST_F(DeformingMeshTest, SoItIsWithEveryEffectThatKnowsMeshes) {
+    types::Material smooth;
+    smooth.reflection = 0.7f;
+    smooth.roughness_slope = 0.1f;
+    types::Material wall;
+    wall.shell = types::Shell{.thickness = 0.002, .density = 1180, .sound_speed = 2700, .shear_speed = 1300};
+    types::Material mirror = smooth;
+    mirror.mirror = true;
+    SonarConfig plain = eelFan();
+    plain.frequency_khz = 500;
+    SonarConfig published = eelFan(), edges = plain, multipath = plain, coherent = plain, conical = plain,
+                water = plain;
+    published.model = Model::Cerqueira2017;
+    edges.effects["edge_diffraction"] = {};
+    multipath.multipath.emplace();
+    coherent.speckle.emplace().coherent = true;
+    conical.beam_geometry = BeamGeometry::Conical;
+    water.volume.emplace_back().strength_db = -60;
+    const auto eel = read(eelText(tube_));
+    for (const SonarConfig& config : {plain, published, edges, multipath, coherent, conical, water})
+        for (const types::Material& material : {smooth, wall, mirror}) {
+            const types::Snapshot snapshot = at(of(eel, material), 0.6, {-2.5, 0.2, 0.1});
+            const types::Sonar animated = pingOf(config, snapshot), still = pingOf(config, byHand(snapshot));
+            ASSERT_GT(echoesOf(animated), 5u);
+            EXPECT_EQ(animated.bins, still.bins);
+        }
+}
+
+TEST_F(DeformingMeshTest, APingDoesNotDependOnThoseBeforeIt) {
+    const auto scene = read(eelText(tube_));
+    SonarRenderer renderer(eelFan(), scene->geometry);
+    types::Sonar ping;
+    for (const double time : {0.0, 0.2, 0.4, 0.1, 0.9}) {
+        const types::Snapshot snapshot = at(scene, time);
+        renderer.render(snapshot, ping);
+        EXPECT_EQ(ping.bins, pingOf(eelFan(), snapshot).bins) << time;
+    }
+    types::Snapshot rest = at(scene, 0.3);
+    rest.deformed.clear();
+    renderer.render(rest, ping);
+    types::Snapshot plain = rest;
+    auto geometry = std::make_shared<types::Geometry>(*rest.geometry);
+    geometry->objects[0].world_from_object = rest.moved[0].world_from_object;
+    plain.geometry = geometry;
+    plain.moved.clear();
+    EXPECT_EQ(ping.bins, pingOf(eelFan(), plain).bins);
+}
+
+TEST_F(DeformingMeshTest, AnObjectThatIsScaledToNothingIsNotThere) {
+    types::Snapshot snapshot = at(read(eelText(tube_)), 0.3);
+    snapshot.targets = {{{1, 0, 0}, 0}};
+    glm::dmat4& place = snapshot.moved[0].world_from_object;
+    for (int axis = 0; axis < 3; ++axis) place[axis] = glm::dvec4(0);
+    types::Snapshot target = test::snapshotOf(test::openWater(), snapshot.sonar.position);
+    target.sonar = snapshot.sonar;
+    target.targets = snapshot.targets;
+    const types::Sonar expected = pingOf(eelFan(), target);
+    ASSERT_GT(echoesOf(expected), 0u);
+    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+    snapshot.deformed.clear();  // by the path of objects that move
+    EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
+}
+
+TEST_F(DeformingMeshTest, ThreadsChangeNothing) {
+    const types::Snapshot snapshot = at(read(eelText(tube_)), 0.35);
+    RenderOptions one, four;
+    one.threads = 1;
+    four.threads = 4;
+    EXPECT_EQ(pingOf(eelFan(), snapshot, one).bins, pingOf(eelFan(), snapshot, four).bins);
+}
+
+TEST_F(DeformingMeshTest, TruthNamesTheObject) {
+    const types::Snapshot snapshot = at(read(eelText(tube_)), 0.35);
+    SonarRenderer renderer(eelFan(), snapshot.geometry);
+    types::Sonar ping;
+    types::SonarTruth truth;
+    renderer.setTruth(ping, &truth);
+    renderer.render(snapshot, ping);
+    ASSERT_EQ(truth.object.size(), ping.bins.size());
+    for (size_t i = 0; i < ping.bins.size(); ++i) EXPECT_EQ(truth.object[i], ping.bins[i] > 0 ? 0 : -1) << i;
+}
+
+TEST_F(DeformingMeshTest, APointTargetIsHiddenWhereTheMeshBendsBeforeIt) {
+    const auto scene = read(kelpText(tube_));
+    SonarConfig config = eelFan();
+    std::vector<double> echoes;
+    for (const double time : {0.0, 1.0}) {  // straight, and with its end 0.4 m to the side
+        types::Snapshot snapshot = at(scene, time, {5.95, 0, 3}, 0, 1.5707963);  // looks down
+        snapshot.targets = {{{5.95, 0, -2}, 0}};
+        SonarRenderer renderer(config, snapshot.geometry);
+        types::Sonar ping;
+        renderer.render(snapshot, ping);
+        echoes.push_back(static_cast<double>(renderer.othersReceived()));
+    }
+    EXPECT_EQ(echoes[0] + echoes[1], 1) << echoes[0];
+}
+
+/** A plate about its origin, all of it on one joint. */
+types::GeometryPtr jointedPlate(float size = 1) {
+    types::Mesh mesh = test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size});
+    auto deformation = std::make_shared<types::Deformation>();
+    deformation->positions = mesh.positions;
+    deformation->joint_count = 1;
+    for (uint32_t i = 0; i < mesh.positions.size(); ++i) {
+        deformation->share_begin.push_back(i);
+        deformation->shares.push_back({0, 1});
+    }
+    deformation->share_begin.push_back(static_cast<uint32_t>(mesh.positions.size()));
+    mesh.deformation = std::move(deformation);
+    return test::sceneOf({std::move(mesh)});
+}
+
+SonarConfig followingFan() {
+    SonarConfig config;
+    config.range_rounding = RangeRounding::Exact;
+    config.speed_of_sound = 1500;
+    config.range = 300;
+    config.bin_count = 3000;
+    config.beam_count = 40;
+    config.field_of_view_deg = 40;
+    config.beam_height_deg = 10;
+    config.visibility = Visibility::Cpu;
+    config.quality.rows = 128;
+    config.quality.columns_per_beam = 4;
+    config.motion_in_ping = true;
+    return config;
+}
+
+/** The plate at a place by its joint, or by its object, with a rate of the matrix. */
+types::Snapshot movingPlate(const glm::dmat4& place, const glm::dmat4& rate, bool by_joint) {
+    types::Snapshot snapshot = test::snapshotOf(jointedPlate());
+    if (by_joint) {
+        snapshot.deformed = {{0, 0, 0}};
+        snapshot.joints = {{glm::dmat4x3(place), glm::dmat4x3(rate)}};
+    } else {
+        snapshot.moved = {{0, place, rate}};
+    }
+    return snapshot;
+}
+
+double centreOf(const types::Sonar& ping) {
+    double sum = 0, at = 0;
+    for (size_t i = 0; i < ping.bins.size(); ++i) {
+        sum += double{ping.bins[i]};
+        at += double{ping.bins[i]} * 0.1 * (static_cast<double>(i % ping.bin_count) + 0.5);
+    }
+    return at / sum;
+}
+
+/** |p + v t1| = c t1, and the same way back: the range of the echo of a plate in front of the sonar. */
+TEST(DeformingMotionTest, AnApproachingJointEchoesLikeAnApproachingObject) {
+    glm::dmat4 place(1), rate(0);
+    place[3] = {200, 0, 0, 1};
+    rate[3] = {-12, 0, 0, 0};
+    const types::Sonar still = pingOf(followingFan(), movingPlate(place, glm::dmat4(0), true));
+    const types::Sonar joint = pingOf(followingFan(), movingPlate(place, rate, true));
+    const types::Sonar object = pingOf(followingFan(), movingPlate(place, rate, false));
+    EXPECT_NEAR(centreOf(still), 200, 0.1);
+    EXPECT_NEAR(centreOf(joint), 200 / (1 + 12.0 / 1500), 0.1);
+    EXPECT_NEAR(centreOf(joint), centreOf(object), 0.01);
+}
+
+TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
+    glm::dmat4 place(1), rate(0);
+    place[3] = {20, 1, 0, 1};
+    const glm::dvec3 turn(0, 0, 0.5);  // [rad/s]
+    rate[3] = {-3, 1, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) rate[axis] = glm::dvec4(glm::cross(turn, glm::dvec3(place[axis])), 0);
+    SonarConfig config = followingFan();
+    config.range = 30;
+    config.bin_count = 300;
+    const types::Sonar joint = pingOf(config, movingPlate(place, rate, true));
+    const types::Sonar object = pingOf(config, movingPlate(place, rate, false));
+    const auto energyOf = [](const types::Sonar& ping) {
+        return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0);
+    };
+    EXPECT_GT(energyOf(object), 0);
+    EXPECT_NEAR(energyOf(joint) / energyOf(object), 1, 0.1);  // rays meet the joint by the mean of its velocities
+    EXPECT_NEAR(centreOf(joint), centreOf(object), 0.02);
+    std::vector<double> by_beam;  // ranges of the echoes of each beam: the plate is turned
+    for (const types::Sonar& ping : {joint, object})
+        for (size_t beam = 0; beam < ping.beam_count; ++beam) {
+            types::Sonar one = ping;
+            one.bins.assign(ping.bins.begin() + static_cast<long>(beam * ping.bin_count),
+                            ping.bins.begin() + static_cast<long>((beam + 1) * ping.bin_count));
+            if (energyOf(one) > 0) by_beam.push_back(centreOf(one));
+        }
+    ASSERT_EQ(by_beam.size() % 2, 0u);
+    for (size_t i = 0; i < by_beam.size() / 2; ++i) EXPECT_NEAR(by_beam[i], by_beam[i + by_beam.size() / 2], 0.02);
+}
+
+/** Drifts of triangles, against differences of the places of their corners. */
+TEST_F(DeformingMeshTest, EachTriangleDriftsAsItsCornersDo) {
+    const auto scene = read(eelText(tube_));
+    const double time = 0.6, step = 1e-3;
+    const auto cornersAt = [&](double seconds) {
+        const types::Snapshot snapshot = at(scene, seconds);
+        const types::GeometryPtr posed = types::posedGeometry(snapshot);
+        const types::Mesh& mesh = posed->meshes[static_cast<size_t>(posed->objects[0].mesh)];
+        const glm::dmat3 sonar_from_world = glm::transpose(glm::mat3_cast(snapshot.sonar.orientation));
+        std::vector<glm::dvec3> places;
+        for (const uint32_t index : mesh.indices)
+            places.push_back(sonar_from_world *
+                             (glm::dvec3(snapshot.moved[0].world_from_object * glm::dvec4(mesh.positions[index], 1)) -
+                              snapshot.sonar.position));
+        return places;
+    };
+    const types::Snapshot now = at(scene, time);
+    DeformedMeshes meshes(now, {});
+    meshes.take(now, 0, 1);
+    Motion motion(*meshes.geometry(), 100);
+    motion.follow(now);
+    const auto before = cornersAt(time - step), here = cornersAt(time), after = cornersAt(time + step);
+    for (uint32_t t = 0; t < here.size() / 3; ++t) {
+        Drift own;
+        const Drift* const drift = motion.driftOf(0, t, own);
+        ASSERT_NE(drift, nullptr);
+        for (size_t k = 3 * t; k < 3 * t + 3; ++k)
+            EXPECT_LT(glm::distance(drift->at(here[k]), (after[k] - before[k]) / (2 * step)), 5e-3) << t;
+    }
+    EXPECT_GT(motion.fastest(), 0.5);
+}
+
+/** Sixteen triangles at a time, and each by itself. */
+TEST(DeformingPlanesTest, PlanesAreTheSameInRegistersBitForBit) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> number(-3, 3);
+    types::Mesh mesh;
+    for (uint32_t i = 0; i < 3 * 100; ++i) {
+        mesh.positions.push_back({number(random), 50 * number(random), number(random)});
+        mesh.indices.push_back(i % 30 == 7 ? i - 1 : i);  // some have no area
+    }
+    const std::vector<PlaneRecord> all = planesOf(mesh);
+    for (size_t t = 0; t < all.size(); ++t) {
+        types::Mesh one;
+        one.positions = mesh.positions;
+        one.indices = {mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]};
+        const PlaneRecord plane = planesOf(one).front();
+        EXPECT_EQ(all[t].normal, plane.normal) << t;
+        EXPECT_EQ(all[t].point, plane.point) << t;
+    }
+}
+
+TEST_F(DeformingMeshTest, APlanSaysWhatDeforms) {
+    const auto scene = read(eelText(tube_));
+    EXPECT_EQ(makeRenderPlan(eelFan(), *scene->geometry).findOmitted("deforming meshes"), nullptr);
+    SonarConfig rasterised = eelFan();
+    rasterised.visibility = Visibility::Gl;
+    const RenderPlan plan = makeRenderPlan(rasterised, *scene->geometry);
+    ASSERT_NE(plan.findOmitted("deforming meshes"), nullptr);
+    EXPECT_EQ(plan.findOmitted("deforming meshes")->reason, Reason::Lacking);
+    EXPECT_EQ(makeRenderPlan(eelFan(), *test::openWater()).findOmitted("deforming meshes")->reason,
+              Reason::NoneInScene);
+}
+
+TEST_F(DeformingMeshTest, SnapshotsThatDoNotFitAreFound) {
+    types::Snapshot snapshot = at(read(eelText(tube_)), 0.3);
+    EXPECT_TRUE(types::deformsRightly(snapshot));
+    types::Snapshot other = snapshot;
+    other.joints.pop_back();
+    EXPECT_FALSE(types::deformsRightly(other));
+    other = snapshot;
+    other.deformed[0].object = 9;
+    EXPECT_FALSE(types::deformsRightly(other));
+    other = snapshot;
+    other.deformed.push_back(other.deformed[0]);
+    EXPECT_FALSE(types::deformsRightly(other));
+    other = snapshot;
+    other.geometry = test::openWater();
+    EXPECT_FALSE(types::deformsRightly(other));
+}
+
+}  // namespace
+}  // namespace insonify::sonar
