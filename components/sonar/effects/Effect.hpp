@@ -46,6 +46,12 @@ struct PingInMaking {
     EchoField* field;          ///< The field that is squared into the bins; null where energies are summed.
     const RayPaths* bent;      ///< The sound paths; null where they are straight.
     types::SonarTruth* truth;  ///< That of its surfaces, of the sorted beams; null where no truth is recorded.
+
+    /** Records whether most of a bin without a surface has passed walls. */
+    void report(size_t bin, bool passes_walls) const {
+        if (truth && truth->object[bin] == types::SonarTruth::no_object)
+            truth->path[bin] = passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
+    }
 };
 
 /** An effect in the pings of one renderer, with the state that it keeps from ping to ping. No call for a ping

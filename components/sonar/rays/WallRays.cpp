@@ -23,15 +23,13 @@ Reverberation::Reverberation(const RenderPlan& plan, const types::Geometry& geom
         const auto material = static_cast<size_t>(cluster.material);
         return plan.laws.walls[material].letsThrough() && mirrored(plan.laws, material) > 0;
     };
-    for (size_t i = 0; i < plan.laws.walls.size() && plan.has(Pass::SurfaceMaps); ++i)
-        is_there |= plan.laws.walls[i].letsThrough() && mirrored(plan.laws, i) > 0;
     for (size_t mesh = 0; mesh < facets.size() && !is_there; ++mesh)
         for (const types::Cluster& cluster : geometry.meshes[mesh].clusters)
             is_there |= facets[mesh] && isMirrorWall(cluster) &&
                         std::any_of(facets[mesh]->begin() + cluster.first_index / 3,
                                     facets[mesh]->begin() + (cluster.first_index + cluster.index_count) / 3, isFlat);
     if (!plan.has(Pass::Paths)) return;
-    bounces = plan.config.multipath->bounces;
+    bounces = bouncesOf(plan.config);
     for (const types::Material& material : geometry.materials)
         in_paths.push_back(reflectedPower(material, bounces) > 0);
 }

@@ -33,6 +33,8 @@ double reflectedPower(const types::Material& material, int bounces) {
     return bounces > 1 && smooth && !material.shell && reflection > min_reflection ? reflection * reflection : 0;
 }
 
+int bouncesOf(const SonarConfig& config) { return config.tracesPaths() ? config.multipath->bounces : 0; }
+
 double slopeOfSea(double wind) {
     if (!(wind > 0)) return 0;
     constexpr double calm = 0.0034;

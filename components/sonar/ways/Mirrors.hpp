@@ -26,6 +26,9 @@ struct MirrorPlane {
  *  shell (ACOUSTICS.md 5.23). */
 double reflectedPower(const types::Material& material, int bounces);
 
+/** Returns the max number of reflections of one path; 0: there are no paths by mirrors [1]. */
+int bouncesOf(const SonarConfig& config);
+
 /** Returns the mean square slope of a sea surface in a wind [m/s], the sum of both directions; 0 without wind [1].
  *  ACOUSTICS.md 5.24. */
 double slopeOfSea(double wind);

@@ -113,16 +113,11 @@ bool PointTargets::addTo(PingInMaking& to, const Return& echo) const {
         for (size_t i = 0; i < means_.size(); ++i) {
             const auto added = static_cast<float>(echo.intensity * power * means_[i]);
             bins[i] += added;
-            if (to.truth && added > bins[i] / 2) report(*to.truth, echo, first + i);
+            if (added > bins[i] / 2) to.report(first + i, echo.passes_walls);
         }
         received = true;
     }
     return received;
-}
-
-void PointTargets::report(types::SonarTruth& truth, const Return& echo, size_t bin) {
-    if (truth.object[bin] == types::SonarTruth::no_object)
-        truth.path[bin] = echo.passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
 }
 
 bool PointTargets::addTo(EchoField& field, const Return& echo, uint64_t key) const {

@@ -63,8 +63,6 @@ private:
     /** Adds the echoes along a path through walls that ring. */
     bool addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key);
     bool addTo(PingInMaking& to, const Return& echo) const;
-    /** Records in the truth that most of a bin without a surface has passed walls, or not. */
-    static void report(types::SonarTruth& truth, const Return& echo, size_t bin);
     bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
     /** Returns the share of the amplitude that rough mirrors leave in phase along a path [1]. */
     double inPhase(const TargetWay& way) const;
