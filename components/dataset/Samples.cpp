@@ -171,7 +171,7 @@ Sample Samples::at(uint64_t index) const {
     for (size_t i = 0; i < sweep_.drawn.size(); ++i)
         sample.settings.emplace_back(sweep_.drawn[i].property, sweep_.drawn[i].draw(wordOf(sweep_, index, i)));
     sample.seed = types::hashed(sweep_.seed, index, noise_stream) | 1;
-    sample.part = sweep_.split.of(sweep_.seed, index);
+    sample.part = sweep_.split.of(sweep_.seed, sample.scene * poses_ + sample.pose);
     return sample;
 }
 

@@ -45,7 +45,7 @@ struct TimedPose {
 
 /** The configuration of one sample. It depends only on the sample's number, not on the process that makes it or on the
  *  other samples. Poses and places of objects depend on the pose's number; they are the same in each scene and setting.
- *  Drawn settings depend on the sample's number. */
+ *  Drawn settings depend on the sample's number. All settings of one pose in one scene are in the same part. */
 struct Sample {
     uint64_t index = 0;
     size_t scene = 0, setting = 0;  ///< Index in Sweep::scenes, and number of the combination of settings.

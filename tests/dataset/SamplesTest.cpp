@@ -50,6 +50,23 @@ SceneParts stoneParts(int count) {
     return parts;
 }
 
+TEST(SamplesTest, SettingsOfOnePoseShareThePart) {
+    Sweep sweep = gridded();
+    sweep.split.train = 0.4, sweep.split.val = 0.3, sweep.split.test = 0.3;
+    sweep.grid->x.values.resize(50);
+    const Samples samples(sweep, {}, {SceneParts{}, SceneParts{}});
+    std::map<std::pair<size_t, uint64_t>, std::set<Part>> parts;
+    std::set<Part> all;
+    for (uint64_t index = 0; index < samples.count(); ++index) {
+        const Sample sample = samples.at(index);
+        parts[{sample.scene, sample.pose}].insert(sample.part);
+        all.insert(sample.part);
+    }
+    EXPECT_EQ(parts.size(), 300u);
+    for (const auto& [place, of_place] : parts) EXPECT_EQ(of_place.size(), 1u) << place.second;
+    EXPECT_EQ(all.size(), 3u);
+}
+
 TEST(SamplesTest, PosesVaryFastestThenSettingsThenScenes) {
     const Sweep sweep = gridded();
     const Samples samples(sweep, {}, {SceneParts{}, SceneParts{}});
