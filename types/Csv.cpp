@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "types/ConfigError.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::types {
 namespace {
@@ -117,11 +118,26 @@ private:
     bool has_header_ = false;
 };
 
+/** Returns the names of the CSV files in a file's folder, in order. */
+std::vector<std::string> csvFilesNextTo(const std::filesystem::path& file) {
+    std::vector<std::string> names;
+    std::error_code unreadable;
+    for (const auto& entry : std::filesystem::directory_iterator(
+             file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), unreadable))
+        if (entry.path().extension() == ".csv") names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, const std::vector<CsvColumn>& columns,
                                          size_t minimum, const CsvValidator& validate) {
     std::ifstream stream(file, std::ios::binary);
+    if (std::error_code error; !stream && !std::filesystem::exists(file, error))
+        throw ConfigError(file.string(), "",
+                          "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) +
+                              "must be a CSV file with header " + headerOf(columns));
     if (!stream || std::filesystem::is_directory(file))
         throw ConfigError(file.string(), "", "cannot be read; it must be a CSV file with header " + headerOf(columns));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};

@@ -135,6 +135,8 @@ void Collection::writeYolo() {
         });
         data += nameOf(part) + ": " + list + "\n";
     }
+    if (countOf(Part::Val) == 0 && countOf(Part::Train) > 0)  // trainers require one
+        data += "val: train.txt  # not a part of its own: the sweep's split has no val\n";
     data += "names:\n";
     for (size_t i = 0; i < classes_.names().size(); ++i)
         data += fmt::format("  {}: {}\n", i, textOf(Json(classes_.names()[i])));

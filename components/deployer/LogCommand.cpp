@@ -1,5 +1,5 @@
 // insonify log info|export|cut|repair|check FILE
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -278,7 +278,8 @@ void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
     std::map<std::string, E> names;
     for (size_t i = 0; i < std::size(types::EnumNames<E>::names); ++i)
         names[std::string(types::EnumNames<E>::names[i])] = static_cast<E>(i);
-    command.add_option(name, value, help)->transform(CLI::CheckedTransformer(names));
+    const auto known = fmt::format("{{{}}}", fmt::join(types::EnumNames<E>::names, ","));
+    command.add_option(name, value, help)->transform(CLI::CheckedTransformer(names).description(known));
 }
 
 void addMcapOptions(CLI::App& command, log::McapConfig& config) {

@@ -350,7 +350,7 @@ void DeploymentSpec::set(const std::string& property, const YAML::Node& value, c
         return;
     }
     const auto [name, rest] = splitPort(property);
-    if (rest.empty()) return refuse("must be task.property=value");
+    if (rest.empty()) return refuse("must be task.property=value, namespace=value or frame_prefix=value");
     TaskSpec* changed = task(name);
     if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
     try {

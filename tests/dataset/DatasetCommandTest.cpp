@@ -17,6 +17,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 namespace {
 
@@ -86,7 +87,7 @@ protected:
 TEST_F(DatasetCommandTest, EachSampleHasItsFilesAndTheManifestNamesAll) {
     const Outcome outcome = make("out");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("8 samples made, 0 were there, of 8 in all"));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 8 of them new")));
     const auto files = filesOf(folder_ / "out");
     const json manifest = json::parse(files.at("manifest.json"));
     EXPECT_EQ(manifest["samples"], 8);
@@ -188,10 +189,10 @@ TEST_F(DatasetCommandTest, KeepsSamplesAndRemakesMissingOrDamagedSamples) {
     fs::resize_file(folder_ / "out" / names[3], 100);
     fs::remove(folder_ / "out/manifest.json");
     const Outcome again = make("out");
-    EXPECT_THAT(again.out, HasSubstr("2 samples made, 6 were there"));
+    EXPECT_THAT(again.out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 2 of them new")));
     EXPECT_EQ(filesOf(folder_ / "out"), whole);
     EXPECT_EQ(fs::last_write_time(folder_ / "out" / names[6]), kept);
-    EXPECT_THAT(make("out").out, HasSubstr("0 samples made, 8 were there"));
+    EXPECT_THAT(make("out").out, AllOf(HasSubstr("8 of 8 samples in "), HasSubstr(", 0 of them new")));
 }
 
 TEST_F(DatasetCommandTest, AKilledRunIsContinued) {
@@ -243,6 +244,12 @@ TEST_F(DatasetCommandTest, PycocotoolsReadsItAndEveryBoxHoldsItsObjectsEnergy) {
     EXPECT_GT(found["boxes"], 40);
     EXPECT_GE(found["worst"], 0.99);
     RecordProperty("worst", found["worst"].dump());
+}
+
+TEST_F(DatasetCommandTest, YoloWithoutASplitValidatesOnTheTrainingPictures) {
+    writeFile(folder_ / "sweep.yml", replaced(sweep, "split: {train: 0.5, val: 0.5, test: 0}\n", ""));
+    ASSERT_EQ(make("out", {"--format", "yolo"}).code, 0);
+    EXPECT_THAT(filesOf(folder_ / "out").at("data.yaml"), StartsWith("train: train.txt\nval: train.txt  # "));
 }
 
 TEST_F(DatasetCommandTest, YoloHasALabelForEachBoxAndListsByPart) {
@@ -531,6 +538,6 @@ TEST_F(DatasetCommandTest, TheSweepOfTheHarbourIsMadeWithItsDeployment) {
         callInsonify(folder_, {"dataset", root / "deploy/truth.yml", "--sweep", root / "deploy/sweeps/harbour.yml",
                                "--out", "out", "--shard", "0/24"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("1 samples made, 0 were there, of 24 in all"));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("1 of 24 samples in "), HasSubstr(", 1 of them new")));
     EXPECT_GT(recordOf("out", "000000")["annotations"].size(), 5u);
 }

@@ -68,6 +68,23 @@ def test_a_reset_equals_a_new_simulation(deploy):
         assert not np.array_equal(again, bins)
 
 
+@pytest.mark.parametrize("pose", [[1, 2, 3], None, np.eye(3), np.ones((4, 4)), "here"])
+def test_what_is_not_a_pose_is_refused(minimal, pose):
+    with pytest.raises(ValueError, match="transform|convert"):
+        minimal.step(pose)
+
+
+def test_a_pose_states_what_is_wrong_with_its_numbers():
+    with pytest.raises(ValueError, match="position: must be x, y, z; has 2 numbers"):
+        insonify.Pose.from_euler([2, 0])
+    with pytest.raises(ValueError, match="orientation_wxyz: must be w, x, y, z; has 3 numbers"):
+        insonify.Pose([0, 0, 0], [1, 0, 0])
+
+
+def test_a_ping_prints_its_size_and_range(minimal):
+    assert repr(minimal.step(HERE)).startswith("Ping(256 beams x 500 bins, ")
+
+
 def test_a_transform_is_a_pose():
     pose = insonify.Pose.from_euler([1, 2, 3], roll=0.3, pitch=-0.7, yaw=2.5)
     again = insonify.Pose.from_matrix(pose.matrix())

@@ -52,6 +52,19 @@ TEST(CsvTest, ReportsErrorsWithTheirPlace) {
     EXPECT_THROW(readCsv(".", columns, 1), ConfigError);
 }
 
+TEST(CsvTest, AMissingFileIsReportedWithANearName) {
+    const Folder folder;
+    std::ofstream(folder / "pass.csv") << "time,level_db\n0,0\n";
+    try {
+        readCsv(folder / "pas.csv", columns, 1);
+        FAIL() << "no error";
+    } catch (const ConfigError& error) {
+        ASSERT_EQ(error.diagnostics().size(), 1u);
+        EXPECT_EQ(error.diagnostics()[0].message,
+                  "does not exist; did you mean pass.csv? must be a CSV file with header time,level_db");
+    }
+}
+
 TEST(CsvTest, TheCheckGetsEachRowAndThePreviousRow) {
     const CsvValidator ascends = [](const std::vector<double>& row, const std::vector<double>* before) {
         return before && row[0] <= before->front() ? std::vector<CsvDiagnostic>{{0, "must increase"}}

@@ -38,8 +38,8 @@ class Pose:
     """Time of validity [s]; None: unknown."""
 
     def __post_init__(self) -> None:
-        self.position = np.asarray(self.position, float).reshape(3)
-        self.orientation_wxyz = np.asarray(self.orientation_wxyz, float).reshape(4)
+        self.position = _vector(self.position, 3, "position: must be x, y, z")
+        self.orientation_wxyz = _vector(self.orientation_wxyz, 4, "orientation_wxyz: must be w, x, y, z")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Pose):
@@ -55,9 +55,9 @@ class Pose:
         """From a 4 x 4 transform. ValueError if it does not consist of a rotation and a
         translation."""
         matrix = np.asarray(world_from_body, float)
-        rotation = matrix[:3, :3]
         if matrix.shape != (4, 4) or not np.allclose(matrix[3], [0, 0, 0, 1]):
-            raise ValueError("a transform is 4 x 4, with a last row of 0 0 0 1")
+            raise ValueError("a pose is an insonify.Pose or a transform; a transform is 4 x 4, with a last row of 0 0 0 1")
+        rotation = matrix[:3, :3]
         if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0:
             raise ValueError("the upper left 3 x 3 of the transform is no rotation")
         return cls(matrix[:3, 3].copy(), _quaternion(rotation))
@@ -88,6 +88,13 @@ class Pose:
         ]
         made[:3, 3] = self.position
         return made
+
+
+def _vector(values: object, count: int, message: str) -> np.ndarray:
+    vector = np.asarray(values, float).reshape(-1)
+    if vector.size != count:
+        raise ValueError(f"{message}; has {vector.size} numbers")
+    return vector
 
 
 def _quaternion(rotation: np.ndarray) -> np.ndarray:
@@ -169,6 +176,10 @@ class Ping:
     def ranges(self) -> NDArray[np.float64]:
         """Slant range at the middle of each bin [m]."""
         return self._arrays["ranges"]
+
+    def __repr__(self) -> str:
+        beams, bins = self.bins.shape
+        return f"Ping({beams} beams x {bins} bins, {self.ranges[0]:.3g} to {self.ranges[-1]:.4g} m, time={self.time})"
 
     @property
     def speed_of_sound(self) -> float:
