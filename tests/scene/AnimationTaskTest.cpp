@@ -119,12 +119,12 @@ TEST_F(AnimationTaskTest, ATargetMovesWithAnAnimatedNode) {
 }
 
 TEST_F(AnimationTaskTest, AnUnknownAnimationIsRefused) {
-    config_.animations["goez"].speed = 2;
+    config_.animations["advanse"].speed = 2;
     task_.config.set(config_);
     types::Diagnostics diagnostics;
     task_.check(diagnostics);
     ASSERT_EQ(diagnostics.size(), 1u);
-    EXPECT_EQ(diagnostics[0].path, "animations.goez");
+    EXPECT_EQ(diagnostics[0].path, "animations.advanse");
     EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("did you mean"));
     EXPECT_THAT(diagnostics[0].message, testing::HasSubstr("may be waves, advance"));
 }
