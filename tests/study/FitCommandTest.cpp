@@ -173,7 +173,7 @@ TEST(FitCommandTest, RefusesWrongUseWithAReasonAndWritesNothing) {
         {{"fit", "wall.yml", "--real", "text.raw", "--out", "fitted.yml"}, "text.raw"},
         {{"fit", "wall.yml", "--real", "empty.raw", "--out", "fitted.yml"}, "empty.raw"},
         {{"fit", "wall.yml", "--real", "small.raw", "--out", "fitted.yml"},
-         "pings of 3 beams and 2 bins; a fit needs 32 and 64"},
+         "pings of 3 beams and 2 bins; a fit needs at least 32 and 64"},
         {{"fit", "wall.yml", "--real", "zero.raw", "--out", "fitted.yml"}, "codes of 0 in 100 % of its bins"},
         {{"fit", "wall.yml", "--real", "saturated.raw", "--out", "fitted.yml"}, "it is saturated"},
         {{"fit", "wall.yml", "--real", "small.raw", "speckle.raw", "--out", "fitted.yml"}, "a fit needs"},
