@@ -18,7 +18,7 @@ from glb import FLOAT, USHORT, Glb, Mesh, y_up
 LENGTH = 0.7  # [m]
 JOINTS = 6
 RINGS, SIDES = 50, 20  # 2 * RINGS * SIDES triangles
-BEAT = 0.8  # of the tail [s]
+BEAT = 0.8  # period of the tail [s]
 BEAT_KEYS, PATH_KEYS = 24, 48
 
 

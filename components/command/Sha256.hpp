@@ -21,7 +21,7 @@ private:
     std::array<uint32_t, 8> state_{0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                                    0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
     std::array<unsigned char, 64> block_{};
-    size_t filled_ = 0;    ///< Of the block [B].
+    size_t filled_ = 0;    ///< Filled part of the block [B].
     uint64_t length_ = 0;  ///< So far [B].
 };
 

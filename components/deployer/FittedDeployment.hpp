@@ -14,7 +14,7 @@ namespace insonify::deployer {
 /** The chain that makes a deployment's pings, from the scene to the codes. */
 struct ChainAt {
     std::string vehicle_task, scene_task, sonar_task, noise_task, receiver_task;
-    double period = 0;         ///< Of the vehicle's poses [s].
+    double period = 0;         ///< Period of the vehicle's poses [s].
     bool looks_abeam = false;  ///< The sonar is a sonar::SideScanTask.
     sonar::SonarConfig sonar;  ///< With the quality that the sonar has chosen.
     types::Snapshot snapshot;

@@ -132,7 +132,7 @@ std::vector<std::string> noticesOf(const framework::TaskContext& task) {
     return all;
 }
 
-/** Of each task, in file order. */
+/** Prints a line for each task, in file order. */
 using Notices = std::vector<std::vector<std::string>>;
 
 Notices noticesOf(const framework::Deployment& deployment) {

@@ -55,7 +55,7 @@ private:
     std::filesystem::path shared_, path_, part_;
     command::Shard shard_;
     command::Json run_;
-    std::optional<Lock> lock_;  ///< Of `part_`.
+    std::optional<Lock> lock_;  ///< Lock of `part_`.
 };
 
 }  // namespace insonify::deployer

@@ -20,7 +20,7 @@ struct SimulationOptions {
     uint64_t seed = 0;                   ///< As `insonify run --seed`; 0: the deployment's own.
     std::vector<std::string> overrides;  ///< "task.property=value", as `insonify run --set`.
     bool truth = false;                  ///< Whether pings include their truth.
-    int threads = 0;                     ///< Of each sonar; 0: the number of the machine's cores [1].
+    int threads = 0;                     ///< Threads of each sonar; 0: the number of the machine's cores [1].
     std::optional<double> period;        ///< Between two steps; none: that of the replaced poses, or 0.1 [s].
     std::vector<std::string>
         objects;  ///< Nodes of the scene that the caller places as well, see Simulation::objectPort.

@@ -16,15 +16,15 @@ struct SonarPreset {
     double range, range_min, range_max;      ///< As deployed; the maker's limits at this frequency [m].
     int bin_count, bin_us;                   ///< Whole microseconds, one way; the bins end at `range` or before.
     double beam_width_deg, beam_height_deg;  ///< Half power, one way.
-    double range_resolution;                 ///< Of its pulse, by the maker [m].
+    double range_resolution;                 ///< Range resolution of its pulse, by the maker [m].
     double period_s;                         ///< Between pings.
     int columns_per_beam;
     int beam_count = 1;                 ///< More than one: a fan.
-    double field_of_view_deg = 0;       ///< Of a fan.
-    double pitch_deg = 0;               ///< Of the mount, down; of a fan.
-    double step_deg = 0;                ///< Of a scanning head.
+    double field_of_view_deg = 0;       ///< Field of view of a fan.
+    double pitch_deg = 0;               ///< Pitch of the mount, down; of a fan.
+    double step_deg = 0;                ///< Step of a scanning head.
     int row_count = 1;                  ///< More than one: a grid of beams with this many rows.
-    double rows_field_of_view_deg = 0;  ///< Of a grid, in elevation.
+    double rows_field_of_view_deg = 0;  ///< Field of view of a grid, in elevation.
     bool sends_tones = false;           ///< Else chirps.
     bool isGrid() const { return row_count > 1; }
     bool isFan() const { return beam_count > 1 && !isGrid(); }

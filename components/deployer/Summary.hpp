@@ -16,7 +16,7 @@ struct Summary {
     };
     struct Task {
         std::string name, state;
-        Times update;                         ///< Of updateHook.
+        Times update;                         ///< Times of updateHook.
         std::map<std::string, Times> stages;  ///< Stages of updateHook, by name.
         Times jitter;                         ///< In realtime: delay of the begin of periodic cycles.
         Times latency;                        ///< In realtime: from a sample's stamp to its writing.
@@ -28,8 +28,8 @@ struct Summary {
     std::vector<Task> tasks;                      ///< In file order.
     std::map<std::string, uint64_t> losses;       ///< By "from>to" [samples].
     std::map<std::string, uint64_t> passed_over;  ///< Skipped for newer samples, by "from>to" [samples].
-    std::vector<types::Omission> omitted;         ///< Of all sonars, without repeats.
-    std::map<std::string, types::Plan> plans;     ///< Of each sonar that has sent a ping, by task.
+    std::vector<types::Omission> omitted;         ///< Omissions of all sonars, without repeats.
+    std::map<std::string, types::Plan> plans;     ///< Plans of the sonars that have sent a ping, by task.
     std::vector<std::string> warnings;            ///< In realtime, as from framework::Deployment::onWarning.
 
     Summary(const framework::Deployment& deployment, const framework::RunResult& result);

@@ -60,7 +60,7 @@ public:
     /** Does the due work; returns when the next is due. */
     std::optional<types::Time> tick(types::Time now);
 
-    int bearing() const { return bearing_; }  ///< Of the head [1/16 gradian].
+    int bearing() const { return bearing_; }  ///< Bearing of the head [1/16 gradian].
 
 private:
     enum class State { Off, Booting, Unconfigured, Ready };

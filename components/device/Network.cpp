@@ -286,7 +286,7 @@ private:
     Drain drain_;
     std::array<uint8_t, 65536> buffer_{};
     std::deque<Bytes> replies_;
-    std::optional<Bytes> newest_;  ///< Of the streamed messages.
+    std::optional<Bytes> newest_;  ///< Newest of the streamed messages.
     Bytes sending_;
     size_t waiting_ = 0;  ///< In `replies_` [bytes].
     uint64_t last_message_ = 0;

@@ -47,7 +47,7 @@ struct NetworkError : std::runtime_error {
  *  task. */
 class Network {
 public:
-    static constexpr size_t max_clients = 64;        ///< Of an end; one more replaces the one silent for longest.
+    static constexpr size_t max_clients = 64;        ///< Max clients of an end; the next replaces the longest silent.
     static constexpr size_t max_received = 1 << 20;  ///< With their events; beyond, clients are not read [bytes].
     static constexpr size_t max_replies = size_t{8} << 20;  ///< Waiting for one client; beyond, it is closed [bytes].
     static constexpr size_t max_line = 4096;  ///< Waiting for a serial line; beyond, the oldest are dropped [bytes].

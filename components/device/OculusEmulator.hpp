@@ -136,7 +136,8 @@ private:
     OculusFire fire_;
     AskedPings<Asked> asked_{4};  ///< With more than one, all but the newest have not arrived in time.
     types::Time last_ping_, last_dummy_, last_status_;
-    double own_speed_ = types::SonarSettings::unset;  ///< Of the sonar, if no driver sets a speed of sound [m/s].
+    double own_speed_ =
+        types::SonarSettings::unset;  ///< Speed of sound of the sonar, if no driver sets a speed of sound [m/s].
     uint32_t number_ = 0;
     std::atomic<uint64_t> lost_{0}, refused_{0};  ///< Other threads than the task's may read them.
 };

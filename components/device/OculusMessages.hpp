@@ -50,7 +50,7 @@ struct OculusFire {
     uint8_t mode = 1;              ///< 1: low frequency, 2: high.
     uint8_t rate = 0;              ///< 0: 10 Hz, 1: 15, 2: 40, 3: 5, 4: 2, 5: standby.
     uint8_t network_speed = 0xFF;  ///< [Mbit/s]; 0 and 255: unlimited.
-    uint8_t gamma = 0xFF;          ///< Of the codes, in 255ths; 0 also means 1.0.
+    uint8_t gamma = 0xFF;          ///< Exponent of the codes, in 255ths; 0 also means 1.0.
     uint8_t flags = range_in_metres | simple_result;
     double range = 10;          ///< [m] or, without range_in_metres, [%] of the max range.
     double gain_percent = 50;   ///< [%]

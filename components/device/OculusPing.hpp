@@ -16,12 +16,12 @@ struct OculusPing {
     double frequency_hz = 0;
     double speed_of_sound = 0;        ///< Used by the device [m/s].
     double range_resolution = 0;      ///< Slant range of a bin [m].
-    double gamma = 1;                 ///< Of the codes: max code * amplitude^gamma [1].
-    int bits = 8;                     ///< Of a code: 8, 16, 24 or 32.
+    double gamma = 1;                 ///< Exponent of the codes: max code * amplitude^gamma [1].
+    int bits = 8;                     ///< Bits of a code: 8, 16, 24 or 32.
     std::vector<double> bearings;     ///< Middle of each beam, 0 ahead, positive to port [rad].
     uint32_t bin_count = 0;           ///< Per beam, nearest first.
     std::vector<uint32_t> codes;      ///< Beam by beam: beam b, bin k at b * bin_count + k.
-    std::vector<uint32_t> row_gains;  ///< Of each bin, if the device sends gains; else empty.
+    std::vector<uint32_t> row_gains;  ///< One per bin, if the device sends gains; else empty.
 
     uint32_t beamCount() const { return static_cast<uint32_t>(bearings.size()); }
     double maxCode() const { return static_cast<double>((uint64_t{1} << bits) - 1); }

@@ -25,7 +25,7 @@ void visitItem(Item& item, Size&& payload_size, Visit&& visit) {
           payload_size, item.unused_c);
 }
 
-constexpr size_t mark_size = 8;  ///< Of the mark and the size.
+constexpr size_t mark_size = 8;  ///< Size of the mark and the size.
 
 Bytes marked(uint32_t mark, size_t size) {
     NumberWriter writer;

@@ -32,7 +32,7 @@ struct OculusItem {
     uint32_t unused_a = 0;
     double time = 0;  ///< Since the epoch [s].
     uint16_t compression = 0, unused_b = 0;
-    uint32_t original_size = 0;  ///< Of the uncompressed payload [B].
+    uint32_t original_size = 0;  ///< Size of the uncompressed payload [B].
     uint32_t unused_c = 0;
     Bytes payload;  ///< As in the file.
 
@@ -104,7 +104,7 @@ public:
 private:
     struct Source;
     std::unique_ptr<Source> source_;
-    size_t number_ = 0;  ///< Of the last ping that was read, from 1.
+    size_t number_ = 0;  ///< Number of the last ping that was read, from 1.
     std::string diagnostic_;
 };
 

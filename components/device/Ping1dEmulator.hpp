@@ -77,7 +77,7 @@ private:
     uint16_t interval_ = 100;  ///< [ms]
     Ping1dProfile last_;
     std::vector<Wanted> waiting_, streams_;
-    types::Time next_;  ///< Of the stream.
+    types::Time next_;  ///< Time of the next message of the stream.
 };
 
 }  // namespace insonify::device

@@ -88,7 +88,7 @@ struct Ping1dMeasurement {
     uint16_t confidence = 0;         ///< [%]
     uint16_t transmit_duration = 0;  ///< [us]
     uint32_t ping_number = 0;        ///< Since power-on.
-    uint32_t start = 0, length = 0;  ///< Of the scan [mm].
+    uint32_t start = 0, length = 0;  ///< Start and length of the scan [mm].
     uint32_t gain = 0;
 
     template <class Self, class V>

@@ -8,7 +8,7 @@ namespace insonify::device {
 struct Ping360Acoustics {
     uint8_t gain = 0;                ///< 0 low, 1 normal, 2 high.
     uint16_t transmit_duration = 0;  ///< [us]
-    uint16_t sample_period = 0;      ///< Of two-way time [25 ns].
+    uint16_t sample_period = 0;      ///< Sampling interval in two-way time [25 ns].
     uint16_t frequency_khz = 0;
     uint16_t samples = 0;
 

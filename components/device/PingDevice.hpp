@@ -59,7 +59,7 @@ public:
     types::Time next() const { return ping_ ? due_ : asked_.deadline(); }
     /** Returns the request to send to the sonar, once. */
     std::optional<types::SonarSettings> takeAsked() { return std::exchange(unsent_, {}); }
-    double speedOfSound() const { return speed_of_sound_; }  ///< Of the water [m/s].
+    double speedOfSound() const { return speed_of_sound_; }  ///< Speed of sound in the water [m/s].
     /** Returns why the last ping was refused, once; empty: none was refused. */
     std::string takeWarning() { return std::exchange(warning_, {}); }
 

@@ -31,7 +31,7 @@ struct ProtobufField {
     uint32_t number = 0;
     Kind kind = Kind::Number;
     uint64_t value = 0;              ///< A number, or the bits of a fixed-width value.
-    std::span<const uint8_t> bytes;  ///< Of text, bytes, a message or packed numbers.
+    std::span<const uint8_t> bytes;  ///< Content: text, bytes, a message or packed numbers.
 
     /** Returns the value of a float; 0 for other fields. */
     float real() const;

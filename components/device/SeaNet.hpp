@@ -49,7 +49,7 @@ struct SeaNetControl {
 struct SeaNetHeadCommand {
     uint16_t control = 0;
     uint8_t head_type = seanet_imaging_sonar;  ///< Drivers of a Micron DST send 0x11, and expect it in scan lines.
-    uint32_t transmit[2] = {0, 0};             ///< Of each channel: frequency * 2^32 / 32 MHz; 0: the head's own.
+    uint32_t transmit[2] = {0, 0};             ///< One per channel: frequency * 2^32 / 32 MHz; 0: the head's own.
     uint16_t range_decimetres = 0;
     uint16_t left = 0, right = 0;     ///< Limits of the sector.
     uint8_t ad_span = 0, ad_low = 0;  ///< In 255ths of 80 dB: the interval that 4 bits show.

@@ -100,7 +100,7 @@ private:
     Sonar3dState state_;
     AskedPings<Sonar3dState> asked_{8};  ///< With the state at each request.
     std::optional<types::Time> last_;
-    types::Time shift_;  ///< Of the device's clock.
+    types::Time shift_;  ///< Shift of the device's clock.
     uint32_t sequence_ = 0;
     bool warned_ = false;
 };

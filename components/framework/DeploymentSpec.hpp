@@ -56,7 +56,7 @@ struct DeploymentSpec {
     std::string file;  ///< As given, for diagnostics.
     std::string text;  ///< The YAML as read.
     bool lockstep = true;
-    double start_time = 1;               ///< Of simulated time [s].
+    double start_time = 1;               ///< Start of simulated time [s].
     uint64_t seed = 1;                   ///< Source of the seeds of tasks without their own `seed`, see seedOf.
     double watchdog = 10;                ///< In realtime, the max duration of a cycle before it is reported [s].
     bool lock_memory = false;            ///< In realtime, keeps all memory resident.
@@ -64,7 +64,7 @@ struct DeploymentSpec {
     types::RosNames names;               ///< Translation of ROS 2 names in this deployment.
     std::vector<TaskSpec> tasks;         ///< In file order, the order of configuring.
     std::vector<ConnectionSpec> connections;
-    Origins origins;  ///< Of properties from elsewhere: property files, aliases, set().
+    Origins origins;  ///< Sources of properties from elsewhere: property files, aliases, set().
     types::Diagnostics diagnostics;
 
     /** Reads a deployment file. Throws types::ConfigError if the text cannot be read or is not YAML; other diagnostics

@@ -71,7 +71,7 @@ public:
      *  held. */
     virtual std::unique_lock<std::mutex> betweenInstants() { return {}; }
 
-    Progress progress() const;  ///< Of this run.
+    Progress progress() const;  ///< Returns the progress of this run.
 
 protected:
     using Clock = std::chrono::steady_clock;
@@ -82,8 +82,8 @@ protected:
     const Graph& graph_;
     uint64_t first_ = 0;  ///< First counted sample that is made; earlier samples are rehearsed.
     Environment& environment_;
-    types::Time start_;             ///< Of the run, on the deployment's clock.
-    Clock::time_point wall_start_;  ///< Of the run.
+    types::Time start_;             ///< Start of the run, on the deployment's clock.
+    Clock::time_point wall_start_;  ///< Start of the run.
 };
 
 }  // namespace insonify::framework

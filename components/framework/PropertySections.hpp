@@ -13,7 +13,7 @@ namespace insonify::framework {
 /** One section of a property file. */
 struct PropertySection {
     std::string name, file;
-    int line = 0;  ///< Of its header, from 1.
+    int line = 0;  ///< Line of its header, from 1.
     bool merge = true;
     std::vector<std::string> chain;
     YAML::Node body;

@@ -38,7 +38,7 @@ public:
     // For its aligner only.
     virtual bool empty() const = 0;
     virtual bool full() const = 0;
-    virtual types::Time firstTime() const = 0;  ///< Of the oldest waiting sample; there must be one.
+    virtual types::Time firstTime() const = 0;  ///< Returns the time of the oldest waiting sample; there must be one.
     virtual bool fill() = 0;                    ///< Takes new samples while there is capacity; false: none was new.
     virtual void handOver() = 0;                ///< Hands over the oldest waiting sample.
     void clear();                               ///< Forgets samples and counts.
@@ -54,7 +54,7 @@ private:
     StreamAligner& aligner_;
     const InputPortBase& port_;
     Counts counts_;
-    types::Time last_ = before_all;  ///< Of the newest sample.
+    types::Time last_ = before_all;  ///< Time of the newest sample.
 };
 
 /** Hands over the samples of several ports in the order of their stamps, regardless of their order of arrival, as
@@ -91,8 +91,8 @@ private:
 
     std::vector<AlignedPortBase*> ports_;
     types::Time timeout_;
-    types::Time newest_ = before_all;  ///< Of all samples.
-    types::Time done_ = before_all;    ///< Of the sample handed over last.
+    types::Time newest_ = before_all;  ///< Time of the newest of all samples.
+    types::Time done_ = before_all;    ///< Time of the sample handed over last.
 };
 
 template <class T>

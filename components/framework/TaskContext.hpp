@@ -35,17 +35,17 @@ types::Time wallClock();
 
 /** Folders, clock and other surroundings of a task, shared by all tasks of a deployment. */
 struct Environment {
-    std::filesystem::path input_folder = ".";      ///< Of the deployment file.
+    std::filesystem::path input_folder = ".";      ///< Folder of the deployment file.
     std::filesystem::path output_folder = ".";     ///< `--out`.
     std::function<types::Time()> now = wallClock;  ///< Or simulated or log time, by the deployment's schedule.
-    std::function<types::Time()> start_time;       ///< Of the run, on the same clock.
+    std::function<types::Time()> start_time;       ///< Start of the run, on the same clock.
     bool lockstep = false;
     bool wall_clock = true;  ///< In realtime: no task has replaced the clock by its own.
     bool is_shard = false;   ///< Only some samples of the run are made, see RunLimits::shard.
     /** This instant is before the shard: see framework::Divisible. */
     bool rehearsing = false;
     std::string deployment_text;                   ///< The YAML as read, for the log's metadata.
-    uint64_t seed = 0;                             ///< Of the run (`--seed`), 0 when not given.
+    uint64_t seed = 0;                             ///< Seed of the run (`--seed`), 0 when not given.
     types::RosNames names;                         ///< Namespace and frame prefix of the deployment.
     std::function<void(const std::string&)> warn;  ///< Warns the user at once; empty outside of a deployment.
     /** Returns the last published record of each task, in file order, without waiting for any task. Empty for a task

@@ -46,7 +46,7 @@ private:
 
     struct Entry {
         std::string name;
-        uint64_t position = 0;  ///< Of its local header in the file [B].
+        uint64_t position = 0;  ///< Position of its local header in the file [B].
         uint64_t size = 0;      ///< [B]
         uint32_t crc = 0;
     };

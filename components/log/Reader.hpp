@@ -30,7 +30,7 @@ public:
     std::string diagnostic() const;                         ///< Why and where reading stopped; empty: it did not.
     const std::vector<Gap>& gaps() const { return gaps_; }  ///< Skipped parts, in file order.
     const std::vector<Stream>& streams() const { return streams_; }
-    const std::vector<SampleRef>& samples() const { return samples_; }  ///< Of all streams, in file order.
+    const std::vector<SampleRef>& samples() const { return samples_; }  ///< Samples of all streams, in file order.
     /** Finds a stream by its name, its topic, or "/task/port"; null when there is none. */
     const Stream* find(const std::string& name) const;
     /** Returns the index of a stream. Throws ConfigError with the names of the streams when there is none. */

@@ -24,7 +24,7 @@ struct Stream {
     Metadata metadata{};
     size_t count = 0;             ///< Samples [1].
     types::Time first{}, last{};  ///< World time of its first and last sample, 0 without samples.
-    std::string topic{};          ///< Of its messages, "/auv/sonar"; empty in logs without topics.
+    std::string topic{};          ///< Topic of its messages, "/auv/sonar"; empty in logs without topics.
 
     /** Whether its samples have type T. */
     template <class T>
@@ -48,7 +48,7 @@ struct SampleRef {
     size_t stream = 0;       ///< Index into Reader::streams().
     types::Time received{};  ///< When it was logged.
     types::Time time{};      ///< When it was true in the world.
-    uint64_t position = 0;   ///< Of its bytes in the file, or of the compressed block around it [B].
+    uint64_t position = 0;   ///< Position of its bytes in the file, or of the compressed block around it [B].
     size_t number = 0;       ///< Its index in Reader::samples() [1].
 };
 

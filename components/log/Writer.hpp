@@ -53,7 +53,7 @@ public:
     virtual void next(std::filesystem::path path) = 0;
     virtual bool isOpen() const = 0;  ///< False after a failed write.
     virtual const std::filesystem::path& path() const = 0;
-    virtual uint64_t size() const = 0;  ///< Of the file, including unflushed samples [B].
+    virtual uint64_t size() const = 0;  ///< Size of the file, including unflushed samples [B].
     virtual uint64_t kept() const = 0;  ///< Samples that were flushed, in all files [1].
 };
 

@@ -54,7 +54,7 @@ private:
     /** The stream of an input. */
     template <class T>
     struct Stream {
-        const framework::StreamName name;   ///< Of the source.
+        const framework::StreamName name;   ///< Name of the source.
         std::optional<size_t> number = {};  ///< In the log, once declared.
     };
 

@@ -37,7 +37,7 @@ public:
 
 private:
     struct Written {
-        std::optional<size_t> stream, presence;     ///< Of its value, and of its presence, once declared.
+        std::optional<size_t> stream, presence;     ///< Streams of its value, and of its presence, once declared.
         std::optional<types::PropertyValue> value;  ///< None: absent now.
     };
 

@@ -136,7 +136,7 @@ private:
     std::atomic<int64_t> first_us_{0};         ///< The instant at which the replay starts, on the log's clock.
     std::atomic<int64_t> played_us_{0};        ///< The instant being played; 0: none yet.
     std::atomic<int64_t> at_us_{0};            ///< The last sample played, after the log's first.
-    std::atomic<double> span_s_{-1};           ///< Of the log; negative: the log is not open.
+    std::atomic<double> span_s_{-1};           ///< Span of the log; negative: the log is not open.
     std::atomic<bool> finished_{false};
 };
 

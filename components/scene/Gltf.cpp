@@ -33,7 +33,7 @@ constexpr size_t max_posed = 200'000'000;
 
 /** A node whose mesh has a skin or morph targets. */
 struct DeformingNode {
-    int node;                                 ///< Of the file.
+    int node;                                 ///< Number in the file.
     std::shared_ptr<const types::Mesh> mesh;  ///< Before joints and targets move it.
     GltfSkin skin;
     std::string path;
@@ -356,8 +356,8 @@ private:
     UniqueNames names_;
     size_t flat_objects_ = 0;
     std::array<size_t, 3> not_animated_{};     ///< Channels of other paths, outside of the scene, doubled.
-    std::vector<int> node_in_scene_;           ///< Of each node of the file, -1 for one that is not there.
-    std::vector<glm::dmat4> world_from_node_;  ///< Of each node of the scene.
+    std::vector<int> node_in_scene_;           ///< One per node of the file, -1 if it is not in the scene.
+    std::vector<glm::dmat4> world_from_node_;  ///< One per node of the scene.
     std::vector<DeformingNode> deforming_;
     size_t posed_ = 0;  ///< Vertices and indices of meshes that were posed.
     /** Meshes before joints and targets move them, by mesh and skin of the file. */

@@ -17,7 +17,7 @@ struct Omissions {
     DroppedTriangles dropped;
     size_t other_primitives = 0;     ///< Points and lines.
     size_t unmapped_primitives = 0;  ///< Primitives with a map but without texture coordinates for it.
-    size_t unweighted_vertices = 0;  ///< Of skins: they follow no joint.
+    size_t unweighted_vertices = 0;  ///< Vertices of skins without weights; they follow the first joint.
 };
 
 /** Converts the meshes of a file to types::Mesh, one at a time. */
@@ -56,8 +56,8 @@ private:
     std::vector<MaterialMaps> maps_;
     types::Geometry& geometry_;
     Omissions omissions_;
-    GltfDeformation* deformation_ = nullptr;  ///< Of the mesh at hand; null: it keeps its shape.
-    std::vector<uint32_t> numbers_;           ///< Of the vertices of that mesh.
+    GltfDeformation* deformation_ = nullptr;  ///< Deformation of the present mesh; null: rigid.
+    std::vector<uint32_t> numbers_;           ///< Numbers of the vertices of that mesh.
     size_t elements_ = 0;
     int default_material_ = -1;
     std::map<std::pair<int, bool>, int> unmapped_;  ///< Material without normal map, or surface map, by material with.

@@ -82,7 +82,7 @@ private:
         std::optional<glm::dmat4> world_from_body;  ///< None before its first pose.
         types::Time newest;                         ///< Stamp of that pose; the start time before the first.
         types::Time arrived;                        ///< When that pose came; the start before the first.
-        glm::dmat4 rate{0};                         ///< Of world_from_body, by the pose or the one before [1/s].
+        glm::dmat4 rate{0};                         ///< Rate of world_from_body, by the pose or the one before [1/s].
     };
     /** An animation that follows a port. */
     struct Timed {
@@ -128,7 +128,7 @@ private:
     std::vector<const Movable*> mover_;   ///< For each object, the movable that moves it now.
     std::unique_ptr<Animator> animator_;  ///< Null: nothing moves by itself, nor is deformed.
     std::vector<Timed> timed_;
-    std::vector<DrivenNode> driven_;  ///< Of each movable, for the animator.
+    std::vector<DrivenNode> driven_;  ///< One per movable, for the animator.
     std::vector<PlacedTarget> targets_;
     std::shared_ptr<const std::vector<std::string>> target_names_;
     framework::SamplePool<types::Snapshot> pool_;

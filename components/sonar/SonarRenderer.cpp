@@ -30,7 +30,7 @@ struct SonarRenderer::Parts {
     void describePlan();
     types::SonarTruth* truthOf(const types::Sonar& ping) const { return &ping == reported_ping ? truth : nullptr; }
 
-    types::GeometryPtr scene;                  ///< Of the snapshots.
+    types::GeometryPtr scene;                  ///< Geometry of the snapshots.
     std::unique_ptr<DeformedMeshes> deformed;  ///< Null: no mesh deforms.
     types::GeometryPtr geometry;               ///< That is rendered: the scene, or that of `deformed`.
     RenderPlan plan;

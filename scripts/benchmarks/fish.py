@@ -6,7 +6,7 @@ from benchmarks import harbour, table
 from benchmarks.common import BENCH, ROOT
 
 REST = '{"*": {play: false}}'
-RUNS = 3  # of each in turn, so that both meet what else the machine does; the fastest counts
+RUNS = 3  # runs of each in turn, so that other work on the machine affects both; the fastest counts
 
 
 def school():

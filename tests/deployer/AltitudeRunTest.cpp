@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 namespace {
 
-constexpr double ground_range = 12;  ///< Of a wire along the track [m].
+constexpr double ground_range = 12;  ///< Ground distance of a wire along the track [m].
 constexpr int lines = output::WaterfallImage::history;
 
 double altitudeOf(int line) { return 7 + 3 * std::sin(line / 40.0); }

@@ -13,7 +13,7 @@ using namespace insonify::deployer;
 
 namespace {
 
-constexpr int half_width = 2 * 420 + 112;  ///< Of the picture [px].
+constexpr int half_width = 2 * 420 + 112;  ///< Half the width of the picture [px].
 
 /** The picture of the ping that completes the head's turn: at 20 s, turned about, 1.7 m north and 1.5 m west. */
 class MosaicRunTest : public testing::Test {

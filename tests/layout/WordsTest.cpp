@@ -53,6 +53,12 @@ Texts unwantedIn(std::string_view prose) {
     return found;
 }
 
+/** Returns the first word of a comment that begins with "Of": a detached genitive. */
+Texts detachedIn(std::string_view comment) {
+    const size_t begin = comment.find_first_not_of("/*<# ");
+    return begin != std::string_view::npos && comment.substr(begin).starts_with("Of ") ? Texts{"Of"} : Texts{};
+}
+
 /** Returns the name if it has an unwanted word, but for names of other libraries and of `types::Plan`, which logs
  * contain. */
 Texts unwantedInName(std::string_view name) {
@@ -139,7 +145,7 @@ Texts unwantedInCode(std::string_view code, bool is_python) {
     Texts found;
     const auto add = [&](const Texts& more) { found.insert(found.end(), more.begin(), more.end()); };
     Divider(code, is_python)
-        .divide([&](std::string_view comment) { add(unwantedIn(comment)); },
+        .divide([&](std::string_view comment) { add(unwantedIn(comment)), add(detachedIn(comment)); },
                 [&](std::string_view name) { add(unwantedInName(name)); });
     return found;
 }
@@ -173,6 +179,8 @@ TEST(WordsTest, TheRuleRefusesWhatItShould) {
     EXPECT_THAT(
         unwantedInCode("// It tells\nint heardPast = 0;  /* as many */ auto s = \"heard\"; f(max_most);", false),
         ElementsAre("tells", "heardPast", "as many", "max_most"));
+    EXPECT_THAT(unwantedInCode("int gamma;  ///< Of the codes\n/** Of all. */ /** One of all. */", false),
+                ElementsAre("Of", "Of"));
     EXPECT_THAT(unwantedInCode("# left\n\"\"\"Beside\"\"\"\ntold = 'told'\n", true), ElementsAre("beside", "told"));
     EXPECT_THAT(unwantedInCode("static_cast<int>(at_most + 20'000 + at_least); R\"x(told)x\"; // at most", false),
                 IsEmpty());

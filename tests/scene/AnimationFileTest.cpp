@@ -205,7 +205,7 @@ TEST_F(AnimationFileTest, AStillSceneHasNoAnimations) {
 
 struct BadFile {
     const char* name;
-    const char *from, *to;  ///< Of eelText().
+    const char *from, *to;  ///< A part of eelText() and its replacement.
     const char* diagnostic;
 };
 class BadAnimationTest : public AnimationFileTest, public ::testing::WithParamInterface<BadFile> {};
@@ -283,7 +283,8 @@ TEST_F(AnimationFileTest, BadMorphTargetsAreRefused) {
         "meshes[0].weights: has 1 numbers; the mesh has 2 morph targets");
     has(R"({"POSITION":2})", R"({"POSITION":4})", "accessors[4].type");
     has(R"("name":"kelp")", R"("name":"kelp","weights":[1,2,3])", "nodes[0].weights: has 3 numbers; the mesh has 2");
-    has(R"("output":5)", R"("output":4)", "animations[0].samplers[0].output: has 3 elements; 3 keys of 1 values need 6");
+    has(R"("output":5)", R"("output":4)",
+        "animations[0].samplers[0].output: has 3 elements; 3 keys of 1 values need 6");
     has(R"(,{"POSITION":3}])", R"(,{"POSITION":1}])", "accessors[1].type");
 }
 

@@ -12,6 +12,7 @@
 #include "components/sonar/places/DeformedMeshes.hpp"
 #include "components/sonar/places/Motion.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
+#include "tests/sonar/MovingFan.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "types/PosedMesh.hpp"
@@ -226,22 +227,6 @@ types::GeometryPtr jointedPlate(float size = 1) {
     return test::sceneOf({std::move(mesh)});
 }
 
-SonarConfig followingFan() {
-    SonarConfig config;
-    config.range_rounding = RangeRounding::Exact;
-    config.speed_of_sound = 1500;
-    config.range = 300;
-    config.bin_count = 3000;
-    config.beam_count = 40;
-    config.field_of_view_deg = 40;
-    config.beam_height_deg = 10;
-    config.visibility = Visibility::Cpu;
-    config.quality.rows = 128;
-    config.quality.columns_per_beam = 4;
-    config.motion_in_ping = true;
-    return config;
-}
-
 /** The plate at a place by its joint, or by its object, with a rate of the matrix. */
 types::Snapshot movingPlate(const glm::dmat4& place, const glm::dmat4& rate, bool by_joint) {
     types::Snapshot snapshot = test::snapshotOf(jointedPlate());
@@ -268,9 +253,9 @@ TEST(DeformingMotionTest, AnApproachingJointEchoesLikeAnApproachingObject) {
     glm::dmat4 place(1), rate(0);
     place[3] = {200, 0, 0, 1};
     rate[3] = {-12, 0, 0, 0};
-    const types::Sonar still = pingOf(followingFan(), movingPlate(place, glm::dmat4(0), true));
-    const types::Sonar joint = pingOf(followingFan(), movingPlate(place, rate, true));
-    const types::Sonar object = pingOf(followingFan(), movingPlate(place, rate, false));
+    const types::Sonar still = pingOf(movingFan(), movingPlate(place, glm::dmat4(0), true));
+    const types::Sonar joint = pingOf(movingFan(), movingPlate(place, rate, true));
+    const types::Sonar object = pingOf(movingFan(), movingPlate(place, rate, false));
     EXPECT_NEAR(centreOf(still), 200, 0.1);
     EXPECT_NEAR(centreOf(joint), 200 / (1 + 12.0 / 1500), 0.1);
     EXPECT_NEAR(centreOf(joint), centreOf(object), 0.01);
@@ -282,7 +267,7 @@ TEST(DeformingMotionTest, AJointThatTurnsEchoesAsAnObjectThatDoes) {
     const glm::dvec3 turn(0, 0, 0.5);  // [rad/s]
     rate[3] = {-3, 1, 0, 0};
     for (int axis = 0; axis < 3; ++axis) rate[axis] = glm::dvec4(glm::cross(turn, glm::dvec3(place[axis])), 0);
-    SonarConfig config = followingFan();
+    SonarConfig config = movingFan();
     config.range = 30;
     config.bin_count = 300;
     const types::Sonar joint = pingOf(config, movingPlate(place, rate, true));

@@ -10,6 +10,7 @@
 #include "components/sonar/effects/MotionInPing.hpp"
 #include "components/sonar/places/Motion.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
+#include "tests/sonar/MovingFan.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
@@ -27,23 +28,6 @@ using ::testing::StartsWith;
 using types::radians;
 
 constexpr double c = 1500;
-
-/** 40 beams of 1 deg to 300 m, by bins of 0.1 m. */
-SonarConfig movingFan() {
-    SonarConfig config;
-    config.range_rounding = RangeRounding::Exact;
-    config.speed_of_sound = c;
-    config.range = 300;
-    config.bin_count = 3000;
-    config.beam_count = 40;
-    config.field_of_view_deg = 40;
-    config.beam_height_deg = 10;
-    config.visibility = Visibility::Cpu;
-    config.quality.rows = 128;
-    config.quality.columns_per_beam = 4;
-    config.motion_in_ping = true;
-    return config;
-}
 
 /** A plate of 1 m across the x axis about its object's origin. */
 types::Mesh facingPlate(float size = 1) { return test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size}); }

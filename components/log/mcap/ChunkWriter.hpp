@@ -28,7 +28,7 @@ struct FileSummary {
     std::filesystem::path path;
     uint64_t messages = 0;
     uint64_t first_ns = 0, last_ns = 0;  ///< Earliest and latest log time [ns].
-    std::vector<uint64_t> counts;        ///< Of each channel, in order.
+    std::vector<uint64_t> counts;        ///< One per channel, in order.
 };
 
 /** Writes an MCAP file of the profile "ros2": uncompressed chunks with checksums and indices.
@@ -63,7 +63,7 @@ public:
     const std::filesystem::path& path() const { return summary_.path; }
     uint64_t size() const { return file_->size() + chunk_.size(); }  ///< Including unflushed messages [B].
     uint64_t kept() const { return kept_; }                          ///< Messages in all files [1].
-    const FileSummary& summary() const { return summary_; }          ///< Of the present file.
+    const FileSummary& summary() const { return summary_; }          ///< Summary of the present file.
     const std::vector<Schema>& schemas() const { return schemas_; }  ///< Number 1 is the first.
     const std::vector<Channel>& channels() const { return channels_; }
 
@@ -94,7 +94,7 @@ private:
 
     std::optional<OutputFile> file_;
     FileSummary summary_;
-    uint32_t crc_ = 0;  ///< Of all bytes in the file.
+    uint32_t crc_ = 0;  ///< Checksum of all bytes in the file.
     uint64_t kept_ = 0;
     std::vector<Schema> schemas_;
     std::vector<Channel> channels_;
@@ -104,7 +104,7 @@ private:
 
     std::vector<char> chunk_;  ///< Space for its header, then its records.
     uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, chunk_messages_ = 0, chunk_counted_ = 0;
-    std::vector<std::vector<IndexEntry>> index_;  ///< Of the chunk's messages, for each channel.
+    std::vector<std::vector<IndexEntry>> index_;  ///< Entries of the chunk's messages, for each channel.
 };
 
 }  // namespace insonify::log::mcap

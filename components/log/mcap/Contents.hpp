@@ -15,7 +15,7 @@ namespace insonify::log::mcap {
 struct MessageRef {
     uint16_t channel = 0;
     uint64_t log_ns = 0, publish_ns = 0;
-    uint64_t position = 0;  ///< Of its bytes in the file, or of the compressed chunk around it [B].
+    uint64_t position = 0;  ///< Position of its bytes in the file, or of the compressed chunk around it [B].
     uint32_t size = 0;      ///< [B]
     uint32_t offset = 0;    ///< In the records of a compressed chunk [B].
     bool compressed = false;
@@ -23,9 +23,9 @@ struct MessageRef {
 
 /** A chunk as its record states. */
 struct ChunkInfo {
-    uint64_t start = 0, length = 0;  ///< Of the record [B].
+    uint64_t start = 0, length = 0;  ///< Start and length of the record [B].
     uint64_t first_ns = 0, last_ns = 0;
-    uint64_t size = 0;                          ///< Of the decompressed records [B].
+    uint64_t size = 0;                          ///< Size of the decompressed records [B].
     uint64_t records_at = 0, records_size = 0;  ///< As stored in the file [B].
     uint32_t crc = 0;                           ///< 0: none.
     std::string compression;
@@ -49,7 +49,7 @@ struct Contents {
     uint32_t attachments = 0;
     std::vector<Gap> gaps;  ///< Skipped parts, in file order.
     uint64_t read_to = 0;   ///< The end of the last complete record of the data [B].
-    uint32_t crc = 0;       ///< Of the file up to read_to.
+    uint32_t crc = 0;       ///< Checksum of the file up to read_to.
 };
 
 /** An open MCAP file. */

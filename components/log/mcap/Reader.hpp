@@ -47,7 +47,7 @@ private:
     Contents contents_;
     bool has_transforms_ = false;
     std::vector<uint16_t> channels_;                  ///< Number of each stream's channel.
-    std::vector<std::unique_ptr<Decoder>> decoders_;  ///< Of each stream; null: unknown type.
+    std::vector<std::unique_ptr<Decoder>> decoders_;  ///< One per stream; null: unknown type.
     std::vector<char> bytes_;
 };
 

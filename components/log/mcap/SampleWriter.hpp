@@ -62,7 +62,7 @@ private:
     std::vector<uint16_t> channels_;  ///< For each stream.
     std::vector<Options> options_;    ///< For each stream.
     std::map<Schema, uint16_t> schemas_;
-    Metadata metadata_;           ///< Of the record that all streams share.
+    Metadata metadata_;           ///< Metadata of the record that all streams share.
     ros::MessageTypes messages_;  ///< Reused for converting.
     std::vector<char> bytes_;
 };

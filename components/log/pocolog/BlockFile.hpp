@@ -39,7 +39,7 @@ static_assert(sizeof(BlockHeader) == 8);
 struct DataHeader {
     uint32_t received_s = 0, received_us = 0;  ///< When it was logged.
     uint32_t time_s = 0, time_us = 0;          ///< When it was true in the world.
-    uint32_t size = 0;                         ///< Of the sample as stored in the file [B].
+    uint32_t size = 0;                         ///< Size of the sample as stored in the file [B].
     uint8_t compressed = 0;                    ///< 1: a zlib stream.
 
     types::Time received() const { return joined(received_s, received_us); }

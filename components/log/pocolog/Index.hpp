@@ -11,7 +11,7 @@ namespace insonify::log::pocolog {
 /** The places of one stream's samples in the file, as in Rock's `.idx`. */
 struct StreamIndex {
     struct Entry {
-        uint64_t position = 0;  ///< Of the block's header in the file [B].
+        uint64_t position = 0;  ///< Position of the block's header in the file [B].
         types::Time time;
     };
     uint64_t declaration = 0;  ///< Position of the block that declares the stream [B].

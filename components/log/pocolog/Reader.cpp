@@ -13,7 +13,7 @@ namespace {
 /** The place of a sample. */
 struct Block {
     size_t stream = 0;
-    uint64_t position = 0;  ///< Of the sample's bytes in the file [B].
+    uint64_t position = 0;  ///< Position of the sample's bytes in the file [B].
     DataHeader header;
 };
 

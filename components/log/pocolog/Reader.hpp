@@ -31,7 +31,7 @@ private:
 
     BlockFile file_;
     std::vector<std::string> registries_, yamls_;
-    std::vector<Stored> stored_;  ///< Of each sample.
+    std::vector<Stored> stored_;  ///< One per sample.
     std::vector<char> buffer_, inflated_;
 };
 

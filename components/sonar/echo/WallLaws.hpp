@@ -10,7 +10,7 @@ namespace insonify::sonar {
 /** Material behind a wall that is neither water nor air (ACOUSTICS.md 5.26). */
 struct WallFill {
     double speed_ratio = 1;  ///< Its speed of sound relative to the sonar's water [1].
-    double attenuation = 0;  ///< Of energy, one way [Np/m].
+    double attenuation = 0;  ///< Attenuation of energy, one way [Np/m].
     double within = 1;       ///< Reflection of the wall from within relative to that from outside, of energy [1].
 };
 

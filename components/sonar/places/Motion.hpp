@@ -73,13 +73,13 @@ private:
     void addShape(const types::Snapshot& snapshot, const types::DeformedObject& deformed);
 
     std::vector<Thing> things_;       ///< Each object.
-    std::vector<glm::dmat4> places_;  ///< Of each object in the geometry.
+    std::vector<glm::dmat4> places_;  ///< One per object in the geometry.
     std::optional<Mark> before_, now_;
     double fastest_allowed_;  ///< [m/s]
     double seconds_ = 0;      ///< Between `before_` and `now_` [s].
     glm::dvec3 velocity_{0}, turn_{0};
     std::vector<std::optional<Drift>> drifts_;
-    std::vector<std::shared_ptr<Deforming>> deforming_;  ///< Of each object; null: it keeps its shape.
+    std::vector<std::shared_ptr<Deforming>> deforming_;  ///< One per object; null: rigid.
     std::vector<glm::vec3> of_vertices_;                 ///< Scratch.
     double fastest_ = 0;
 };

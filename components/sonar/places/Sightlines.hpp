@@ -29,7 +29,7 @@ public:
     /** A wall that a line of sight crosses. */
     struct WallMet {
         double range;     ///< From the line's start [m].
-        double cosine;    ///< Of the angle between the line and the wall's normal [1].
+        double cosine;    ///< Cosine of the angle between the line and the wall's normal [1].
         size_t material;  ///< [1]
     };
     /** Finds the walls between two points, by their range. `are_walls` has a value for each material. Returns false

@@ -14,7 +14,7 @@ constexpr int patience_after_fall = 20, max_patience = 320, forgiven_after = 400
 constexpr double fall_to = 0.9, climb_to = 0.97, max_change = 4, min_climb = 1.09;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double watched_share = 0.2618034;  ///< Of the pings; irrational, to cover all bearings of a head.
+constexpr double watched_share = 0.2618034;  ///< Share of the pings; irrational, to cover all bearings of a head.
 constexpr double first_turn_share = 0.5;     ///< The same in the first turn of a head.
 constexpr int rarely = 16;  ///< One of this number of due pings is evaluated where the budget is used up.
 constexpr double off_target = 1.2, off_prediction = 1.5, well_within = 0.5, worth_lowering = 0.7, near_limit = 0.8;

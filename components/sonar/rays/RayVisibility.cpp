@@ -198,7 +198,7 @@ struct RayVisibility::Mover {
     glm::mat3 from_sonar{1};      ///< Rotation of directions from sonar axes to its own.
     glm::vec3 place{0};           ///< Place of the sonar in its axes [m].
     glm::vec3 towards{0};         ///< Unit vector from the sonar to the middle of a ball about it, sonar axes.
-    float cosine = -1, sine = 0;  ///< Of the angular radius of the ball; -1: the sonar is inside.
+    float cosine = -1, sine = 0;  ///< Cosine and sine of the angular radius of the ball; -1: the sonar is inside.
 
     void placeAt(const glm::dmat4& sonar_from_object);
     bool mayMeet(const TileCone& rays) const;

@@ -38,7 +38,7 @@ class WallRays {
 public:
     static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].
     static constexpr double max_focus = 30;     ///< Bound at caustics, where ray theory gives infinity [1].
-    static constexpr int max_reflections = 16;  ///< Of a ray back and forth between walls [1].
+    static constexpr int max_reflections = 16;  ///< Max reflections of a ray back and forth between walls [1].
 
     /** `surface`: where rays end. `loss_of_water`: loss of energy in the sonar's water, one way [Np/m]. */
     WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
@@ -62,8 +62,9 @@ private:
 
     /** A fluid that sound is in. */
     struct Medium {
-        double speed = 1;        ///< Relative to the water [1].
-        double attenuation = 0;  ///< Of energy, one way, in excess of the water over the same slant range [Np/m].
+        double speed = 1;  ///< Relative to the water [1].
+        double attenuation =
+            0;  ///< Attenuation of energy, one way, in excess of the water over the same slant range [Np/m].
     };
     /** A body that sound is in. */
     struct Body {

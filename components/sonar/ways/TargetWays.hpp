@@ -64,7 +64,7 @@ private:
     FlatMirrors flat_;
     Sightlines sightlines_;
     WallSights* walls_;
-    EchoTrain train_;  ///< Of the straight path.
+    EchoTrain train_;  ///< Returns by the straight path.
     WaterMirror water_;
     std::vector<PlacedMirror> mirrors_;  ///< The water surface and all flat mirrors.
     MirrorReach reach_;
