@@ -40,9 +40,13 @@ std::string didYouMean(std::string_view wrong, const std::vector<std::string>& k
     size_t minimum = std::numeric_limits<size_t>::max();
     std::vector<std::string> nearest, holding;
     for (const std::string& name : known) {
-        const std::string last =
+        std::string last =
             lower(name).substr(name.rfind(':') + 1);  // SonarTask of sonar::SonarTask; the whole name without ':'
-        const size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
+        size_t distance = std::min(editDistance(meant, lower(name)), editDistance(meant, last));
+        if (last.ends_with("task") && last != "task") {
+            last.erase(last.size() - std::string_view("task").size());
+            distance = std::min(distance, editDistance(meant, last));
+        }
         if (distance < minimum) nearest = {name};
         minimum = std::min(minimum, distance);
         if (meant.size() >= 3 && lower(name).find(meant) != std::string::npos) holding.push_back(name);

@@ -39,6 +39,7 @@ OutputFolder::OutputFolder(const std::string& asked, const fs::path& deployment)
         throw types::ConfigError(path_, "--out", fmt::format("is no folder and cannot be made: {}", error.message()));
     if (::access(path_.c_str(), W_OK | X_OK) != 0)
         throw types::ConfigError(path_, "--out", "cannot be written to; give a writable folder");
+    had_files_ = !made_ && !fs::is_empty(path_, error);
 }
 
 void OutputFolder::keep() {

@@ -14,12 +14,14 @@ public:
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
     const std::filesystem::path& path() const { return path_; }
+    /** Returns whether the folder had files before the run. */
+    bool hadFiles() const { return had_files_; }
     /** Keeps the folder, once the run has started. If `asked` was empty, the link out/latest points to the folder. */
     void keep();
 
 private:
     std::filesystem::path path_;
-    bool made_ = false, asked_, kept_ = false;
+    bool made_ = false, asked_, kept_ = false, had_files_ = false;
 };
 
 }  // namespace insonify::command

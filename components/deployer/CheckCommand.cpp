@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "components/deployer/CommandLine.hpp"
-#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
+#include "components/deployer/RunCommand.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 
@@ -76,10 +76,10 @@ void printGraph(framework::Deployment& deployment) {
     }
 }
 
-int check(const std::string& file, bool json) {
+int check(const RunOptions& options, bool json) {
     framework::Registry registry = coreTasks();
     try {
-        framework::Deployment deployment(framework::DeploymentSpec::load(file), registry);
+        framework::Deployment deployment(loadSpec(options), registry);
         json ? print(validJson(deployment)) : printGraph(deployment);
         return 0;
     } catch (const types::ConfigError& error) {
@@ -92,15 +92,14 @@ int check(const std::string& file, bool json) {
 
 void addCheckCommand(CLI::App& app, Action& action) {
     struct Options {
-        std::string deployment;
+        RunOptions run;
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("check", "Validates a deployment and prints its graph");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
+    options->run.addDeploymentTo(*command);
     command->add_flag("--json", options->json, "for machines");
-    command->callback(
-        [options, &action] { action = [options] { return check(deploymentIn(options->deployment), options->json); }; });
+    command->callback([options, &action] { action = [options] { return check(options->run, options->json); }; });
 }
 
 }  // namespace insonify::deployer

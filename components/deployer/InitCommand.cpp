@@ -38,7 +38,7 @@ int init(const fs::path& folder, const std::string& sonar) {
     const SonarPreset& preset = sonarPreset(sonar);
     const std::string deployment = starterDeployment(preset);
     std::vector<NewFile> files{{folder / (std::string(preset.name) + ".yml"), deployment}};
-    for (const StarterFile& file : starterFiles()) files.push_back({folder / file.name, file.bytes});
+    for (const StarterFile& file : starterFiles(preset)) files.push_back({folder / file.name, file.bytes});
     refuseOverwriting(files);
     std::error_code error;
     fs::create_directories(folder, error);
@@ -48,7 +48,8 @@ int init(const fs::path& folder, const std::string& sonar) {
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, error);
     for (const NewFile& file : files) fmt::print("{}\n", file.path.string());
-    fmt::print("next: insonify run {}\n", folder.string());
+    fmt::print("next: insonify run {0}\n", folder.string());
+    if (preset.isFan()) fmt::print("or:   insonify dataset {0} --sweep {0}/sweep.yml --out set\n", folder.string());
     return 0;
 }
 
@@ -66,7 +67,7 @@ void addInitCommand(CLI::App& app, Action& action) {
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("init", "Makes a folder with a first deployment, its scene and trajectories");
+        app.add_subcommand("init", "Makes a folder with a first deployment, its scene, trajectories and sweep");
     command->add_option("DIR", options->folder, "a folder, made if it is not there")->required();
     command->add_option("--sonar", options->sonar, "one of " + presetNames())->type_name("NAME")->capture_default_str();
     command->callback([options, &action] { action = [options] { return init(options->folder, options->sonar); }; });

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "components/deployer/CommandLine.hpp"
-#include "components/deployer/DeploymentFile.hpp"
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
+#include "components/deployer/RunCommand.hpp"
 #include "components/deployer/StopSignal.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
@@ -59,9 +59,9 @@ void printJson(const Plans& plans) {
     print(all);
 }
 
-int showPlan(const std::string& file, bool json) {
+int showPlan(const RunOptions& options, bool json) {
     framework::Registry registry = coreTasks();
-    const DeploymentSpec spec = DeploymentSpec::load(file);
+    const DeploymentSpec spec = loadSpec(options);
     Deployment deployment(pipelineOf(spec, registry), registry);
     const Deployment whole(spec, registry);
     std::vector<std::unique_ptr<TruthReader>> readers;
@@ -75,7 +75,7 @@ int showPlan(const std::string& file, bool json) {
     Plans plans;
     for (const auto& task : deployment.tasks())
         if (const types::Plan* plan = framework::planOf(*task)) plans.emplace_back(task->name(), plan);
-    if (plans.empty()) throw types::ConfigError(file, "tasks", "has no sonar that sends a ping: nothing to plan");
+    if (plans.empty()) throw types::ConfigError(spec.file, "tasks", "has no sonar that sends a ping: nothing to plan");
     if (json)
         printJson(plans);
     else
@@ -87,16 +87,14 @@ int showPlan(const std::string& file, bool json) {
 
 void addPlanCommand(CLI::App& app, Action& action) {
     struct Options {
-        std::string deployment;
+        RunOptions run;
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("plan", "Prints what is compiled and run, what is omitted, and why");
-    command->add_option("DEPLOYMENT", options->deployment, "a YAML file, or a folder with one deployment")->required();
+    options->run.addDeploymentTo(*command);
     command->add_flag("--json", options->json, "for machines");
-    command->callback([options, &action] {
-        action = [options] { return showPlan(deploymentIn(options->deployment), options->json); };
-    });
+    command->callback([options, &action] { action = [options] { return showPlan(options->run, options->json); }; });
 }
 
 }  // namespace insonify::deployer

@@ -38,6 +38,20 @@ std::string refuseUnlessPositive(const std::string& text) {
     return text + " is no number above 0";
 }
 
+namespace {
+
+void addSet(CLI::App& command, std::vector<std::string>& set) {
+    command.add_option("--set", set, "task.property.path=value: a property other than in the file; may be repeated")
+        ->allow_extra_args(false);
+}
+
+}  // namespace
+
+void RunOptions::addDeploymentTo(CLI::App& command) {
+    command.add_option("DEPLOYMENT", deployment, "a YAML file, or a folder with one deployment")->required();
+    addSet(command, set);
+}
+
 void RunOptions::addTo(CLI::App& command) {
     auto* pings = command.add_option("--pings", limits.samples, "end when every sonar has sent N pings")
                       ->type_name("N")
@@ -47,8 +61,7 @@ void RunOptions::addTo(CLI::App& command) {
         ->check(refuseUnlessPositive)
         ->excludes(pings);
     command.add_option("--out", out, "folder for the files (default: out/<deployment>-<UTC time>)")->type_name("DIR");
-    command.add_option("--set", set, "task.property.path=value: a property other than in the file; may be repeated")
-        ->allow_extra_args(false);
+    addSet(command, set);
     command.add_option("--seed", seed, "seeds every task with a hash of N and its name (0: as the file says)")
         ->type_name("N")
         ->check(refuseUnlessWhole);
@@ -201,6 +214,9 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     const std::atomic<bool>& stop = stopOnSignals();
     deployment.configure();
     folder.keep();
+    if (folder.hadFiles() && !options.quiet && !options.shard)
+        fmt::print(stderr, "notice: {} has files already; those with the names of this run's files are replaced\n",
+                   folder.path().string());
     callAll(deployment, options);
 
     const Notices reported = noticesOf(deployment);

@@ -29,6 +29,8 @@ struct RunOptions {
 
     /** Adds all options except `deployment`. */
     void addTo(CLI::App& command);
+    /** Adds `DEPLOYMENT` and `--set`, for commands that run nothing. */
+    void addDeploymentTo(CLI::App& command);
 };
 
 /** Returns the deployment with `--set` and then `--ros-args` applied to it. */

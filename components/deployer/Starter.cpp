@@ -20,6 +20,7 @@ INSONIFY_EMBED(insonify_starter_hover, "hover.csv")
 INSONIFY_EMBED(insonify_starter_fan, "fan.yml")
 INSONIFY_EMBED(insonify_starter_scanning, "scanning.yml")
 INSONIFY_EMBED(insonify_starter_grid, "grid.yml")
+INSONIFY_EMBED(insonify_starter_sweep, "sweep.yml")
 
 namespace insonify::deployer {
 namespace {
@@ -83,12 +84,14 @@ std::string starterDeployment(const SonarPreset& preset) {
         arg("absorption_block", absorptionBlock(preset, db_per_m)), arg("pulse", pulseBlock(preset))));
 }
 
-const std::vector<StarterFile>& starterFiles() {
-    static const std::vector<StarterFile> files{
+std::vector<StarterFile> starterFiles(const SonarPreset& preset) {
+    std::vector<StarterFile> files{
         {"scene.glb", between(insonify_starter_scene_begin, insonify_starter_scene_end)},
         {"make_scene.py", between(insonify_starter_script_begin, insonify_starter_script_end)},
         {"pass.csv", between(insonify_starter_pass_begin, insonify_starter_pass_end)},
         {"hover.csv", between(insonify_starter_hover_begin, insonify_starter_hover_end)}};
+    if (preset.isFan())
+        files.push_back({"sweep.yml", between(insonify_starter_sweep_begin, insonify_starter_sweep_end)});
     return files;
 }
 

@@ -38,11 +38,12 @@ const SonarPreset& sonarPreset(const std::string& name);
 /** Returns the deployment for a sonar in the starter's scene, with comments. */
 std::string starterDeployment(const SonarPreset& preset);
 
-/** A file embedded in the command: scene.glb, make_scene.py, pass.csv or hover.csv. */
+/** A file embedded in the command: scene.glb, make_scene.py, pass.csv, hover.csv or sweep.yml. */
 struct StarterFile {
     const char* name;
     std::string_view bytes;
 };
-const std::vector<StarterFile>& starterFiles();
+/** Returns the files next to a sonar's deployment. A sweep for data sets belongs to fans alone. */
+std::vector<StarterFile> starterFiles(const SonarPreset& preset);
 
 }  // namespace insonify::deployer

@@ -202,7 +202,8 @@ bool ConfigReader::readText(const std::string& yaml, const std::string& path, co
     }
 }
 
-bool ConfigReader::number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value) {
+bool ConfigReader::number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value,
+                          const char* wanted) {
     double read = 0;
     if (const auto quantity = quantityOf(node)) {
         const auto unit = unitOf(field.unit);
@@ -210,7 +211,7 @@ bool ConfigReader::number(const YAML::Node& node, const std::string& path, const
         if (!converted) return report(node, path, "is " + shown(node) + "; " + wantedUnit(field)), false;
         read = *converted;
     } else if (!isPlain(node) || !parseDouble(node.Scalar(), read) || !std::isfinite(read)) {
-        report(node, path, "is " + shown(node) + "; " + unitHint(node, field) + "must be a finite number");
+        report(node, path, "is " + shown(node) + "; " + unitHint(node, field) + wanted);
         return false;
     }
     if (read < field.min || read > field.max) {
@@ -224,7 +225,7 @@ bool ConfigReader::number(const YAML::Node& node, const std::string& path, const
 bool ConfigReader::whole(const YAML::Node& node, const std::string& path, const types::Field& field, int64_t lowest,
                          uint64_t highest, bool& negative, uint64_t& magnitude) {
     double wide = 0;
-    if (!number(node, path, field, wide)) return false;
+    if (!number(node, path, field, wide, "must be a whole number")) return false;
     if (wide != std::floor(wide)) return report(node, path, "is " + shown(node) + "; must be a whole number"), false;
     std::string_view digits = quantityOf(node) ? std::string_view("0.") : node.Scalar();
     negative = wide < 0;

@@ -68,7 +68,8 @@ public:
     void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);
 
     // Scalars; each false with a diagnostic.
-    bool number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value);
+    bool number(const YAML::Node& node, const std::string& path, const types::Field& field, double& value,
+                const char* wanted = "must be a finite number");
     bool whole(const YAML::Node& node, const std::string& path, const types::Field& field, int64_t lowest,
                uint64_t highest, bool& negative, uint64_t& magnitude);
     bool oneOf(const YAML::Node& node, const std::string& path, const std::string_view* names, size_t count,

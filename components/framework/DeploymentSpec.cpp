@@ -251,7 +251,8 @@ DeploymentSpec DeploymentSpec::parse(const std::string& text, const std::string&
     spec.names.setNamespace(keys.ros_namespace);
     spec.names.setFramePrefix(keys.frame_prefix);
     readTasks(reader, keys.tasks, spec);
-    readConnections(reader, keys.connections, spec);
+    // Without the key `tasks` each connection would name an unknown task.
+    if (keys.tasks.IsDefined()) readConnections(reader, keys.connections, spec);
     spec.diagnostics = reader.diagnostics();
     PropertySources(spec).apply();
     return spec;

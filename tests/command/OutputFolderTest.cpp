@@ -20,6 +20,15 @@ TEST(OutputFolderTest, RemovesAFolderMadeForARunUnlessKept) {
     EXPECT_TRUE(std::filesystem::is_directory(folder / "kept")) << "it was there before";
 }
 
+TEST(OutputFolderTest, ReportsFilesOfAnEarlierRun) {
+    const Folder folder;
+    EXPECT_FALSE(OutputFolder(folder / "new", "x.yml").hadFiles());
+    std::filesystem::create_directory(folder / "empty");
+    EXPECT_FALSE(OutputFolder(folder / "empty", "x.yml").hadFiles());
+    writeBytes(folder / "empty/fan.png", {});
+    EXPECT_TRUE(OutputFolder(folder / "empty", "x.yml").hadFiles());
+}
+
 TEST(OutputFolderTest, RefusesAPathThatIsNotAFolder) {
     const Folder folder;
     writeBytes(folder / "file", {});

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
@@ -38,6 +40,22 @@ TEST(CheckCommandTest, WarnsOfKeysThatTheScheduleIgnores) {
     EXPECT_THAT(outcome.out, HasSubstr("warning: sonar: not used in lockstep: scheduler, deadline\n"));
     const Outcome run = callInsonify(folder, {"run", "wall.yml", "--pings", "1"});
     EXPECT_THAT(run.err, HasSubstr("warning: sonar: not used in lockstep: scheduler, deadline\n"));
+}
+
+TEST(CheckCommandTest, SetChangesTheDeploymentAsInARun) {
+    const WallFolder folder;
+    EXPECT_EQ(callInsonify(folder, {"check", "wall.yml", "--set", "sonar.range=15"}).code, 0);
+    const Outcome bad = callInsonify(folder, {"check", "wall.yml", "--set", "sonar.range=-15"});
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_THAT(bad.err, HasSubstr("--set: tasks.sonar.properties.range: is -15"));
+}
+
+TEST(CheckCommandTest, ADeploymentWithoutTasksIsOneError) {
+    const WallFolder folder(replaced(wall_deployment, "tasks:\n", "task:\n"));
+    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("did you mean tasks?"));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
 TEST(CheckCommandTest, JsonHasEveryErrorWithItsPlace) {

@@ -143,6 +143,27 @@ TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesOfItsFolder) {
     EXPECT_EQ(readFile(folder / "dive/hover.csv"), before[2]);
 }
 
+TEST(InitCommandTest, TheSweepMakesADataSetWhoseObjectsFindTheirPlaces) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+    for (const char* seed : {"7", "8", "9"}) {
+        const std::string out = std::string("set_") + seed;
+        const Outcome made = callInsonify(folder, {"dataset", "dive", "--sweep", "dive/sweep.yml", "--out", out,
+                                                   "--seed", seed, "--set", "sonar.quality.rows=64"});
+        ASSERT_EQ(made.code, 0) << made.err;
+        std::map<std::string, size_t> found;
+        for (const char* part : {"train", "val", "test"}) {
+            const json set = json::parse(readFile(folder / out / ("instances_" + std::string(part) + ".json")));
+            for (const json& annotation : set["annotations"])
+                for (const json& category : set["categories"])
+                    if (category["id"] == annotation["category_id"]) ++found[category["name"].get<std::string>()];
+        }
+        for (const char* name : {"pile", "container", "tyre", "stone", "pipeline"}) EXPECT_GT(found[name], 0u) << name;
+    }
+    ASSERT_EQ(callInsonify(folder, {"init", "head", "--sonar", "micron"}).code, 0);
+    EXPECT_FALSE(fs::exists(folder / "head/sweep.yml")) << "its picture is a beam";
+}
+
 TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {
     const TestFolder folder;
     const Outcome outcome = callInsonify(folder, {"init", "dive", "--sonar", "oculus_m750"});

@@ -46,6 +46,12 @@ TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {
     }
 }
 
+TEST(PlanCommandTest, SetChangesThePlan) {
+    const WallFolder folder;
+    const json plan = jsonOf(folder, {"plan", "wall.yml", "--set", "sonar.quality.rows=48"});
+    EXPECT_EQ(plan["quality"]["rows"], 48);
+}
+
 TEST(PlanCommandTest, NothingIsWritten) {
     const WallFolder folder;
     ASSERT_EQ(callInsonify(folder, {"plan", "wall.yml"}).code, 0);

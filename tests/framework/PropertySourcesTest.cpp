@@ -83,7 +83,7 @@ TEST_F(PropertySourcesTest, AllDiagnosticsNameTheFileAndLineOfTheValue) {
         ElementsAre("a.yml:5:18: tasks.t.properties.lost: is not a key here; did you mean last? known: last, seed",
                     "one.yml:3:7: last: is 0; may be 1 to 1000000",
                     "one.yml:6:1: sed: is not a key here; did you mean seed? known: last, seed",
-                    "one.yml:7:7: seed: is many; must be a finite number"));
+                    "one.yml:7:7: seed: is many; must be a whole number"));
 }
 
 TEST_F(PropertySourcesTest, NamesThePlaceInAnInvalidPropertyFile) {

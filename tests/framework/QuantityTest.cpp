@@ -79,7 +79,7 @@ TEST(QuantityTest, NamesAQuantityThatDoesNotFit) {
     std::vector<std::string> texts;
     for (const auto& diagnostic : reader.diagnostics()) texts.push_back(diagnostic.text());
     EXPECT_EQ(texts, (std::vector<std::string>{"a.yml:1:12: step_deg: is 3.m; must be in deg",
-                                               "a.yml:1:24: turns: is 2.5.ceil.m; must be a finite number",
+                                               "a.yml:1:24: turns: is 2.5.ceil.m; must be a whole number",
                                                "a.yml:1:57: temperature_celsius: is {rad: 1}; must be in degC",
                                                "a.yml:1:77: level_db: is 3.m; must be in dB",
                                                "a.yml:1:12: step_deg: is 400 deg; may be 0 to 360 deg",

@@ -15,6 +15,7 @@ TEST(DidYouMeanTest, FindsANameWithLettersMissingAddedChangedOrSwapped) {
 
 TEST(DidYouMeanTest, TheLastPartOrAUniquePartOfANameIsEnough) {
     EXPECT_EQ(didYouMean("SonarTask", known), "did you mean sonar::SonarTask? ");
+    EXPECT_EQ(didYouMean("sonar", known), "did you mean sonar::SonarTask? ") << "without Task";
     EXPECT_EQ(didYouMean("count", known), "did you mean bin_count? ");
     EXPECT_EQ(didYouMean("Scanning", known), "did you mean sonar::ScanningSonarTask? ");
 }

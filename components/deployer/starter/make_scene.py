@@ -158,7 +158,10 @@ class Glb:
         return self.add("materials", item)
 
     def object(self, name, shape, material, normals=None, uvs=None):
-        """One node of this name: `insonify describe scene::SceneTask` explains how a connection moves it."""
+        """One node of this name with its origin in the middle of its box, so that a data set can place and turn it;
+        `insonify describe scene::SceneTask` explains how a connection moves it."""
+        middle = [(min(c) + max(c)) / 2 for c in zip(*shape[0])]
+        shape = [tuple(value - m for value, m in zip(point, middle)) for point in shape[0]], shape[1]
         points = [struct.unpack("<3f", struct.pack("<3f", x, z, -y)) for x, y, z in shape[0]]   # y-up, as stored
         attributes = {"POSITION": self.numbers(points, min=[min(c) for c in zip(*points)], max=[max(c) for c in zip(*points)])}
         if normals:
@@ -168,7 +171,7 @@ class Glb:
         indices = self.add("accessors", {"bufferView": self.view(struct.pack(f"<{len(flat)}H", *flat)),
                                          "componentType": 5123, "count": len(flat), "type": "SCALAR"})
         mesh = self.add("meshes", {"primitives": [{"attributes": attributes, "indices": indices, "material": material}]})
-        self.gltf["scenes"][0]["nodes"].append(self.add("nodes", {"name": name, "mesh": mesh}))
+        self.gltf["scenes"][0]["nodes"].append(self.add("nodes", {"name": name, "mesh": mesh, "translation": [middle[0], middle[2], -middle[1]]}))
 
     def write(self, path):
         self.data += b"\0" * (-len(self.data) % 4)
@@ -276,6 +279,7 @@ def main():
     glb.write(HERE / "scene.glb")
     write_trajectory("pass.csv", 12, 0.6, -4.4)
     write_trajectory("hover.csv", 20, 0.0, -5.5)
+    print(f"{HERE}: scene.glb with {len(glb.gltf['nodes'])} objects, pass.csv, hover.csv")
 
 
 if __name__ == "__main__":
