@@ -187,6 +187,8 @@ std::string scoreTable(const std::vector<StreamScore>& streams, size_t worst) {
     for (const StreamScore& score : streams) {
         addSummary(text, score);
         if (score.pings.empty()) continue;
+        text += fmt::format("pings with the largest difference, {} of {}\n", std::min(worst, score.pings.size()),
+                            score.pings.size());
         text += fmt::format("{:>26}", "time");
         for (const Column& column : columns) text += fmt::format("{:>14}", column.heading);
         text += "\n";
