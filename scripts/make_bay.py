@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 POSTS, SPACING = 161, 2.5
-EASTING, NORTHING = 451000.0, 5962000.0    # of the south-west post, UTM
+EASTING, NORTHING = 451000.0, 5962000.0    # south-west post, UTM [m]
 
 rng = np.random.default_rng(7)
 north, east = np.meshgrid(np.arange(POSTS) * SPACING, np.arange(POSTS) * SPACING, indexing="ij")

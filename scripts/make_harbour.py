@@ -18,7 +18,7 @@ from glb import Glb, Mesh, box, icosphere, loft, merged, quaternion, rotation, t
 
 SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
 SPECTRAL_SLOPE = -2.7
-SPACING = 0.32          # of the floor's grid [m]
+SPACING = 0.32          # grid of the floor [m]
 TILE = 800              # grid points on a side of the whole fractal surface: 256 m
 RELIEF = 1.0            # height difference over the whole surface [m]
 DEPTH = 9.0             # mean [m]

@@ -12,7 +12,7 @@ SIDES = 128
 MATERIALS = [("Steel.001", (0.5, 0.5, 0.55)), ("Material_PVC", (0.8, 0.8, 0.8)), ("rubber-02", (0.1, 0.1, 0.1)),
              ("Concrete", (0.6, 0.6, 0.58)), ("RockMoss", (0.4, 0.38, 0.35))]  # from port to starboard
 NEAR, BETWEEN, APART = 4.0, 1.4, 9.0  # range of the spheres [m], from row to row [m], from column to column [deg]
-RADIUS = 0.2                          # of the spheres [m]
+RADIUS = 0.2                          # each sphere [m]
 
 
 def cylinder(radius, length):

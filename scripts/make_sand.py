@@ -9,7 +9,7 @@ from glb import Glb, Mesh
 
 DEPTH, TILE, POSTS = 20.0, 6.0, 60           # [m], posts 0.1 m apart
 SOUTH, EAST, ROWS, COLUMNS = -24.0, -36.0, 22, 12
-SHORTEST, LONGEST, SLOPE = 0.25, 2.0, np.tan(np.radians(3.7))    # of the relief [m], about each axis
+SHORTEST, LONGEST, SLOPE = 0.25, 2.0, np.tan(np.radians(3.7))    # wavelengths of the relief [m]; its slope about each axis
 
 rng = np.random.default_rng(7)
 k = np.hypot(*np.meshgrid(np.fft.fftfreq(POSTS, TILE / POSTS), np.fft.fftfreq(POSTS, TILE / POSTS), indexing="ij"))

@@ -9,9 +9,9 @@ from glb import Glb, box, quaternion, rotation, tube
 
 SCENES = Path(__file__).resolve().parent.parent / "deploy" / "scenes"
 NORTH, WEST = 13.2, 9.0    # faces of the walls; the others are at the negative values [m]
-HEIGHT, THICK = 2.4, 0.5   # of the walls [m]
+HEIGHT, THICK = 2.4, 0.5   # walls [m]
 PILLARS = [(7.0, -4.5), (-8.0, 5.0)]  # [m]
-DURATION, STEP = 21.0, 0.25           # of the trajectory [s]
+DURATION, STEP = 21.0, 0.25           # trajectory [s]
 
 glb = Glb()
 concrete = glb.material("concrete", {"material": "concrete"}, (0.6, 0.6, 0.58))

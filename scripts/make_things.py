@@ -81,7 +81,7 @@ def ping_of(folder, name, heading):
     far, height = 2.2 * size, 1.1 * size
     pitch = math.atan2(height - 0.2 * size, far)
     reach = math.hypot(far, height) + 1.2 * size
-    step = 1.5e-3 * max(1, round(reach / 900 / 1.5e-3))  # of bins: the way of sound in whole microseconds
+    step = 1.5e-3 * max(1, round(reach / 900 / 1.5e-3))  # bins: the way of sound in whole microseconds
     bins = math.ceil(reach / step)
     (folder / "run.yml").write_text(DEPLOYMENT % {
         "z": height - DEPTH, "pitch": math.degrees(pitch), "range": bins * step, "bins": bins, "view": 56, "bandwidth": min(300, 110 / size)})  # 1/150 of the thing, or 2.5 mm

@@ -4,7 +4,7 @@ from PIL import Image, ImageDraw
 
 import sim_real_learn as learn
 
-CELL = 66  # of a confusion, or of a crop [px]
+CELL = 66  # side of a confusion or crop [px]
 INK = (30, 30, 30)
 
 

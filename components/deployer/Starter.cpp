@@ -48,7 +48,7 @@ std::string aligned(const std::string& text) {
 }
 
 std::string absorptionBlock(const SonarPreset& preset, double db_per_m) {
-    constexpr double highest_khz = 1000;  // of Francois and Garrison's law
+    constexpr double highest_khz = 1000;  // limit of Francois and Garrison's law
     if (preset.frequency_khz > highest_khz)
         return fmt::format("{{db_per_m: {:.2f}}}  # one way; laws of absorption are for up to {:g} kHz", db_per_m,
                            highest_khz);

@@ -12,8 +12,8 @@ namespace insonify::device {
 namespace {
 
 constexpr double alive_period = 1;        // [s]
-constexpr double motor_unit = 10e-6;      // of motor_delay [s]
-constexpr double interval_unit = 640e-9;  // of ad_interval [s]
+constexpr double motor_unit = 10e-6;      // motor_delay counts in this unit [s]
+constexpr double interval_unit = 640e-9;  // ad_interval counts in this unit [s]
 constexpr double clock_hz = 32e6;         // unit of transmit frequencies
 constexpr double full_gain = 210, usual_gain = 84, full_gain_db = 80;
 constexpr double max_code = 65535;

@@ -13,7 +13,7 @@ namespace {
 constexpr double gains[] = {0.6, 1.8, 5.5, 12.9, 30.2, 66.1, 144};  ///< Factors of the amplitude.
 constexpr uint8_t max_gain = std::size(gains) - 1;
 constexpr uint32_t shortest_scan = 1000;                                ///< [mm]
-constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // of the simulated board
+constexpr uint16_t voltage_mv = 5000, temperature_centicelsius = 2000;  // as measured on the simulated board
 constexpr size_t max_waiting = 64;
 constexpr double overhead = 0.005;  ///< Between the last echo and the answer [s].
 

@@ -83,9 +83,9 @@ private:
     types::Time ready_;             ///< When the head has arrived, or the next ping of a scan may begin.
     std::deque<Command> commands_;  ///< The first is in progress unless a scan's ping is.
     std::optional<Scan> scan_;
-    uint32_t scans_ = 0;         ///< So far.
-    bool scanning_ = false;      ///< A ping of a scan is in progress,
-    uint32_t scan_at_hand_ = 0;  ///< of this scan.
+    uint32_t scans_ = 0;         ///< Number of scans so far.
+    bool scanning_ = false;      ///< A ping of a scan is in progress.
+    uint32_t scan_at_hand_ = 0;  ///< Number of the current scan.
 };
 
 /** Returns the answer to "Discovery" on UDP 30303. @param mac 6 bytes; ip 4 */

@@ -9,7 +9,7 @@ namespace insonify::device {
 namespace {
 
 constexpr uint8_t start = '@', end = 0x0A, sequence_end = 0x80;
-constexpr size_t frame_size = 14;    // of a packet without a payload [bytes]
+constexpr size_t frame_size = 14;    // packet without a payload [bytes]
 constexpr size_t outside = 6;        // bytes that the length does not count
 constexpr size_t payload_at = 13;    // in a packet
 constexpr size_t max_packet = 4096;  // as in drivers

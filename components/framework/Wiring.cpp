@@ -204,7 +204,7 @@ void Wiring::seedTask(const TaskContext& task, const TaskSpec& spec, uint64_t se
         for (const PropertyInfo& info : properties->list())
             if (info.name == "seed") try {
                     properties->set("seed", std::to_string(own));
-                } catch (const types::ConfigError& error) {  // of a narrower type, which keeps its default
+                } catch (const types::ConfigError& error) {  // the property has a narrower type and keeps its default
                     if (seed != 0) report(spec.place, path, error.diagnostics().front().message);
                 }
 }

@@ -10,7 +10,7 @@ import yaml
 from benchmarks.common import INSONIFY, ROOT, fail
 
 SIZES = [1, 2, 5, 10]
-PERIOD = 0.5       # of each sonar's pings [s]
+PERIOD = 0.5       # time between the pings of a sonar [s]
 BUFFER = {"type": "circular_buffer", "size": 64}
 SONAR = {"range": 30, "beam_count": 256, "bin_count": 500, "field_of_view_deg": 120, "beam_height_deg": 20,
          "frequency_khz": 720, "quality": {"rows": 64, "columns_per_beam": 2}, "visibility": "cpu",

@@ -8,7 +8,7 @@ from pathlib import Path
 from benchmarks import table
 from benchmarks.common import INSONIFY, ROOT, deployment_file, fail, run_pings
 
-LAST_PING = 181  # of the pass along the quay
+LAST_PING = 181  # last ping of the pass along the quay
 STARTS = 7
 
 

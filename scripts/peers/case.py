@@ -12,13 +12,13 @@ APERTURE = ELEMENTS * WAVELENGTH / 2
 RESOLUTION = SOUND_SPEED / (2 * BANDWIDTH)  # in range
 
 POINTS = 10 + RESOLUTION * np.arange(9) * 0.137       # ranges of a point target, at nine parts of a bin
-BEAM_RANGE = 10.0                         # of the point target that the beam is turned past
+BEAM_RANGE = 10.0                         # range of the point target that the beam is turned past [m]
 BEAM_BEARINGS = np.radians(np.arange(-200, 201) / 10)
-FLOOR_DEPTH = 5.0                         # of the floor below the sonar
+FLOOR_DEPTH = 5.0                         # depth of the floor below the sonar [m]
 FLOOR_RANGES = (6.0, 18.0)                # slant ranges at which the slope is fitted: grazing angles of 56 to 16 degrees
-SPHERE_RADIUS, SPHERE_RANGE = 0.25, 10.0  # of a sphere that reflects all; its nearest point is at this range
+SPHERE_RADIUS, SPHERE_RANGE = 0.25, 10.0  # a sphere that reflects all; its nearest point is at this range [m]
 MOTION_SHIFTS = APERTURE * np.array([0, 0.05, 0.1464, 0.3, 0.45])   # along the array
-MOTION_DEPTH = 3.0                        # of the floor below the sonar
+MOTION_DEPTH = 3.0                        # depth of the floor below the sonar [m]
 MOTION_RANGES = (5.5, 7.5)
 MOTION_BEARINGS = np.arcsin(np.array([-1, 0, 1]) * WAVELENGTH / APERTURE)     # apart by the first null
 MOTION_PLACES = 4                         # patches of floor that the correlation is a mean over

@@ -138,7 +138,7 @@ def main():
     options.folder.mkdir(parents=True, exist_ok=True)
     peer = Insonify(options.folder.resolve())
     arrays, times = motion(peer, options.short)
-    peer.plane(1000.0)                    # of point targets: out of range
+    peer.plane(1000.0)                    # the plane is out of the range of point targets
     found = {"points": points(peer), "beam": beam(peer), "sphere": sphere(peer), "floor": floor(peer), "motion": arrays,
              "speckle": {"range_m": arrays["range_m"], "intensity": arrays["intensity"][:, 0]},
              "times": {**times, "cores": len(os.sched_getaffinity(0))}}

@@ -21,7 +21,7 @@ SAMPLE_RATE, CHIRP = 40e3, 1e-3           # [Hz], [s]
 CHUNK = 4000                              # points that are computed at a time
 SPACING = case.WAVELENGTH / 2
 ARRAY = (np.arange(case.ELEMENTS) - (case.ELEMENTS - 1) / 2) * SPACING
-BEAM_STEP = 0.2 * case.RESOLUTION         # of the ranges at which beams are formed
+BEAM_STEP = 0.2 * case.RESOLUTION         # between ranges at which beams are formed
 AHEAD = [np.sqrt(0.5), 0, 0, np.sqrt(0.5)]  # a quaternion: looks to starboard, across the track
 SPREADING = {"name": "geometric_spreading", "parameters": {"power": 1.0}}
 

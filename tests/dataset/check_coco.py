@@ -11,7 +11,7 @@ import sys
 import numpy as np
 from pycocotools.coco import COCO
 
-MIN_SHARE = 0.99  # of an object's energy
+MIN_SHARE = 0.99  # min share of an object's energy in its box
 
 
 def places(ping, width, height):

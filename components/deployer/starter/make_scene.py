@@ -16,7 +16,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 DEPTH = 8.0                       # mean depth of the floor [m]
 SOUTH, NORTH, EAST, WEST = -32.0, 44.0, -36.0, 20.0   # edges of the floor [m]
-SPACING = 0.8                     # of the floor's grid [m]
+SPACING = 0.8                     # grid of the floor [m]
 WALL = 11.0                       # y of the face of the quay wall, to the west [m]
 rng = random.Random(7)
 

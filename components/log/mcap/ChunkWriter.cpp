@@ -10,7 +10,7 @@ namespace insonify::log::mcap {
 namespace {
 
 constexpr size_t chunk_size = 1 << 20;                                        // [B]
-constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // of an uncompressed chunk [B]
+constexpr size_t chunk_header_size = record_header_size + 3 * 8 + 4 + 4 + 8;  // header of an uncompressed chunk [B]
 constexpr size_t max_ids = std::numeric_limits<uint16_t>::max();
 
 uint32_t crcOf(const char* data, size_t size, uint32_t before = 0) {

@@ -7,7 +7,7 @@
 namespace insonify::log::mcap {
 namespace {
 
-constexpr uint64_t max_bytes = uint64_t{1} << 30;  // of decompressed data [B]
+constexpr uint64_t max_bytes = uint64_t{1} << 30;  // limit of decompressed data [B]
 
 /** Returns the number of bytes written; 0: damaged. */
 size_t unzstd(std::span<const char> from, std::span<char> to) {

@@ -98,7 +98,7 @@ void Transforms::addPose(uint16_t channel, Poses& poses, uint64_t log_ns, uint64
     try {
         ros::decode(bytes, odometry_);
     } catch (const ros::CdrError&) {
-        return;  // of a damaged file that is copied unchanged
+        return;  // the file is damaged and copied unchanged
     }
     const auto& [p, q] = odometry_.pose.pose;
     ros::TransformStamped placed{odometry_.header, odometry_.child_frame_id, {{p.x, p.y, p.z}, q}};

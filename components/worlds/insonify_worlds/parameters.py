@@ -29,7 +29,7 @@ class Item:
     value: object
     place: str
     path: str
-    key_place: str = ""  # of its key, where it has one
+    key_place: str = ""  # file position of its key, where it has one
 
     def fail(self, message):
         raise RecipeError(self.place, self.path, message)

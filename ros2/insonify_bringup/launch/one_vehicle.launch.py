@@ -10,7 +10,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
 CONFIG = Path(__file__).resolve().parent.parent / "config"
-TOPICS = ("odometry", "sonar", "sonar/scan", "sonar/image")  # of config/insonify.rviz, below /auv
+TOPICS = ("odometry", "sonar", "sonar/scan", "sonar/image")  # topics of config/insonify.rviz, below /auv
 
 
 def default_deployment():
