@@ -13,6 +13,7 @@ struct Restarted {
     const char* name;
     const char* deployment;
     std::vector<std::string> set = {};
+    double z = 0;  ///< Of the vehicle, for WholeLabelsTest [m].
 };
 
 class RestartTest : public testing::TestWithParam<Restarted> {
@@ -82,11 +83,7 @@ TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyHasALabel) {
     options.truth = true;
     Simulation simulation(test::sourceFile(std::string("deploy/") + GetParam().deployment), options);
     std::map<std::string, types::Pose> at;
-    for (const std::string& port : simulation.poses())
-        at[port].position = {0, 0,
-                             std::string(GetParam().name).starts_with("Harbour") ? -5.5
-                             : std::string(GetParam().name).starts_with("Fish")  ? -5
-                                                                                 : 0};
+    for (const std::string& port : simulation.poses()) at[port].position = {0, 0, GetParam().z};
     const SteppedPing made = simulation.step(at, {}).front();
     double all = 0, labelled = 0, ghosts = 0, water = 0;
     for (size_t k = 0; k < made.ping->bins.size(); ++k) {
@@ -106,12 +103,13 @@ TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyHasALabel) {
 
 INSTANTIATE_TEST_SUITE_P(All, WholeLabelsTest,
                          testing::Values(Restarted{"Tank", "tank_multipath.yml"},
-                                         Restarted{"Harbour", "harbour_fls.yml", {"noise.speckle=null"}},
+                                         Restarted{"Harbour", "harbour_fls.yml", {"noise.speckle=null"}, -5.5},
                                          Restarted{"HarbourInWater",
                                                    "harbour_fls.yml",
-                                                   {"noise.speckle=null", "sonar.volume={strength_db: -60}"}},
-                                         Restarted{"ThinWalls", "vessels.yml"}, Restarted{"Fish", "fish.yml"},
-                                         Restarted{"FishInWater", "fish.yml", {"sonar.volume={strength_db: -60}"}}),
+                                                   {"noise.speckle=null", "sonar.volume={strength_db: -60}"},
+                                                   -5.5},
+                                         Restarted{"ThinWalls", "vessels.yml"}, Restarted{"Fish", "fish.yml", {}, -5},
+                                         Restarted{"FishInWater", "fish.yml", {"sonar.volume={strength_db: -60}"}, -5}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

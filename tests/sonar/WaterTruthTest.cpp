@@ -128,7 +128,7 @@ TEST(WaterTruthTest, APlateAndTheWaterShareTheBinsOfThePlate) {
         SonarConfig config = inWater(strength_db, 1024);
         config.beam_count = 1;
         config.field_of_view_deg = 1;  // thin, as the beam of the form; the shares do not depend on its width
-        if (i % 2) {                   // formed of cells, whose middle ones are in the truth
+        if (i % 2) {                   // formed of cells, of which the truth has the middle
             acoustics::BeamLaw law;
             law.width_deg = 1;
             config.beam_pattern.emplace().receive.azimuth = law;
