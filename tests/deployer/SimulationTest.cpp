@@ -13,7 +13,7 @@ struct Restarted {
     const char* name;
     const char* deployment;
     std::vector<std::string> set = {};
-    double z = 0;  ///< Of the vehicle, for WholeLabelsTest [m].
+    double z = 0;  ///< Height of the vehicle in WholeLabelsTest [m].
 };
 
 class RestartTest : public testing::TestWithParam<Restarted> {

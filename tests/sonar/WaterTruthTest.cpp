@@ -10,6 +10,7 @@
 
 #include "components/sonar/Sonar3dTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
+#include "tests/sonar/ShellScenes.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"
 #include "tests/support/Ports.hpp"
@@ -220,10 +221,33 @@ std::vector<VolumeLayer> randomWater(std::mt19937& random) {
     return {{{}, middle, loud}, {middle - between(0, 2), {}, loud - between(0, 15)}};
 }
 
-/** Two pings differ by the water, so its share is known in every bin of every scene. */
+/** Numbers of bins. */
+struct LabelCounts {
+    size_t waters = 0, surfaces = 0, mixed = 0, behind_walls = 0;
+};
+
+/** Expects that the labels follow from those of the same ping without water: the pings differ by the water. */
+void expectDifference(const WaterLabels& labels, const WaterLabels& clear, LabelCounts& counts) {
+    EXPECT_EQ(labels.truth.hits, clear.truth.hits);
+    EXPECT_EQ(labels.truth.shadow, clear.truth.shadow);
+    for (size_t at = 0; at < labels.ping.bins.size(); ++at) {
+        const double all = labels.energy(at), water = all - clear.energy(at), surface = clear.labelled(at);
+        if (!(all > 0)) continue;
+        const double share = std::max(water, surface) / all;
+        const bool is_water = water > surface;
+        ASSERT_NEAR(labels.truth.share[at], share, 1e-5) << at;
+        if (std::abs(water - surface) < 1e-4 * all) continue;
+        ASSERT_EQ(labels.truth.path[at], is_water ? by_water : clear.truth.path[at]) << at;
+        ASSERT_EQ(labels.truth.object[at], is_water ? -1 : clear.truth.object[at]) << at;
+        (is_water ? counts.waters : counts.surfaces) += 1;
+        counts.mixed += surface > 0 && share < 0.95;
+        counts.behind_walls += labels.truth.path[at] == types::SonarTruth::through_wall;
+    }
+}
+
 TEST(WaterTruthTest, SharesAreThoseOfPingsWithAndWithoutWater) {
     std::mt19937 random(5);
-    size_t waters = 0, surfaces = 0, mixed = 0;
+    LabelCounts counts;
     for (int i = 0; i < 8; ++i) {
         const types::Snapshot snapshot = ballsOverGround(random);
         SonarConfig clear = inWater({}, 256), filled = clear;
@@ -231,26 +255,38 @@ TEST(WaterTruthTest, SharesAreThoseOfPingsWithAndWithoutWater) {
         filled.volume = randomWater(random);
         const auto with = test::everyWay(filled), without = test::everyWay(clear);
         for (size_t way = 0; way < with.size(); ++way) {
-            const WaterLabels labels = labelsOf(with[way], snapshot), alone = labelsOf(without[way], snapshot);
+            SCOPED_TRACE(std::to_string(i) + " " + std::to_string(way));
+            const WaterLabels labels = labelsOf(with[way], snapshot);
             EXPECT_EQ(test::pingOf(with[way], snapshot).bins, labels.ping.bins) << "truth changes no bin";
-            EXPECT_EQ(labels.truth.hits, alone.truth.hits);
-            EXPECT_EQ(labels.truth.shadow, alone.truth.shadow);
-            for (size_t at = 0; at < labels.ping.bins.size(); ++at) {
-                const double all = labels.energy(at), water = all - alone.energy(at), surface = alone.labelled(at);
-                if (!(all > 0)) continue;
-                const double share = std::max(water, surface) / all, off = std::abs(water - surface) / all;
-                ASSERT_NEAR(labels.truth.share[at], share, 1e-5) << i << " " << way << " " << at;
-                if (off < 1e-4) continue;
-                ASSERT_EQ(labels.isWater(at), water > surface) << i << " " << way << " " << at;
-                ASSERT_EQ(labels.truth.object[at], water > surface ? -1 : alone.truth.object[at]);
-                (water > surface ? waters : surfaces) += 1;
-                mixed += surface > 0 && share < 0.95;
-            }
+            expectDifference(labels, labelsOf(without[way], snapshot), counts);
         }
     }
-    EXPECT_GT(waters, 1000u);
-    EXPECT_GT(surfaces, 1000u);
-    EXPECT_GT(mixed, 1000u);
+    EXPECT_GT(counts.waters, 1000u);
+    EXPECT_GT(counts.surfaces, 1000u);
+    EXPECT_GT(counts.mixed, 1000u);
+}
+
+TEST(WaterTruthTest, WaterBeforeThinWallsSharesBinsWithWhatIsBehindThem) {
+    std::mt19937 random(12);
+    LabelCounts counts;
+    for (int i = 0; i < 6; ++i) {
+        types::Snapshot snapshot = ballsOverGround(random);
+        auto geometry = std::make_shared<types::Geometry>(*snapshot.geometry);
+        geometry->materials.push_back(geometry->materials[0]);
+        geometry->materials[1].shell = acrylic;
+        for (size_t ball = 2; ball < geometry->meshes.size(); ++ball)
+            for (types::Cluster& cluster : geometry->meshes[ball].clusters) cluster.material = 1;
+        snapshot.geometry = geometry;
+        SonarConfig clear = inWater({}, 256);
+        clear.visibility = Visibility::Cpu;
+        clear.frequency_khz = shell_khz;
+        SonarConfig filled = clear;
+        filled.volume = randomWater(random);
+        expectDifference(labelsOf(filled, snapshot), labelsOf(clear, snapshot), counts);
+    }
+    EXPECT_GT(counts.waters, 500u);
+    EXPECT_GT(counts.mixed, 500u);
+    EXPECT_GT(counts.behind_walls, 100u);
 }
 
 /** Returns the numbers of the water's labels; NaN equals NaN. */
