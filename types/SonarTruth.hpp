@@ -13,7 +13,7 @@ namespace insonify::types {
 
 /** The truth of the bins of a ping: the object that returned the echo of each bin, its elevation, and the grazing
  *  angle. If most of a bin's energy arrived by a mirror, these are the object seen in the mirror, and the direction of
- *  arrival.
+ *  arrival. If most of it is volume reverberation, the bin has path 6, object -1, and the water's share.
  *
  *  Beam-first as the ping's bins: the values of bin k of beam b are at [b * bin_count + k]. A bin without an echo has
  *  object -1, share 0, no hits, and NaN for its angles. */
@@ -22,7 +22,7 @@ struct SonarTruth {
     static constexpr bool shared = true;  ///< Travels by reference, see Carried.
 
     static constexpr int32_t no_object = -1;
-    static constexpr uint8_t through_wall = 4, rung = 5;
+    static constexpr uint8_t through_wall = 4, rung = 5, water = 6;
 
     Time time;
     Time bin_duration;
@@ -73,15 +73,17 @@ struct SonarTruth {
         visit(Field{"elevation", "rad", "from which the strongest object's echo comes, positive up"}, self.elevation);
         visit(Field{"object", "1", "that returns most of the bin's energy: index into `objects`; -1: none"},
               self.object);
-        visit(Field{"share", "1", "of that object in the bin's energy", 0, 1}, self.share);
+        visit(Field{"share", "1", "of that object, or with path 6 of the water, in the bin's energy", 0, 1},
+              self.share);
         visit(Field{"hits", "1", "samples whose echo lies in the bin"}, self.hits);
         visit(Field{"grazing", "rad", "angle between the sound and the object's surface, pi/2: square to it"},
               self.grazing);
         visit(Field{"path", "1",
                     "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, "
-                    "5: rung in a wall"},
+                    "5: rung in a wall, 6: of the water itself"},
               self.path);
-        visit(Field{"shadow", "", "1: no echo, although nearer than the beam's last echo"}, self.shadow);
+        visit(Field{"shadow", "", "1: no echo of a surface, although nearer than the beam's last such echo"},
+              self.shadow);
     }
 };
 using SonarTruthPtr = std::shared_ptr<const SonarTruth>;

@@ -57,6 +57,7 @@ private:
         return object < 0 || static_cast<size_t>(object) >= instances_.objectCount() ? none : instances_.of(object);
     }
     bool isGhost(size_t bin) const { return !truth_.path.empty() && truth_.isByMirror(bin); }
+    bool isWater(size_t bin) const { return !truth_.path.empty() && truth_.path[bin] == types::SonarTruth::water; }
     /** Returns the object whose direct echo is in a bin. */
     int32_t directAt(size_t bin) const { return isGhost(bin) ? none : truth_.object[bin]; }
     bool counts(size_t bin) const {
@@ -116,8 +117,10 @@ private:
 
     /** Returns the number of the shadow of the object that hides the bins from `first` to `behind`. Returns none if the
      *  object has no class, or is also what is behind the shadow, as on an uneven floor. If several echoes have
-     *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others. */
+     *  elevations within one bin's change of that behind, the last echo hides the bins: sound has passed the others.
+     *  Bins behind the shadow in which the water is louder than the first echoes are skipped. */
     int32_t tracerOf(size_t start, uint32_t first, uint32_t behind) const {
+        while (behind + 1 < ping_.bin_count && isWater(start + behind)) ++behind;
         const auto elevation = [&](uint32_t k) {
             return isGhost(start + k) ? std::numeric_limits<double>::quiet_NaN()
                                       : static_cast<double>(truth_.elevation[start + k]);

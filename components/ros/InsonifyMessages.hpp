@@ -42,13 +42,14 @@ struct SonarTruth {
         visit(Field{"objects", "", "names of all objects"}, self.objects);
         visit(Field{"elevation", "rad", "positive up"}, self.elevation);
         visit(Field{"object", "1", "index into `objects`; -1: none"}, self.object);
-        visit(Field{"share", "1", "of that object in the energy"}, self.share);
+        visit(Field{"share", "1", "of that object, or of the water, in the energy"}, self.share);
         visit(Field{"hits", "1", "samples"}, self.hits);
         visit(Field{"grazing", "rad"}, self.grazing);
         visit(Field{"path", "1",
-                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall"},
+                    "0: direct, 1: by the surface once, 2: twice, 3: bounced, 4: through a wall, 5: rung in a wall, 6: "
+                    "water"},
               self.path);
-        visit(Field{"shadow", "", "1: no echo, although nearer than the last echo"}, self.shadow);
+        visit(Field{"shadow", "", "1: no echo of a surface, although nearer than the last"}, self.shadow);
     }
 };
 

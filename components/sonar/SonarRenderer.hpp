@@ -33,7 +33,7 @@ public:
     /** Makes each later rendering of `ping` fill `truth` with what its bins show (types::SonarTruth; its list of names
      *  is left alone). Null: no more. Other pings have no truth, and nothing is computed or kept for them. A beam is
      *  formed from finer azimuth cells; its truth covers the cells up to halfway to the neighbouring beams. Echoes that
-     *  arrive through sidelobes, that the pulse spreads into a bin, or that the water scatters have no truth. */
+     *  arrive through sidelobes, or that the pulse spreads into a bin, have no truth. */
     void setTruth(const types::Sonar& ping, types::SonarTruth* truth);
 
     /** Fills `signals` with those of the array's elements in `ping`, which must be the last that was rendered. Takes

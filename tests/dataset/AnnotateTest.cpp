@@ -298,6 +298,42 @@ TEST_F(AnnotateTest, AShadowOfTheFloorBelongsToNoObject) {
     for (const Annotation& each : annotated().annotations) EXPECT_FALSE(each.is_shadow) << each.name;
 }
 
+/** A rock's shadow is full of water, which is also louder than the first echoes of the floor behind it. */
+TEST_F(AnnotateTest, WaterIsInNoMaskAndInEachShadow) {
+    sweep_.annotations.shadows = config_.shadows = true;
+    const auto at = [](uint32_t beam, uint32_t bin) { return size_t{beam} * bins + bin; };
+    truth_.shadow.assign(ping_.bins.size(), 0);
+    truth_.path.assign(ping_.bins.size(), 0);
+    truth_.elevation.resize(ping_.bins.size());
+    const auto elevation = [](uint32_t bin) { return -std::asin(20.0f / static_cast<float>(std::max(bin, 20u))); };
+    for (uint32_t beam = 0; beam < beams; ++beam)
+        for (uint32_t bin = 0; bin < bins; ++bin) truth_.elevation[at(beam, bin)] = elevation(bin);
+    for (uint32_t beam = 20; beam < 24; ++beam) {
+        for (uint32_t bin = 50; bin < 60; ++bin) truth_.elevation[at(beam, bin)] = elevation(83) - 0.001f;
+        for (uint32_t bin = 60; bin < 80; ++bin) truth_.shadow[at(beam, bin)] = 1;
+    }
+    put(nothing, {20, 24}, {60, 80}, 0, 0);
+    put(nothing, {50, 60}, {5, 20}, 0, 0);
+    const auto fillWithWater = [&](Span in_beams, Span in_bins) {
+        put(nothing, in_beams, in_bins, 0.5f, 0.9f);
+        for (uint32_t beam = in_beams.first; beam < in_beams.last; ++beam)
+            for (uint32_t bin = in_bins.first; bin < in_bins.last; ++bin) {
+                truth_.path[at(beam, bin)] = types::SonarTruth::water;
+                truth_.elevation[at(beam, bin)] = std::numeric_limits<float>::quiet_NaN();
+            }
+    };
+    fillWithWater({20, 24}, {60, 83});
+    fillWithWater({50, 60}, {5, 20});
+    const Annotated all = annotated();
+    ASSERT_THAT(all.annotations, SizeIs(3)) << "rock, pile, and the rock's shadow";
+    EXPECT_EQ(all.annotations[0].bins, 4u * 10);
+    EXPECT_TRUE(all.annotations[2].is_shadow);
+    EXPECT_EQ(all.annotations[2].name, "rock");
+    EXPECT_EQ(all.annotations[2].bins, 4u * 20);
+    EXPECT_NEAR(all.annotations[2].range_max, 80 * bin_width, 1e-9);
+    for (const Annotation& each : all.annotations) EXPECT_FALSE(holds(each.box, 55, 10)) << each.name;
+}
+
 TEST_F(AnnotateTest, ATruthOfAnotherGridIsRefused) {
     truth_.bin_count = 10;
     EXPECT_THROW(annotated(), std::runtime_error);

@@ -13,6 +13,7 @@ struct Restarted {
     const char* name;
     const char* deployment;
     std::vector<std::string> set = {};
+    double z = 0;  ///< Height of the vehicle in WholeLabelsTest [m].
 };
 
 class RestartTest : public testing::TestWithParam<Restarted> {
@@ -76,32 +77,39 @@ INSTANTIATE_TEST_SUITE_P(
 
 class WholeLabelsTest : public testing::TestWithParam<Restarted> {};
 
-TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyHasAnObject) {
+TEST_P(WholeLabelsTest, NinetyNinePercentOfTheEnergyHasALabel) {
     SimulationOptions options;
     options.overrides = GetParam().set;
     options.truth = true;
     Simulation simulation(test::sourceFile(std::string("deploy/") + GetParam().deployment), options);
     std::map<std::string, types::Pose> at;
-    for (const std::string& port : simulation.poses())
-        at[port].position = {0, 0, GetParam().name == std::string("Harbour") ? -5.5 : 0};
+    for (const std::string& port : simulation.poses()) at[port].position = {0, 0, GetParam().z};
     const SteppedPing made = simulation.step(at, {}).front();
-    double all = 0, labelled = 0, ghosts = 0;
+    double all = 0, labelled = 0, ghosts = 0, water = 0;
     for (size_t k = 0; k < made.ping->bins.size(); ++k) {
         const auto energy = std::max(0.0, static_cast<double>(made.ping->bins[k]));
         all += energy;
-        if (made.truth->object[k] < 0) continue;
+        const bool of_water = made.truth->path[k] == types::SonarTruth::water;
+        if (made.truth->object[k] < 0 && !of_water) continue;
         labelled += energy;
         if (made.truth->isByMirror(k)) ghosts += energy;
+        if (of_water) water += energy;
     }
-    std::cout << GetParam().deployment << ": " << 100 * labelled / all << " % of an object, " << 100 * ghosts / all
-              << " % by mirrors\n";
+    std::cout << GetParam().deployment << ": " << 100 * labelled / all << " % with a label, " << 100 * ghosts / all
+              << " % by mirrors, " << 100 * water / all << " % of the water\n";
     EXPECT_GT(labelled, 0.99 * all);
+    EXPECT_EQ(water > 0, std::string(GetParam().name).ends_with("Water"));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WholeLabelsTest,
                          testing::Values(Restarted{"Tank", "tank_multipath.yml"},
-                                         Restarted{"Harbour", "harbour_fls.yml", {"noise.speckle=null"}},
-                                         Restarted{"ThinWalls", "vessels.yml"}),
+                                         Restarted{"Harbour", "harbour_fls.yml", {"noise.speckle=null"}, -5.5},
+                                         Restarted{"HarbourInWater",
+                                                   "harbour_fls.yml",
+                                                   {"noise.speckle=null", "sonar.volume={strength_db: -60}"},
+                                                   -5.5},
+                                         Restarted{"ThinWalls", "vessels.yml"}, Restarted{"Fish", "fish.yml", {}, -5},
+                                         Restarted{"FishInWater", "fish.yml", {"sonar.volume={strength_db: -60}"}, -5}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -156,6 +156,11 @@ TEST(AllocationTest, TruthAllocatesNothing) {
     law.width_deg = 3;
     config.beam_pattern.emplace().receive.azimuth = law;
     expectNoAllocation<SonarTask>(config, Truth::Received);
+    config.volume = {{{}, {}, -70}};
+    expectNoAllocation<SonarTask>(config, Truth::Received);
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    expectNoAllocation<SonarTask>(config, Truth::Received);
 }
 
 TEST(AllocationTest, TheDepositOnTheDeviceAllocatesNothing) {

@@ -245,15 +245,16 @@ TEST(SurfaceMapTest, LabelsAreThoseOfTheObject) {
     auto geometry = groundWith(map);
     map.materials = {addMaterial(*geometry, -12), addMaterial(*geometry, -20), addMaterial(*geometry, -16)};
     geometry->meshes[0].maps[0].map = std::make_shared<const SurfaceMap>(map);
-    const auto truthOf = [](const types::GeometryPtr& of) {
+    types::Sonar ping;
+    const auto truthOf = [&](const types::GeometryPtr& of) {
         SonarRenderer renderer(fanOver(), of);
-        types::Sonar ping;
         types::SonarTruth truth;
         renderer.setTruth(ping, &truth);
         renderer.render(test::snapshotOf(of, {0, 0, 0}, 0, types::radians(25)), ping);
         return truth;
     };
-    const types::SonarTruth mapped = truthOf(geometry), plain = truthOf(plainGround());
+    const types::SonarTruth plain = truthOf(plainGround()), mapped = truthOf(geometry);
+    for (size_t k = 0; k < ping.bins.size(); ++k) EXPECT_EQ(ping.bins[k] > 0, mapped.object[k] == 0) << k;
     EXPECT_EQ(mapped.object, plain.object);
     EXPECT_EQ(mapped.path, plain.path);
     EXPECT_EQ(mapped.shadow, plain.shadow);

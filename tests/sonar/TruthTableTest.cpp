@@ -12,14 +12,14 @@ namespace {
 constexpr uint64_t unit = 1u << 30;
 
 /** Returns the truth of one beam of three bins. */
-types::SonarTruth reported(const TruthTable& table) {
+types::SonarTruth reported(const TruthTable& table, std::span<const uint64_t> water = {}) {
     types::Sonar ping;
     ping.beam_count = 1;
     ping.bin_count = 3;
     ping.bearings.resize(1);
     types::SonarTruth truth;
     truth.takeGrid(ping);
-    table.report(0, 0, truth);
+    table.report(0, 0, truth, water);
     return truth;
 }
 
@@ -74,6 +74,24 @@ TEST(TruthTableTest, DistinguishesTheObjectsOfLowestIndexAndCountsAllEnergy) {
         EXPECT_EQ(truth.hits[2], 28u);
         std::ranges::next_permutation(order);
         if (shuffle % 10 == 0) std::ranges::reverse(order);
+    }
+}
+
+/** Six objects of 1 to 6 units, of which the first four are distinguished: the water must be louder than 4 units. */
+TEST(TruthTableTest, TheWaterIsTheLabelWhereItIsLouderThanTheStrongestObject) {
+    for (const uint64_t water : {1, 3, 4, 5, 40}) {
+        TruthTable table(1, 3);
+        for (uint32_t k = 0; k < 6; ++k) table.add(0, 1, ObjectEcho::of((k + 1) * unit, 0, 1, k, 1));
+        const types::SonarTruth truth = reported(table, std::vector<uint64_t>{0, water * unit, 7});
+        const bool is_water = water > 4;
+        EXPECT_THAT(truth.object, testing::ElementsAre(-1, is_water ? -1 : 3, -1));
+        EXPECT_THAT(truth.path, testing::ElementsAre(0, is_water ? 6 : 0, 6));
+        EXPECT_FLOAT_EQ(truth.share[1], static_cast<float>(is_water ? water : 4) / static_cast<float>(21 + water));
+        EXPECT_THAT(truth.hits, testing::ElementsAre(0, 6, 0));
+        EXPECT_THAT(truth.shadow, testing::ElementsAre(1, 0, 0));
+        EXPECT_EQ(truth.share[2], 1);
+        EXPECT_EQ(std::isnan(truth.elevation[1]), is_water);
+        EXPECT_EQ(std::isnan(truth.grazing[1]), is_water);
     }
 }
 

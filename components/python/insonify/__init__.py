@@ -124,7 +124,8 @@ class Truth(Mapping):
     """The truth of a ping's bins: arrays [beams, bins] by name, as attributes as well.
 
     `object` is an index into `objects` (names), -1 where there is none; `share` of that object in the bin's energy;
-    `elevation` and `grazing` [rad]; `hits`; `path` (0 direct, 1 and 2 by the surface, 3 by a second bounce); `shadow`.
+    `elevation` and `grazing` [rad]; `hits`; `path` (0 direct, 1 and 2 by the surface, 3 by a second bounce,
+    4 through a wall, 5 rung in a wall, 6 the water itself); `shadow`.
     """
 
     def __init__(self, arrays: dict) -> None:

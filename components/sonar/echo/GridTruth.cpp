@@ -9,10 +9,15 @@ namespace {
 
 constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
 
+/** Returns the elevation of a bin's echo, which is that of its beam; unknown for the water [rad]. */
+double elevationOf(const types::SonarTruth& truth, size_t beam, size_t at) {
+    return truth.path[at] == types::SonarTruth::water ? double{unknown} : truth.bearings[beam].rad;
+}
+
 void markShadows(size_t first, size_t bins, types::SonarTruth& truth) {
     bool echo_beyond = false;
     for (size_t at = first + bins; at-- > first;) {
-        const bool received = truth.object[at] != types::SonarTruth::no_object;
+        const bool received = truth.object[at] != types::SonarTruth::no_object || truth.hits[at] > 0;
         truth.shadow[at] = !received && echo_beyond;
         echo_beyond = echo_beyond || received;
     }
@@ -52,7 +57,9 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
         for (size_t beam = 0; beam < fan.beam_count; ++beam) {
             const size_t at = beam * bins + bin;
             const auto received = static_cast<double>(fan.bins[at]);
-            if (truth.object[at] == types::SonarTruth::no_object || !(received > 0)) continue;
+            const bool has_label =
+                truth.object[at] != types::SonarTruth::no_object || truth.path[at] == types::SonarTruth::water;
+            if (!has_label || !(received > 0)) continue;
             energy += received;
             hits += truth.hits[at];
             const double share = received * static_cast<double>(truth.share[at]);
@@ -62,7 +69,7 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
             Echo& echo =
                 known != echoes_.end() ? *known : echoes_.emplace_back(Echo{truth.object[at], truth.path[at], 0, 0, 0});
             echo.energy += share;
-            echo.elevation += share * fan.bearings[beam].rad;
+            echo.elevation += share * elevationOf(truth, beam, at);
             echo.grazing += share * static_cast<double>(truth.grazing[at]);
         }
         fillBin(column * bins + bin, energy, hits, azimuths);
@@ -73,7 +80,7 @@ void GridTruth::addTo(const types::Sonar& fan, const types::SonarTruth& truth, s
 void GridTruth::fillBin(size_t at, double energy, uint32_t hits, types::SonarTruth& azimuths) const {
     if (echoes_.empty()) return forget(at, azimuths);
     const Echo& strongest = *std::ranges::max_element(
-        echoes_, {}, [](const Echo& echo) { return std::tuple(echo.energy, -echo.object, -echo.path); });
+        echoes_, {}, [](const Echo& echo) { return std::tuple(echo.energy, -echo.path, -echo.object); });
     azimuths.object[at] = strongest.object;
     azimuths.path[at] = strongest.path;
     azimuths.share[at] = static_cast<float>(strongest.energy / energy);
@@ -88,7 +95,7 @@ void GridTruth::copyReturn(const types::SonarTruth& truth, size_t beam, size_t b
     returns.object[cell] = truth.object[at];
     returns.share[cell] = truth.share[at];
     returns.hits[cell] = truth.hits[at];
-    returns.elevation[cell] = static_cast<float>(truth.bearings[beam].rad);
+    returns.elevation[cell] = static_cast<float>(elevationOf(truth, beam, at));
     returns.grazing[cell] = truth.grazing[at];
     returns.path[cell] = truth.path[at];
 }

@@ -1,7 +1,10 @@
 #include "components/sonar/echo/TruthGrid.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numbers>
+
+#include "components/sonar/effects/Effects.hpp"
 
 namespace insonify::sonar {
 namespace {
@@ -28,8 +31,37 @@ std::vector<int32_t> beamsOfCells(const RenderPlan& plan) {
     return beams;
 }
 
-TruthGrid::TruthGrid(const RenderPlan& plan, bool whole)
+WaterTruth::WaterTruth(const RenderPlan& plan, size_t sum_count, int threads)
+    : beams_of_cells_(beamsOfCells(plan)),
+      bin_count_(static_cast<size_t>(plan.grid.bin_count)),
+      per_bin_(sum_count / bin_count_),
+      levels_(plan.config, plan.grid),
+      energies_(plan.beams.size() * bin_count_),
+      intensities_(static_cast<size_t>(threads), std::vector<float>(sum_count)) {}
+
+void WaterTruth::begin() { std::ranges::fill(energies_, uint64_t{0}); }
+
+void WaterTruth::take(const EchoRules& rules, const uint64_t* sums, size_t cell, double solid_angle, size_t thread) {
+    constexpr double maximum = 0x1p54;  // of a cell, so that a beam's sum does not overflow
+    const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
+    if (beam < 0) return;
+    std::vector<float>& intensities = intensities_[thread];
+    std::ranges::fill(intensities, 0.0f);
+    addOwnSums(rules, sums, cell, solid_angle, intensities);
+    const double quanta = quanta_per_unit * rules.strength_scale / solid_angle;
+    for (size_t bin = 0; bin < bin_count_; ++bin) {
+        double intensity = 0;
+        for (size_t i = bin * per_bin_; i < (bin + 1) * per_bin_; ++i) intensity += double{intensities[i]};
+        if (!(intensity > 0)) continue;
+        const double energy = std::clamp(intensity / levels_.factor(bin) * quanta, 1.0, maximum);
+        std::atomic_ref(energies_[static_cast<size_t>(beam) * bin_count_ + bin])
+            .fetch_add(static_cast<uint64_t>(energy + 0.5), std::memory_order_relaxed);
+    }
+}
+
+TruthGrid::TruthGrid(const RenderPlan& plan, const EchoRules& rules, bool whole, int threads)
     : beams_of_cells_(beamsOfCells(plan)), beam_count_(plan.beams.size()) {
+    if (!rules.own.empty()) water_.emplace(plan, static_cast<size_t>(rules.bins.bin_count), threads);
     if (whole && beams_of_cells_.empty()) return;
     gathered_.emplace(beam_count_, static_cast<size_t>(plan.grid.bin_count));
     alone_.resize(beam_count_);
@@ -37,13 +69,14 @@ TruthGrid::TruthGrid(const RenderPlan& plan, bool whole)
 
 void TruthGrid::begin() {
     if (gathered_) gathered_->clear();
+    if (water_) water_->begin();
 }
 
 void TruthGrid::take(size_t cell, const TruthTable& echoes, size_t of, types::SonarTruth& truth) {
     const int32_t row = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (row < 0) return;
     const auto beam = static_cast<size_t>(row);
-    if (!gathered_) return echoes.report(of, beam, truth);
+    if (!gathered_) return echoes.report(of, beam, truth, waterOf(beam));
     const std::lock_guard one_at_a_time(alone_[beam]);
     gathered_->merge(beam, echoes, of);
 }
@@ -52,7 +85,7 @@ void TruthGrid::finish(types::SonarTruth& truth, ThreadPool& threads) const {
     if (!gathered_) return;
     threads.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < beam_count_; beam += static_cast<size_t>(parts))
-            gathered_->report(beam, beam, truth);
+            gathered_->report(beam, beam, truth, waterOf(beam));
     });
 }
 
@@ -94,32 +127,47 @@ void PathTruth::take(size_t cell, std::span<const float> direct, const BinLevels
         }
 }
 
-void PathTruth::report(types::SonarTruth& truth) {
+uint8_t PathTruth::loudest(const types::SonarTruth& truth, size_t at, double water) const {
+    const bool of_surface = truth.hits[at] > 0 && truth.path[at] != types::SonarTruth::water;
+    if (!knows_direct_ && of_surface) return 0;
+    double energy = std::max(energies_[0][at] - water, water);
+    uint8_t loudest = 0;
+    for (uint8_t path = 1; path < energies_.size(); ++path)
+        if (energies_[path][at] > energy) loudest = path, energy = energies_[path][at];
+    return loudest;
+}
+
+void PathTruth::completeBin(types::SonarTruth& truth, size_t at, double water) const {
+    const bool is_shown = truth.isByMirror(at) && shown_truth_.object[at] >= 0;
+    const bool of_water = truth.object[at] < 0 && truth.share[at] > 0;
+    const double direct = knows_direct_ ? energies_[0][at] : of_water ? water / double{truth.share[at]} : 0;
+    const double ways = energyOfWays(at), all = ways + direct;
+    if (!is_shown) {
+        if (direct > 0) truth.share[at] = static_cast<float>(double{truth.share[at]} * direct / all);
+        return;
+    }
+    truth.object[at] = shown_truth_.object[at];
+    truth.share[at] = static_cast<float>(double{shown_truth_.share[at]} * ways / all);
+    truth.elevation[at] = shown_truth_.elevation[at];
+    truth.grazing[at] = shown_truth_.grazing[at];
+    truth.hits[at] += shown_truth_.hits[at];
+}
+
+void PathTruth::report(types::SonarTruth& truth, const WaterTruth* water, double quantum) {
     types::SonarTruth::forEachArray(shown_truth_,
                                     [&](const char*, auto& numbers, auto) { numbers.resize(truth.object.size()); });
     for (size_t beam = 0; beam < truth.beam_count; ++beam) {
         shown_.report(beam, beam, shown_truth_);
-        size_t last = 0;
-        for (size_t j = 0; j < bin_count_; ++j) {
+        bool echo_beyond = false;
+        for (size_t j = bin_count_; j-- > 0;) {
             const size_t at = beam * bin_count_ + j;
-            uint8_t loudest = 0;
-            for (uint8_t path = 1; path < energies_.size(); ++path)
-                if (energies_[path][at] > energies_[loudest][at]) loudest = path;
-            if (!knows_direct_ && truth.hits[at] > 0) loudest = 0;
+            const double of_water = water ? water->intensity(beam, j, quantum) : 0;
+            const uint8_t loudest = this->loudest(truth, at, of_water);
+            const bool received = truth.hits[at] > 0 || energyOfWays(at) > 0;
             if (loudest > 0) truth.path[at] = loudest;
-            if (loudest > 0 || truth.hits[at] > 0) last = j;
-        }
-        for (size_t j = 0; j < bin_count_; ++j) {
-            const size_t at = beam * bin_count_ + j;
-            truth.shadow[at] = j < last && truth.path[at] == 0 && truth.hits[at] == 0;
-            if (truth.path[at] == 0 || truth.path[at] > Bounced || shown_truth_.object[at] < 0) continue;
-            const double ways = energies_[1][at] + energies_[2][at] + energies_[3][at];
-            truth.object[at] = shown_truth_.object[at];
-            truth.share[at] =
-                static_cast<float>(static_cast<double>(shown_truth_.share[at]) * ways / (ways + energies_[0][at]));
-            truth.elevation[at] = shown_truth_.elevation[at];
-            truth.grazing[at] = shown_truth_.grazing[at];
-            truth.hits[at] += shown_truth_.hits[at];
+            truth.shadow[at] = echo_beyond && !received;
+            echo_beyond = echo_beyond || received;
+            completeBin(truth, at, of_water);
         }
     }
 }

@@ -27,6 +27,14 @@ INSONIFY_VECTOR_CLONES void toAngles(float* sines, size_t count) {
     }
 }
 
+/** Reports a bin in which no object is strongest, with the share of the water; 0: no water. */
+void reportNoObject(size_t to, double share, types::SonarTruth& truth) {
+    truth.object[to] = types::SonarTruth::no_object;
+    truth.path[to] = share > 0 ? types::SonarTruth::water : uint8_t{0};
+    truth.share[to] = static_cast<float>(share);
+    truth.elevation[to] = truth.grazing[to] = std::numeric_limits<float>::quiet_NaN();
+}
+
 }  // namespace
 
 TruthTable::TruthTable(size_t beams, size_t bins)
@@ -70,7 +78,7 @@ void TruthTable::merge(size_t beam, const TruthTable& other, size_t of) {
     }
 }
 
-void TruthTable::reportBin(size_t at, size_t to, types::SonarTruth& truth) const {
+void TruthTable::reportBin(size_t at, size_t to, uint64_t water, types::SonarTruth& truth) const {
     const ObjectEcho* strongest = &first_[at];
     ObjectEcho all = *strongest;
     for (size_t i = 1; i < objectsAt(at); ++i) {
@@ -79,38 +87,37 @@ void TruthTable::reportBin(size_t at, size_t to, types::SonarTruth& truth) const
         if (std::pair(other.energy, strongest->object) > std::pair(strongest->energy, other.object)) strongest = &other;
     }
     if (used_[at] == more) all.add(rest_[at]);
+    truth.hits[to] = all.hits;
+    const double total = static_cast<double>(all.energy) + static_cast<double>(water);
+    if (water > strongest->energy) return reportNoObject(to, static_cast<double>(water) / total, truth);
     const auto energy = static_cast<double>(static_cast<int64_t>(strongest->energy));
     const double per_energy = 2 / energy;
     const auto sine = [&](int64_t sines) {
         return std::clamp(static_cast<float>(static_cast<double>(sines) * per_energy), -1.0f, 1.0f);
     };
-    const bool alone = used_[at] == 1;
+    const bool alone = used_[at] == 1 && water == 0;
     truth.object[to] = static_cast<int32_t>(strongest->object & ~(behind_walls | rung_in_wall));
     truth.path[to] = strongest->object & behind_walls   ? types::SonarTruth::through_wall
                      : strongest->object & rung_in_wall ? types::SonarTruth::rung
                                                         : 0;
     truth.elevation[to] = sine(strongest->elevation);
     truth.grazing[to] = sine(strongest->grazing);
-    truth.share[to] = alone ? 1 : static_cast<float>(energy / static_cast<double>(all.energy));
-    truth.hits[to] = all.hits;
+    truth.share[to] = alone ? 1 : static_cast<float>(energy / total);
 }
 
-void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth) const {
-    constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+void TruthTable::report(size_t beam, size_t to, types::SonarTruth& truth, std::span<const uint64_t> water) const {
     bool echo_beyond = false;
     for (size_t bin = bins_; bin-- > 0;) {
         const size_t from = beam * bins_ + bin, at = to * bins_ + bin;
         const bool received = used_[from] > 0;
-        truth.path[at] = 0;
+        const uint64_t of_water = water.empty() ? 0 : water[bin];
         truth.shadow[at] = !received && echo_beyond;
         echo_beyond = echo_beyond || received;
         if (received) {
-            reportBin(from, at, truth);
+            reportBin(from, at, of_water, truth);
         } else {
-            truth.object[at] = types::SonarTruth::no_object;
-            truth.share[at] = 0;
             truth.hits[at] = 0;
-            truth.elevation[at] = truth.grazing[at] = unknown;
+            reportNoObject(at, of_water > 0 ? 1 : 0, truth);
         }
     }
     toAngles(truth.elevation.data() + to * bins_, bins_);

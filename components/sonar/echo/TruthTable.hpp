@@ -63,8 +63,9 @@ public:
     }
     /** Adds a beam of another table with the same number of bins. */
     void merge(size_t beam, const TruthTable& other, size_t of);
-    /** Fills beam `to` of a truth that has these bins, including direct path and shadow. */
-    void report(size_t beam, size_t to, types::SonarTruth& truth) const;
+    /** Fills beam `to` of a truth that has these bins, including direct path and shadow. `water`: energy of the water
+     *  in each bin, in the quanta of ObjectEcho::energy; empty: none. */
+    void report(size_t beam, size_t to, types::SonarTruth& truth, std::span<const uint64_t> water = {}) const;
 
 private:
     static constexpr uint8_t more = kept_apart + 1;  ///< In used_: there is a rest.
@@ -77,8 +78,8 @@ private:
     ObjectEcho& echo(size_t at, size_t i) { return const_cast<ObjectEcho&>(std::as_const(*this).echo(at, i)); }
     void addToOthers(size_t at, const ObjectEcho& echo);
     void addRest(size_t at, const ObjectEcho& echo);
-    /** Reports a bin, with sines instead of angles. */
-    void reportBin(size_t at, size_t to, types::SonarTruth& truth) const;
+    /** Reports a bin with echoes of surfaces, with sines instead of angles. */
+    void reportBin(size_t at, size_t to, uint64_t water, types::SonarTruth& truth) const;
 
     size_t bins_;
     std::vector<uint8_t> used_;       ///< Objects of each bin; or `more`.

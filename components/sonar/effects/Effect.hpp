@@ -47,10 +47,11 @@ struct PingInMaking {
     const RayPaths* bent;      ///< The sound paths; null where they are straight.
     types::SonarTruth* truth;  ///< That of its surfaces, of the sorted beams; null where no truth is recorded.
 
-    /** Records whether most of a bin without a surface has passed walls. */
+    /** Records that most of a bin is the echo of neither a surface nor the water, and whether it has passed walls. */
     void report(size_t bin, bool passes_walls) const {
-        if (truth && truth->object[bin] == types::SonarTruth::no_object)
-            truth->path[bin] = passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
+        if (!truth || truth->object[bin] != types::SonarTruth::no_object) return;
+        truth->path[bin] = passes_walls ? types::SonarTruth::through_wall : uint8_t{0};
+        truth->share[bin] = 0;
     }
 };
 
@@ -72,7 +73,8 @@ public:
 
     /** Adds the effect's numbers to the rules by which cells are summed. */
     virtual void giveRules(EchoRules& /*rules*/) const {}
-    /** Returns whether addCells() and addToCell() are called, with one sum for each bin of a beam. */
+    /** Returns whether addCells() and addToCell() are called, with one sum for each bin of a beam. The truth records
+     *  such echoes as those of the water. */
     virtual bool hasSums() const { return false; }
     /** Returns whether the compute shader makes the same sums. It can do so for one effect. With two or more, images
      *  are summed on the processor. A notice reports it where the device was to sum them. */

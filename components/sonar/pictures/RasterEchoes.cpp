@@ -66,12 +66,12 @@ private:
     void makeDeposit();
     void makeTruth();
     void prepareTruth();
-    /** Fills the truth, once the sums are available. */
+    /** Fills the truth, once the bins are filled. */
     void fillTruth();
     /** Passes the rasterised pictures to the deposits. */
     void take(const WaterView& water);
     void fillBins(types::Sonar& ping);
-    void fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const;
+    void fill(size_t cell, const uint64_t* sums, size_t thread, std::span<float> bins);
     /** Adds the seconds since the last call to a stage. */
     void lap(Stage& stage);
 
@@ -88,6 +88,7 @@ private:
     std::unique_ptr<BinDeposit> deposit_;
     types::SonarTruth* truth_ = nullptr;           ///< Truth to be filled; null: none.
     std::optional<TruthTable> shown_;              ///< Made at the first ping with truth.
+    std::optional<WaterTruth> water_;              ///< Made with it, where effects have own sums.
     std::unique_ptr<PictureDeposit> cpu_deposit_;  ///< Made for truth, where the device deposits.
     PictureDeposit* truth_deposit_ = nullptr;      ///< The deposit on the processor that records the truth.
     std::optional<EchoGrid> grid_;
@@ -147,10 +148,12 @@ void RasterEchoes::makeDeposit() {
         deposit_ = makeGpuDeposit(setup, context_);
     cpu_deposit_.reset();
     shown_.reset();
+    water_.reset();
 }
 
 void RasterEchoes::makeTruth() {
     shown_.emplace(plan_.beams.size(), static_cast<size_t>(plan_.grid.bin_count));
+    if (!rules_.own.empty()) water_.emplace(plan_, static_cast<size_t>(plan_.grid.bin_count), threads_.size());
     truth_deposit_ = dynamic_cast<PictureDeposit*>(deposit_.get());
     if (!truth_deposit_) {
         const auto alone = context_.transferring();
@@ -166,10 +169,9 @@ void RasterEchoes::prepareTruth() {
 }
 
 void RasterEchoes::fillTruth() {
-    if (cpu_deposit_) cpu_deposit_->finish();
     threads_.run([&](int part, int parts) {
         for (auto beam = static_cast<size_t>(part); beam < plan_.beams.size(); beam += static_cast<size_t>(parts))
-            shown_->report(beam, beam, *truth_);
+            shown_->report(beam, beam, *truth_, water_ ? water_->beam(beam) : std::span<const uint64_t>());
     });
 }
 
@@ -191,15 +193,17 @@ void RasterEchoes::take(const WaterView& water) {
 }
 
 void RasterEchoes::fillBins(types::Sonar& ping) {
-    const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
+    if (truth_ && water_) water_->begin();
     threads_.run([&](int part, int parts) {
         for (auto cell = static_cast<size_t>(part); cell < plan_.cells.size(); cell += static_cast<size_t>(parts))
-            fill(cell, &sums_[cell * rules_.sumCount()], pixel, grid_->cell(cell, ping));
+            fill(cell, &sums_[cell * rules_.sumCount()], static_cast<size_t>(part), grid_->cell(cell, ping));
     });
     grid_->finish(ping, threads_);
 }
 
-void RasterEchoes::fill(size_t cell, const uint64_t* sums, double pixel, std::span<float> bins) const {
+void RasterEchoes::fill(size_t cell, const uint64_t* sums, size_t thread, std::span<float> bins) {
+    const double pixel = plan_.frusta.front().du() * plan_.frusta.front().dv();  // solid angle of a whole pixel [sr]
+    if (truth_ && water_) water_->take(rules_, sums, cell, pixel, thread);
     levels_.fill(rules_, sums, pixel, bins);
     addOwnSums(rules_, sums, cell, pixel, bins);
 }
@@ -218,9 +222,10 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     lap(stages[ReadStage]);
     if (truth_) shown_->clear();
     sums_ = deposit_->finish();
-    if (truth_) fillTruth();
+    if (truth_ && cpu_deposit_) cpu_deposit_->finish();
     lap(stages[DepositStage]);
     fillBins(ping);
+    if (truth_) fillTruth();
     rendered_ = true;
     lap(stages[BeamStage]);
 }

@@ -110,7 +110,9 @@ private:
                 bent(),
                 surface_maps_ ? &*surface_maps_ : nullptr};
     }
-    TracedPing tracedPing() const { return {rules_, levels_, view_, visibility_, scene()}; }
+    TracedPing tracedPing() {
+        return {rules_, levels_, view_, visibility_, scene(), truth_ ? truth_grid_->water() : nullptr};
+    }
     void addEnergies(types::Sonar& ping);
     void depositPart(const Part& part, std::span<TracedTile> tiles, Worker& worker);
     /** Deposits tiles. `behind_walls`: without the water in front of the hits. */
@@ -298,7 +300,7 @@ void RayEchoes::shareOut() {
 
 void RayEchoes::makeTruth() {
     const bool whole = std::ranges::all_of(strips_, [](const Strip& strip) { return strip.parts == 1; });
-    truth_grid_.emplace(plan_, whole);
+    truth_grid_.emplace(plan_, rules_, whole, threads_.size());
     for (Worker& worker : workers_) {
         worker.shown.emplace(static_cast<size_t>(beamsTogether()), static_cast<size_t>(plan_.grid.bin_count));
         const EchoRules& reported = field_ ? *truth_rules_ : rules_;
@@ -445,10 +447,6 @@ void RayEchoes::depositPart(const Part& part, std::span<TracedTile> tiles, Worke
     const int walls = plan_.has(Pass::Walls) && !apart ? plan_.config.max_walls : 0;
     for (int wall = 0; wall < walls && traceThrough(tiles, worker); ++wall)
         deposit(tiles, true, part.first_beam, worker);
-    if (!truth_) return;
-    for (int beam = 0; beam < part.beams; ++beam)
-        truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
-                          *truth_);
 }
 
 void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
@@ -461,10 +459,15 @@ void RayEchoes::workOn(const Part& part, Worker& worker, types::Sonar& ping) {
         for (int beam = 0; beam < part.beams; ++beam)
             worker.received |= fill(static_cast<size_t>(part.first_beam + beam), worker,
                                     &worker.sums[static_cast<size_t>(beam) * rules_.sumCount()], ping);
+    for (int beam = 0; truth_ && beam < part.beams; ++beam)
+        truth_grid_->take(static_cast<size_t>(part.first_beam + beam), *worker.shown, static_cast<size_t>(beam),
+                          *truth_);
     worker.lap(BeamStage);
 }
 
 bool RayEchoes::fill(size_t cell, const Worker& worker, const uint64_t* sums, types::Sonar& ping) {
+    if (truth_ && truth_grid_->water())
+        truth_grid_->water()->take(rules_, sums, cell, view_.cells.cell(), worker.number);
     if (field_) return field_->fill(cell, rules_, sums, view_.cells.cell(), worker.number);
     const std::span<float> bins = grid_->cell(cell, ping);
     const bool received = levels_.fill(rules_, sums, view_.cells.cell(), bins);

@@ -12,6 +12,7 @@ namespace insonify::sonar {
 
 class BinLevels;
 class SurfaceMapping;
+class WaterTruth;
 
 /** Meaning of hits in this ping: commands, each with its triangles rotated into sonar axes. */
 struct PlacedScene {
@@ -70,6 +71,7 @@ struct TracedPing {
     const TracedView& view;
     const RayVisibility& visibility;  ///< Placed in this ping.
     PlacedScene scene;
+    const WaterTruth* water = nullptr;  ///< Echoes of the water, for addToTruth(); null: none.
 };
 
 /** A rectangle of samples of a view. */

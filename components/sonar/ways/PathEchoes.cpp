@@ -510,7 +510,7 @@ bool PathEchoes::addEnergies(const TracedPing& ping, size_t cell, std::span<floa
 void PathEchoes::addToTruth(const TracedPing& ping, types::SonarTruth& truth) {
     for (size_t cell = 0; cell < plan_.cells.size(); ++cell)
         truth_->take(cell, direct(cell), ping.levels, quantumOf(ping));
-    truth_->report(truth);
+    truth_->report(truth, ping.water, quantumOf(ping));
 }
 
 }  // namespace
