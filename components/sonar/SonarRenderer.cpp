@@ -220,6 +220,7 @@ std::vector<Omitted> SonarRenderer::omissions() const {
 }
 size_t SonarRenderer::othersReceived() const { return parts_->effects.received(); }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
+const types::GeometryPtr& SonarRenderer::geometry() const { return parts_->geometry; }
 const types::Plan& SonarRenderer::plan() const { return parts_->reported; }
 const std::string& SonarRenderer::device() const { return parts_->echoes->device(); }
 

@@ -13,6 +13,7 @@
 #include "components/sonar/places/Motion.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
 #include "tests/sonar/MovingFan.hpp"
+#include "tests/support/Deformed.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
 #include "tests/support/Surfaces.hpp"
@@ -22,6 +23,7 @@ namespace insonify::sonar {
 namespace {
 
 using test::pingOf;
+using test::rigid;
 
 SonarConfig eelFan() {
     SonarConfig config =
@@ -64,18 +66,8 @@ void expectSame(const TruePing& one, const TruePing& other) {
 }
 
 /** A plate about its origin, all of it on one joint. */
-types::GeometryPtr jointedPlate(float size = 1) {
-    types::Mesh mesh = test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size});
-    auto deformation = std::make_shared<types::Deformation>();
-    deformation->positions = mesh.positions;
-    deformation->joint_count = 1;
-    for (uint32_t i = 0; i < mesh.positions.size(); ++i) {
-        deformation->share_begin.push_back(i);
-        deformation->shares.push_back({0, 1});
-    }
-    deformation->share_begin.push_back(static_cast<uint32_t>(mesh.positions.size()));
-    mesh.deformation = std::move(deformation);
-    return test::sceneOf({std::move(mesh)});
+types::GeometryPtr jointedPlate() {
+    return test::sceneOf({test::jointed(test::quad({0, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}))});
 }
 
 class DeformingMeshTest : public scene::SceneFiles {
@@ -141,19 +133,6 @@ protected:
             all.push_back(at(scene, 1 + number(random), {x + 0.5 * number(random), number(random), number(random)},
                              0.1 * number(random), 0.1 * number(random)));
         return all;
-    }
-    /** The same shape in the geometry, triangle by triangle, of meshes that cannot deform. */
-    static types::Snapshot rigid(const types::Snapshot& snapshot) {
-        types::Snapshot still = snapshot;
-        auto geometry = std::make_shared<types::Geometry>(*types::posedGeometry(snapshot));
-        for (size_t i = 0; i < geometry->meshes.size(); ++i) {
-            types::Mesh mesh = geometry->meshes[i];
-            mesh.deformation = nullptr;
-            geometry->meshes.replace(i, std::make_shared<const types::Mesh>(std::move(mesh)));
-        }
-        still.geometry = geometry;
-        still.deformed.clear();
-        return still;
     }
     /** The scene with a bumpy normal map on all its meshes. */
     static std::shared_ptr<const scene::Scene> mapped(const std::shared_ptr<const scene::Scene>& from) {
@@ -339,10 +318,7 @@ TEST_F(DeformingMeshTest, RasterisedObjectsOfOneMeshHaveTheirOwnShapes) {
     for (size_t i = 0; i < 2; ++i)
         geometry->objects[i].world_from_object[3] = glm::dvec4(3 + 0.5 * static_cast<double>(i), i ? 1 : -1, 0, 1);
     types::Snapshot snapshot = test::snapshotOf(geometry);
-    types::JointPose turned;
-    turned.mesh_from_bind = glm::dmat4x3(glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0, 0, 1)));
-    snapshot.deformed = {{1, 0, 0}};
-    snapshot.joints = {turned};
+    test::pose(snapshot, 1, glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0, 0, 1)));
     for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
         const SonarConfig config = rasterisedFan(deposit);
         types::Snapshot rest = snapshot;
