@@ -28,7 +28,7 @@ private:
     /** The pose of an object, and its bounding box along the world's axes. */
     struct Placed {
         glm::dmat4 world_from_object{1};
-        const types::Mesh* mesh = nullptr;  ///< Of the geometry, or posed.
+        const types::Mesh* mesh = nullptr;  ///< Mesh of the geometry, or its posed copy.
         glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
     };
     void place(size_t object, const glm::dmat4& world_from_object, const types::Mesh& mesh);

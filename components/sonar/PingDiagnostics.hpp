@@ -29,7 +29,7 @@ private:
     bool inside_ = false;
     int silent_ = 0;  ///< Successive pings without any echo [1].
     types::RecurringDiagnostic silence_, enclosure_;
-    types::GeometryPtr geometry_;  ///< Of the sightlines.
+    types::GeometryPtr geometry_;  ///< Geometry of the sightlines.
     std::optional<Sightlines> sightlines_;
 };
 
