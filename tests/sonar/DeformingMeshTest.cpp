@@ -269,6 +269,30 @@ TEST_F(DeformingMeshTest, ARasterisedMeshIsTheSameMeshPosedByHandBitForBit) {
     }
 }
 
+TEST_F(DeformingMeshTest, SoItIsRasterisedWithEveryEffectThatKnowsMeshes) {
+    types::Material smooth;
+    smooth.reflection = 0.7f;
+    smooth.roughness_slope = 0.1f;
+    std::mt19937 random(6);
+    const auto eel = of(read(eelText(tube_)), smooth);
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        SonarConfig plain = rasterisedFan(deposit);
+        plain.frequency_khz = 500;
+        SonarConfig published = rasterisedFan(deposit), edges = plain, conical = plain, water = plain;
+        published.model = Model::Cerqueira2017;
+        edges.effects["edge_diffraction"] = {};
+        conical.beam_geometry = BeamGeometry::Conical;
+        water.volume.emplace_back().strength_db = -60;
+        for (const SonarConfig& config : {published, edges, conical, water}) {
+            auto snapshots = randomly(eel, -3, random);
+            for (types::Snapshot& snapshot : snapshots) snapshot.targets = {{{2, 0, 0}, 0}};
+            const std::vector<TruePing> pings = truePings(config, snapshots);
+            for (size_t i = 0; i < pings.size(); ++i)
+                expectSame(pings[i], truePings(config, {byHand(snapshots[i])}).front());
+        }
+    }
+}
+
 TEST_F(DeformingMeshTest, ARasterisedNormalMapTurnsWithTheMesh) {
     std::mt19937 random(3);
     const auto plain = read(eelText(tube_)), eel = mapped(plain);
