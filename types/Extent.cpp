@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "types/PosedMesh.hpp"
+
 namespace insonify::types {
 namespace {
 
@@ -60,7 +62,8 @@ Extent extentOf(const Geometry& geometry) {
 Extent extentOf(const Snapshot& snapshot) {
     Extent extent;
     const std::vector<glm::dmat4> places = placesOf(snapshot);
-    for (size_t i = 0; i < places.size(); ++i) extent.add(extentOf(meshOf(*snapshot.geometry, i), places[i]));
+    const GeometryPtr geometry = posedGeometry(snapshot);
+    for (size_t i = 0; i < places.size(); ++i) extent.add(extentOf(meshOf(*geometry, i), places[i]));
     return extent;
 }
 
@@ -80,8 +83,9 @@ glm::dvec3 nearestOfTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm
 NearestPoint nearestPoint(const Snapshot& snapshot, const glm::dvec3& place) {
     NearestPoint nearest;
     const std::vector<glm::dmat4> places = placesOf(snapshot);
+    const GeometryPtr geometry = posedGeometry(snapshot);
     for (size_t i = 0; i < places.size(); ++i) {
-        const Mesh& mesh = meshOf(*snapshot.geometry, i);
+        const Mesh& mesh = meshOf(*geometry, i);
         const auto corner = [&](size_t k) { return placed(places[i], mesh.positions[mesh.indices[k]]); };
         for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3) {
             const glm::dvec3 point = nearestOfTriangle(place, corner(k), corner(k + 1), corner(k + 2));

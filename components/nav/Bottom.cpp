@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "types/MeshRays.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::nav {
 
@@ -11,10 +12,17 @@ const types::Mesh& Bottom::meshOf(size_t object) const {
     return geometry.meshes[static_cast<size_t>(geometry.objects[object].mesh)];
 }
 
-void Bottom::place(size_t object, const glm::dmat4& world_from_object) {
+const types::Mesh& Bottom::posed(const types::DeformedObject& deformed) {
+    const auto found = posed_.try_emplace(deformed.object, meshOf(deformed.object)).first;
+    types::poseMesh(types::poseOf(*snapshot_, deformed, *found->second.deformation), found->second);
+    return found->second;
+}
+
+void Bottom::place(size_t object, const glm::dmat4& world_from_object, const types::Mesh& mesh) {
     Placed placed;
     placed.world_from_object = world_from_object;
-    for (const types::Cluster& cluster : meshOf(object).clusters) {
+    placed.mesh = &mesh;
+    for (const types::Cluster& cluster : mesh.clusters) {
         const types::WorldBox box(world_from_object, cluster.centre, cluster.half);
         placed.low = glm::min(placed.low, box.centre - box.half);
         placed.high = glm::max(placed.high, box.centre + box.half);
@@ -29,14 +37,19 @@ void Bottom::take(types::SnapshotPtr snapshot) {
     const std::vector<types::Object>& objects = snapshot_->geometry->objects;
     if (is_other) {
         placed_.assign(objects.size(), {});
-        for (size_t i = 0; i < objects.size(); ++i) place(i, objects[i].world_from_object);
-        moved_.clear();
+        for (size_t i = 0; i < objects.size(); ++i) place(i, objects[i].world_from_object, meshOf(i));
+        changed_.clear();
+        posed_.clear();
     }
-    for (const size_t object : moved_) place(object, objects[object].world_from_object);
-    moved_.clear();
+    for (const size_t object : changed_) place(object, objects[object].world_from_object, meshOf(object));
+    changed_.clear();
     for (const types::MovedObject& moved : snapshot_->moved) {
-        place(moved.object, moved.world_from_object);
-        moved_.push_back(moved.object);
+        place(moved.object, moved.world_from_object, meshOf(moved.object));
+        changed_.push_back(moved.object);
+    }
+    for (const types::DeformedObject& deformed : snapshot_->deformed) {
+        place(deformed.object, glm::dmat4(placed_[deformed.object].world_from_object), posed(deformed));
+        changed_.push_back(deformed.object);
     }
 }
 
@@ -57,11 +70,11 @@ std::optional<double> Bottom::rangeOfScene(const glm::dvec3& from, const glm::dv
     for (size_t i = 0; i < placed_.size(); ++i) {
         const Placed& placed = placed_[i];
         const glm::dvec3 way = direction * nearest;
-        if (meshOf(i).clusters.empty() ||
+        if (placed.mesh->clusters.empty() ||
             !types::meetsBox(from, way, (placed.low + placed.high) / 2.0, (placed.high - placed.low) / 2.0))
             continue;
         double share = 1;
-        types::anyTriangleMet(meshOf(i), placed.world_from_object, from, way, [&](double met, bool, size_t) {
+        types::anyTriangleMet(*placed.mesh, placed.world_from_object, from, way, [&](double met, bool, size_t) {
             share = std::min(share, met);
             return false;
         });

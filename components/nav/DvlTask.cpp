@@ -12,6 +12,7 @@ bool DvlTask::startHook() {
         error("there is no bottom: connect a scene's snapshot, or set bottom_height");
         return false;
     }
+    scene_ = nullptr;
     tracker_ = MotionTracker(config->sensor.mount);
     cadence_ = Cadence(config->sensor.period);
     bottom_ = snapshot.connected() ? Bottom() : Bottom(config->bottom_height);
@@ -19,8 +20,7 @@ bool DvlTask::startHook() {
 }
 
 void DvlTask::updateHook() {
-    if (types::SnapshotPtr scene; snapshot.readNewest(scene, false) == framework::FlowStatus::NewData)
-        bottom_.take(std::move(scene));
+    snapshot.readNewest(scene_, false);
     types::Pose body;
     if (!pose.readNew(body)) return;
     if (!isUsable(body)) return error("pose: is not finite, or its orientation has no length");
@@ -31,6 +31,7 @@ void DvlTask::updateHook() {
 }
 
 void DvlTask::measure(const Motion& motion) {
+    if (scene_) bottom_.take(std::exchange(scene_, nullptr));
     const auto reported = pool_.take();
     log_->measure(motion, bottom_, *reported);
     pool_.stock(*reported);

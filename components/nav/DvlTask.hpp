@@ -41,6 +41,7 @@ private:
 
     MotionTracker tracker_;
     Cadence cadence_;
+    types::SnapshotPtr scene_;  ///< The newest scene that the bottom has not taken; may be null.
     Bottom bottom_;
     std::optional<Dvl> log_;
     framework::SamplePool<types::Dvl> pool_;

@@ -36,10 +36,10 @@ public:
      *  Without `same_plan` the plan may have other laws, features and passes. */
     virtual bool takeScene(types::GeometryPtr /*geometry*/, bool /*same_plan*/) { return false; }
     /** Switches to the geometry of `meshes`, whose objects deform, and takes their shapes in each ping from then on;
-     *  null: to `geometry`, in which no object deforms. Rasterising renderers ignore deformation. */
-    virtual void deform(DeformedMeshes* /*meshes*/, types::GeometryPtr /*geometry*/) {}
+     *  null: to `geometry`, in which no object deforms. A rasterising renderer must have that geometry already. */
+    virtual void deform(DeformedMeshes* meshes, types::GeometryPtr geometry) = 0;
     /** Poses the meshes by a snapshot, before any part of a ping reads them. */
-    virtual void takeShapes(const types::Snapshot& /*snapshot*/) {}
+    virtual void takeShapes(const types::Snapshot& snapshot) = 0;
     /** Forgets all pings, as if the renderer and the effects had just been made. Returns false where a new renderer is
      *  needed. */
     virtual bool forget() { return false; }

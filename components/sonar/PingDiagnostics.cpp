@@ -149,15 +149,17 @@ std::string enclosureText(const types::Snapshot& scene, uint32_t object) {
 
 }  // namespace
 
-std::string PingDiagnostics::follow(bool received, Model model, const types::Snapshot& scene, const types::Sonar& ping,
-                                    const std::function<RenderPlan()>& coverage) {
+std::string PingDiagnostics::follow(bool received, const SonarRenderer& renderer, const types::Snapshot& scene,
+                                    const types::Sonar& ping, const std::function<RenderPlan()>& coverage) {
     if (pings_++ % between_looks == 0) {
+        if (geometry_ != renderer.geometry()) sightlines_.emplace(*renderer.geometry());
+        geometry_ = renderer.geometry();
         sightlines_->place(scene);
         const auto around = sightlines_->enclosing();
         inside_ = around.has_value();
         if (enclosure_.isDue(inside_)) return enclosureText(scene, *around);
     }
-    const bool receives = received && isLoud(model, ping);
+    const bool receives = received && isLoud(renderer.renderPlan().config.model, ping);
     silent_ = receives ? 0 : silent_ + 1;
     if (!receives && silent_ < turn_) return {};
     return silence_.isDue(!receives && !inside_) ? silenceText(coverage(), turn_ > 1, scene) : "";

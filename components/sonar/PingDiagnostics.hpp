@@ -12,15 +12,14 @@ namespace insonify::sonar {
 /** Follows the pings of a sonar and explains why they are empty: once, and again only after ten pings with echoes. */
 class PingDiagnostics {
 public:
-    /** `geometry` must outlive it. `turn`: pings of one revolution of a turning head [1]. */
-    PingDiagnostics(const types::Geometry& geometry, int turn) : turn_(turn) { takeScene(geometry); }
-    /** Switches to another geometry from the next ping on, which must outlive it. */
-    void takeScene(const types::Geometry& geometry) { sightlines_.emplace(geometry); }
+    /** `turn`: pings of one revolution of a turning head [1]. */
+    explicit PingDiagnostics(int turn) : turn_(turn) {}
 
-    /** Returns the diagnostic of a ping: usually empty, and then nothing is allocated. `received`: it has an echo;
-     *  `coverage`: returns the plan of a sonar that covers in one ping what this sonar covers. */
-    std::string follow(bool received, Model model, const types::Snapshot& scene, const types::Sonar& ping,
-                       const std::function<RenderPlan()>& coverage);
+    /** Returns the diagnostic of the renderer's last ping: usually empty, and then nothing is allocated unless the
+     * scene has changed. `received`: it has an echo; `coverage`: returns the plan of a sonar that covers in one ping
+     * what this sonar covers. */
+    std::string follow(bool received, const SonarRenderer& renderer, const types::Snapshot& scene,
+                       const types::Sonar& ping, const std::function<RenderPlan()>& coverage);
 
 private:
     static constexpr unsigned between_looks = 16;  ///< Pings between checks of the sonar's surroundings [1].
@@ -30,6 +29,7 @@ private:
     bool inside_ = false;
     int silent_ = 0;  ///< Successive pings without any echo [1].
     types::RecurringDiagnostic silence_, enclosure_;
+    types::GeometryPtr geometry_;  ///< Geometry of the sightlines.
     std::optional<Sightlines> sightlines_;
 };
 

@@ -87,7 +87,7 @@ framework::Outcome PingTask::restart() {
     if (framework::Outcome outcome = cleanup(); !outcome) return outcome;
     if (framework::Outcome outcome = configure(); !outcome || !kept) return outcome;
     renderer_ = std::move(kept);
-    diagnostics_.emplace(*geometry_, pingsPerTurn());
+    diagnostics_.emplace(pingsPerTurn());
     takePlan();
     return {};
 }
@@ -187,13 +187,12 @@ void PingTask::prepareRenderer() {
     const types::GeometryPtr before = std::exchange(geometry_, takenScene().geometry);  // kept until unused
     takenScene().moved.reserve(geometry_->objects.size());
     if (renderer_) {
-        diagnostics_->takeScene(*geometry_);
         if (renderer_->setGeometry(geometry_)) takePlan();
         return;
     }
     const SonarConfig config = locatedConfig();
     quality_.reset();
-    diagnostics_.emplace(*geometry_, pingsPerTurn());
+    diagnostics_.emplace(pingsPerTurn());
     RenderOptions options;
     options.threads = threads_;
     renderer_ = std::make_unique<SonarRenderer>(coarsest(config), geometry_, options);
@@ -231,8 +230,7 @@ bool PingTask::renderPing(SonarRenderer& renderer, types::Snapshot& scene, types
 RenderPlan PingTask::coverage(const types::Snapshot& /*scene*/) const { return renderer_->renderPlan(); }
 
 std::string PingTask::diagnosticOf(bool received, const types::Sonar& sample) {
-    const Model model = renderer_->renderPlan().config.model;
-    return diagnostics_->follow(received, model, takenScene(), sample, [this] { return coverage(takenScene()); });
+    return diagnostics_->follow(received, *renderer_, takenScene(), sample, [this] { return coverage(takenScene()); });
 }
 
 void PingTask::render() {

@@ -18,13 +18,24 @@ namespace {
 
 constexpr Stages no_time{{{"cull", 0}, {"draw", 0}, {"read", 0}, {"deposit", 0}, {"beams", 0}}};
 
+/** Returns the objects whose meshes can deform, ascending. */
+std::vector<uint32_t> deformable(const types::Geometry& geometry) {
+    std::vector<uint32_t> objects;
+    for (size_t i = 0; i < geometry.objects.size(); ++i)
+        if (geometry.meshes[static_cast<size_t>(geometry.objects[i].mesh)].deformation)
+            objects.push_back(static_cast<uint32_t>(i));
+    return objects;
+}
+
 }  // namespace
 
 struct SonarRenderer::Parts {
     Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options);
     ~Parts();
     void fillHeader(const types::Snapshot& snapshot, types::Sonar& ping) const;
+    void start();
     void makeEchoes();
+    void deform(const types::Snapshot& snapshot);
     bool takeScene(types::GeometryPtr given);
     void takeShapes(const types::Snapshot& snapshot);
     void describePlan();
@@ -45,8 +56,16 @@ struct SonarRenderer::Parts {
 
 SonarRenderer::Parts::Parts(const SonarConfig& config, types::GeometryPtr given, const RenderOptions& options)
     : scene(given), geometry(given), plan(makeRenderPlan(config, *given, options)), effects(plan, *given) {
-    makeEchoes();
+    start();
     describePlan();
+}
+
+/** A rasterising renderer has its scene on the device, so it begins with all objects that can deform. */
+void SonarRenderer::Parts::start() {
+    if (plan.traces_rays || deformable(*scene).empty()) return makeEchoes();
+    types::Snapshot rest;
+    rest.geometry = scene;
+    deform(rest);
 }
 
 void SonarRenderer::Parts::makeEchoes() {
@@ -65,17 +84,20 @@ void SonarRenderer::Parts::describePlan() {
     if (const std::string notice = echoes->notice(); !notice.empty()) reported.notices.push_back(notice);
 }
 
-/** Only rays show deforming meshes. */
+/** Gives each object that a snapshot deforms a mesh of its own; where scenes are rasterised, each that can deform. */
+void SonarRenderer::Parts::deform(const types::Snapshot& snapshot) {
+    const std::vector<uint32_t> others = !plan.traces_rays ? deformable(*scene)
+                                         : deformed        ? deformed->objects()
+                                                           : std::vector<uint32_t>();
+    const auto before = std::exchange(deformed, std::make_unique<DeformedMeshes>(snapshot, others));
+    const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
+    effects.takeScene(*geometry);
+    if (!plan.traces_rays) makeEchoes();
+    echoes->deform(deformed.get(), geometry);
+}
+
 void SonarRenderer::Parts::takeShapes(const types::Snapshot& snapshot) {
-    if (!plan.traces_rays) return;
-    if (!deformed || !deformed->serves(snapshot)) {
-        const auto before = std::exchange(
-            deformed,
-            std::make_unique<DeformedMeshes>(snapshot, deformed ? deformed->objects() : std::vector<uint32_t>()));
-        const types::GeometryPtr geometry_before = std::exchange(geometry, deformed->geometry());
-        effects.takeScene(*geometry);
-        echoes->deform(deformed.get(), geometry);
-    }
+    if (!deformed || !deformed->serves(snapshot)) deform(snapshot);
     if (!deformed->changes(snapshot)) return;
     echoes->takeShapes(snapshot);
     effects.takeShapes(snapshot);
@@ -95,7 +117,7 @@ bool SonarRenderer::Parts::takeScene(types::GeometryPtr given) {
         effects = PingEffects(plan, *given);
     }
     const types::GeometryPtr before = std::exchange(geometry, given);  // kept until unused
-    if (!echoes->takeScene(std::move(given), same_plan)) makeEchoes();
+    if (!echoes->takeScene(std::move(given), same_plan)) start();
     if (!same_plan) describePlan();
     return !same_plan;
 }
@@ -198,6 +220,7 @@ std::vector<Omitted> SonarRenderer::omissions() const {
 }
 size_t SonarRenderer::othersReceived() const { return parts_->effects.received(); }
 const RenderPlan& SonarRenderer::renderPlan() const { return parts_->plan; }
+const types::GeometryPtr& SonarRenderer::geometry() const { return parts_->geometry; }
 const types::Plan& SonarRenderer::plan() const { return parts_->reported; }
 const std::string& SonarRenderer::device() const { return parts_->echoes->device(); }
 

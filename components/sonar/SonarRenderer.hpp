@@ -55,6 +55,8 @@ public:
     /** Returns the time that the last ping spent in each stage. */
     std::span<const Stage> stages() const;
     const RenderPlan& renderPlan() const;
+    /** Returns the scene with deforming meshes in the shapes of the last ping. */
+    const types::GeometryPtr& geometry() const;
     /** Returns the plan in words, with the device. */
     const types::Plan& plan() const;
     /** Returns whether the last ping has any echo of a surface. */

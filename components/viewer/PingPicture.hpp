@@ -20,7 +20,7 @@ struct PictureNote {
  *  endian. */
 std::string pageMessage(uint32_t kind, std::string json, const std::string& data);
 
-inline constexpr uint32_t ping_kind = 1, scene_kind = 2;
+inline constexpr uint32_t ping_kind = 1, scene_kind = 2, snapshot_kind = 3;
 
 inline constexpr double lone_beam_width = 0.03;  ///< Shown width of a single beam whose ping does not state it [rad].
 

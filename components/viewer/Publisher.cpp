@@ -221,7 +221,9 @@ void Publisher::showOnPages(size_t source, const Slot& slot) {
         server_.toPages(stream, {"", bytesOf(poseText(*pose, name)), true});
     else if (const auto* snapshot = std::get_if<types::SnapshotPtr>(&slot.sample)) {
         showScene(source, (*snapshot)->geometry);
-        server_.toPages(stream, {"", bytesOf(snapshotText(**snapshot, name)), true});
+        const auto maximum = static_cast<size_t>(config_.max_triangles);
+        server_.toPages(stream,
+                        {"", bytesOf(snapshotMessage(**snapshot, maximum, name)), (*snapshot)->deformed.empty()});
     }
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "components/viewer/PingPicture.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -14,22 +15,6 @@ using Json = nlohmann::json;
 template <class T>
 void append(std::string& data, const std::vector<T>& values) {
     data.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
-
-/** Keeps only the vertices that are used. */
-Part partOf(const types::Mesh& mesh, bool coarse) {
-    Part part;
-    part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
-    std::vector<uint32_t> number(mesh.positions.size(), UINT32_MAX);
-    for (const uint32_t index : coarse && !mesh.coarse_indices.empty() ? mesh.coarse_indices : mesh.indices) {
-        if (number[index] == UINT32_MAX) {
-            number[index] = static_cast<uint32_t>(part.positions.size() / 3);
-            const glm::vec3& p = mesh.positions[index];
-            part.positions.insert(part.positions.end(), {p.x, p.y, p.z});
-        }
-        part.indices.push_back(number[index]);
-    }
-    return part;
 }
 
 Json matrixOf(const glm::dmat4& m) {
@@ -61,7 +46,36 @@ std::vector<size_t> shownObjects(const types::Geometry& geometry, const std::vec
 Json positionOf(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
 Json orientationOf(const glm::dquat& q) { return {q.x, q.y, q.z, q.w}; }
 
+/** Appends the positions of the objects that a snapshot deforms. Returns their places in the data. */
+Json shapesOf(const types::Snapshot& snapshot, size_t max_triangles, std::string& data) {
+    const bool coarse = snapshot.geometry->triangleCount() > max_triangles;
+    const types::GeometryPtr posed = types::posedGeometry(snapshot);
+    Json shapes = Json::array();
+    for (const types::DeformedObject& deformed : snapshot.deformed) {
+        const auto mesh = static_cast<size_t>(posed->objects[deformed.object].mesh);
+        const Part part = partOf(posed->meshes[mesh], coarse);
+        shapes.push_back({{"object", deformed.object}, {"offset", data.size()}, {"count", part.positions.size()}});
+        append(data, part.positions);
+    }
+    return shapes;
+}
+
 }  // namespace
+
+Part partOf(const types::Mesh& mesh, bool coarse) {
+    Part part;
+    part.material = mesh.clusters.empty() ? 0 : mesh.clusters.front().material;
+    std::vector<uint32_t> number(mesh.positions.size(), UINT32_MAX);
+    for (const uint32_t index : coarse && !mesh.coarse_indices.empty() ? mesh.coarse_indices : mesh.indices) {
+        if (number[index] == UINT32_MAX) {
+            number[index] = static_cast<uint32_t>(part.positions.size() / 3);
+            const glm::vec3& p = mesh.positions[index];
+            part.positions.insert(part.positions.end(), {p.x, p.y, p.z});
+        }
+        part.indices.push_back(number[index]);
+    }
+    return part;
+}
 
 ShownScene shownScene(const types::Geometry& geometry, size_t max_triangles) {
     ShownScene scene;
@@ -106,7 +120,7 @@ std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, 
     return pageMessage(scene_kind, json.dump(-1, ' ', false, Json::error_handler_t::replace), data);
 }
 
-std::string snapshotText(const types::Snapshot& snapshot, const std::string& source) {
+std::string snapshotMessage(const types::Snapshot& snapshot, size_t max_triangles, const std::string& source) {
     Json moved = Json::array();
     for (const types::MovedObject& object : snapshot.moved)
         moved.push_back({{"object", object.object}, {"matrix", matrixOf(object.world_from_object)}});
@@ -117,7 +131,10 @@ std::string snapshotText(const types::Snapshot& snapshot, const std::string& sou
                  {"orientation", orientationOf(snapshot.sonar.orientation)},
                  {"moved", moved}};
     if (snapshot.water_surface) json["water_surface"] = *snapshot.water_surface;
-    return json.dump();
+    if (snapshot.deformed.empty()) return json.dump();
+    std::string data;
+    json["shapes"] = shapesOf(snapshot, max_triangles, data);
+    return pageMessage(snapshot_kind, json.dump(), data);
 }
 
 std::string poseText(const types::Pose& pose, const std::string& source) {

@@ -15,6 +15,9 @@ struct Part {
     int material = 0;
 };
 
+/** Returns a mesh as sent: the vertices that its triangles use, in the order of their first use. */
+Part partOf(const types::Mesh& mesh, bool coarse);
+
 /** The part of a scene that is shown. In a scene of more than `max_triangles`, large meshes are reduced to outlines;
  *  then the objects with the fewest triangles are omitted. */
 struct ShownScene {
@@ -29,8 +32,9 @@ ShownScene shownScene(const types::Geometry& geometry, size_t max_triangles);
  *  objects. */
 std::string sceneMessage(const types::Geometry& geometry, size_t max_triangles, const std::string& source);
 
-/** Returns the poses of the sonar and of moving objects as JSON. */
-std::string snapshotText(const types::Snapshot& snapshot, const std::string& source);
+/** Returns the poses of the sonar and of moving objects for pages: JSON. Where objects deform, it is a message of
+ *  snapshot_kind, with the positions of their vertices in the order of sceneMessage(). */
+std::string snapshotMessage(const types::Snapshot& snapshot, size_t max_triangles, const std::string& source);
 
 /** Returns a pose as JSON. */
 std::string poseText(const types::Pose& pose, const std::string& source);

@@ -9,6 +9,7 @@
 #include "components/ros/Poses.hpp"
 #include "components/ros/Stamps.hpp"
 #include "components/viewer/FoxgloveMessages.hpp"
+#include "types/PosedMesh.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -56,30 +57,41 @@ Bytes SceneUpdates::whole(const types::Snapshot& snapshot) {
         for (const size_t i : shown_.objects) home_[i] = geometry_->objects[i].world_from_object;
     }
     moved_.clear();
-    for (const types::MovedObject& one : snapshot.moved)
-        if (home_.contains(one.object)) moved_[one.object] = one.world_from_object;
+    addChanged(snapshot, moved_);
+    shapes_ = {snapshot.deformed, snapshot.joints, snapshot.morphs};
     Places places = moved_;
     places.insert(home_.begin(), home_.end());
     return messageOf(snapshot, places, true);
 }
 
+void SceneUpdates::addChanged(const types::Snapshot& snapshot, Places& places) const {
+    for (const types::MovedObject& one : snapshot.moved)
+        if (home_.contains(one.object)) places[one.object] = one.world_from_object;
+    for (const types::DeformedObject& one : snapshot.deformed)
+        if (const auto home = home_.find(one.object); home != home_.end()) places.insert(*home);
+}
+
 Bytes SceneUpdates::moved(const types::Snapshot& snapshot) {
     Places now;
-    for (const types::MovedObject& one : snapshot.moved)
-        if (home_.contains(one.object)) now[one.object] = one.world_from_object;
+    addChanged(snapshot, now);
     for (const auto& [object, place] : moved_) now.emplace(object, home_.at(object));
-    if (now == moved_) return nullptr;
+    Shapes shapes{snapshot.deformed, snapshot.joints, snapshot.morphs};
+    if (now == moved_ && shapes == shapes_) return nullptr;
     moved_ = std::move(now);
+    shapes_ = std::move(shapes);
     return messageOf(snapshot, moved_, false);
 }
 
 Bytes SceneUpdates::messageOf(const types::Snapshot& snapshot, const Places& places, bool all) const {
     foxglove::SceneUpdate update;
+    const types::GeometryPtr posed = snapshot.deformed.empty() ? geometry_ : types::posedGeometry(snapshot);
     const ros::Time stamp = ros::toRos(snapshot.time);
     if (all) update.deletions.push_back({stamp, foxglove::SceneEntityDeletion::all, ""});
     for (const auto& [number, place] : places) {
         const types::Object& object = geometry_->objects[number];
-        const Part& part = shown_.parts[static_cast<size_t>(object.mesh)];
+        const int mesh = posed->objects[number].mesh;
+        const Part own = mesh == object.mesh ? Part() : partOf(posed->meshes[static_cast<size_t>(mesh)], shown_.coarse);
+        const Part& part = mesh == object.mesh ? shown_.parts[static_cast<size_t>(mesh)] : own;
         foxglove::SceneEntity& entity = update.entities.emplace_back();
         entity.timestamp = stamp;
         entity.frame_id = snapshot.sonar.target_frame;

@@ -17,20 +17,31 @@ public:
     bool isNew(const types::Snapshot& snapshot) const { return snapshot.geometry && snapshot.geometry != geometry_; }
     /** Returns all objects at their present places, replacing earlier entities; null if there is no scene. */
     Bytes whole(const types::Snapshot& snapshot);
-    /** Returns all objects that have moved since whole(), so that a message may replace the previous one; null if none
-     *  has moved since the last message. */
+    /** Returns all objects that have moved or deformed since whole(), so that a message may replace the previous one;
+     *  null if none has since the last message. */
     Bytes moved(const types::Snapshot& snapshot);
 
 private:
     using Places = std::map<size_t, glm::dmat4>;
+    /** The shapes of deformed objects. */
+    struct Shapes {
+        std::vector<types::DeformedObject> deformed;
+        std::vector<types::JointPose> joints;
+        std::vector<types::MorphPose> morphs;
+
+        bool operator==(const Shapes&) const = default;
+    };
+    /** Adds the shown objects that a snapshot moves or deforms. */
+    void addChanged(const types::Snapshot& snapshot, Places& places) const;
     Bytes messageOf(const types::Snapshot& snapshot, const Places& places, bool all) const;
 
     ros::WorldFrame axes_;
     size_t max_triangles_;
     types::GeometryPtr geometry_;
     ShownScene shown_;
-    Places home_;   ///< Places of the shown objects at the last whole().
-    Places moved_;  ///< Places last sent, of objects that have ever moved.
+    Places home_;    ///< Places of the shown objects at the last whole().
+    Places moved_;   ///< Places last sent, of objects that have ever moved or deformed.
+    Shapes shapes_;  ///< Shapes last sent.
 };
 
 }  // namespace insonify::viewer

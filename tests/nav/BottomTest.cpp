@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <random>
 
 #include "components/nav/Bottom.hpp"
+#include "tests/support/Deformed.hpp"
 #include "tests/support/Surfaces.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::nav {
 namespace {
@@ -54,6 +57,51 @@ TEST(BottomTest, FindsTheNearestOfManyMovedObjects) {
     bottom.take(std::make_shared<types::Snapshot>(snapshot));
     EXPECT_NEAR(*bottom.range({9, 3, 10}, down, 100), 9.5, 0.02) << "back at its place in the file";
     EXPECT_NEAR(*bottom.range({-10, 12, 10}, down, 100), 8.5, 0.02) << "one that is mirrored and stretched";
+}
+
+TEST(BottomTest, AMeshThatDeformsIsWhereItIsPosed) {
+    auto geometry = std::make_shared<types::Geometry>(*test::surfaces());
+    const uint32_t ball = 1;  // shares its mesh with another object
+    geometry->meshes[1] = test::jointed(geometry->meshes[1]);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> number(-1, 1);
+    const auto vector = [&] { return glm::dvec3(number(random), number(random), number(random)); };
+    Bottom bottom;
+    int hits = 0;
+    for (int trial = 0; trial < 50; ++trial) {
+        types::Snapshot snapshot = test::snapshotOf(geometry);
+        const glm::dmat4 joint =
+            glm::rotate(glm::translate(glm::dmat4(1), 5.0 * vector()), 3 * number(random), vector());
+        if (trial % 5 > 0) test::pose(snapshot, ball, glm::scale(joint, glm::dvec3(1.2, 0.5, 2)));
+        if (trial % 3 > 0) snapshot.moved = {{ball, glm::translate(glm::dmat4(1), 10.0 * vector())}};
+        const Bottom by_hand = bottomOf(test::rigid(snapshot));
+        bottom.take(std::make_shared<types::Snapshot>(snapshot));
+        const types::Extent extent = types::extentOf(
+            test::rigid(snapshot)
+                .geometry->meshes[static_cast<size_t>(test::rigid(snapshot).geometry->objects[1].mesh)],
+            snapshot.moved.empty() ? geometry->objects[ball].world_from_object : snapshot.moved[0].world_from_object);
+        const glm::dvec3 from = 15.0 * vector(), middle = (extent.low + extent.high) / 2.0;
+        for (int beam = 0; beam < 10; ++beam) {
+            const glm::dvec3 direction = glm::normalize(middle + vector() - from);
+            const auto range = bottom.range(from, direction, 100);
+            EXPECT_EQ(range, by_hand.range(from, direction, 100)) << trial;
+            hits += range && *range < glm::distance(middle, from) + 2;
+        }
+    }
+    EXPECT_GT(hits, 100);
+}
+
+TEST(BottomTest, APlateOnAJointIsAsHighAsItsJoint) {
+    const auto geometry = test::sceneOf({test::jointed(test::ground(-20))});
+    Bottom bottom;
+    for (const double up : {0.0, 3.0, -70.0, 12.0}) {
+        types::Snapshot snapshot = test::snapshotOf(geometry);
+        test::pose(snapshot, 0, glm::translate(glm::dmat4(1), {0, 0, up}));
+        bottom.take(std::make_shared<types::Snapshot>(snapshot));
+        EXPECT_NEAR(*bottom.range({0, 0, -5}, down, 100), 15 - up, 1e-5);
+    }
+    bottom.take(std::make_shared<types::Snapshot>(test::snapshotOf(geometry)));
+    EXPECT_NEAR(*bottom.range({0, 0, -5}, down, 100), 15, 1e-5) << "at rest again";
 }
 
 TEST(BottomTest, ANewGeometryReplacesTheFirst) {

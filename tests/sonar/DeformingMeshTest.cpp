@@ -13,14 +13,17 @@
 #include "components/sonar/places/Motion.hpp"
 #include "tests/scene/AnimatedFiles.hpp"
 #include "tests/sonar/MovingFan.hpp"
+#include "tests/support/Deformed.hpp"
 #include "tests/support/Scenes.hpp"
 #include "tests/support/Sonars.hpp"
+#include "tests/support/Surfaces.hpp"
 #include "types/PosedMesh.hpp"
 
 namespace insonify::sonar {
 namespace {
 
 using test::pingOf;
+using test::rigid;
 
 SonarConfig eelFan() {
     SonarConfig config =
@@ -28,6 +31,43 @@ SonarConfig eelFan() {
     config.quality.columns_per_beam = 4;
     config.visibility = Visibility::Cpu;
     return config;
+}
+
+/** The same fan, rasterised; summed on the processor, or by compute shaders that cull as well. */
+SonarConfig rasterisedFan(Deposit deposit) {
+    SonarConfig config = eelFan();
+    config.visibility = Visibility::Gl;
+    config.device = "software";
+    config.deposit = deposit;
+    return config;
+}
+
+struct TruePing {
+    types::Sonar ping;
+    types::SonarTruth truth;
+};
+
+/** Returns successive pings of one renderer, which rasterises while no other does. */
+std::vector<TruePing> truePings(const SonarConfig& config, const std::vector<types::Snapshot>& snapshots) {
+    SonarRenderer renderer(config, snapshots.front().geometry);
+    std::vector<TruePing> pings(snapshots.size());
+    for (size_t i = 0; i < pings.size(); ++i) {
+        renderer.setTruth(pings[i].ping, &pings[i].truth);
+        renderer.render(snapshots[i], pings[i].ping);
+    }
+    return pings;
+}
+
+void expectSame(const TruePing& one, const TruePing& other) {
+    EXPECT_EQ(one.ping.bins, other.ping.bins);
+    EXPECT_EQ(one.truth.object, other.truth.object);
+    EXPECT_EQ(one.truth.hits, other.truth.hits);
+    EXPECT_EQ(one.truth.share, other.truth.share);
+}
+
+/** A plate about its origin, all of it on one joint. */
+types::GeometryPtr jointedPlate() {
+    return test::sceneOf({test::jointed(test::quad({0, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}))});
 }
 
 class DeformingMeshTest : public scene::SceneFiles {
@@ -81,6 +121,36 @@ protected:
         scene::Scene scene = *from;
         auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
         for (types::Material& one : geometry->materials) one = material;
+        scene.geometry = std::move(geometry);
+        return std::make_shared<const scene::Scene>(std::move(scene));
+    }
+    /** Snapshots from random places on one side, at random times. */
+    static std::vector<types::Snapshot> randomly(const std::shared_ptr<const scene::Scene>& scene, double x,
+                                                 std::mt19937& random) {
+        std::uniform_real_distribution<double> number(-1, 1);
+        std::vector<types::Snapshot> all;
+        for (int trial = 0; trial < 5; ++trial)
+            all.push_back(at(scene, 1 + number(random), {x + 0.5 * number(random), number(random), number(random)},
+                             0.1 * number(random), 0.1 * number(random)));
+        return all;
+    }
+    /** The scene with a bumpy normal map on all its meshes. */
+    static std::shared_ptr<const scene::Scene> mapped(const std::shared_ptr<const scene::Scene>& from) {
+        scene::Scene scene = *from;
+        auto geometry = std::make_shared<types::Geometry>(*scene.geometry);
+        types::Mesh mesh = geometry->meshes[0];
+        auto deformation = std::make_shared<types::Deformation>(*mesh.deformation);
+        for (const glm::vec3& p : mesh.positions) {
+            mesh.normals.push_back(glm::normalize(glm::vec3(0.01f, p.y, p.z)));
+            mesh.tangents.emplace_back(1, 0, 0, 1);
+            mesh.uvs.emplace_back(7 * p.x, 20 * (p.y + p.z));
+        }
+        deformation->normals = mesh.normals;
+        deformation->tangents = mesh.tangents;
+        mesh.deformation = std::move(deformation);
+        geometry->meshes.replace(0, std::make_shared<const types::Mesh>(std::move(mesh)));
+        geometry->normal_maps = {test::bumpyMap()};
+        for (types::Material& material : geometry->materials) material.normal_map = 0;
         scene.geometry = std::move(geometry);
         return std::make_shared<const scene::Scene>(std::move(scene));
     }
@@ -178,6 +248,114 @@ TEST_F(DeformingMeshTest, AnObjectThatIsScaledToNothingIsNotThere) {
     EXPECT_EQ(pingOf(eelFan(), snapshot).bins, expected.bins);
 }
 
+TEST_F(DeformingMeshTest, ARasterisedMeshIsTheSameMeshPosedByHandBitForBit) {
+    types::Material smooth;
+    smooth.reflection = 0.7f;
+    smooth.roughness_slope = 0.1f;
+    std::mt19937 random(2);
+    const auto eel = read(eelText(tube_)), kelp = read(kelpText(tube_));
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        SonarConfig config = rasterisedFan(deposit);
+        config.frequency_khz = 500;
+        for (const auto& [scene, x] : {std::pair(eel, -3.0), std::pair(kelp, 2.0), std::pair(of(eel, smooth), -3.0),
+                                       std::pair(of(kelp, smooth), 2.0)}) {
+            const auto snapshots = randomly(scene, x, random);
+            const std::vector<TruePing> pings = truePings(config, snapshots);
+            for (size_t i = 0; i < pings.size(); ++i) {
+                EXPECT_GT(echoesOf(pings[i].ping), 20u);
+                expectSame(pings[i], truePings(config, {byHand(snapshots[i])}).front());
+            }
+        }
+    }
+}
+
+TEST_F(DeformingMeshTest, SoItIsRasterisedWithEveryEffectThatKnowsMeshes) {
+    types::Material smooth;
+    smooth.reflection = 0.7f;
+    smooth.roughness_slope = 0.1f;
+    std::mt19937 random(6);
+    const auto eel = of(read(eelText(tube_)), smooth);
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        SonarConfig plain = rasterisedFan(deposit);
+        plain.frequency_khz = 500;
+        SonarConfig published = rasterisedFan(deposit), edges = plain, conical = plain, water = plain;
+        published.model = Model::Cerqueira2017;
+        edges.effects["edge_diffraction"] = {};
+        conical.beam_geometry = BeamGeometry::Conical;
+        water.volume.emplace_back().strength_db = -60;
+        for (const SonarConfig& config : {published, edges, conical, water}) {
+            auto snapshots = randomly(eel, -3, random);
+            for (types::Snapshot& snapshot : snapshots) snapshot.targets = {{{2, 0, 0}, 0}};
+            const std::vector<TruePing> pings = truePings(config, snapshots);
+            for (size_t i = 0; i < pings.size(); ++i)
+                expectSame(pings[i], truePings(config, {byHand(snapshots[i])}).front());
+        }
+    }
+}
+
+TEST_F(DeformingMeshTest, ARasterisedNormalMapTurnsWithTheMesh) {
+    std::mt19937 random(3);
+    const auto plain = read(eelText(tube_)), eel = mapped(plain);
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        const SonarConfig config = rasterisedFan(deposit);
+        const auto snapshots = randomly(eel, -3, random);
+        const std::vector<TruePing> pings = truePings(config, snapshots);
+        for (size_t i = 0; i < pings.size(); ++i) {
+            EXPECT_GT(echoesOf(pings[i].ping), 20u);
+            expectSame(pings[i], truePings(config, {rigid(snapshots[i])}).front());
+            types::Snapshot unmapped = snapshots[i];
+            unmapped.geometry = plain->geometry;
+            EXPECT_NE(pings[i].ping.bins, pingOf(config, unmapped).bins);
+        }
+    }
+}
+
+/** A narrow fan shows some of the many clusters of a mesh. */
+TEST_F(DeformingMeshTest, ALargeRasterisedMeshIsCulledInItsShape) {
+    std::mt19937 random(4);
+    const auto kelp = read(kelpText(scene::Tube{300, 20, 0.05f}));
+    ASSERT_GT(kelp->geometry->meshes[0].clusters.size(), 20u);
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        SonarConfig config = rasterisedFan(deposit);
+        config.field_of_view_deg = 24;
+        config.beam_height_deg = 16;
+        const auto snapshots = randomly(kelp, 3.5, random);
+        SonarConfig all = config;
+        all.draw_all = true;
+        const std::vector<TruePing> culled = truePings(config, snapshots), drawn = truePings(all, snapshots);
+        size_t with_echoes = 0;
+        for (size_t i = 0; i < culled.size(); ++i) {
+            expectSame(culled[i], drawn[i]);
+            expectSame(culled[i], truePings(config, {rigid(snapshots[i])}).front());
+            with_echoes += echoesOf(culled[i].ping) > 5;
+        }
+        EXPECT_GT(with_echoes, 0u);
+    }
+}
+
+/** Two objects share a mesh of the file, and only one of them deforms. */
+TEST_F(DeformingMeshTest, RasterisedObjectsOfOneMeshHaveTheirOwnShapes) {
+    const types::GeometryPtr plate = jointedPlate();
+    auto geometry = std::make_shared<types::Geometry>(*plate);
+    geometry->objects.push_back(geometry->objects.front());
+    geometry->objects[0].name = "one", geometry->objects[1].name = "other";
+    for (size_t i = 0; i < 2; ++i)
+        geometry->objects[i].world_from_object[3] = glm::dvec4(3 + 0.5 * static_cast<double>(i), i ? 1 : -1, 0, 1);
+    types::Snapshot snapshot = test::snapshotOf(geometry);
+    test::pose(snapshot, 1, glm::rotate(glm::dmat4(1), 0.4, glm::dvec3(0, 0, 1)));
+    for (const Deposit deposit : {Deposit::Cpu, Deposit::Gpu}) {
+        const SonarConfig config = rasterisedFan(deposit);
+        types::Snapshot rest = snapshot;
+        rest.deformed.clear();
+        const std::vector<TruePing> pings = truePings(config, {snapshot, rest, snapshot});
+        EXPECT_GT(echoesOf(pings[0].ping), 20u);
+        EXPECT_NE(pings[0].ping.bins, pings[1].ping.bins);
+        expectSame(pings[0], pings[2]);
+        expectSame(pings[0], truePings(config, {rigid(snapshot)}).front());
+        expectSame(pings[1], truePings(config, {rigid(rest)}).front());
+    }
+}
+
 TEST_F(DeformingMeshTest, ThreadsChangeNothing) {
     const types::Snapshot snapshot = at(read(eelText(tube_)), 0.35);
     RenderOptions one, four;
@@ -210,21 +388,6 @@ TEST_F(DeformingMeshTest, APointTargetIsHiddenWhereTheMeshBendsBeforeIt) {
         echoes.push_back(static_cast<double>(renderer.othersReceived()));
     }
     EXPECT_EQ(echoes[0] + echoes[1], 1) << echoes[0];
-}
-
-/** A plate about its origin, all of it on one joint. */
-types::GeometryPtr jointedPlate(float size = 1) {
-    types::Mesh mesh = test::quad({0, -size / 2, -size / 2}, {0, size, 0}, {0, 0, size});
-    auto deformation = std::make_shared<types::Deformation>();
-    deformation->positions = mesh.positions;
-    deformation->joint_count = 1;
-    for (uint32_t i = 0; i < mesh.positions.size(); ++i) {
-        deformation->share_begin.push_back(i);
-        deformation->shares.push_back({0, 1});
-    }
-    deformation->share_begin.push_back(static_cast<uint32_t>(mesh.positions.size()));
-    mesh.deformation = std::move(deformation);
-    return test::sceneOf({std::move(mesh)});
 }
 
 /** The plate at a place by its joint, or by its object, with a rate of the matrix. */
@@ -344,14 +507,11 @@ TEST(DeformingPlanesTest, PlanesAreTheSameInRegistersBitForBit) {
 
 TEST_F(DeformingMeshTest, APlanSaysWhatDeforms) {
     const auto scene = read(eelText(tube_));
-    EXPECT_EQ(makeRenderPlan(eelFan(), *scene->geometry).findOmitted("deforming meshes"), nullptr);
-    SonarConfig rasterised = eelFan();
-    rasterised.visibility = Visibility::Gl;
-    const RenderPlan plan = makeRenderPlan(rasterised, *scene->geometry);
-    ASSERT_NE(plan.findOmitted("deforming meshes"), nullptr);
-    EXPECT_EQ(plan.findOmitted("deforming meshes")->reason, Reason::Lacking);
-    EXPECT_EQ(makeRenderPlan(eelFan(), *test::openWater()).findOmitted("deforming meshes")->reason,
-              Reason::NoneInScene);
+    for (const SonarConfig& config : {eelFan(), rasterisedFan(Deposit::Cpu)}) {
+        EXPECT_EQ(makeRenderPlan(config, *scene->geometry).findOmitted("deforming meshes"), nullptr);
+        EXPECT_EQ(makeRenderPlan(config, *test::openWater()).findOmitted("deforming meshes")->reason,
+                  Reason::NoneInScene);
+    }
 }
 
 TEST_F(DeformingMeshTest, SnapshotsThatDoNotFitAreFound) {

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <random>
 
 #include "components/sonar/ScanningSonarTask.hpp"
 #include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/effects/MotionInPing.hpp"
 #include "components/sonar/places/Motion.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
+#include "components/sonar/rays/RayPaths.hpp"
+#include "components/sonar/rays/RayVisibility.hpp"
 #include "tests/sonar/MovingFan.hpp"
 #include "tests/support/Refused.hpp"
 #include "tests/support/Scenes.hpp"
@@ -148,6 +152,72 @@ TEST(MotionTest, AFloorHasTheSameEnergyUnderAMovingSonarAndAtRest) {
     const double rest = energyOf({});
     EXPECT_GT(rest, 0);
     EXPECT_NEAR(energyOf({15, 0, 0}) / rest, 1, 4 * 15 / c);
+}
+
+/** The range at which sound along a ray meets a plate of 2 m that turns about its centre [m]: at each range the plate
+ * is placed as it is when sound is there. Infinite beyond its edges, NaN within 0.15 m of them. */
+double rangeOfTurning(const glm::dvec3& direction, const glm::dmat4& place, const glm::dvec3& turn) {
+    const double angle = glm::length(turn);
+    const auto inPlate = [&](double range) {
+        const glm::dquat back = glm::angleAxis(-angle * range / c, turn / angle);
+        const glm::dvec3 centre(place[3]);
+        return glm::transpose(glm::dmat3(place)) * (back * (direction * range - centre));
+    };
+    const double step = 0.01, middle = glm::length(glm::dvec3(place[3]));
+    for (double range = middle - 2; range < middle + 2; range += step) {
+        const glm::dvec3 here = inPlate(range);
+        if (here.x * inPlate(range + step).x > 0) continue;
+        const double aside = std::max(std::abs(here.y), std::abs(here.z));
+        if (std::abs(aside - 1) < 0.15) return std::numeric_limits<double>::quiet_NaN();
+        if (aside < 1) return range;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+TEST(MotionTest, RaysMeetAPlateThatTurnsFast) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> number(-1, 1);
+    const auto geometry = test::sceneOf({facingPlate(2)});
+    const RenderPlan plan = makeRenderPlan(movingFan(), *geometry);
+    int met = 0, missed = 0;
+    for (int trial = 0; trial < 100; ++trial) {
+        types::Snapshot snapshot = test::snapshotOf(geometry);
+        const double distance = 150 + 100 * number(random);
+        const glm::dvec3 turn(1.5 * number(random), 1.5 * number(random), 1.5 * number(random));
+        glm::dmat4 place = glm::mat4_cast(glm::angleAxis(0.4 * number(random), glm::dvec3(0, 0, 1)) *
+                                          glm::angleAxis(0.4 * number(random), glm::dvec3(0, 1, 0)));
+        glm::dmat4 rate(0);
+        for (int axis = 0; axis < 3; ++axis) rate[axis] = glm::dvec4(glm::cross(turn, glm::dvec3(place[axis])), 0);
+        place[3] = glm::dvec4(distance, 0.1 * distance * number(random), 0.05 * distance * number(random), 1);
+        snapshot.moved = {{0, place, rate}};
+        RayPaths paths(plan, *geometry);
+        paths.place(snapshot);
+        RayVisibility visibility(*geometry);
+        visibility.place(snapshot);
+        TileRays rays{};
+        TileHits hits{};
+        rays.active = (1u << tile_samples) - 1;
+        for (int i = 0; i < tile_samples; ++i) {
+            const glm::dvec3 at(place[3].x, place[3].y + 1.6 * number(random), place[3].z + 1.6 * number(random));
+            const glm::dvec3 direction = glm::normalize(at);
+            rays.x[i] = static_cast<float>(direction.x);
+            rays.y[i] = static_cast<float>(direction.y);
+            rays.z[i] = static_cast<float>(direction.z);
+        }
+        visibility.traceAlong(paths, rays, hits);
+        for (int i = 0; i < tile_samples; ++i) {
+            const glm::dvec3 direction(rays.x[i], rays.y[i], rays.z[i]);
+            const double range = rangeOfTurning(glm::normalize(direction), place, turn);
+            if (std::isnan(range)) continue;
+            const bool is_met = hits.command[i] != TileHits::nothing;
+            ASSERT_EQ(is_met, std::isfinite(range)) << trial << " " << i;
+            ++(is_met ? met : missed);
+            if (!is_met) continue;
+            EXPECT_NEAR(static_cast<double>(hits.range[i]), range, 0.1) << trial;
+        }
+    }
+    EXPECT_GT(met, 200);
+    EXPECT_GT(missed, 100);
 }
 
 TEST(MotionTest, APointTargetEchoesAtTheRangeOfTheExactPath) {

@@ -4,6 +4,7 @@
 #include "components/sonar/PingDiagnostics.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
+#include "tests/support/Deformed.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Scenes.hpp"
 
@@ -30,10 +31,13 @@ protected:
     /** Renders a number of pings of a scene, with the sonar rotated by `yaw_deg`. */
     void ping(const types::GeometryPtr& geometry, double yaw_deg, int count,
               const std::vector<types::PointTarget>& targets = {}) {
+        types::Snapshot snapshot = test::snapshotOf(geometry, {}, types::radians(yaw_deg));
+        snapshot.targets = targets;
+        ping(snapshot, count);
+    }
+    void ping(types::Snapshot snapshot, int count) {
         for (int i = 0; i < count; ++i) {
-            types::Snapshot snapshot = test::snapshotOf(geometry, {}, types::radians(yaw_deg));
             snapshot.time = types::Time::fromSeconds(++pings_);
-            snapshot.targets = targets;
             in_.port.write(std::make_shared<const types::Snapshot>(snapshot));
             task_.update();
         }
@@ -72,6 +76,19 @@ TEST_F(PingDiagnosticsTest, WarnsAboutASonarInsideAMeshInsteadOfSilence) {
     EXPECT_THAT(reported_,
                 ElementsAre(HasSubstr("is inside of object_0, which has its faces outward: the sonar is at [0, 0, "
                                       "0], its nearest surface 0.04")));
+}
+
+TEST_F(PingDiagnosticsTest, FindsMeshesThatDeformWhereTheyArePosed) {
+    types::Snapshot scene = test::snapshotOf(test::sceneOf({test::jointed(test::sphere(0.5f, 12))}));
+    test::pose(scene, 0, glm::translate(glm::dmat4(1), {0, 7, 0}));
+    ping(scene, 40);  // at rest it would be around the sonar
+    EXPECT_THAT(reported_,
+                ElementsAre(HasSubstr("the scene extends from [-0.5, 6.5, -0.5] to [0.5, 7.5, 0.5], its nearest "
+                                      "point 6.5")));
+    reported_.clear();
+    scene.joints[0].mesh_from_bind = glm::dmat4x3(1);
+    ping(scene, 40);
+    EXPECT_THAT(reported_, ElementsAre(HasSubstr("is inside of object_0")));
 }
 
 }  // namespace

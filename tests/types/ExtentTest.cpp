@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "tests/support/Deformed.hpp"
 #include "types/Extent.hpp"
 
 namespace insonify::types {
@@ -49,6 +50,19 @@ TEST(ExtentTest, TheNearestPointIsOnAFaceAnEdgeOrACorner) {
     Snapshot empty;
     empty.geometry = std::make_shared<Geometry>();
     EXPECT_EQ(nearestPoint(empty, {0, 0, 0}).distance, std::numeric_limits<double>::infinity());
+}
+
+TEST(ExtentTest, MeshesThatDeformAreAsPosed) {
+    Snapshot snapshot = twoSquares();
+    auto geometry = std::make_shared<Geometry>(*snapshot.geometry);
+    geometry->meshes[0] = test::jointed(geometry->meshes[0]);
+    snapshot.geometry = geometry;
+    test::pose(snapshot, 1, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 7)));
+    EXPECT_EQ(extentOf(snapshot).low, glm::dvec3(0));
+    EXPECT_EQ(extentOf(snapshot).high, glm::dvec3(11, 1, 7));
+    const NearestPoint nearest = nearestPoint(snapshot, {10.5, 0.5, 9});
+    EXPECT_NEAR(nearest.distance, 2, 1e-6);
+    EXPECT_EQ(nearest.object, 1u);
 }
 
 TEST(ExtentTest, NoPointOfATriangleIsNearerThanTheNearest) {

@@ -212,6 +212,17 @@ TEST_F(PageTest, DrawsTheSceneTheWaterThePathAndTheFan) {
     EXPECT_TRUE(becomes("!insonify.world().water.visible")) << "a later snapshot has none";
 }
 
+TEST_F(PageTest, ShowsAMeshThatDeformsInItsShapeAndThenAtRest) {
+    if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
+    ASSERT_TRUE(becomes("insonify.world() && insonify.world().objects.size === 2"));
+    const std::string stone = "insonify.world().objects.get(1).mesh.geometry.attributes.position.array";
+    for (const std::string height : {"1.5", "-0.5", "0"}) {
+        running->deployment().call("world.setRaised", {height});
+        EXPECT_TRUE(becomes("[2, 5, 8, 11].every((i) => " + stone + "[i] === " + height + ")")) << height;
+        EXPECT_EQ(value("insonify.world().objects.get(0).mesh.geometry.attributes.position.array[2]"), 0) << height;
+    }
+}
+
 TEST_F(PageTest, DraggingTurnsTheSceneAndTheWheelZooms) {
     if (!hasThree()) GTEST_SKIP() << "NOT TESTED: no three.js was built in";
     ASSERT_TRUE(becomes("insonify.world()?.content && insonify.snapshot()"));

@@ -2,12 +2,14 @@
 // A running deployment with a viewer.
 #include <atomic>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 #include <thread>
 
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Offers.hpp"
 #include "components/viewer/ViewerTask.hpp"
+#include "tests/support/Deformed.hpp"
 #include "tests/viewer/Bench.hpp"
 
 namespace insonify::viewer {
@@ -57,9 +59,12 @@ private:
 
 struct WaterConfig {
     bool water = true;
+    double raised = 0;
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         visit(types::Field{"water", "", "whether snapshots have a surface"}, self.water);
+        visit(types::Field{"raised", "m", "height by which the stone's mesh is deformed; 0: it is at rest"},
+              self.raised);
     }
 };
 
@@ -92,7 +97,7 @@ private:
     }
     static types::GeometryPtr scene() {
         auto geometry = std::make_shared<types::Geometry>();
-        geometry->meshes = {square(30), square(2)};
+        geometry->meshes = {square(30), test::jointed(square(2))};
         geometry->materials.resize(1);
         geometry->materials[0].name = "sand";
         geometry->objects = {{"ground", 0, glm::dmat4(1)}, {"stone", 1, glm::dmat4(1)}};
@@ -110,6 +115,7 @@ private:
         sample->sonar = here;
         sample->geometry = geometry_;
         if (config->water) sample->water_surface = 0;
+        if (config->raised != 0) test::pose(*sample, 1, glm::translate(glm::dmat4(1), {0, 0, config->raised}));
         snapshot.write(sample);
         pose.write(here);
         pose.write(here);

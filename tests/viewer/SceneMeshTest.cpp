@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include "components/viewer/PingPicture.hpp"
 #include "components/viewer/SceneMesh.hpp"
+#include "components/viewer/SceneUpdates.hpp"
+#include "tests/support/Deformed.hpp"
 
 namespace insonify::viewer {
 namespace {
@@ -20,10 +23,10 @@ struct MeshMessage {
     }
 };
 
-MeshMessage meshTakenApart(const std::string& bytes) {
+MeshMessage meshTakenApart(const std::string& bytes, uint32_t kind = scene_kind) {
     uint32_t head[2];
     std::memcpy(head, bytes.data(), sizeof head);
-    EXPECT_EQ(head[0], scene_kind);
+    EXPECT_EQ(head[0], kind);
     return {nlohmann::json::parse(bytes.substr(8, head[1])), bytes.substr(8 + head[1])};
 }
 
@@ -96,11 +99,51 @@ TEST(SceneMeshTest, ASnapshotHasThePlacesOfObjects) {
     snapshot.sonar.position = {1, 2, 3};
     snapshot.moved = {{7, glm::dmat4(1)}};
     snapshot.water_surface = -1;
-    const auto json = nlohmann::json::parse(snapshotText(snapshot, "scene.snapshot"));
+    const auto json = nlohmann::json::parse(snapshotMessage(snapshot, 1000, "scene.snapshot"));
     EXPECT_EQ(json["position"], nlohmann::json::parse("[1, 2, 3]"));
     EXPECT_EQ(json["orientation"], nlohmann::json::parse("[0, 0, 0, 1]"));
     EXPECT_EQ(json["moved"][0]["object"], 7);
     EXPECT_EQ(json["water_surface"], -1);
+}
+
+/** Two objects of one mesh, the second of which is posed and moved. */
+types::Snapshot posedScene(double up) {
+    auto geometry = std::make_shared<types::Geometry>(scene(4, 2));
+    geometry->meshes[1] = test::jointed(geometry->meshes[1]);
+    types::Snapshot snapshot;
+    snapshot.geometry = geometry;
+    snapshot.sonar.target_frame = "world";
+    test::pose(snapshot, 2, glm::translate(glm::dmat4(1), {0, 0, up}));
+    return snapshot;
+}
+
+TEST(SceneMeshTest, ASnapshotHasThePositionsOfMeshesThatDeform) {
+    const MeshMessage message = meshTakenApart(snapshotMessage(posedScene(7), 1000, "scene.snapshot"), snapshot_kind);
+    EXPECT_EQ(message.json["type"], "snapshot");
+    ASSERT_EQ(message.json["shapes"].size(), 1u);
+    EXPECT_EQ(message.json["shapes"][0]["object"], 2);
+    EXPECT_EQ(message.list<float>(message.json["shapes"][0]), (std::vector<float>{0, 0, 7, 1, 1, 7, 2, 0, 7, 3, 1, 7}));
+}
+
+TEST(SceneMeshTest, FoxgloveShowsMeshesThatDeformLikeRigidMeshesOfThatShape) {
+    const types::Snapshot first = posedScene(7), second = posedScene(-2);
+    SceneUpdates deforming(ros::WorldFrame::Enu, 1000), rigid(ros::WorldFrame::Enu, 1000);
+    EXPECT_EQ(*deforming.whole(first), *rigid.whole(test::rigid(first)));
+    EXPECT_EQ(deforming.moved(first), nullptr) << "has the same shape";
+    types::Snapshot moved = test::rigid(second);
+    moved.moved = {{2, glm::dmat4(1)}};
+    const Bytes update = deforming.moved(second);
+    ASSERT_NE(update, nullptr);
+    SceneUpdates other(ros::WorldFrame::Enu, 1000);
+    other.whole(test::rigid(second));
+    types::Snapshot aside = moved;
+    aside.geometry = second.geometry;
+    aside.moved[0].world_from_object[3].x = 1;
+    other.moved(aside);  // so that the object counts as moved
+    EXPECT_EQ(*update, *other.moved(moved));
+    types::Snapshot rest = second;
+    rest.deformed.clear();
+    EXPECT_NE(deforming.moved(rest), nullptr) << "is at rest again";
 }
 
 }  // namespace

@@ -8,21 +8,14 @@ namespace {
 std::string withoutDeforming(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "no mesh has a skin or morph targets";
 }
-std::string deformingNeedsRays(const Omitted& /*what*/, const BinGrid& /*grid*/) {
-    return "rasterised scenes show skins and morph targets at rest; they deform with `visibility: cpu`";
-}
 
-/** Meshes that skins and morph targets deform from ping to ping. RayEchoes poses them. */
+/** Meshes that skins and morph targets deform from ping to ping. EchoRenderer::takeShapes() poses them. */
 class DeformingMeshes final : public Effect {
 public:
     bool plan(const types::Geometry& geometry, RenderPlan& plan) const override {
-        const auto omit = [&](Reason reason, Omitted::Words words) {
-            return leaveOut(plan, {.effect = "deforming meshes", .reason = reason, .words = words});
-        };
-        if (std::ranges::none_of(geometry.meshes, [](const auto& mesh) { return mesh.deformation != nullptr; }))
-            return omit(Reason::NoneInScene, withoutDeforming);
-        if (!plan.traces_rays) return omit(Reason::Lacking, deformingNeedsRays);
-        return true;
+        if (std::ranges::any_of(geometry.meshes, [](const auto& mesh) { return mesh.deformation != nullptr; }))
+            return true;
+        return leaveOut(plan, {.effect = "deforming meshes", .reason = Reason::NoneInScene, .words = withoutDeforming});
     }
 };
 

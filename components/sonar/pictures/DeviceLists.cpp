@@ -14,6 +14,7 @@ public:
     DeviceLists(const Setup& setup, gpu::EglContext& context);
     void list(size_t frustum, const ViewFrustum& view) override;
     bool mayShow(size_t frustum) const override { return views_[frustum].any; }
+    void takeShape(uint32_t object) override;
     void prepare(std::span<const ViewFrustum> views) override;
     Draws draws(size_t frustum) const override;
     std::span<const CommandRecord> commands(size_t) const override { return commands_; }
@@ -33,7 +34,8 @@ private:
     struct Uniforms {
         GLint cluster_count, frustum, frustum_count, outward, range_max;
     };
-    void addClusters(std::vector<ClusterRecord>& clusters, uint32_t object);
+    void addClusters(std::vector<ClusterRecord>& clusters, uint32_t object) const;
+    void addCommands(uint32_t object);
     ViewedObject viewedObject(size_t object, const ViewFrustum& view, uint32_t in_view) const;
     void cull(size_t frustum, const ViewFrustum& view) const;
     void setUniforms(size_t frustum, const ViewFrustum& view) const;
@@ -44,6 +46,7 @@ private:
     const gpu::Program& program_;
     Uniforms uniforms_;
     std::vector<CommandRecord> commands_;  ///< One for each cluster, the same for all pings.
+    std::vector<size_t> first_cluster_;    ///< First cluster of each object.
     std::vector<DrawGroup> groups_;
     std::vector<View> views_;   ///< One for each frustum.
     std::vector<Found> found_;  ///< One for each frustum: the device culls and rasterises in order.
@@ -62,7 +65,11 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
     const auto at = [this](const char* name) { return glGetUniformLocation(program_.id(), name); };
     uniforms_ = {at("cluster_count"), at("frustum"), at("frustum_count"), at("outward"), at("range_max")};
     std::vector<ClusterRecord> clusters;
-    for (uint32_t i = 0; i < setup.geometry.objects.size(); ++i) addClusters(clusters, i);
+    for (uint32_t i = 0; i < setup.geometry.objects.size(); ++i) {
+        first_cluster_.push_back(clusters.size());
+        addClusters(clusters, i);
+        addCommands(i);
+    }
     const size_t count = clusters.size(), counts = setup.frusta + setup.geometry.objects.size();
     clusters_ = gpu::Buffer::of(std::span<const ClusterRecord>(clusters));
     device_commands_ = gpu::Buffer::of(std::span<const CommandRecord>(commands_));
@@ -76,21 +83,36 @@ DeviceLists::DeviceLists(const Setup& setup, gpu::EglContext& context)
         views_.push_back({gpu::UploadList<ViewedObject>(setup.geometry.objects.size())});
 }
 
-void DeviceLists::addClusters(std::vector<ClusterRecord>& clusters, uint32_t object) {
+void DeviceLists::addClusters(std::vector<ClusterRecord>& clusters, uint32_t object) const {
     const int mesh = setup_.geometry.objects[object].mesh;
     const SurfaceScene::MeshPlace& place = setup_.scene.place(mesh);
     for (const types::Cluster& cluster : setup_.geometry.meshes[static_cast<size_t>(mesh)].clusters) {
         const types::Material& material = setup_.geometry.materials[static_cast<size_t>(cluster.material)];
-        const size_t at = clusters.size();
         clusters.push_back({vec4(cluster.centre, material.normal_scale), vec4(cluster.half, 0),
                             vec4(cluster.cone_apex, 0),
                             vec4(cluster.cone_axis, setup_.culler.isSingleSided(cluster) ? cluster.cone_cutoff : 2),
                             object, cluster.index_count, place.first_index + cluster.first_index, place.first_vertex});
+    }
+}
+
+void DeviceLists::addCommands(uint32_t object) {
+    const int mesh = setup_.geometry.objects[object].mesh;
+    const SurfaceScene::MeshPlace& place = setup_.scene.place(mesh);
+    for (const types::Cluster& cluster : setup_.geometry.meshes[static_cast<size_t>(mesh)].clusters) {
+        const types::Material& material = setup_.geometry.materials[static_cast<size_t>(cluster.material)];
+        const size_t at = commands_.size();
         commands_.push_back({object, place.first_triangle, static_cast<uint32_t>(cluster.material), 0});
         const int map = setup_.scene.withNormalMaps() ? material.normal_map : -1;
         if (groups_.empty() || groups_.back().normal_map != map) groups_.push_back({at, at, map});
         groups_.back().last = at + 1;
     }
+}
+
+void DeviceLists::takeShape(uint32_t object) {
+    std::vector<ClusterRecord> clusters;
+    addClusters(clusters, object);
+    clusters_.write(clusters.data(), clusters.size() * sizeof(ClusterRecord),
+                    first_cluster_[object] * sizeof(ClusterRecord));
 }
 
 void DeviceLists::list(size_t frustum, const ViewFrustum& frustum_view) {

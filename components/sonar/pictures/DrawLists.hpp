@@ -71,6 +71,8 @@ public:
     virtual void list(size_t frustum, const ViewFrustum& view) = 0;
     /** Returns whether there may be anything to rasterise. */
     virtual bool mayShow(size_t frustum) const = 0;
+    /** Switches to the present boxes of the clusters of an object's mesh. */
+    virtual void takeShape(uint32_t /*object*/) {}
     /** Queues the device's work that precedes the rasterising of all frusta. */
     virtual void prepare(std::span<const ViewFrustum>) {}
     /** Returns the max draws of a frustum. */

@@ -13,6 +13,7 @@
 #include "components/sonar/pictures/DeviceNeeds.hpp"
 #include "components/sonar/pictures/PictureDeposit.hpp"
 #include "components/sonar/pictures/SurfacePass.hpp"
+#include "components/sonar/places/DeformedMeshes.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -49,6 +50,8 @@ public:
     RasterEchoes(const RenderPlan& plan, types::GeometryPtr geometry, const PingEffects& effects);
     ~RasterEchoes() override;
     void takeQuality() override;
+    void deform(DeformedMeshes* meshes, types::GeometryPtr /*geometry*/) override { deformed_ = meshes; }
+    void takeShapes(const types::Snapshot& snapshot) override;
     void render(const types::Snapshot& snapshot, types::Sonar& ping, Stages& stages) override;
     void setTruth(types::SonarTruth* truth) override { truth_ = truth; }
     bool hasEchoes() const override;
@@ -85,6 +88,7 @@ private:
     Culler culler_;
     ThreadPool threads_;
     SurfacePass surface_;
+    DeformedMeshes* deformed_ = nullptr;  ///< Null: no mesh deforms.
     std::unique_ptr<BinDeposit> deposit_;
     types::SonarTruth* truth_ = nullptr;           ///< Truth to be filled; null: none.
     std::optional<TruthTable> shown_;              ///< Made at the first ping with truth.
@@ -228,6 +232,18 @@ void RasterEchoes::render(const types::Snapshot& snapshot, types::Sonar& ping, S
     if (truth_) fillTruth();
     rendered_ = true;
     lap(stages[BeamStage]);
+}
+
+void RasterEchoes::takeShapes(const types::Snapshot& snapshot) {
+    context_.requireThread();
+    const std::vector<uint32_t>& objects = deformed_->objects();
+    threads_.run([&](int part, int parts) {
+        deformed_->take(snapshot, static_cast<size_t>(part), static_cast<size_t>(parts));
+        for (auto i = static_cast<size_t>(part); i < objects.size(); i += static_cast<size_t>(parts))
+            surface_.takeShape(objects[i]);
+    });
+    surface_.uploadShapes(objects);
+    context_.check();
 }
 
 void RasterEchoes::takeQuality() {

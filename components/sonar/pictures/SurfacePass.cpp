@@ -129,6 +129,20 @@ void SurfacePass::makePictures(size_t part) {
             std::make_unique<VisibilityBuffer>(setup_.frusta[frustum], hasNormalMaps(setup_), contextOf(part));
 }
 
+void SurfacePass::takeShape(uint32_t object) {
+    scene_.takeShape(setup_.geometry, setup_.laws, static_cast<size_t>(setup_.geometry.objects[object].mesh));
+}
+
+void SurfacePass::uploadShapes(std::span<const uint32_t> objects) {
+    const auto alone = context_.transferring();
+    for (const uint32_t object : objects) {
+        const auto mesh = static_cast<size_t>(setup_.geometry.objects[object].mesh);
+        scene_.uploadShape(setup_.geometry.meshes[mesh], mesh);
+        lists_->takeShape(object);
+    }
+    if (parts_.size() > 1) gpu::Fence::here().wait();  // the other contexts must find the buffers filled
+}
+
 void SurfacePass::cull() {
     lists_->place();
     onEachPart([&](size_t part) {

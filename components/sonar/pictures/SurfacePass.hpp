@@ -57,6 +57,12 @@ public:
     /** Switches to pictures of the same frusta with other numbers of pixels. */
     void resize(const std::vector<ViewFrustum>& frusta);
 
+    /** Switches to the present shape of an object's mesh, before uploadShapes(). Several threads may take different
+     *  objects. */
+    void takeShape(uint32_t object);
+    /** Uploads the shapes of these objects. */
+    void uploadShapes(std::span<const uint32_t> objects);
+
     /** Lists the placed parts that each frustum sees. */
     void cull();
     /** Returns whether a frustum's picture is rasterised. */

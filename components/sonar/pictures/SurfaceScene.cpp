@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "components/sonar/places/MeshFacts.hpp"
 #include "types/VectorMath.hpp"
 
 namespace insonify::sonar {
@@ -46,16 +47,29 @@ private:
     std::vector<uint32_t> place_;  ///< Rasterised place of each vertex of the mesh.
 };
 
-/** Returns one attribute of all rasterised vertices; `neutral` where a mesh has none. */
+/** Appends an attribute of the rasterised vertices of a mesh; `neutral` where the mesh has none. */
+template <class T>
+void append(const std::vector<T>& values, const std::vector<uint32_t>& sources, T neutral, std::vector<T>& all) {
+    for (const uint32_t source : sources) all.push_back(values.empty() ? neutral : values[source]);
+}
+
+/** Returns one attribute of all rasterised vertices. */
 template <class T>
 std::vector<T> joined(const types::Geometry& geometry, const std::vector<Rasterised>& meshes,
                       std::vector<T> types::Mesh::*attribute, T neutral) {
     std::vector<T> all;
-    for (size_t m = 0; m < meshes.size(); ++m) {
-        const std::vector<T>& values = geometry.meshes[m].*attribute;
-        for (uint32_t source : meshes[m].sources) all.push_back(values.empty() ? neutral : values[source]);
-    }
+    for (size_t m = 0; m < meshes.size(); ++m) append(geometry.meshes[m].*attribute, meshes[m].sources, neutral, all);
     return all;
+}
+
+/** Writes an attribute of the rasterised vertices of a mesh, which start with vertex `first`. */
+template <class T>
+void rewrite(gpu::Buffer& buffer, const std::vector<T>& values, const std::vector<uint32_t>& sources, size_t first) {
+    if (values.empty()) return;
+    std::vector<T> own;
+    own.reserve(sources.size());
+    append(values, sources, T(0), own);
+    buffer.write(own.data(), own.size() * sizeof(T), first * sizeof(T));
 }
 
 template <class T>
@@ -95,7 +109,7 @@ std::vector<PlaneRecord> planesOf(const types::Mesh& mesh) {
 }
 
 /** Some triangles at a time, in vector registers, with the same operations in the same order as planeOf(). */
-INSONIFY_VECTOR_CLONES void findPlanes(const types::Mesh& mesh, std::vector<PlaneRecord>& planes) {
+INSONIFY_VECTOR_CLONES void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes) {
     constexpr size_t at_once = 16;
     double a[3][at_once], b[3][at_once], c[3][at_once], normal[3][at_once], point[3][at_once], squares[at_once];
     const size_t whole = planes.size() / at_once * at_once;
@@ -171,6 +185,7 @@ void SurfaceScene::uploadVertices(const types::Geometry& geometry) {
         places_.push_back({vertex, first_index, first_index / 3});
         vertex += static_cast<uint32_t>(added.sources.size());
         indices.insert(indices.end(), added.indices.begin(), added.indices.end());
+        sources_.push_back(mesh.deformation ? added.sources : std::vector<uint32_t>());
     }
     indices_ = uploaded(indices);
     positions_ = uploaded(joined(geometry, meshes, &types::Mesh::positions, glm::vec3(0)));
@@ -188,6 +203,33 @@ void SurfaceScene::uploadNormalMaps(const types::Geometry& geometry) {
     const float up[] = {0.5f, 0.5f, 1.0f};
     glTextureSubImage2D(flat.id(), 0, 0, 0, 1, 1, GL_RGB, GL_FLOAT, up);
     normal_maps_.push_back(std::move(flat));
+}
+
+size_t SurfaceScene::endOf(size_t mesh) const {
+    return mesh + 1 < places_.size() ? places_[mesh + 1].first_triangle : plane_list_.size();
+}
+
+void SurfaceScene::takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh) {
+    const size_t first = places_[mesh].first_triangle;
+    findPlanes(geometry.meshes[mesh], std::span(plane_list_).subspan(first, endOf(mesh) - first));
+    if (facet_list_.empty()) return;
+    const auto facets = MeshFacts::facetsNow(geometry.meshes[mesh], worldFromMesh(geometry, mesh), laws);
+    if (facets) std::ranges::copy(*facets, facet_list_.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+void SurfaceScene::uploadShape(const types::Mesh& mesh, size_t number) {
+    const size_t vertex = places_[number].first_vertex, first = places_[number].first_triangle;
+    const size_t count = endOf(number) - first;
+    rewrite(positions_, mesh.positions, sources_[number], vertex);
+    if (with_normal_maps_) {
+        rewrite(normals_, mesh.normals, sources_[number], vertex);
+        rewrite(tangents_, mesh.tangents, sources_[number], vertex);
+    }
+    if (triangles_.bytes() == 0) return;
+    triangles_.write(&plane_list_[first], count * sizeof(PlaneRecord), first * sizeof(PlaneRecord));
+    if (!facet_list_.empty())
+        triangles_.write(&facet_list_[first], count * sizeof(FacetRecord),
+                         plane_list_.size() * sizeof(PlaneRecord) + first * sizeof(FacetRecord));
 }
 
 void SurfaceScene::describe(const gpu::VertexArray& vertices) const {

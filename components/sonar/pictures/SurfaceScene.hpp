@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "components/gpu/Objects.hpp"
@@ -12,7 +13,7 @@ namespace insonify::sonar {
 /** Returns the planes of a mesh's triangles. */
 std::vector<PlaneRecord> planesOf(const types::Mesh& mesh);
 /** Fills a list of that size with the planes of a mesh's triangles. */
-void findPlanes(const types::Mesh& mesh, std::vector<PlaneRecord>& planes);
+void findPlanes(const types::Mesh& mesh, std::span<PlaneRecord> planes);
 /** Returns the planes of all meshes' triangles, mesh after mesh, as SurfaceScene::planes(). */
 std::vector<PlaneRecord> planesOf(const types::Geometry& geometry);
 
@@ -31,6 +32,10 @@ public:
     const std::vector<PlaneRecord>& planes() const { return plane_list_; }
     /** Returns the facet of each triangle; empty where no material has a lobe. */
     const std::vector<FacetRecord>& facets() const { return facet_list_; }
+    /** Computes planes and facets of a mesh that has another shape now. Several threads may take different meshes. */
+    void takeShape(const types::Geometry& geometry, const MaterialLaws& laws, size_t mesh);
+    /** Uploads the shape of a mesh after takeShape(). */
+    void uploadShape(const types::Mesh& mesh, size_t number);
     /** Sets the attributes and indices of a context's vertex array. */
     void describe(const gpu::VertexArray& vertices) const;
     /** Binds materials, and the planes followed by the facets, which are uploaded when they are first bound. */
@@ -42,7 +47,11 @@ private:
     void uploadVertices(const types::Geometry& geometry);
     void uploadNormalMaps(const types::Geometry& geometry);
 
+    /** Returns the number of the first triangle behind a mesh. */
+    size_t endOf(size_t mesh) const;
+
     bool with_normal_maps_;
+    std::vector<std::vector<uint32_t>> sources_;  ///< Vertex of the mesh for each rasterised vertex, where it deforms.
     std::vector<MeshPlace> places_;
     std::vector<PlaneRecord> plane_list_;
     std::vector<FacetRecord> facet_list_;

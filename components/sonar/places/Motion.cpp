@@ -84,6 +84,13 @@ void Motion::followObjects(const types::Snapshot& snapshot) {
             addDrift(snapshot.sonar, moved, (moved.world_from_object - was->world_from_object) / seconds_);
     }
     followShapes(snapshot);
+    steepest_ = 0;
+    for (const std::optional<Drift>& drift : drifts_)
+        if (drift) {
+            const glm::dmat3& m = drift->linear;
+            const double squares = glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]);
+            steepest_ = std::max(steepest_, std::sqrt(squares));
+        }
     for (size_t i = 0; i < snapshot.targets.size(); ++i) fastest_ = std::max(fastest_, glm::length(targetVelocity(i)));
 }
 

@@ -44,6 +44,8 @@ public:
     glm::dvec3 targetVelocity(size_t target) const;
     /** Returns the max speed of objects and targets [m/s]. */
     double fastest() const { return fastest_; }
+    /** Returns an upper bound of the angular velocities, and other gradients of velocity, of all objects [1/s]. */
+    double steepest() const { return steepest_; }
 
 private:
     /** The part of a snapshot that matters for motion. */
@@ -81,7 +83,7 @@ private:
     std::vector<std::optional<Drift>> drifts_;
     std::vector<std::shared_ptr<Deforming>> deforming_;  ///< One per object; null: rigid.
     std::vector<glm::vec3> of_vertices_;                 ///< Scratch.
-    double fastest_ = 0;
+    double fastest_ = 0, steepest_ = 0;
 };
 
 /** Returns the angular velocity that turns one orientation into another in `seconds`, the shorter way, in the frame

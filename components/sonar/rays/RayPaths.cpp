@@ -49,10 +49,12 @@ void RayPaths::placeMotion(const types::Snapshot& snapshot) {
 }
 
 void RayPaths::placeCorners() {
-    const double farthest = RayTable::beyond * plan_.grid.range_max, turn = moves_ ? share_ * glm::length(turn_) : 0;
-    // A turning ray has the curvature 4 turn / c; its arc deviates from the chord by at most a tenth of a bin.
+    const double farthest = RayTable::beyond * plan_.grid.range_max;
+    // A turning ray has the curvature 4 turn / c; about an object that turns, the curvature is 2 turn / c more. The arc
+    // deviates from the chord by at most a tenth of a bin.
+    const double bend = moves_ ? 4 * share_ * glm::length(turn_) + 2 * motion_->steepest() : 0;
     const double spacing =
-        std::sqrt(8 * 0.1 * plan_.grid.bin_width * plan_.grid.speed_of_sound / std::max(4 * turn, 1e-30));
+        std::sqrt(8 * 0.1 * plan_.grid.bin_width * plan_.grid.speed_of_sound / std::max(bend, 1e-30));
     const double wanted = std::max(table_ ? static_cast<double>(table_->corners()) : 1, std::ceil(farthest / spacing));
     const auto count = static_cast<size_t>(std::min(wanted, static_cast<double>(RayTable::max_corners)));
     corners_.clear();

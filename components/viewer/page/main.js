@@ -57,6 +57,7 @@ const show = {
 function take(message) {
   if (message.type) return show[message.type]?.(message);
   if (message.kind === 1) return takePing(pingOf(message));
+  if (message.kind === 3) return show.snapshot({...message.json, buffer: message.buffer, start: message.start});
   scenes.set(message.json.source, message);
   showScene();
 }

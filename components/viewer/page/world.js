@@ -105,7 +105,7 @@ export class World {
       const mesh = new THREE.Mesh(meshes[object.mesh].geometry, meshes[object.mesh].material);
       mesh.matrixAutoUpdate = false;
       mesh.matrix.fromArray(object.matrix);
-      this.objects.set(object.object, {mesh, home: object.matrix});
+      this.objects.set(object.object, {mesh, home: object.matrix, rest: mesh.geometry});
       this.content.add(mesh);
     }
     this.dirty = true;
@@ -119,8 +119,22 @@ export class World {
     for (const number of this.moved) this.objects.get(number)?.mesh.matrix.fromArray(this.objects.get(number).home);
     for (const {object, matrix} of json.moved) this.objects.get(object)?.mesh.matrix.fromArray(matrix);
     this.moved = json.moved.map((one) => one.object);
+    this.showShapes(json);
     this.showWater(json.water_surface);
     this.dirty = true;
+  }
+  /** Shows deformed meshes: positions of their vertices. Other meshes are as in the scene's message. */
+  showShapes({shapes = [], buffer, start}) {
+    for (const one of this.objects.values()) one.mesh.geometry = one.rest;
+    for (const {object, offset, count} of shapes) {
+      const one = this.objects.get(object);
+      if (!one) continue;
+      one.posed ??= one.rest.clone();
+      one.posed.attributes.position.array.set(new Float32Array(buffer, start + offset, count));
+      one.posed.attributes.position.needsUpdate = true;
+      one.posed.computeBoundingSphere();
+      one.mesh.geometry = one.posed;
+    }
   }
   /** @param z undefined: no water */
   showWater(z) {
