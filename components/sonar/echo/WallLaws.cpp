@@ -40,7 +40,7 @@ public:
             double sum = 0;
             for (int k = 0; k < per_entry * bands; ++k) {
                 const double cosine = (i + (k % per_entry + 0.5) / per_entry) / entries;
-                const double off = bands == 1 ? 0 : width * ((k / per_entry + 0.5) / bands - 0.5);
+                const double off = bands == 1 ? 0 : width / inPlate(cosine) * ((k / per_entry + 0.5) / bands - 0.5);
                 sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluids(cosine), times);
             }
             table.push_back(static_cast<float>(sum / (per_entry * bands)));
@@ -63,6 +63,12 @@ public:
 private:
     acoustics::PlateResponse at(double frequency, double cosine) const {
         return acoustics::plateResponse(plate_, water_, behind_, frequency, cosine);
+    }
+
+    /** Returns the cosine of the angle of the sound in the wall; 1 beyond the critical angle [1]. */
+    double inPlate(double cosine) const {
+        const double square = 1 - (1 - cosine * cosine) * std::pow(plate_.sound_speed / water_.sound_speed, 2);
+        return square > 0 ? std::sqrt(std::max(square, 0.01)) : 1;
     }
 
     /** Returns the impedance of the water relative to that of the fluid behind, both along the normal: |T|^2 times this
