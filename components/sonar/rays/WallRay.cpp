@@ -109,14 +109,6 @@ bool WallRay::pass(const Surface& surface, const Water& water) {
     return true;
 }
 
-double WallRay::passOnce(EchoTrain& train, const WallLaw& wall, double sine, double resolution) {
-    if (wall.rings()) {
-        train = train.then(wall.once, wall.spacing(sine), resolution);
-        train.moveAway(0.5 * wall.delay(sine));
-    }
-    return wall.passedOnceAt(std::sqrt(std::max(1 - sine * sine, 0.0)));
-}
-
 void WallRay::reflect(const glm::dvec3& unit_normal) {
     way -= 2 * glm::dot(unit_normal, way) * unit_normal;
     for (glm::dvec3& turn : per_way) turn -= 2 * glm::dot(unit_normal, turn) * unit_normal;

@@ -66,9 +66,6 @@ struct WallRay {
      *  `inset`: slant range from its inner face to its outer face for sound from within [m]. */
     static EchoTrain rung(const EchoTrain& train, const WallLaw& wall, bool from_within, double spacing, double inset,
                           double resolution);
-    /** Returns the one-way share of the energy that passes a wall at a sine of incidence in water [1]. Appends the
-     *  wall's arrivals to `train`; these are half of the slant range of both ways. */
-    static double passOnce(EchoTrain& train, const WallLaw& wall, double sine, double resolution);
     /** Passes the wall that it has met, and refracts where the fluid behind is another. Returns whether it goes on. */
     bool pass(const Surface& surface, const Water& water);
     /** Reflects at a plane through its place. */

@@ -246,7 +246,7 @@ void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
     if (chain.walls == paths_.max_walls_ || !ray.pass(surface, water_) ||
         !(chain.power * chain.power * ray.power >= WallRay::min_passed))
         return drop(i);
-    chain.passed *= WallRay::passOnce(once_[static_cast<size_t>(i)], surface.wall, sine, water_.resolution);
+    chain.passed *= once_[static_cast<size_t>(i)].passOnce(surface.wall, sine, water_.resolution);
     chain.was_in_fill |= surface.wall.fill.has_value();
     chain.wall_names = types::hashed(chain.wall_names, hits.command[i], static_cast<uint64_t>(++chain.walls));
     lengths_[static_cast<size_t>(i)] = ray.range;
@@ -372,8 +372,8 @@ void PathEchoes::Tracer::goBackThrough(PathRays& on) {
 bool PathEchoes::Tracer::passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const {
     if (!letsThrough(hits.command[i]) || wallOf(hits.command[i]).fill) return false;
     const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
-    back.share *= WallRay::passOnce(back.train, wallOf(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)),
-                                    water_.resolution);
+    back.share *=
+        back.train.passOnce(wallOf(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)), water_.resolution);
     return back.share > 0;
 }
 
