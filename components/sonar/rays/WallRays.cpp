@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "components/sonar/rays/SurfaceMapping.hpp"
+
 namespace insonify::sonar {
 
 double Reverberation::mirrored(const MaterialLaws& laws, size_t material) {
@@ -19,13 +21,16 @@ double Reverberation::mirrored(const MaterialLaws& laws, size_t material) {
 Reverberation::Reverberation(const RenderPlan& plan, const types::Geometry& geometry,
                              std::span<const MeshFacts::Facets> facets) {
     if (!plan.has(Pass::Walls)) return;
-    const auto isMirrorWall = [&](const types::Cluster& cluster) {
-        const auto material = static_cast<size_t>(cluster.material);
-        return plan.laws.walls[material].letsThrough() && mirrored(plan.laws, material) > 0;
+    const auto isSmooth = [&](int material) { return mirrored(plan.laws, static_cast<size_t>(material)) > 0; };
+    const auto isMirrorWall = [&](const types::Mesh& mesh, const types::Cluster& cluster) {
+        const auto map = std::ranges::find(mesh.maps, cluster.material, &types::MappedMaterial::material);
+        return plan.laws.walls[static_cast<size_t>(cluster.material)].letsThrough() &&
+               (isSmooth(cluster.material) ||
+                (map != mesh.maps.end() && std::ranges::any_of(map->map->materials, isSmooth)));
     };
     for (size_t mesh = 0; mesh < facets.size() && !is_there; ++mesh)
         for (const types::Cluster& cluster : geometry.meshes[mesh].clusters)
-            is_there |= facets[mesh] && isMirrorWall(cluster) &&
+            is_there |= facets[mesh] && isMirrorWall(geometry.meshes[mesh], cluster) &&
                         std::any_of(facets[mesh]->begin() + cluster.first_index / 3,
                                     facets[mesh]->begin() + (cluster.first_index + cluster.index_count) / 3, isFlat);
     if (!plan.has(Pass::Paths)) return;
@@ -104,12 +109,21 @@ void WallRays::send(int i, PathRays& on) const {
     on.towards.active |= 1u << i;
 }
 
-double WallRays::mirrored(int i) const {
+double WallRays::mirrored(int i) {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     if (!run.facets || !Reverberation::isFlat(run.facets[hits_.triangle[i]])) return 0;
     const bool from_within = rays_[static_cast<size_t>(i)].isWithin(objectOf(i));
     const double within = from_within && wallOf(i).fill ? wallOf(i).fill->within : 1;
-    return std::min(Reverberation::mirrored(rules_.laws, run.material) * within, 1.0);
+    if (!scene_.maps) return std::min(Reverberation::mirrored(rules_.laws, run.material) * within, 1.0);
+    TracedTile met = tile_;
+    met.hits = &hits_;
+    const MapLevels::Look look = scene_.maps->look(view_, scene_, met, i);
+    double share = 0;
+    for (size_t k = 0; k <= scene_.maps->classesOf(hits_.command[i]); ++k)
+        share +=
+            static_cast<double>(look.strength * look.shares[k]) *
+            Reverberation::mirrored(rules_.laws, scene_.commands[scene_.maps->commandOf(hits_.command[i], k)].material);
+    return std::min(share * within, 1.0);
 }
 
 void WallRays::reflect(int i, PathRays& on) {

@@ -39,9 +39,10 @@ public:
     static constexpr int max_reflections = 16;  ///< Max reflections of a ray back and forth between walls [1].
 
     /** `surface`: where rays end. `loss_of_water`: loss of energy in the sonar's water, one way [Np/m]. */
-    WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
+    WallRays(const EchoRules& rules, const TracedView& view, const RayVisibility& visibility, const PlacedScene& scene,
              const WaterMirror& surface, const Reverberation& reverberation, int max_walls, double loss_of_water)
         : rules_(rules),
+          view_(view),
           visibility_(visibility),
           scene_(scene),
           surface_(surface),
@@ -73,7 +74,7 @@ private:
     /** Reflects a ray at the flat, smooth surface that it has hit; drops a ray that has hit another. */
     void reflect(int i, PathRays& on);
     /** Returns the share of the energy that the surface that a ray has hit reflects like a mirror [1]. */
-    double mirrored(int i) const;
+    double mirrored(int i);
     void send(int i, PathRays& on) const;
     /** Moves all rays to their next surface by pass() or reflect(). Returns whether any ray is left. */
     bool advance(void (WallRays::*step)(int, PathRays&));
@@ -84,6 +85,7 @@ private:
     const TracedTile* show(size_t echo);
 
     const EchoRules& rules_;
+    const TracedView& view_;
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
     const WaterMirror& surface_;

@@ -14,6 +14,7 @@
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
 #include "components/sonar/rays/WallRay.hpp"
+#include "components/sonar/ways/MirrorChain.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 #include "components/sonar/ways/PathCells.hpp"
 #include "components/sonar/ways/SharedBins.hpp"
@@ -26,42 +27,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int max_bounces = MultipathConfig::max_bounces;
 constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Water surface in the mirrors of a chain.
-
-/** The mirrors that a ray has hit, in order. */
-struct Chain {
-    int count = 0;
-    std::array<uint64_t, max_bounces> names{};  ///< Equal for all rays that hit the same mirror.
-    std::array<MirrorPlane, max_bounces> planes;
-    double power = 1;           ///< Share of the power after the mirrors, one way [1].
-    double passed = 1;          ///< Share of the power after the walls, one way [1].
-    double widest = 0;          ///< Max contribution of a mirror's facet to a mean square slope, over its cosine [1].
-    bool begins_lobed = false;  ///< Whether the first mirror has a lobe.
-    int walls = 0;              ///< Thin walls that the ray has passed [1].
-    uint64_t wall_names = 0;    ///< Equal for all rays that pass the same walls.
-    bool was_in_fill = false;   ///< Whether the ray has been in a fluid other than water.
-
-    bool sameAs(const Chain& other) const {
-        return count == other.count && wall_names == other.wall_names &&
-               std::equal(names.begin(), names.begin() + count, other.names.begin());
-    }
-    glm::dvec3 image(glm::dvec3 place) const {
-        for (int k = count; k-- > 0;) place = planes[static_cast<size_t>(k)].image(place);
-        return place;
-    }
-    glm::dvec3 turned(glm::dvec3 way) const {
-        for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
-    }
-    /** Inverts turned(). */
-    glm::dvec3 turnedBack(glm::dvec3 way) const {
-        for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
-    }
-};
 
 class PathEchoes final : public PingEffect {
 public:
@@ -180,7 +148,7 @@ private:
     /** Prepares the sums for echoes of ray i's hit: received from a direction, seen at a cosine. */
     void recordWay(int i, bool twice, const glm::dvec3& received, double cosine) {
         if (!paths_.records_truth_) return;
-        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const MirrorChain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
@@ -201,7 +169,7 @@ private:
     double near_edge_, far_edge_;
     PathRays rays_{};
     TileHits hits_{};
-    std::array<Chain, tile_samples> chains_;
+    std::array<MirrorChain, tile_samples> chains_;
     std::array<double, tile_samples> lengths_;  ///< Slant range of each ray so far [m].
     std::array<WallRay, tile_samples> walled_;  ///< The rays, where there are walls.
     std::array<EchoTrain, tile_samples> once_;  ///< Their sound that arrives, one way.
@@ -232,14 +200,14 @@ bool PathEchoes::Tracer::begin(const TracedTile& tile) {
 }
 
 void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     if (letsThrough(hits.command[i])) return pass(i, hits);
     if (chain.count == paths_.plan_.config.multipath->bounces) return drop(i);
     reflect(i, from, way, hits, chain.count == 0);
 }
 
 void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
-    Chain& chain = chains_[static_cast<size_t>(i)];
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
     WallRay& ray = walled_[static_cast<size_t>(i)];
     const WallRay::Surface surface = surfaceOf(hits, i);
     const double sine = ray.sineInWater();
@@ -255,7 +223,7 @@ void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
 
 void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
                                  bool tilts) {
-    Chain& chain = chains_[static_cast<size_t>(i)];
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const auto k = static_cast<size_t>(chain.count);
     if (hits.command[i] == TileHits::nothing) {
         const double distance = paths_.water_.distance(from, way);
@@ -286,7 +254,7 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
 
 void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way,
                               double distance) {
-    Chain& chain = chains_[static_cast<size_t>(i)];
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const glm::dvec3 at = from + distance * way, on = plane.turned(way);
     double& length = lengths_[static_cast<size_t>(i)];
     length += distance;
@@ -322,7 +290,7 @@ void PathEchoes::Tracer::findBacks() {
     on.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
         Back& back = backs_[static_cast<size_t>(i)];
-        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const MirrorChain& chain = chains_[static_cast<size_t>(i)];
         back.share = 0;
         on.nearest[i] = 1, on.farthest[i] = 0;
         if (!isActive(i) || hits_.command[i] == TileHits::nothing || chain.count == 0 || chain.was_in_fill) continue;
@@ -437,7 +405,7 @@ Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfW
 }
 
 PathEchoes::Tracer::SeenPlane PathEchoes::Tracer::seenPlane(const CellAngles& at, int i) const {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     if (hasWalls() && walled_[static_cast<size_t>(i)].is_bent) {
         const ApparentPlane apparent = walled_[static_cast<size_t>(i)].apparent();
         const double length = glm::length(apparent.normal);
@@ -450,7 +418,7 @@ PathEchoes::Tracer::SeenPlane PathEchoes::Tracer::seenPlane(const CellAngles& at
 }
 
 void PathEchoes::Tracer::deposit(const CellAngles& at, int i, const Back& back, double gain) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const auto [plane, cosine, focus] = seenPlane(at, i);
     if (!(cosine > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
@@ -521,7 +489,7 @@ MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, 
  *  directions of transmission and reception. */
 void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, const Back& back,
                                      double gain) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const HalfWay straight = halfWay(plane, chain.image(glm::dvec3(0)), at);
     const MaterialLaws::Bistatic given = section(at, i, plane, straight);
     const WayPatterns& patterns = *paths_.patterns_;
