@@ -1,9 +1,8 @@
 // Fits to simulated recordings of side-scans with random properties, and the places of recorded lines.
 #include <gmock/gmock.h>
 
-#include <iostream>
-
 #include <cmath>
+#include <iostream>
 
 #include "components/study/Probe.hpp"
 #include "components/study/Shapes.hpp"
@@ -123,7 +122,8 @@ TEST_P(FitSideScanTest, FindsThePropertiesOfASimulatedSideScan) {
     std::cout << "seed " << GetParam() << ": scatterers " << ratio << " of the truth, " << shape->text() << "\n";
     EXPECT_TRUE(shape->found.low < shape->found.value / ratio && shape->found.value / ratio < shape->found.high)
         << shape->text();
-    if (shape->is_determined) EXPECT_NEAR(ratio, 1, 0.4) << shape->text();
+    if (!shape->is_determined) return;
+    EXPECT_NEAR(ratio, 1, 0.4) << shape->text();
 }
 
 TEST(FitLooksTest, DrawsAveragedSpeckleThatVariesAsRecorded) {
