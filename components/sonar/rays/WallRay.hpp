@@ -66,7 +66,8 @@ struct WallRay {
      *  `inset`: slant range from its inner face to its outer face for sound from within [m]. */
     static EchoTrain rung(const EchoTrain& train, const WallLaw& wall, bool from_within, double spacing, double inset,
                           double resolution);
-    /** Passes the wall that it has met, and refracts where the fluid behind is another. Returns whether it goes on. */
+    /** Passes the wall that it has met, and refracts where the fluid behind is another. Returns whether it continues.
+     */
     bool pass(const Surface& surface, const Water& water);
     /** Reflects at a plane through its place. */
     void reflect(const glm::dvec3& unit_normal);

@@ -4,11 +4,13 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "components/sonar/rays/SurfaceMapping.hpp"
-
 namespace insonify::sonar {
 
-double Reverberation::mirrored(const MaterialLaws& laws, size_t material) {
+namespace {
+
+/** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns of
+ * its wall together [1]; 0: its lobe is wide, or it has none. */
+double mirroredBy(const MaterialLaws& laws, size_t material) {
     constexpr double steepest = 0.3;  // as for the second bounce (ACOUSTICS.md 5.25)
     const auto strength = static_cast<double>(laws.records[material].law.y),
                square_slope = static_cast<double>(laws.records[material].law.z);
@@ -18,10 +20,14 @@ double Reverberation::mirrored(const MaterialLaws& laws, size_t material) {
     return std::min(4 * std::numbers::pi * strength / first, 1.0);
 }
 
+}  // namespace
+
 Reverberation::Reverberation(const RenderPlan& plan, const types::Geometry& geometry,
                              std::span<const MeshFacts::Facets> facets) {
     if (!plan.has(Pass::Walls)) return;
-    const auto isSmooth = [&](int material) { return mirrored(plan.laws, static_cast<size_t>(material)) > 0; };
+    for (size_t material = 0; material < geometry.materials.size(); ++material)
+        mirrored.push_back(mirroredBy(plan.laws, material));
+    const auto isSmooth = [&](int material) { return mirrored[static_cast<size_t>(material)] > 0; };
     const auto isMirrorWall = [&](const types::Mesh& mesh, const types::Cluster& cluster) {
         const auto map = std::ranges::find(mesh.maps, cluster.material, &types::MappedMaterial::material);
         return plan.laws.walls[static_cast<size_t>(cluster.material)].letsThrough() &&
@@ -114,16 +120,9 @@ double WallRays::mirrored(int i) {
     if (!run.facets || !Reverberation::isFlat(run.facets[hits_.triangle[i]])) return 0;
     const bool from_within = rays_[static_cast<size_t>(i)].isWithin(objectOf(i));
     const double within = from_within && wallOf(i).fill ? wallOf(i).fill->within : 1;
-    if (!scene_.maps) return std::min(Reverberation::mirrored(rules_.laws, run.material) * within, 1.0);
     TracedTile met = tile_;
     met.hits = &hits_;
-    const MapLevels::Look look = scene_.maps->look(view_, scene_, met, i);
-    double share = 0;
-    for (size_t k = 0; k <= scene_.maps->classesOf(hits_.command[i]); ++k)
-        share +=
-            static_cast<double>(look.strength * look.shares[k]) *
-            Reverberation::mirrored(rules_.laws, scene_.commands[scene_.maps->commandOf(hits_.command[i], k)].material);
-    return std::min(share * within, 1.0);
+    return std::min(scene_.meanOf(reverberation_.mirrored, view_, met, i) * within, 1.0);
 }
 
 void WallRays::reflect(int i, PathRays& on) {

@@ -16,15 +16,15 @@ struct Reverberation {
     /** For each material: paths by mirrors (5.23) include its reflections; empty: there are no such paths. */
     std::vector<bool> in_paths;
     int bounces = 0;  ///< Max reflections of these paths [1].
+    /** For each material: share of the energy that it reflects like a mirror at normal incidence, all returns of its
+     *  wall together [1]; 0: its lobe is wide, or it has none. */
+    std::vector<double> mirrored;
 
     Reverberation() = default;
     /** Reverberation with a plan's walls, if a flat facet of the scene is one. `facets` has those of each mesh. */
     Reverberation(const RenderPlan& plan, const types::Geometry& geometry, std::span<const MeshFacts::Facets> facets);
 
     bool isInPaths(uint32_t material) const { return !in_paths.empty() && in_paths[material]; }
-    /** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns
-     * of its wall together [1]; 0: its lobe is wide, or it has none. */
-    static double mirrored(const MaterialLaws& laws, size_t material);
     static bool isFlat(const FacetRecord& facet) {
         return facet.first.x == 0 && facet.first.z == 0 && facet.second.x == 0 && facet.second.z == 0;
     }

@@ -114,7 +114,7 @@ private:
     bool letsThrough(uint32_t command) const {
         return hasWalls() && command != TileHits::nothing && reflected(command) == 0 && wallOf(command).letsThrough();
     }
-    /** Passes the wall that a ray back to the sonar has hit. Returns whether it goes on, straight and in water. */
+    /** Passes the wall that a ray back to the sonar has hit. Returns whether it continues, straight and in water. */
     bool passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const;
     void meet(int i, const TileHits& hits) {
         walled_[static_cast<size_t>(i)].meet(surfaceOf(hits, i).normal(), double{hits.distance[i]});
@@ -202,7 +202,7 @@ bool PathEchoes::Tracer::begin(const TracedTile& tile) {
 void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
     const MirrorChain& chain = chains_[static_cast<size_t>(i)];
     if (letsThrough(hits.command[i])) return pass(i, hits);
-    if (chain.count == paths_.plan_.config.multipath->bounces) return drop(i);
+    if (chain.count == bouncesOf(paths_.plan_.config)) return drop(i);
     reflect(i, from, way, hits, chain.count == 0);
 }
 
@@ -523,7 +523,7 @@ void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPl
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), water_(plan.config), max_walls_(plan.has(Pass::Walls) ? plan.config.max_walls : 0) {
     for (const types::Material& material : geometry.materials)
-        reflected_.push_back(reflectedPower(material, plan.config.multipath->bounces));
+        reflected_.push_back(reflectedPower(material, bouncesOf(plan.config)));
     takeQuality();
 }
 
