@@ -146,9 +146,11 @@ private:
     acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
     /** Returns 1 / shape of the echoes' K law at the measured range; see isTextured() for its significance. */
     double texture() const { return inverse_ / areaAt(recorded_); }
-    /** The statistic changes by less than the texture (`slope_`), so its error is that much larger in the texture. */
+    /** In side-scans the statistic has errors beyond the jackknife: fits of known ones (SIDE_SCANS.md) are covered only
+     *  with the rest of the last step, at the slope with which the statistic follows the texture. */
     double textureInterval() const {
-        return (z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations) + std::abs(rest_)) / slope_;
+        const double off = z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations);
+        return chain_.isSideScan() ? (off + std::abs(rest_)) / slope_ : off;
     }
     bool isTextured() const { return recorded_.texture.isKnown() && texture() > textureInterval(); }
     double areaAt(const SpeckleMoments& moments) const {
