@@ -146,8 +146,8 @@ private:
     acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
     /** Returns 1 / shape of the echoes' K law at the measured range; see isTextured() for its significance. */
     double texture() const { return inverse_ / areaAt(recorded_); }
-    /** In side-scans the statistic has errors beyond the jackknife: fits of known ones (SIDE_SCANS.md) are covered only
-     *  with the rest of the last step, at the slope with which the statistic follows the texture. */
+    /** In side-scans the statistic has errors beyond the jackknife: fits of known side-scans (SIDE_SCANS.md) are
+     * covered only with the rest of the last step, at the slope with which the statistic follows the texture. */
     double textureInterval() const {
         const double off = z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations);
         return chain_.isSideScan() ? (off + std::abs(rest_)) / slope_ : off;
