@@ -69,7 +69,9 @@ PlateReturns plateReturns(const Plate& plate, const Fluid& before, const Fluid& 
     return {termsOf(first + second / (1 - again), max_count,
                     [&](size_t k) { return k == 0 ? first : second * std::pow(again, k - 1); }),
             termsOf(straight * (1 + again) / std::pow(1 - again, 3), max_count,
-                    [&](size_t k) { return straight * std::pow(k + 1, 2) * std::pow(again, k); })};
+                    [&](size_t k) { return straight * std::pow(k + 1, 2) * std::pow(again, k); }),
+            termsOf(std::sqrt(straight) / (1 - again), max_count,
+                    [&](size_t k) { return std::sqrt(straight) * std::pow(again, k); })};
 }
 
 PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid& behind, double frequency,

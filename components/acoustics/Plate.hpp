@@ -36,6 +36,8 @@ PlateResponse plateResponse(const Plate& plate, const Fluid& before, const Fluid
 struct PlateReturns {
     std::vector<double> reflected;  ///< The sum is the mean of |R|^2 over a resonance's width.
     std::vector<double> passed;     ///< Passed out and back through the plate; the sum is the mean of |T T'|^2.
+    /** Passed once through the plate; the sum is the mean of |T|^2 times the ratio of the fluids' impedances. */
+    std::vector<double> passed_once;
 };
 
 /** Returns the reverberation of a plate (ACOUSTICS.md 3.10): at most `max_count` returns in each vector. Stops when the

@@ -59,9 +59,11 @@ std::optional<acoustics::MatterProperties> fluidOf(Fill fill) {
     if (fill == Fill::Sand) return acoustics::propertiesOf(Matter::Sand);
     if (fill == Fill::Mud) return acoustics::propertiesOf(Matter::Mud);
     if (fill != Fill::Oil) return {};
-    acoustics::MatterProperties oil{};  // light mineral oil, Selfridge 1985, who gives no loss
+    // Light crude oil without gas at 15.6 deg C and atmospheric pressure: Batzle and Wang 1992, equation 20a, which has
+    // no loss.
+    acoustics::MatterProperties oil{};
     oil.density = 825;
-    oil.sound_speed = 1440;
+    oil.sound_speed = 1371;
     return oil;
 }
 

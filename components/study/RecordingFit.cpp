@@ -135,13 +135,23 @@ public:
         apply();
     }
 
+    /** Takes the statistics of the fitted device, whose rest of the error widens intervals. */
+    void end(const SpeckleMoments& simulated) {
+        if (recorded_.texture.isKnown() && simulated.texture.isKnown())
+            rest_ = recorded_.texture.value - simulated.texture.value;
+    }
     void addTo(std::vector<Finding>& findings) const;
 
 private:
     acoustics::BeamLaw& azimuth() const { return *chain_.sonar.beam_pattern->receive.azimuth; }
     /** Returns 1 / shape of the echoes' K law at the measured range; see isTextured() for its significance. */
     double texture() const { return inverse_ / areaAt(recorded_); }
-    double textureInterval() const { return z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations); }
+    /** In side-scans the statistic has errors beyond the jackknife: fits of known side-scans (SIDE_SCANS.md) are
+     * covered only with the rest of the last step, at the slope with which the statistic follows the texture. */
+    double textureInterval() const {
+        const double off = z_95 * recorded_.texture.error * std::sqrt(1 + 1.0 / simulations);
+        return chain_.isSideScan() ? (off + std::abs(rest_)) / slope_ : off;
+    }
     bool isTextured() const { return recorded_.texture.isKnown() && texture() > textureInterval(); }
     double areaAt(const SpeckleMoments& moments) const {
         return cellPerMetre(chain_) * moments.range / (moments.echo_share * moments.echo_share);
@@ -170,7 +180,8 @@ private:
         const double area = areaAt(recorded), here = inverse_ / area;
         const double way = here - texture_before_;
         const bool has_slope = std::isfinite(made_before_) && std::abs(way) > 1e-3;
-        const double slope = has_slope ? std::clamp((made - made_before_) / way, 0.3, 1.2) : 0.6;
+        const double slope = has_slope ? std::clamp((made - made_before_) / way, 0.3, 1.2) : typical_slope;
+        slope_ = std::min(slope, typical_slope);
         texture_before_ = here, made_before_ = made;
         const double there = here + (recorded.texture.value - made) / slope;
         inverse_ = area * std::max(here > 0 ? 0.2 * here : 0.0, there);
@@ -202,6 +213,9 @@ private:
     double beams_ = 0, bins_ = 0, noise_beams_ = 0, noise_bins_ = 0;  ///< Target statistics of the theory [1].
     double texture_before_ = 0, made_before_ = NAN;  ///< 1 / shape in the previous round, and its statistic then [1].
     double inverse_ = 0;                             ///< 1 / scatterers per area [m^2].
+    static constexpr double typical_slope = 0.6;     ///< Change of the statistic with the texture [1].
+    double slope_ = typical_slope;                   ///< At most the typical slope, as steps are noisy [1].
+    double rest_ = 0;                                ///< Recorded less simulated texture of the fitted device [1].
 };
 
 bool isWithin(const Fitted& fitted, double share) { return fitted.half() <= share * std::abs(fitted.value); }
@@ -453,6 +467,7 @@ RecordingFit fitRecording(const std::vector<CodedPing>& recorded, FitChain chain
         if (round + 1 < rounds)
             averaged ? averaged->improve(fit.recorded, fit.simulated) : speckle.improve(fit.recorded, fit.simulated);
     }
+    speckle.end(fit.simulated);
     fit.chain = chain;
     fit.levels.pitch_deg = pitch, fit.levels.height_m = height, fit.levels.elevation_deg = elevation;
     addLevels(fit.levels, before, range, fit.findings);

@@ -133,19 +133,22 @@ TEST(PlateTest, TheReturnsOfAShortPulseAreTheMeanOverAResonance) {
         const Fluid behind{draw.between(800, 2000), draw.between(1000, 2000)};
         const double frequency = draw.between(1e5, 3e6), width = plate.sound_speed / (2 * plate.thickness);
         constexpr int steps = 2000;
-        double reflected = 0, passed = 0;
+        const double impedances = before.density * before.sound_speed / (behind.density * behind.sound_speed);
+        double reflected = 0, passed = 0, once = 0;
         for (int k = 0; k < steps; ++k) {
             const double at = frequency + width * (k + 0.5) / steps;
             reflected += std::norm(plateResponse(plate, before, behind, at, 1).reflected) / steps;
             passed += std::norm(plateResponse(plate, before, behind, at, 1).transmitted *
                                 plateResponse(plate, behind, before, at, 1).transmitted) /
                       steps;
+            once += std::norm(plateResponse(plate, before, behind, at, 1).transmitted) * impedances / steps;
         }
         const PlateReturns returns = plateReturns(plate, before, behind, frequency, 32);
         const double all = std::accumulate(returns.reflected.begin(), returns.reflected.end(), 0.0),
                      through = std::accumulate(returns.passed.begin(), returns.passed.end(), 0.0);
         EXPECT_NEAR(all, reflected, 1e-5) << i;
         EXPECT_NEAR(through, passed, 1e-5) << i;
+        EXPECT_NEAR(std::accumulate(returns.passed_once.begin(), returns.passed_once.end(), 0.0), once, 1e-5) << i;
         EXPECT_LE(all + through, 1 + 1e-9);
         worst = std::max({worst, std::abs(all - reflected), std::abs(through - passed)});
     }

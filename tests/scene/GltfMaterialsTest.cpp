@@ -77,7 +77,7 @@ TEST_F(GltfMaterialsTest, AFillIsOfATableOrOfNumbers) {
         return std::array{shell.fill_density, shell.fill_speed, shell.fill_loss};
     };
     EXPECT_EQ(fillOf(R"("fill":"water")"), (std::array{0., 0., 0.}));
-    EXPECT_EQ(fillOf(R"("fill":"oil","fill_loss":1e-3)"), (std::array{825., 1440., 1e-3}));
+    EXPECT_EQ(fillOf(R"("fill":"oil","fill_loss":1e-3)"), (std::array{825., 1371., 1e-3}));
     EXPECT_EQ(fillOf(R"("fill":"sand","fill_density":2000)"), (std::array{2000., 1650., 0.0147}));
     EXPECT_EQ(fillOf(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
 }

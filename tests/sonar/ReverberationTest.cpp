@@ -139,6 +139,34 @@ TEST(ReverberationTest, ReturnsThatPathsByMirrorsHaveCountOnce) {
     }
 }
 
+/** A wall that is smooth by the class of its map reflects as one of that material; a strength is a factor of R^2. */
+TEST(ReverberationTest, WallsWithMapsReflectByTheMaterialsOfTheirMaps) {
+    const SonarConfig config = facingWalls();
+    const double rigid = rigidLevel(config);
+    for (const float strength : {1.0f, 0.5f}) {
+        const auto scene = std::make_shared<types::Geometry>(*smoothWalls({test::wall(5), test::wall(7)}, 2));
+        types::Mesh far = scene->meshes[1];
+        for (const glm::vec3& at : far.positions) far.map_uvs.emplace_back(at.y / 200 + 0.5, at.z / 200 + 0.5);
+        types::SurfaceMap map{1, 1, {strength}, {0}, {1}, false, false};  // all of it has the first of its materials
+        far.clusters.front().material = 2;
+        far.maps = {{2, std::make_shared<const types::SurfaceMap>(map)}};
+        scene->meshes = {scene->meshes[0], far};
+        scene->materials.push_back(scene->materials[1]);
+        scene->materials[2].roughness_slope.reset();
+        scene->materials[2].max_map_strength = strength;
+        const auto ping = pingOf(config, snapshotOf(scene));
+        for (const int n : {1, 2}) {  // the far wall reflects n + 1 times
+            const double expected = std::pow(wallTransmitted(), 2) * std::pow(wallReflected(), 1 + 2 * n) *
+                                    std::pow(double{strength}, n + 1),
+                         level = levelAt(ping, 7 + 2 * n, rigid);
+            std::cout << "a wall smooth by its map, of strength " << strength << ", " << n
+                      << " times back: " << 10 * std::log10(level) << " dB, by the formula "
+                      << 10 * std::log10(expected) << " dB\n";
+            EXPECT_NEAR(10 * std::log10(level / expected), 0, 0.05) << strength;
+        }
+    }
+}
+
 TEST(ReverberationTest, PatternsPulsesAndCoherentSpeckleKeepTheEnergy) {
     const double expected = wallTransmitted() * wallTransmitted() * std::pow(wallReflected(), 3);
     for (const std::string effect : {"pattern", "pulse", "coherent"}) {

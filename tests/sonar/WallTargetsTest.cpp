@@ -147,6 +147,45 @@ TEST(WallTargetsTest, WaysByTheWaterSurfaceAreWeakenedByTheirOwnAngles) {
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(inDecibels(through[i] / open[i] / expected[i]), 0, 0.03) << i;
 }
 
+/** Out directly and back by the surface through a plate that rings: each way with its own arrivals. */
+TEST(WallTargetsTest, WaysByTheWaterSurfaceRingAtTheirOwnAngles) {
+    constexpr types::Shell plate{1, 2500, 2000, 0, 0, false};  // returns 0.5 m apart at the normal
+    SonarConfig config = wallSonar(2, 100, 1, 600);
+    config.multipath.emplace().surface.emplace();
+    const auto pingOfTarget = [&](const types::GeometryPtr& scene) {
+        types::Snapshot snapshot = snapshotOf(scene, {0, 0, -2});
+        snapshot.targets = {{{12.03, 0, -2}, 0}};
+        snapshot.water_surface = 0.0;
+        return pingOf(config, snapshot);
+    };
+    const auto open = pingOfTarget(silentWalls({test::wall(40)})),
+               through = pingOfTarget(silentWalls({test::wall(6)}, plate));
+    const double mirrored = std::hypot(12.03, 4), cosine = 12.03 / mirrored, mixed = (12.03 + mirrored) / 2;
+    const auto spacing = [](double c) { return 0.5 * std::sqrt(1 - 4 * (1 - c * c)); };
+    const auto returns = acoustics::plateReturns({1, 2500, 2000, 0, 0}, {1025, water_speed}, {1025, water_speed},
+                                                 1000 * shell_khz, WallLaw::max_returns);
+    const auto meanOnce = [&](double c) {
+        double sum = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const double frequency = 1000 * shell_khz + (i + 0.5) / 4000 * 500 / spacing(c);
+            sum += std::norm(acoustics::plateResponse({1, 2500, 2000, 0, 0}, {1025, water_speed}, {1025, water_speed},
+                                                      frequency, c)
+                                 .transmitted) /
+                   4000;
+        }
+        return sum;
+    };
+    const double first = mixed + 0.5 * (spacing(1) - 1 + spacing(cosine) - cosine);
+    const double share =
+        returns.passed_once[0] / std::accumulate(returns.passed_once.begin(), returns.passed_once.end(), 0.0);
+    const double level = energyOf(through, 0, first - 0.1, first + 0.1) / energyOf(open, 0, mixed - 0.1, mixed + 0.1) *
+                         std::pow(first / mixed, 4);
+    const double expected = meanOnce(1) * meanOnce(cosine) * share * share;
+    std::cout << "a target out directly and back by the surface: " << inDecibels(level) << " dB, by the formula "
+              << inDecibels(expected) << " dB\n";
+    EXPECT_NEAR(inDecibels(level / expected), 0, 0.2);
+}
+
 TEST(WallTargetsTest, TheTruthOfABinWithATargetBehindAWallIsItsWay) {
     const SonarConfig config = wallSonar(8, 8, 1);
     const auto scene = shellsOf({test::wall(8)}, 1, clear_sheet);

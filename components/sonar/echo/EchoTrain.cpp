@@ -1,6 +1,7 @@
 #include "components/sonar/echo/EchoTrain.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace insonify::sonar {
 
@@ -26,6 +27,14 @@ EchoTrain EchoTrain::then(const Returns& returns, double spacing, double resolut
     train.size_ = 0;
     for (size_t i = 0; i < count; ++i) train.append(all[i], resolution);
     return train;
+}
+
+double EchoTrain::passOnce(const WallLaw& wall, double sine, double resolution) {
+    if (wall.rings()) {
+        *this = then(wall.once, wall.spacing(sine), resolution);
+        moveAway(0.5 * wall.delay(sine));
+    }
+    return wall.passedOnceAt(std::sqrt(std::max(1 - sine * sine, 0.0)));
 }
 
 }  // namespace insonify::sonar

@@ -26,6 +26,9 @@ public:
      *  `resolution` [m] merge, at the range of the first. Echoes beyond max_echoes are added to the last. The sum of
      *  the weights becomes the product of the sums. */
     EchoTrain then(const Returns& returns, double spacing, double resolution) const;
+    /** Passes a wall once at a sine of incidence in water. Its delays are half of those out and back. Returns the share
+     * of the energy that passes [1]. */
+    double passOnce(const WallLaw& wall, double sine, double resolution);
     void moveAway(double range) {
         for (size_t i = 0; i < size_; ++i) echoes_[i].late += range;
     }

@@ -31,8 +31,8 @@ public:
 
     double reflected() const { return std::norm(at(frequency_, 1).reflected); }
     /** Returns means over steps of the cosine, so that no resonance falls between two entries, and over `bands`
-     *  frequencies within the width of a resonance. */
-    std::vector<float> passed(int bands) const {
+     *  frequencies within the width of a resonance. `times`: that sound passes. */
+    std::vector<float> passed(int bands, int times) const {
         std::vector<float> table;
         const double width = plate_.sound_speed / (2 * plate_.thickness);
         const int per_entry = bands == 1 ? 8 : 2;
@@ -40,8 +40,8 @@ public:
             double sum = 0;
             for (int k = 0; k < per_entry * bands; ++k) {
                 const double cosine = (i + (k % per_entry + 0.5) / per_entry) / entries;
-                const double off = bands == 1 ? 0 : width * ((k / per_entry + 0.5) / bands - 0.5);
-                sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluids(cosine), 2);
+                const double off = bands == 1 ? 0 : width / inPlate(cosine) * ((k / per_entry + 0.5) / bands - 0.5);
+                sum += std::pow(std::norm(at(frequency_ + off, cosine).transmitted) * fluids(cosine), times);
             }
             table.push_back(static_cast<float>(sum / (per_entry * bands)));
         }
@@ -63,6 +63,12 @@ public:
 private:
     acoustics::PlateResponse at(double frequency, double cosine) const {
         return acoustics::plateResponse(plate_, water_, behind_, frequency, cosine);
+    }
+
+    /** Returns the cosine of the angle of the sound in the wall; 1 beyond the critical angle [1]. */
+    double inPlate(double cosine) const {
+        const double square = 1 - (1 - cosine * cosine) * std::pow(plate_.sound_speed / water_.sound_speed, 2);
+        return square > 0 ? std::sqrt(std::max(square, 0.01)) : 1;
     }
 
     /** Returns the impedance of the water relative to that of the fluid behind, both along the normal: |T|^2 times this
@@ -104,15 +110,20 @@ WallFill fillOf(const types::Shell& shell, const SonarConfig& config, const Wall
 
 }  // namespace
 
-double WallLaw::passedAt(double cosine) const {
-    if (passed.empty()) return 0;
-    return static_cast<double>(passed[static_cast<size_t>(
-        std::clamp(cosine * static_cast<double>(passed.size()), 0.0, static_cast<double>(passed.size() - 1)))]);
+double WallLaw::shareAt(const std::vector<float>& shares, double cosine) {
+    if (shares.empty()) return 0;
+    return static_cast<double>(shares[static_cast<size_t>(
+        std::clamp(cosine * static_cast<double>(shares.size()), 0.0, static_cast<double>(shares.size() - 1)))]);
 }
 
 double WallLaw::spacing(double sine) const {
     const double in_wall = sine * speed_ratio;
     return in_wall < 1 ? thickness / speed_ratio * std::sqrt(1 - in_wall * in_wall) : 0;
+}
+
+double WallLaw::delay(double sine) const {
+    const double time = rings() ? spacing(sine) : 0;
+    return time > 0 ? time - thickness * std::sqrt(std::max(1 - sine * sine, 0.0)) : 0;
 }
 
 WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) {
@@ -130,9 +141,13 @@ WallLaw makeWallLaw(const types::Material& material, const SonarConfig& config) 
         law.outside = relative(outside.reflected);
         law.inside = relative(wall.returns(true).reflected);
         law.behind = relative(outside.passed);
+        law.once = relative(outside.passed_once);
         bands = bands_of_resonance;
     }
-    if (!material.shell->has_air) law.passed = wall.passed(bands);
+    if (!material.shell->has_air) {
+        law.passed = wall.passed(bands, 2);
+        law.passed_once = wall.passed(bands, 1);
+    }
     if (material.shell->fill_density > 0) law.fill = fillOf(*material.shell, config, law, wall);
     return law;
 }

@@ -24,19 +24,30 @@ struct WallLaw {
 
     double reflected = 1;       ///< Share of the energy reflected at normal incidence, all returns together [1].
     std::vector<float> passed;  ///< Two-way transmitted share, over the cosine in water from 0 to 1; empty: none [1].
-    double thickness = 0;       ///< [m]
-    double speed_ratio = 1;     ///< Speed of sound of the wall relative to the water [1].
-    Returns outside, inside;    ///< Returns of its two faces; empty: they are in one bin.
-    Returns behind;             ///< Returns of an echo from behind, out and back through the wall; empty likewise.
-    std::optional<WallFill> fill;  ///< None: water, or air, which no sound enters.
+    std::vector<float> passed_once;  ///< One-way transmitted share, likewise [1].
+    double thickness = 0;            ///< [m]
+    double speed_ratio = 1;          ///< Speed of sound of the wall relative to the water [1].
+    Returns outside, inside;         ///< Returns of its two faces; empty: they are in one bin.
+    Returns behind;                  ///< Returns of an echo from behind, out and back through the wall; empty likewise.
+    Returns once;                    ///< Arrivals of sound that passes the wall once; empty likewise.
+    std::optional<WallFill> fill;    ///< None: water, or air, which no sound enters.
 
     bool letsThrough() const { return !passed.empty(); }
     bool rings() const { return !outside.empty(); }
     /** Returns the two-way transmitted share of energy at a cosine of incidence in water [1]. */
-    double passedAt(double cosine) const;
+    double passedAt(double cosine) const { return shareAt(passed, cosine); }
+    /** Returns the one-way transmitted share of energy at a cosine of incidence in water [1]. Resonances of one wall
+     *  make it less than the root of the two-way share. */
+    double passedOnceAt(double cosine) const { return shareAt(passed_once, cosine); }
     /** Returns the slant range between two returns at a sine of incidence in water: thickness c cos(theta_wall) /
      *  c_wall, 0 beyond the critical angle [m]. */
     double spacing(double sine) const;
+    /** Returns the slant range that the wall adds to sound that passes it out and back at a sine of incidence in water;
+     *  0 if it does not ring [m]. It replaces thickness cos(theta) of water. */
+    double delay(double sine) const;
+
+private:
+    static double shareAt(const std::vector<float>& shares, double cosine);
 };
 
 /** Returns the law of a material: an empty one without a shell, or for a sonar without a frequency. */

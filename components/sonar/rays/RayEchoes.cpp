@@ -411,7 +411,8 @@ bool RayEchoes::traceThrough(std::span<TracedTile> tiles, Worker& worker) const 
 
 void RayEchoes::followWalls(std::span<const TracedTile> tiles, int first_beam, Worker& worker) const {
     const PlacedScene scene = this->scene();
-    WallRays rays(rules_, visibility_, scene, surface_, reverberation_, plan_.config.max_walls, levels_.lossOfWater());
+    WallRays rays(rules_, view_, visibility_, scene, surface_, reverberation_, plan_.config.max_walls,
+                  levels_.lossOfWater());
     for (const TracedTile& tile : tiles)
         if (rays.begin(tile, directions_.rays(view_.cells, tile.first_column, tile.first_row)))
             while (const TracedTile* echoes = rays.next()) deposit({echoes, 1}, true, first_beam, worker);

@@ -175,6 +175,17 @@ MapLevels::Look SurfaceMapping::look(const TracedView& view, const PlacedScene& 
         {uv + u * uv_b + v * uv_c, inMap(range * height / cosine * ahead), inMap(range * width * aside)});
 }
 
+double PlacedScene::meanOf(std::span<const double> property, const TracedView& view, const TracedTile& tile,
+                           int i) const {
+    const uint32_t command = tile.hits->command[i];
+    if (!maps) return property[commands[command].material];
+    const MapLevels::Look look = maps->look(view, *this, tile, i);
+    double sum = 0;
+    for (size_t k = 0; k <= maps->classesOf(command); ++k)
+        sum += static_cast<double>(look.shares[k]) * property[commands[maps->commandOf(command, k)].material];
+    return static_cast<double>(look.strength) * sum;
+}
+
 namespace {
 
 /** One of the materials of a sample, with the factor of its echo. */

@@ -14,6 +14,14 @@ class BinLevels;
 class SurfaceMapping;
 class WaterTruth;
 
+struct TracedTile;
+
+/** Arrangement of samples. */
+struct TracedView {
+    AngularView cells;
+    TileShape shape;
+};
+
 /** Meaning of hits in this ping: commands, each with its triangles rotated into sonar axes. */
 struct PlacedScene {
     std::span<const CommandRecord> commands;
@@ -23,12 +31,10 @@ struct PlacedScene {
     WaterView water;
     const RayPaths* paths = nullptr;       ///< Null where rays are straight.
     const SurfaceMapping* maps = nullptr;  ///< Null where surfaces have no maps.
-};
 
-/** Arrangement of samples. */
-struct TracedView {
-    AngularView cells;
-    TileShape shape;
+    /** Returns the mean of a property of materials over the surface that sample `i` of a tile has hit, times the factor
+     *  of its echo by maps. */
+    double meanOf(std::span<const double> property, const TracedView& view, const TracedTile& tile, int i) const;
 };
 
 /** A traced tile: its place in the view and its hits. */

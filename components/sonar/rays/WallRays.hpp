@@ -1,12 +1,11 @@
 #pragma once
 #include <array>
-#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
-#include "components/sonar/echo/EchoTrain.hpp"
 #include "components/sonar/places/MeshFacts.hpp"
 #include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/rays/WallRay.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 
 namespace insonify::sonar {
@@ -17,15 +16,15 @@ struct Reverberation {
     /** For each material: paths by mirrors (5.23) include its reflections; empty: there are no such paths. */
     std::vector<bool> in_paths;
     int bounces = 0;  ///< Max reflections of these paths [1].
+    /** For each material: share of the energy that it reflects like a mirror at normal incidence, all returns of its
+     *  wall together [1]; 0: its lobe is wide, or it has none. */
+    std::vector<double> mirrored;
 
     Reverberation() = default;
     /** Reverberation with a plan's walls, if a flat facet of the scene is one. `facets` has those of each mesh. */
     Reverberation(const RenderPlan& plan, const types::Geometry& geometry, std::span<const MeshFacts::Facets> facets);
 
     bool isInPaths(uint32_t material) const { return !in_paths.empty() && in_paths[material]; }
-    /** Returns the share of the energy that a smooth material reflects like a mirror at normal incidence, all returns
-     * of its wall together [1]; 0: its lobe is wide, or it has none. */
-    static double mirrored(const MaterialLaws& laws, size_t material);
     static bool isFlat(const FacetRecord& facet) {
         return facet.first.x == 0 && facet.first.z == 0 && facet.second.x == 0 && facet.second.z == 0;
     }
@@ -36,20 +35,20 @@ struct Reverberation {
  *  processed layer by layer, each layer once per echo. Allocates nothing. */
 class WallRays {
 public:
-    static constexpr double min_passed = 1e-6;  ///< Share of the energy below which a ray ends: 60 dB [1].
-    static constexpr double max_focus = 30;     ///< Bound at caustics, where ray theory gives infinity [1].
+    static constexpr double min_passed = WallRay::min_passed;  ///< [1]
     static constexpr int max_reflections = 16;  ///< Max reflections of a ray back and forth between walls [1].
 
     /** `surface`: where rays end. `loss_of_water`: loss of energy in the sonar's water, one way [Np/m]. */
-    WallRays(const EchoRules& rules, const RayVisibility& visibility, const PlacedScene& scene,
+    WallRays(const EchoRules& rules, const TracedView& view, const RayVisibility& visibility, const PlacedScene& scene,
              const WaterMirror& surface, const Reverberation& reverberation, int max_walls, double loss_of_water)
         : rules_(rules),
+          view_(view),
           visibility_(visibility),
           scene_(scene),
           surface_(surface),
           reverberation_(reverberation),
           max_walls_(max_walls),
-          loss_of_water_(loss_of_water) {}
+          water_{loss_of_water, rules.bins.bin_width / 2} {}
 
     /** Begins with the hits of a tile, the first return of which is deposited already. Returns whether any of them is a
      *  wall that rings or lets sound through. */
@@ -58,55 +57,25 @@ public:
     const TracedTile* next();
 
 private:
-    static constexpr int max_bodies = 8;  ///< Max nested bodies [1].
-
-    /** A fluid that sound is in. */
-    struct Medium {
-        double speed = 1;  ///< Relative to the water [1].
-        double attenuation =
-            0;  ///< Attenuation of energy, one way, in excess of the water over the same slant range [Np/m].
-    };
-    /** A body that sound is in. */
-    struct Body {
-        uint32_t object;
-        Medium fill;
-    };
-    /** A ray and its neighbours, sonar axes. */
-    struct Ray {
-        bool is_there = false;  ///< It has hit a surface in this layer.
-        bool is_bent = false;
-        bool is_in_paths = false;            ///< Paths by mirrors (5.23) have all its walls and reflections.
-        glm::dvec3 from, way, look;          ///< [m], unit, unit: its initial direction.
-        glm::dvec3 across[2];                ///< Normal to `look`.
-        glm::dvec3 per_from[2], per_way[2];  ///< Change of `from` and `way` with the look direction [m], [1].
-        double range = 0;                    ///< Slant range at `from` [m].
-        double power = 1;                    ///< Share of the energy that returns [1].
-        Medium medium;
-        int bodies_count = 0;
-        Body bodies[max_bodies];
-        EchoTrain train, echoes;  ///< Sound that arrives; echoes that return from here.
-        glm::dvec3 normal;        ///< Unit normal of the surface, against the ray.
-        double cosine;            ///< Cosine of the angle between `normal` and the ray [1].
+    struct Ray : WallRay {
+        bool is_there = false;     ///< It has hit a surface in this layer.
+        bool is_in_paths = false;  ///< Paths by mirrors (5.23) have all its walls and reflections.
+        EchoTrain echoes;          ///< Echoes that return from here.
     };
 
     const WallLaw& wallOf(int i) const { return rules_.laws.walls[scene_.ranges[hits_.command[i]].material]; }
     uint32_t objectOf(int i) const { return scene_.commands[hits_.command[i]].object; }
-    /** Returns the sine of the angle of incidence of the same wave in water [1]. */
-    static double sineInWater(const Ray& ray) {
-        return std::sqrt(std::max(1 - ray.cosine * ray.cosine, 0.0)) / ray.medium.speed;
+    WallRay::Surface surfaceOf(int i) const {
+        return {scene_.ranges[hits_.command[i]], hits_.triangle[i], objectOf(i), wallOf(i)};
     }
-    static int bodyOf(const Ray& ray, uint32_t object);
     void meet(int i);
-    void setEchoes(int i);
     /** Continues a ray through the wall that it has hit; drops a ray that ends there. */
     void pass(int i, PathRays& on);
     /** Reflects a ray at the flat, smooth surface that it has hit; drops a ray that has hit another. */
     void reflect(int i, PathRays& on);
     /** Returns the share of the energy that the surface that a ray has hit reflects like a mirror [1]. */
-    double mirrored(int i) const;
+    double mirrored(int i);
     void send(int i, PathRays& on) const;
-    void enter(Ray& ray, uint32_t object, const WallLaw& wall) const;
-    bool refract(int i, double speed);
     /** Moves all rays to their next surface by pass() or reflect(). Returns whether any ray is left. */
     bool advance(void (WallRays::*step)(int, PathRays&));
     bool goOn();
@@ -114,15 +83,15 @@ private:
     bool goBackAndForth();
     void countEchoes();
     const TracedTile* show(size_t echo);
-    ApparentPlane apparent(const Ray& ray) const;
 
     const EchoRules& rules_;
+    const TracedView& view_;
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
     const WaterMirror& surface_;
     const Reverberation& reverberation_;
     int max_walls_;
-    double loss_of_water_;
+    WallRay::Water water_;
     int walls_ = 0;        ///< Walls that the rays of this layer have passed [1].
     int reflections_ = 0;  ///< Their reflections behind these walls [1].
     size_t echo_ = 0, echoes_ = 0;

@@ -200,9 +200,10 @@ size_t EdgeEchoes::add(PingInMaking& to) {
             if (!(echo.section > min_section && way.length > 0 && way.length < plan_.grid.range_max)) continue;
             way.direction = sonar_from_world * ((echo.at - sonar) / way.length);
             if (!points_.mayReceive(way.direction)) continue;
-            EchoTrain train;
-            way.power = walls_.passed(sightlines_, sonar, echo.at, way.walls, &train);
-            if (train.isDelayed()) way.train = &train;
+            WallArrivals arrivals;
+            way.power = walls_.passed(sightlines_, sonar, echo.at, way.walls, arrivals);
+            way.ringing = arrivals.ringing;
+            if (arrivals.areDelayed()) way.arrivals = &arrivals;
             if (way.power > 0) any |= points_.addAlong(way, 10 * std::log10(echo.section), to);
         }
         received += any ? 1 : 0;

@@ -1,5 +1,7 @@
 #include "components/sonar/ways/PathCells.hpp"
 
+#include <algorithm>
+
 namespace insonify::sonar {
 
 CellAngles::CellAngles(const TracedView& traced, const TracedTile& tile, int sample, int merged) {
@@ -42,6 +44,16 @@ HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAng
     const bool same_side = side * plane.distance < 0;
     way.nearest = 2 / glm::length(same_side ? plane.image(focus) : focus);
     return way;
+}
+
+void HalfWay::moveAway(double late) {
+    const auto moved = [late](double range) { return std::max(range + late, 1e-3); };
+    const double range = moved(1 / inverse), change = 1 / (range * range * inverse * inverse);
+    inverse = 1 / range;
+    per_azimuth *= change;
+    per_elevation *= change;
+    nearest = 1 / moved(1 / nearest);
+    back = moved(back);
 }
 
 MirrorPlane planeMet(const PlacedScene& scene, const TileHits& hits, int i) {

@@ -24,6 +24,9 @@ struct HalfWay {
     double inverse, per_azimuth, per_elevation, nearest;  ///< [1/m], [1/m rad], [1/m rad], [1/m].
     double back;                                          ///< Distance from the plane to the focus [m].
     glm::dvec3 from_focus;                                ///< Unit.
+
+    /** Adds a slant range to all of it [m]. */
+    void moveAway(double late);
 };
 
 HalfWay halfWay(const MirrorPlane& plane, const glm::dvec3& focus, const CellAngles& at);

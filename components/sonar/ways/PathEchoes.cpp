@@ -13,6 +13,8 @@
 #include "components/sonar/field/ScattererLattice.hpp"
 #include "components/sonar/rays/SurfaceMapping.hpp"
 #include "components/sonar/rays/TileCells.hpp"
+#include "components/sonar/rays/WallRay.hpp"
+#include "components/sonar/ways/MirrorChain.hpp"
 #include "components/sonar/ways/Mirrors.hpp"
 #include "components/sonar/ways/PathCells.hpp"
 #include "components/sonar/ways/SharedBins.hpp"
@@ -25,40 +27,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int max_bounces = MultipathConfig::max_bounces;
 constexpr double reaching_back = 1.1;  ///< Cells beyond the range, up to this factor of it, may extend into it [1].
 constexpr double edge_on = 1e-4;       ///< Cosine below which a surface gives no echo [1].
 constexpr uint64_t surface_name = std::numeric_limits<uint64_t>::max();  ///< Water surface in the mirrors of a chain.
-
-/** The mirrors that a ray has hit, in order. */
-struct Chain {
-    int count = 0;
-    std::array<uint64_t, max_bounces> names{};  ///< Equal for all rays that hit the same mirror.
-    std::array<MirrorPlane, max_bounces> planes;
-    double power = 1;           ///< Share of the power after the mirrors [1].
-    double widest = 0;          ///< Max contribution of a mirror's facet to a mean square slope, over its cosine [1].
-    bool begins_lobed = false;  ///< Whether the first mirror has a lobe.
-    int walls = 0;              ///< Thin walls that the ray has passed [1].
-    uint64_t wall_names = 0;    ///< Equal for all rays that pass the same walls.
-
-    bool sameAs(const Chain& other) const {
-        return count == other.count && wall_names == other.wall_names &&
-               std::equal(names.begin(), names.begin() + count, other.names.begin());
-    }
-    glm::dvec3 image(glm::dvec3 place) const {
-        for (int k = count; k-- > 0;) place = planes[static_cast<size_t>(k)].image(place);
-        return place;
-    }
-    glm::dvec3 turned(glm::dvec3 way) const {
-        for (int k = count; k-- > 0;) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
-    }
-    /** Inverts turned(). */
-    glm::dvec3 turnedBack(glm::dvec3 way) const {
-        for (int k = 0; k < count; ++k) way = planes[static_cast<size_t>(k)].turned(way);
-        return way;
-    }
-};
 
 class PathEchoes final : public PingEffect {
 public:
@@ -101,6 +72,7 @@ public:
           visibility_(ping.visibility),
           scene_(ping.scene),
           bins_(rules_, paths.sums_.data()),
+          water_{ping.levels.lossOfWater(), rules_.bins.bin_width / 2},
           near_edge_(rules_.edges.front()),
           far_edge_(rules_.edges[static_cast<size_t>(rules_.bins.bin_count)]) {}
 
@@ -115,6 +87,13 @@ public:
     }
 
 private:
+    /** Energy that returns directly from a surface met by mirrors. */
+    struct Back {
+        double share = 0;   ///< One way; 0: hidden [1].
+        EchoTrain train;    ///< Arrivals out by mirrors and back directly.
+        double cosine = 1;  ///< Cosine of its angle at the surface [1].
+    };
+    using Backs = std::array<Back, tile_samples>;
     bool isActive(int i) const { return rays_.towards.active >> i & 1; }
     glm::dvec3 from(int i) const { return {rays_.from_x[i], rays_.from_y[i], rays_.from_z[i]}; }
     glm::dvec3 towards(int i) const { return {rays_.towards.x[i], rays_.towards.y[i], rays_.towards.z[i]}; }
@@ -125,41 +104,51 @@ private:
     bool begin(const TracedTile& tile);
     /** Continues a ray from its hit: by a mirror, or through a wall; drops a ray that ends there. */
     void goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
-    /** Returns whether sound passes straight through a wall that is not a mirror, into water. */
+    bool hasWalls() const { return paths_.max_walls_ > 0; }
+    const WallLaw& wallOf(uint32_t command) const { return rules_.laws.walls[scene_.commands[command].material]; }
+    WallRay::Surface surfaceOf(const TileHits& hits, int i) const {
+        const uint32_t command = hits.command[i];
+        return {scene_.ranges[command], hits.triangle[i], scene_.commands[command].object, wallOf(command)};
+    }
+    /** Returns whether sound passes through a wall that is not a mirror. */
     bool letsThrough(uint32_t command) const {
-        if (paths_.max_walls_ == 0 || command == TileHits::nothing || reflected(command) > 0) return false;
-        const WallLaw& wall = rules_.laws.walls[scene_.commands[command].material];
-        return wall.letsThrough() && !wall.fill;
+        return hasWalls() && command != TileHits::nothing && reflected(command) == 0 && wallOf(command).letsThrough();
     }
-    /** Returns the one-way share of the energy that passes a wall [1]. */
-    double passedOnce(const TileHits& hits, int i, const glm::dvec3& way) const {
-        const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
-        return std::sqrt(rules_.laws.walls[scene_.commands[hits.command[i]].material].passedAt(cosine));
+    /** Passes the wall that a ray back to the sonar has hit. Returns whether it continues, straight and in water. */
+    bool passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const;
+    void meet(int i, const TileHits& hits) {
+        walled_[static_cast<size_t>(i)].meet(surfaceOf(hits, i).normal(), double{hits.distance[i]});
     }
-    void pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits);
+    void pass(int i, const TileHits& hits);
     void look(int i, const glm::dvec3& at, const glm::dvec3& on);
     /** Continues a ray from the mirror that it has hit; drops a ray that has hit none in reach. */
     void reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits, bool tilts);
     void send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way, double distance);
     void traceOn();
-    using Shares = std::array<double, tile_samples>;
-    /** Returns for each ray with a hit the share of the energy that returns directly to the sonar, on the side of the
-     *  hit [1]. */
-    Shares openBack() const;
-    Shares through(PathRays& back) const;
+    /** Finds for each ray with a hit the energy that returns directly to the sonar, on the side of the hit. */
+    void findBacks();
+    void goBackThrough(PathRays& back);
     void receive(const TracedTile& tile);
     int sameFrom(int i) const;
     /** `gain`: factor by surface maps [1]. */
-    void deposit(const CellAngles& at, int i, double open, double gain);
+    void deposit(const CellAngles& at, int i, const Back& back, double gain);
     LobeSlopes lobeSlopes(const CellAngles& at, int i, const MirrorPlane& plane, const glm::dvec3& direction,
                           double range) const;
     MaterialLaws::Bistatic section(const CellAngles& at, int i, const MirrorPlane& plane, const HalfWay& way) const;
-    void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open);
-    Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size) const;
+    void depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, const Back& back, double gain);
+    /** Returns the echoes of a surface for sound out by mirrors and back directly. */
+    EchoTrain echoesOnce(int i, const Back& back) const;
+    Footprint footprint(const CellAngles& at, int i, const HalfWay& way, double size, double late) const;
+    /** Surface in the image of the space behind the mirrors, where rays are straight. */
+    struct SeenPlane {
+        MirrorPlane plane;
+        double cosine, focus;  ///< Cosine of incidence, and intensity relative to straight rays [1].
+    };
+    SeenPlane seenPlane(const CellAngles& at, int i) const;
     /** Prepares the sums for echoes of ray i's hit: received from a direction, seen at a cosine. */
     void recordWay(int i, bool twice, const glm::dvec3& received, double cosine) {
         if (!paths_.records_truth_) return;
-        const Chain& chain = chains_[static_cast<size_t>(i)];
+        const MirrorChain& chain = chains_[static_cast<size_t>(i)];
         const bool by_surface = std::all_of(chain.names.begin(), chain.names.begin() + chain.count,
                                             [](uint64_t name) { return name == surface_name; });
         const PathTruth::Path way = twice ? PathTruth::SurfaceTwice : PathTruth::SurfaceOnce;
@@ -176,12 +165,16 @@ private:
     const RayVisibility& visibility_;
     const PlacedScene& scene_;
     SharedBins bins_;
+    WallRay::Water water_;
     double near_edge_, far_edge_;
     PathRays rays_{};
     TileHits hits_{};
-    std::array<Chain, tile_samples> chains_;
-    std::array<double, tile_samples> lengths_;  ///< Length of each ray's path so far [m].
-    uint64_t key_ = 0;                          ///< Number of the tile.
+    std::array<MirrorChain, tile_samples> chains_;
+    std::array<double, tile_samples> lengths_;  ///< Slant range of each ray so far [m].
+    std::array<WallRay, tile_samples> walled_;  ///< The rays, where there are walls.
+    std::array<EchoTrain, tile_samples> once_;  ///< Their sound that arrives, one way.
+    Backs backs_;
+    uint64_t key_ = 0;  ///< Number of the tile.
 };
 
 bool PathEchoes::Tracer::begin(const TracedTile& tile) {
@@ -196,38 +189,50 @@ bool PathEchoes::Tracer::begin(const TracedTile& tile) {
         rays_.towards.active |= 1u << i;
         chains_[static_cast<size_t>(i)] = {};
         lengths_[static_cast<size_t>(i)] = 0;
+        if (hasWalls()) {
+            walled_[static_cast<size_t>(i)].begin(view_.cells.direction(column, row));
+            once_[static_cast<size_t>(i)] = {};
+            if (!misses) meet(i, *tile.hits);
+        }
         goOn(i, glm::dvec3(0), view_.cells.direction(column, row), *tile.hits);
     }
     return rays_.towards.active;
 }
 
 void PathEchoes::Tracer::goOn(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
-    if (letsThrough(hits.command[i])) return pass(i, from, way, hits);
-    if (chain.count == paths_.plan_.config.multipath->bounces) return drop(i);
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
+    if (letsThrough(hits.command[i])) return pass(i, hits);
+    if (chain.count == bouncesOf(paths_.plan_.config)) return drop(i);
     reflect(i, from, way, hits, chain.count == 0);
 }
 
-void PathEchoes::Tracer::pass(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits) {
-    constexpr double min_passed = 1e-3;  // one way: 60 dB two-way
-    Chain& chain = chains_[static_cast<size_t>(i)];
-    chain.power *= passedOnce(hits, i, way);
-    if (chain.walls == paths_.max_walls_ || !(chain.power >= min_passed)) return drop(i);
+void PathEchoes::Tracer::pass(int i, const TileHits& hits) {
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
+    WallRay& ray = walled_[static_cast<size_t>(i)];
+    const WallRay::Surface surface = surfaceOf(hits, i);
+    const double sine = ray.sineInWater();
+    if (chain.walls == paths_.max_walls_ || !ray.pass(surface, water_) ||
+        !(chain.power * chain.power * ray.power >= WallRay::min_passed))
+        return drop(i);
+    chain.passed *= once_[static_cast<size_t>(i)].passOnce(surface.wall, sine, water_.resolution);
+    chain.was_in_fill |= surface.wall.fill.has_value();
     chain.wall_names = types::hashed(chain.wall_names, hits.command[i], static_cast<uint64_t>(++chain.walls));
-    lengths_[static_cast<size_t>(i)] += double{hits.distance[i]};
-    look(i, from + double{hits.distance[i]} * way, way);
+    lengths_[static_cast<size_t>(i)] = ray.range;
+    look(i, ray.from, ray.way);
 }
 
 void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3& way, const TileHits& hits,
                                  bool tilts) {
-    Chain& chain = chains_[static_cast<size_t>(i)];
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const auto k = static_cast<size_t>(chain.count);
     if (hits.command[i] == TileHits::nothing) {
         const double distance = paths_.water_.distance(from, way);
         if (!(lengths_[static_cast<size_t>(i)] + distance < rules_.bins.range_max)) return drop(i);
         const glm::dvec3 at = from + distance * way;
+        const MirrorPlane plane = tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane();
         chain.names[k] = surface_name;
-        return send(i, tilts ? paths_.water_.facet(at, way, key_) : paths_.water_.plane(), from, way, distance);
+        if (hasWalls()) walled_[static_cast<size_t>(i)].meet(plane.normal, distance);
+        return send(i, plane, from, way, distance);
     }
     const CommandRecord& command = scene_.commands[hits.command[i]];
     const double reflected = this->reflected(hits.command[i]);
@@ -249,17 +254,23 @@ void PathEchoes::Tracer::reflect(int i, const glm::dvec3& from, const glm::dvec3
 
 void PathEchoes::Tracer::send(int i, const MirrorPlane& plane, const glm::dvec3& from, const glm::dvec3& way,
                               double distance) {
-    Chain& chain = chains_[static_cast<size_t>(i)];
+    MirrorChain& chain = chains_[static_cast<size_t>(i)];
     const glm::dvec3 at = from + distance * way, on = plane.turned(way);
     double& length = lengths_[static_cast<size_t>(i)];
     length += distance;
+    if (hasWalls()) {
+        walled_[static_cast<size_t>(i)].reflect(plane.normal);
+        length = walled_[static_cast<size_t>(i)].range;
+    }
     if (!(2 * rules_.bins.range_max - length > 0)) return drop(i);
     chain.planes[static_cast<size_t>(chain.count++)] = plane;
     look(i, at, on);
 }
 
 void PathEchoes::Tracer::look(int i, const glm::dvec3& at, const glm::dvec3& on) {
-    const double length = lengths_[static_cast<size_t>(i)], left = 2 * rules_.bins.range_max - length;
+    const double length = lengths_[static_cast<size_t>(i)],
+                 speed = hasWalls() ? walled_[static_cast<size_t>(i)].medium.speed : 1,
+                 left = (2 * rules_.bins.range_max - length) * speed;
     if (!(left > 0)) return drop(i);
     const glm::vec3 begin(at), ahead(on);
     rays_.from_x[i] = begin.x, rays_.from_y[i] = begin.y, rays_.from_z[i] = begin.z;
@@ -268,15 +279,21 @@ void PathEchoes::Tracer::look(int i, const glm::dvec3& at, const glm::dvec3& on)
     rays_.farthest[i] = static_cast<float>(std::min(left, paths_.water_.distance(at, on) + 1e-3));
 }
 
-void PathEchoes::Tracer::traceOn() { visibility_.trace(rays_, hits_); }
+void PathEchoes::Tracer::traceOn() {
+    visibility_.trace(rays_, hits_);
+    for (int i = 0; i < tile_samples && hasWalls(); ++i)
+        if (isActive(i) && hits_.command[i] != TileHits::nothing) meet(i, hits_);
+}
 
-PathEchoes::Tracer::Shares PathEchoes::Tracer::openBack() const {
-    PathRays back{};
-    back.towards.active = 0;
+void PathEchoes::Tracer::findBacks() {
+    PathRays on{};
+    on.towards.active = 0;
     for (int i = 0; i < tile_samples; ++i) {
-        back.nearest[i] = 1, back.farthest[i] = 0;
-        if (!isActive(i) || hits_.command[i] == TileHits::nothing || chains_[static_cast<size_t>(i)].count == 0)
-            continue;
+        Back& back = backs_[static_cast<size_t>(i)];
+        const MirrorChain& chain = chains_[static_cast<size_t>(i)];
+        back.share = 0;
+        on.nearest[i] = 1, on.farthest[i] = 0;
+        if (!isActive(i) || hits_.command[i] == TileHits::nothing || chain.count == 0 || chain.was_in_fill) continue;
         const glm::dvec3 at = met(i);
         const double range = glm::length(at),
                      mean = 0.5 * (range + lengths_[static_cast<size_t>(i)] + double{hits_.distance[i]});
@@ -285,42 +302,47 @@ PathEchoes::Tracer::Shares PathEchoes::Tracer::openBack() const {
         if (!same_side || !(mean < reaching_back * rules_.bins.range_max) || !(range > RayVisibility::nearest))
             continue;
         const glm::vec3 begin(at);
-        back.from_x[i] = begin.x, back.from_y[i] = begin.y, back.from_z[i] = begin.z;
-        back.towards.x[i] = -begin.x, back.towards.y[i] = -begin.y, back.towards.z[i] = -begin.z;
-        back.nearest[i] = static_cast<float>(RayVisibility::nearest / range + 1e-6);
-        back.farthest[i] = static_cast<float>(1 - RayVisibility::nearest / range);
-        back.towards.active |= 1u << i;
+        on.from_x[i] = begin.x, on.from_y[i] = begin.y, on.from_z[i] = begin.z;
+        on.towards.x[i] = -begin.x, on.towards.y[i] = -begin.y, on.towards.z[i] = -begin.z;
+        on.nearest[i] = static_cast<float>(RayVisibility::nearest / range + 1e-6);
+        on.farthest[i] = static_cast<float>(1 - RayVisibility::nearest / range);
+        on.towards.active |= 1u << i;
+        if (!hasWalls()) continue;
+        back.share = 1;
+        back.train = once_[static_cast<size_t>(i)];
+        back.cosine = std::min(std::abs(glm::dot(plane.normal, at)) / range, 1.0);
     }
-    Shares shares{};
-    if (!back.towards.active) return shares;
-    if (paths_.max_walls_ > 0) return through(back);
-    const uint32_t open = back.towards.active & ~visibility_.blocked(back);
-    for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = open >> i & 1;
-    return shares;
+    if (hasWalls()) return goBackThrough(on);
+    const uint32_t open = on.towards.active ? on.towards.active & ~visibility_.blocked(on) : 0;
+    for (int i = 0; i < tile_samples; ++i) backs_[static_cast<size_t>(i)].share = open >> i & 1;
 }
 
 /** Traces the paths back through thin walls. */
-PathEchoes::Tracer::Shares PathEchoes::Tracer::through(PathRays& back) const {
-    Shares shares{};
-    for (int i = 0; i < tile_samples; ++i) shares[static_cast<size_t>(i)] = back.towards.active >> i & 1;
+void PathEchoes::Tracer::goBackThrough(PathRays& on) {
     TileHits hits;
-    for (int wall = 0; back.towards.active; ++wall) {
-        visibility_.trace(back, hits);
+    for (int wall = 0; on.towards.active; ++wall) {
+        visibility_.trace(on, hits);
         for (int i = 0; i < tile_samples; ++i) {
-            if (!(back.towards.active >> i & 1)) continue;
-            double& share = shares[static_cast<size_t>(i)];
+            if (!(on.towards.active >> i & 1)) continue;
+            Back& back = backs_[static_cast<size_t>(i)];
             const bool ends = hits.command[i] == TileHits::nothing;
-            if (!ends && (wall == paths_.max_walls_ || !letsThrough(hits.command[i])))
-                share = 0;
-            else if (!ends)
-                share *= passedOnce(hits, i, {back.towards.x[i], back.towards.y[i], back.towards.z[i]});
-            if (ends || share == 0)
-                back.towards.active &= ~(1u << i);
+            if (!ends && (wall == paths_.max_walls_ ||
+                          !passBack(back, hits, i, {on.towards.x[i], on.towards.y[i], on.towards.z[i]})))
+                back.share = 0;
+            if (ends || back.share == 0)
+                on.towards.active &= ~(1u << i);
             else
-                back.nearest[i] = hits.distance[i] * (1 + 1e-6f) + back.nearest[i];
+                on.nearest[i] = hits.distance[i] * (1 + 1e-6f) + on.nearest[i];
         }
     }
-    return shares;
+}
+
+bool PathEchoes::Tracer::passBack(Back& back, const TileHits& hits, int i, const glm::dvec3& way) const {
+    if (!letsThrough(hits.command[i]) || wallOf(hits.command[i]).fill) return false;
+    const double cosine = std::abs(glm::dot(planeMet(scene_, hits, i).normal, way)) / glm::length(way);
+    back.share *=
+        back.train.passOnce(wallOf(hits.command[i]), std::sqrt(std::max(1 - cosine * cosine, 0.0)), water_.resolution);
+    return back.share > 0;
 }
 
 /** Returns the number of samples from i that are a rectangle of one triangle, seen via the same mirrors. */
@@ -330,13 +352,14 @@ int PathEchoes::Tracer::sameFrom(int i) const {
     int run = 1;
     while (run < maximum && isActive(i + run) && hits_.triangle[i + run] == hits_.triangle[i] &&
            hits_.command[i + run] == hits_.command[i] &&
-           chains_[static_cast<size_t>(i + run)].sameAs(chains_[static_cast<size_t>(i)]))
+           chains_[static_cast<size_t>(i + run)].sameAs(chains_[static_cast<size_t>(i)]) &&
+           !(hasWalls() && walled_[static_cast<size_t>(i)].is_bent))
         ++run;
     return static_cast<int>(std::bit_floor(static_cast<uint32_t>(run)));
 }
 
 void PathEchoes::Tracer::receive(const TracedTile& tile) {
-    const Shares open = openBack();
+    findBacks();
     TileHits as_met;
     TracedTile seen = tile;
     seen.hits = &hits_;
@@ -353,38 +376,80 @@ void PathEchoes::Tracer::receive(const TracedTile& tile) {
             continue;
         }
         const int merged = sameFrom(i);
-        double of_these = 0;
-        for (int k = i; k < i + merged; ++k) of_these += open[static_cast<size_t>(k)];
-        deposit(CellAngles(view_, tile, i, merged), i, of_these / merged, seen.meanGain(i, merged));
+        double share = 0;
+        const Back* open = nullptr;
+        for (int k = i; k < i + merged; ++k) {
+            share += backs_[static_cast<size_t>(k)].share / merged;
+            if (!open && share > 0) open = &backs_[static_cast<size_t>(k)];
+        }
+        Back* const back = &backs_[static_cast<size_t>(i)];
+        if (open && open != back) *back = *open;
+        back->share = share;
+        deposit(CellAngles(view_, tile, i, merged), i, *back, seen.meanGain(i, merged));
         i += merged;
     }
     if (scene_.maps) hits_ = as_met;
 }
 
-Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size) const {
+Footprint PathEchoes::Tracer::footprint(const CellAngles& at, int i, const HalfWay& way, double size,
+                                        double late) const {
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
     // A path via a mirror is between the direct path and that plus the distance to the sonar's image.
     const double image = glm::length(chains_[static_cast<size_t>(i)].image(glm::dvec3(0)));
+    double near_limit = run.near_limit, far_limit = 1 / (1 / run.far_limit + image + std::max(late, 0.0));
+    if (late < 0) near_limit = std::max(near_limit, 1 / std::max(1 / near_limit + late, 1e-3));
+    if (hasWalls() && walled_[static_cast<size_t>(i)].is_bent) near_limit = 1e3, far_limit = 0;
     return trapezoidFootprint(way.inverse, way.inverse, std::abs(way.per_azimuth) * at.width,
                               std::abs(way.per_elevation + way.per_azimuth * at.lean) * at.height, way.nearest,
-                              run.near_limit, 1 / (1 / run.far_limit + image), near_edge_, far_edge_, size);
+                              near_limit, far_limit, near_edge_, far_edge_, size);
 }
 
-void PathEchoes::Tracer::deposit(const CellAngles& at, int i, double open, double gain) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
+PathEchoes::Tracer::SeenPlane PathEchoes::Tracer::seenPlane(const CellAngles& at, int i) const {
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
+    if (hasWalls() && walled_[static_cast<size_t>(i)].is_bent) {
+        const ApparentPlane apparent = walled_[static_cast<size_t>(i)].apparent();
+        const double length = glm::length(apparent.normal);
+        return {{apparent.normal / length, 1 / length}, apparent.cosine, apparent.focus};
+    }
     const MirrorPlane seen = planeMet(scene_, hits_, i);
-    const glm::dvec3 focus = chain.image(glm::dvec3(0)), normal = chain.turned(seen.normal);
-    const MirrorPlane plane{normal, seen.distance + glm::dot(normal, focus)};
-    const double facing = glm::dot(plane.normal, at.middle);
-    if (!(std::abs(facing) > edge_on && plane.distance * facing > 0)) return;
+    const glm::dvec3 normal = chain.turned(seen.normal);
+    const MirrorPlane plane{normal, seen.distance + glm::dot(normal, chain.image(glm::dvec3(0)))};
+    return {plane, std::abs(glm::dot(normal, at.middle)), 1};
+}
+
+void PathEchoes::Tracer::deposit(const CellAngles& at, int i, const Back& back, double gain) {
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
+    const auto [plane, cosine, focus] = seenPlane(at, i);
+    if (!(cosine > edge_on && plane.distance * glm::dot(plane.normal, at.middle) > 0)) return;
     const PlacedRun& run = scene_.ranges[hits_.command[i]];
-    recordWay(i, true, at.middle, std::abs(facing));
+    recordWay(i, true, at.middle, cosine);
     const HalfWay twice = halfWay(plane, glm::dvec3(0), at);
+    const double passed = hasWalls() ? walled_[static_cast<size_t>(i)].power : 1;
     const double strength =
-        gain * rules_.strength_scale * chain.power * chain.power *
-        rules_.laws.overCosine(run.material, std::abs(facing), lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
-    bins_.depositCell(footprint(at, i, twice, at.weighted), static_cast<uint>(at.cell), strength / twice.inverse);
-    if (open > 0) depositOnce(at, i, plane, gain * open);
+        gain * rules_.strength_scale * chain.power * chain.power * passed * focus *
+        rules_.laws.overCosine(run.material, cosine, lobeSlopes(at, i, plane, at.middle, 1 / twice.inverse));
+    const EchoTrain echoes =
+        hasWalls() ? walled_[static_cast<size_t>(i)].echoesOf(surfaceOf(hits_, i), water_) : EchoTrain();
+    for (size_t k = 0; k < echoes.size(); ++k) {
+        HalfWay way = twice;
+        if (echoes[k].late != 0) way.moveAway(echoes[k].late);
+        bins_.depositCell(footprint(at, i, way, at.weighted, echoes[k].late), static_cast<uint>(at.cell),
+                          strength * echoes[k].weight / way.inverse);
+    }
+    if (back.share > 0) depositOnce(at, i, plane, back, gain);
+}
+
+EchoTrain PathEchoes::Tracer::echoesOnce(int i, const Back& back) const {
+    if (!hasWalls()) return {};
+    const WallRay& ray = walled_[static_cast<size_t>(i)];
+    const WallRay::Surface surface = surfaceOf(hits_, i);
+    if (!surface.wall.rings()) return back.train;
+    const double there = surface.wall.spacing(ray.sineInWater()),
+                 here = surface.wall.spacing(std::sqrt(std::max(1 - back.cosine * back.cosine, 0.0))),
+                 inset = surface.wall.thickness * 0.5 * (1 / ray.cosine + 1 / std::max(back.cosine, edge_on));
+    return WallRay::rung(back.train, surface.wall, ray.isWithin(surface.object),
+                         std::min(there, here) > 0 ? 0.5 * (there + here) : 0, std::min(inset, 0.5 * ray.length_met),
+                         water_.resolution);
 }
 
 /** Returns the slopes of the lobe of a cell along a direction, in the image of space behind the mirrors. */
@@ -422,35 +487,43 @@ MaterialLaws::Bistatic PathEchoes::Tracer::section(const CellAngles& at, int i, 
 
 /** Deposits the echoes of the path out directly and back via the mirrors, and of its reverse. They differ only in the
  *  directions of transmission and reception. */
-void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, double open) {
-    const Chain& chain = chains_[static_cast<size_t>(i)];
-    const HalfWay way = halfWay(plane, chain.image(glm::dvec3(0)), at);
-    const MaterialLaws::Bistatic given = section(at, i, plane, way);
-    const double scale =
-        rules_.strength_scale * chain.power * open / (way.back * way.back * way.inverse * way.inverse * way.inverse);
-    recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
+void PathEchoes::Tracer::depositOnce(const CellAngles& at, int i, const MirrorPlane& plane, const Back& back,
+                                     double gain) {
+    const MirrorChain& chain = chains_[static_cast<size_t>(i)];
+    const HalfWay straight = halfWay(plane, chain.image(glm::dvec3(0)), at);
+    const MaterialLaws::Bistatic given = section(at, i, plane, straight);
     const WayPatterns& patterns = *paths_.patterns_;
-    const WayPatterns::Way by_mirror = patterns.wayOf(at.middle);
-    const WayPatterns::Way by_itself = patterns.wayOf(chain.turnedBack(way.from_focus));
-    const double back = patterns.power(by_itself, by_mirror), there = patterns.power(by_mirror, by_itself);
-    if (back > 0)
-        bins_.depositCell(footprint(at, i, way, at.size * back), static_cast<uint>(at.cell),
-                          scale * (given.diffuse + given.lobe));
-    if (!(there > 0)) return;
-    bins_.sine_elevation = chain.turnedBack(way.from_focus).z;
+    const glm::dvec3 itself = chain.turnedBack(straight.from_focus);
+    const WayPatterns::Way by_mirror = patterns.wayOf(at.middle), by_itself = patterns.wayOf(itself);
+    const double returned = patterns.power(by_itself, by_mirror), sent = patterns.power(by_mirror, by_itself);
     // Echoes that this surface and the first mirror both reflect and scatter have their own rays from the other end.
     const bool is_direct =
         chain.begins_lobed && reflected(hits_.command[i]) > 0 && !patterns.inOneBeam(by_mirror, by_itself);
-    const double strength = scale * (given.diffuse + (is_direct ? 0 : given.lobe));
-    const Footprint cell = footprint(at, i, way, at.size * there);
-    patterns.eachCell(by_itself,
-                      [&](size_t received) { bins_.depositCell(cell, static_cast<uint>(received), strength); });
+    recordWay(i, false, at.middle, std::abs(glm::dot(plane.normal, at.middle)));
+    const EchoTrain echoes = echoesOnce(i, back);
+    for (size_t k = 0; k < echoes.size(); ++k) {
+        const double late = echoes[k].late;
+        HalfWay way = straight;
+        if (late != 0) way.moveAway(late);
+        const double scale = gain * rules_.strength_scale * chain.power * chain.passed * back.share * echoes[k].weight /
+                             (way.back * way.back * way.inverse * way.inverse * way.inverse);
+        bins_.sine_elevation = at.middle.z;
+        if (returned > 0)
+            bins_.depositCell(footprint(at, i, way, at.size * returned, late), static_cast<uint>(at.cell),
+                              scale * (given.diffuse + given.lobe));
+        if (!(sent > 0)) continue;
+        bins_.sine_elevation = itself.z;
+        const double strength = scale * (given.diffuse + (is_direct ? 0 : given.lobe));
+        const Footprint cell = footprint(at, i, way, at.size * sent, late);
+        patterns.eachCell(by_itself,
+                          [&](size_t received) { bins_.depositCell(cell, static_cast<uint>(received), strength); });
+    }
 }
 
 PathEchoes::PathEchoes(const RenderPlan& plan, const types::Geometry& geometry)
     : plan_(plan), water_(plan.config), max_walls_(plan.has(Pass::Walls) ? plan.config.max_walls : 0) {
     for (const types::Material& material : geometry.materials)
-        reflected_.push_back(reflectedPower(material, plan.config.multipath->bounces));
+        reflected_.push_back(reflectedPower(material, bouncesOf(plan.config)));
     takeQuality();
 }
 

@@ -35,8 +35,9 @@ std::optional<PointTargets::Return> PointTargets::returnOf(const TargetWay& out,
     const auto sent = directionOf(out.direction), received = directionOf(back.direction);
     const double range = 0.5 * (out.length + back.length);
     if (!sent || !received || !(range >= plan_.grid.range_min)) return {};
-    const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * std::exp(-absorption_ * range) /
-                             (out.length * out.length * back.length * back.length);
+    const double ringing = &out == &back ? out.ringing : 1;
+    const double intensity = std::pow(10, strength_db / 10) * out.power * back.power * ringing *
+                             std::exp(-absorption_ * range) / (out.length * out.length * back.length * back.length);
     return Return{range,
                   *sent,
                   *received,
@@ -171,21 +172,42 @@ size_t PointTargets::add(PingInMaking& to) {
 
 bool PointTargets::addPair(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to,
                            uint64_t key) {
-    if (&out == &back && out.train) return addRinging(out, strength_db, to, key);
+    if (&out == &back && out.arrivals) return addRinging(out, strength_db, to, key);
+    if (out.arrivals || back.arrivals) return addRinging(out, back, strength_db, to, key);
     const auto echo = returnOf(out, back, strength_db);
     if (!echo || !spread(echo->range)) return false;
     return to.field ? addTo(*to.field, *echo, key) : addTo(to, *echo);
 }
 
 bool PointTargets::addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key) {
+    const EchoTrain& train = way.arrivals->both;
     bool any = false;
-    for (size_t k = 0; k < way.train->size(); ++k) {
+    for (size_t k = 0; k < train.size(); ++k) {
         TargetWay rung = way;
-        rung.train = nullptr;
-        rung.length += (*way.train)[k].late;
-        rung.power *= std::sqrt(std::max((*way.train)[k].weight, 0.0));
+        rung.arrivals = nullptr;
+        rung.length += train[k].late;
+        rung.power *= std::sqrt(std::max(train[k].weight, 0.0));
         if (rung.length > 0) any |= addPair(rung, rung, strength_db, to, key);
     }
+    return any;
+}
+
+bool PointTargets::addRinging(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to,
+                              uint64_t key) {
+    constexpr double min_share = 1e-6;
+    const EchoTrain none, &there = out.arrivals ? out.arrivals->once : none,
+                          &here = back.arrivals ? back.arrivals->once : none;
+    bool any = false;
+    for (size_t j = 0; j < there.size(); ++j)
+        for (size_t k = 0; k < here.size(); ++k) {
+            if (!(there[j].weight * here[k].weight > min_share)) continue;
+            TargetWay rung = out, returned = back;
+            rung.arrivals = returned.arrivals = nullptr;
+            rung.power *= there[j].weight * here[k].weight;
+            rung.length += there[j].late + here[k].late;
+            returned.length += there[j].late + here[k].late;
+            if (std::min(rung.length, returned.length) > 0) any |= addPair(rung, returned, strength_db, to, key);
+        }
     return any;
 }
 

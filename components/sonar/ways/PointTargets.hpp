@@ -62,6 +62,8 @@ private:
     bool addPair(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to, uint64_t key);
     /** Adds the echoes along a path through walls that ring. */
     bool addRinging(const TargetWay& way, double strength_db, PingInMaking& to, uint64_t key);
+    /** Adds the echoes out along one path and back along another, through walls that ring. */
+    bool addRinging(const TargetWay& out, const TargetWay& back, double strength_db, PingInMaking& to, uint64_t key);
     bool addTo(PingInMaking& to, const Return& echo) const;
     bool addTo(EchoField& field, const Return& echo, uint64_t key) const;
     /** Returns the share of the amplitude that rough mirrors leave in phase along a path [1]. */

@@ -86,6 +86,7 @@ void TargetWays::placeMirrors(const types::Snapshot& snapshot, double range_max)
 
 const std::vector<TargetWay>& TargetWays::waysTo(const glm::dvec3& point) {
     ways_.clear();
+    arrivals_count_ = 0;
     if (bounces_ > 0 && mirrors_.front().is_there && !(point.z < mirrors_.front().plane.distance)) return ways_;
     addWay(point, {});
     if (bounces_ > 0) addByOne(point);
@@ -148,22 +149,22 @@ void TargetWays::addWay(const glm::dvec3& point, Chain chain) {
         stops[k + 1] = *at;
     }
     stops[chain.size() + 1] = point;
+    WallArrivals* const arrivals = walls_ ? &newArrivals() : nullptr;
     for (size_t k = 0; k <= chain.size(); ++k) {
-        way.power *= passed(stops[k], stops[k + 1], way, chain.empty());
+        way.power *= walls_ ? walls_->passed(sightlines_, stops[k], stops[k + 1], way.walls, *arrivals)
+                            : static_cast<double>(sightlines_.isOpen(stops[k], stops[k + 1]));
         if (!(way.power > 0)) return;
     }
+    if (walls_) way.ringing = arrivals->ringing;
+    if (walls_ && arrivals->areDelayed()) way.arrivals = arrivals;
     const glm::dvec3 first = stops[chain.size()] - point;
     way.from_point = first / std::max(glm::length(first), std::numeric_limits<double>::min());
     addOnce(way);
 }
 
-double TargetWays::passed(const glm::dvec3& from, const glm::dvec3& to, TargetWay& way, bool is_straight) {
-    if (!walls_) return sightlines_.isOpen(from, to) ? 1 : 0;
-    if (!is_straight) return walls_->passed(sightlines_, from, to, way.walls);
-    train_ = {};
-    const double share = walls_->passed(sightlines_, from, to, way.walls, &train_);
-    if (train_.isDelayed()) way.train = &train_;
-    return share;
+WallArrivals& TargetWays::newArrivals() {
+    if (arrivals_count_ == arrivals_.size()) arrivals_.emplace_back();
+    return arrivals_[arrivals_count_++] = {};
 }
 
 std::optional<glm::dvec3> TargetWays::meet(const PlacedMirror& mirror, const glm::dvec3& from, const glm::dvec3& image,

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,15 +15,16 @@ namespace insonify::sonar {
 struct TargetWay {
     static constexpr size_t max_mirrors = MultipathConfig::max_bounces;
 
-    double length = 0;                 ///< [m]
-    glm::dvec3 direction{0};           ///< Unit direction from the sonar, sonar axes [1].
-    glm::dvec3 from_point{0};          ///< Unit direction from the point along the path, world axes [1].
-    double power = 1;                  ///< Share of the sound's power after its mirrors and walls [1].
-    int reflections = 0;               ///< Number of mirrors [1].
-    int walls = 0;                     ///< Number of thin walls that the sound passes [1].
-    bool by_surface = false;           ///< Whether one of the mirrors is the water surface.
-    double sine_grazing = 0;           ///< Sine of the grazing angle at the water surface [1].
-    const EchoTrain* train = nullptr;  ///< Echoes out and back along it; null: one without delay.
+    double length = 0;                       ///< [m]
+    glm::dvec3 direction{0};                 ///< Unit direction from the sonar, sonar axes [1].
+    glm::dvec3 from_point{0};                ///< Unit direction from the point along the path, world axes [1].
+    double power = 1;                        ///< Share of the sound's power after its mirrors and walls, one way [1].
+    double ringing = 1;                      ///< As in WallArrivals [1].
+    int reflections = 0;                     ///< Number of mirrors [1].
+    int walls = 0;                           ///< Number of thin walls that the sound passes [1].
+    bool by_surface = false;                 ///< Whether one of the mirrors is the water surface.
+    double sine_grazing = 0;                 ///< Sine of the grazing angle at the water surface [1].
+    const WallArrivals* arrivals = nullptr;  ///< Null: one without delay.
     /** Its mirrors, from the sonar: 1: the water surface, from 2: mirror triangles in the scene's order; 0: none. */
     std::array<uint32_t, max_mirrors> mirrors{};
 };
@@ -51,8 +53,8 @@ private:
      *  that of the image with inverted sign [m]. */
     bool mayMeet(const PlacedMirror& mirror, const glm::dvec3& from, double distance, const glm::dvec3& image,
                  double image_distance) const;
-    /** Returns the one-way share of the energy that passes between two stops of a path [1], and counts its walls. */
-    double passed(const glm::dvec3& from, const glm::dvec3& to, TargetWay& way, bool is_straight);
+    /** Returns arrivals for one more path. */
+    WallArrivals& newArrivals();
     /** Adds the path via the mirrors of a chain, if there is one. */
     void addWay(const glm::dvec3& point, Chain chain);
     /** Returns where the line from a stop to the image hits a mirror, and adds the mirror to the path. */
@@ -64,7 +66,8 @@ private:
     FlatMirrors flat_;
     Sightlines sightlines_;
     WallSights* walls_;
-    EchoTrain train_;  ///< Returns by the straight path.
+    std::deque<WallArrivals> arrivals_;  ///< Arrivals by the paths through walls.
+    size_t arrivals_count_ = 0;
     WaterMirror water_;
     std::vector<PlacedMirror> mirrors_;  ///< The water surface and all flat mirrors.
     MirrorReach reach_;

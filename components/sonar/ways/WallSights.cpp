@@ -13,26 +13,29 @@ WallSights::WallSights(const RenderPlan& plan) : plan_(plan) {
 }
 
 double WallSights::passed(const Sightlines& sightlines, const glm::dvec3& from, const glm::dvec3& to, int& walls,
-                          EchoTrain* train) {
+                          WallArrivals& arrivals) {
     if (are_walls_.empty()) return sightlines.isOpen(from, to) ? 1 : 0;
     if (!sightlines.findWalls(from, to, are_walls_, met_)) return 0;
-    double power = 1, behind = 0;
+    double once = 1, both = 1, behind = 0;
     for (const Sightlines::WallMet& met : met_) {
         if (met.range < behind) continue;  // another triangle of the same wall
         behind = met.range * (1 + same_wall) + nearest_wall;
-        power *= std::sqrt(plan_.laws.walls[met.material].passedAt(met.cosine));
-        if (++walls > plan_.config.max_walls || !(power >= min_passed)) return 0;
-        if (train) ring(met, *train);
+        once *= pass(met, arrivals);
+        both *= plan_.laws.walls[met.material].passedAt(met.cosine);
+        if (++walls > plan_.config.max_walls || !(both >= min_passed * min_passed)) return 0;
     }
-    return power;
+    arrivals.ringing *= both / (once * once);
+    return once;
 }
 
-void WallSights::ring(const Sightlines::WallMet& met, EchoTrain& train) const {
+double WallSights::pass(const Sightlines::WallMet& met, WallArrivals& arrivals) const {
     const WallLaw& wall = plan_.laws.walls[met.material];
-    if (!wall.rings()) return;
-    const double spacing = wall.spacing(std::sqrt(std::max(1 - met.cosine * met.cosine, 0.0)));
-    train = train.then(wall.behind, spacing, plan_.grid.bin_width / 2);
-    if (spacing > 0) train.moveAway(spacing - wall.thickness * met.cosine);
+    const double sine = std::sqrt(std::max(1 - met.cosine * met.cosine, 0.0)), resolution = plan_.grid.bin_width / 2;
+    if (wall.rings()) {
+        arrivals.both = arrivals.both.then(wall.behind, wall.spacing(sine), resolution);
+        arrivals.both.moveAway(wall.delay(sine));
+    }
+    return arrivals.once.passOnce(wall, sine, resolution);
 }
 
 }  // namespace insonify::sonar

@@ -8,6 +8,14 @@
 
 namespace insonify::sonar {
 
+/** Arrivals of sound through walls that ring, on a way out and back or one way. */
+struct WallArrivals {
+    EchoTrain both, once;
+    double ringing = 1;  ///< Energy out and back relative to the square of that one way: resonances [1].
+
+    bool areDelayed() const { return both.isDelayed() || once.isDelayed(); }
+};
+
 /** Sound on straight lines through thin walls with water behind them (ACOUSTICS.md 5.26). */
 class WallSights {
 public:
@@ -19,13 +27,12 @@ public:
     explicit WallSights(const RenderPlan& plan);
 
     /** Returns the one-way share of the energy that passes from one point to another [1]; 0: hidden. `walls` counts the
-     *  walls of the whole way, of which at most max_walls pass sound. `train`, if there is one, becomes the echoes of
-     *  the far point, out and back on this line. */
+     *  walls of the whole way, of which at most max_walls pass sound. `arrivals` continues with those of this line. */
     double passed(const Sightlines& sightlines, const glm::dvec3& from, const glm::dvec3& to, int& walls,
-                  EchoTrain* train = nullptr);
+                  WallArrivals& arrivals);
 
 private:
-    void ring(const Sightlines::WallMet& met, EchoTrain& train) const;
+    double pass(const Sightlines::WallMet& met, WallArrivals& arrivals) const;
 
     const RenderPlan& plan_;
     std::vector<bool> are_walls_;  ///< One for each material; empty: none is a wall.
