@@ -42,7 +42,7 @@ WaterTruth::WaterTruth(const RenderPlan& plan, size_t sum_count, int threads)
 void WaterTruth::begin() { std::ranges::fill(energies_, uint64_t{0}); }
 
 void WaterTruth::take(const EchoRules& rules, const uint64_t* sums, size_t cell, double solid_angle, size_t thread) {
-    constexpr double maximum = 0x1p54;  // of a cell, so that a beam's sum does not overflow
+    constexpr double maximum = 0x1p54;  // limit of a cell, so that a beam's sum does not overflow
     const int32_t beam = beams_of_cells_.empty() ? static_cast<int32_t>(cell) : beams_of_cells_[cell];
     if (beam < 0) return;
     std::vector<float>& intensities = intensities_[thread];
