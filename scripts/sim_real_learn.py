@@ -95,6 +95,7 @@ class Cnn:
         self.count, self.steps, self.batch = count, steps, batch
 
     def learn(self, parts, seed):
+        """Trains on the first of parts (x, y), then on it and the next, with equal weight and a third of the rate and of the steps."""
         import torch
         torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
@@ -106,12 +107,18 @@ class Cnn:
             before = channels
         self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
                                        torch.nn.Linear(4 * before, self.count)).to(memory_format=torch.channels_last)
+        self.fit(parts[:1], rng, self.steps, 3e-3)
+        for i in range(1, len(parts)):
+            self.fit(parts[:i + 1], rng, self.steps // 3, 1e-3)
+
+    def fit(self, parts, rng, steps, rate):
+        import torch
         x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
         share = weights([y for _, y in parts], self.count)
-        optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
-        plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=self.steps)
+        optimiser = torch.optim.AdamW(self.net.parameters(), rate, weight_decay=1e-2)
+        plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, rate, total_steps=steps)
         self.net.train()
-        for _ in range(self.steps):
+        for _ in range(steps):
             chosen = rng.choice(len(x), self.batch, p=share)
             loss = torch.nn.functional.cross_entropy(self.net(augmented(torch.from_numpy(x[chosen]))), torch.from_numpy(y[chosen]),
                                                      label_smoothing=0.1)
@@ -147,10 +154,24 @@ def augmented(x):
     x = torch.lerp(x, blurred, torch.rand(n, 1, 1, 1))
     streaked = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (4, 4, 0, 0), mode="reflect"), (1, 9), 1)  # wide beams, near field
     x = torch.lerp(x, streaked, torch.rand(n, 1, 1, 1) * torch.randint(0, 2, (n, 1, 1, 1)))
-    x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
+    x = with_background(x).clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
     x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
     return torch.cat([x, proportion.expand_as(x)], 1).contiguous(memory_format=torch.channels_last)
+
+
+def with_background(x):
+    """Crops with noise that begins at a random row, as reverberation behind or before an object, and with a gain over rows, as of TVG."""
+    import torch
+    n, side, pool = len(x), x.shape[-1], torch.nn.functional
+    at_times = lambda share: torch.rand(n, 1, 1, 1) < share  # noqa: E731
+    row = torch.linspace(-1, 1, side)[:, None]
+    begin, sharp = (torch.rand(n, 1, 1, 1) - 0.5) * 2.4, torch.exp(torch.rand(n, 1, 1, 1) * 3)
+    speckle = -2 * torch.rand(n, 1, side, side).clamp(min=0.01).log()  # energy
+    speckle = torch.where(at_times(0.5), 1.3 * pool.avg_pool2d(pool.pad(speckle, (2, 2, 0, 0), mode="reflect"), (1, 5), 1), speckle) / 2
+    level = torch.rand(n, 1, 1, 1) * 0.5 * at_times(0.6)
+    x = (x**4 + level**2 * torch.sigmoid(2 * (row - begin) * sharp) * speckle) ** 0.25  # x is the root of an amplitude
+    return x * torch.exp((torch.rand(n, 1, 1, 1) - 0.35) * 0.8 * row * at_times(0.5))
 
 
 def classifier(wanted):
