@@ -95,7 +95,6 @@ class Cnn:
         self.count, self.steps, self.batch = count, steps, batch
 
     def learn(self, parts, seed):
-        """Trains on the first of parts (x, y), then on it and the next, with equal weight and a third of the rate and of the steps."""
         import torch
         torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
@@ -107,18 +106,12 @@ class Cnn:
             before = channels
         self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
                                        torch.nn.Linear(4 * before, self.count)).to(memory_format=torch.channels_last)
-        self.fit(parts[:1], rng, self.steps, 3e-3)
-        for i in range(1, len(parts)):
-            self.fit(parts[:i + 1], rng, self.steps // 3, 1e-3)
-
-    def fit(self, parts, rng, steps, rate):
-        import torch
         x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
         share = weights([y for _, y in parts], self.count)
-        optimiser = torch.optim.AdamW(self.net.parameters(), rate, weight_decay=1e-2)
-        plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, rate, total_steps=steps)
+        optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
+        plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=self.steps)
         self.net.train()
-        for _ in range(steps):
+        for _ in range(self.steps):
             chosen = rng.choice(len(x), self.batch, p=share)
             loss = torch.nn.functional.cross_entropy(self.net(augmented(torch.from_numpy(x[chosen]))), torch.from_numpy(y[chosen]),
                                                      label_smoothing=0.1)

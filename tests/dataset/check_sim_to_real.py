@@ -107,17 +107,6 @@ class Windows(unittest.TestCase):
 
 @unittest.skipIf(importlib.util.find_spec("torch") is None, "torch is not installed")
 class Training(unittest.TestCase):
-    def test_a_network_is_adapted_on_all_parts_with_a_lower_rate(self):
-        class Recorded(learn.Cnn):
-            def fit(self, parts, rng, steps, rate):
-                fits.append(([len(y) for _, y in parts], steps, rate))
-        parts = [(np.zeros((n, 2, 40, 40), np.float32), np.zeros(n, int)) for n in (9, 4)]
-        for count in (1, 2):
-            fits = []
-            Recorded(2, steps=30).learn(parts[:count], 0)
-            self.assertEqual([each[:2] for each in fits], [([9], 30), ([9, 4], 10)][:count])
-        self.assertLess(fits[1][2], fits[0][2])
-
     def test_a_background_adds_noise_over_a_range_of_rows_to_some_crops(self):
         import torch
         torch.manual_seed(0)
