@@ -227,7 +227,7 @@ def sweep(rng, options, i, band):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("--scenes", type=int, default=10, help="each with some objects of each class (10)")
+    parser.add_argument("--scenes", type=int, default=20, help="each with some objects of each class (20)")
     parser.add_argument("--objects", type=int, default=5, help="of each class in a scene (5)")
     parser.add_argument("--samples", type=int, default=40, help="of each sweep, of which there are two for each scene (40)")
     parser.add_argument("--seed", type=int, default=1)

@@ -147,10 +147,24 @@ def augmented(x):
     x = torch.lerp(x, blurred, torch.rand(n, 1, 1, 1))
     streaked = torch.nn.functional.avg_pool2d(torch.nn.functional.pad(x, (4, 4, 0, 0), mode="reflect"), (1, 9), 1)  # wide beams, near field
     x = torch.lerp(x, streaked, torch.rand(n, 1, 1, 1) * torch.randint(0, 2, (n, 1, 1, 1)))
-    x = x.clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
+    x = with_background(x).clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
     x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
     return torch.cat([x, proportion.expand_as(x)], 1).contiguous(memory_format=torch.channels_last)
+
+
+def with_background(x):
+    """Crops with noise that begins at a random row, as reverberation behind or before an object, and with a gain over rows, as of TVG."""
+    import torch
+    n, side, pool = len(x), x.shape[-1], torch.nn.functional
+    at_times = lambda share: torch.rand(n, 1, 1, 1) < share  # noqa: E731
+    row = torch.linspace(-1, 1, side)[:, None]
+    begin, sharp = (torch.rand(n, 1, 1, 1) - 0.5) * 2.4, torch.exp(torch.rand(n, 1, 1, 1) * 3)
+    speckle = -2 * torch.rand(n, 1, side, side).clamp(min=0.01).log()  # energy
+    speckle = torch.where(at_times(0.5), 1.3 * pool.avg_pool2d(pool.pad(speckle, (2, 2, 0, 0), mode="reflect"), (1, 5), 1), speckle) / 2
+    level = torch.rand(n, 1, 1, 1) * 0.5 * at_times(0.6)
+    x = (x**4 + level**2 * torch.sigmoid(2 * (row - begin) * sharp) * speckle) ** 0.25  # x is the root of an amplitude
+    return x * torch.exp((torch.rand(n, 1, 1, 1) - 0.35) * 0.8 * row * at_times(0.5))
 
 
 def classifier(wanted):
