@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "components/sonar/fan/Directivity.hpp"
 #include "types/Angle.hpp"
 
 namespace insonify::sonar {
@@ -22,6 +23,13 @@ Sonar3dConfig::Sonar3dConfig() {
 }
 
 SonarConfig Sonar3dConfig::upright() const {
+    SonarConfig fan = standing();
+    if (fan.beam_pattern && fan.beam_pattern->hasElevation())
+        fan.quality.rows = Directivity(fan).rowsFor(*fan.quality.rows, !fan.tracesRays());
+    return fan;
+}
+
+SonarConfig Sonar3dConfig::standing() const {
     SonarConfig fan = sonar;
     fan.bearings_deg.clear();
     for (int row = 0; row < vertical.beam_count; ++row) fan.bearings_deg.push_back(vertical.centreDeg(row));
@@ -51,7 +59,7 @@ void Sonar3dConfig::check(types::Diagnostics& diagnostics) const {
         refuse("quality", "has a target; a 3-D sonar takes rows and columns_per_beam, of one beam");
     if (sonar.beam_pattern && sonar.beam_pattern->transmit.azimuth)
         refuse("beam_pattern.transmit.azimuth", "is given; a 3-D sonar is assumed to transmit equally in all azimuths");
-    if (diagnostics.empty()) upright().checkBeam(diagnostics);
+    if (diagnostics.empty()) standing().checkBeam(diagnostics);
 }
 
 std::map<std::string, std::string> Sonar3dTask::changedBy(const types::SonarSettings& asked) const {

@@ -36,7 +36,8 @@ struct Sonar3dConfig {
 
     Sonar3dConfig();
     /** Returns the beams of one azimuth as an upright fan: its bearings are their elevations, height becomes width, and
-     *  elevation becomes azimuth. */
+     *  elevation becomes azimuth. With a pattern in azimuth, `quality.rows` of its rows are in the main lobe, and more
+     *  in the sidelobes. Valid for a configuration without diagnostics. */
     SonarConfig upright() const;
     double beamWidthDeg() const { return sonar.beam_width_deg.value_or(horizontal.spacingDeg()); }
 
@@ -49,6 +50,10 @@ struct Sonar3dConfig {
         visit(Field{"detection", "", "how a beam's return is found"}, self.detection);
     }
     void check(types::Diagnostics& diagnostics) const;
+
+private:
+    /** Returns the upright fan with `quality.rows` as configured. */
+    SonarConfig standing() const;
 };
 
 /** A 3-D sonar: narrow beams in a grid of azimuth and elevation. It reports each beam's strongest return.
@@ -56,7 +61,8 @@ struct Sonar3dConfig {
  *  Beam (row, column) looks along (cos e cos a, cos e sin a, sin e) of the sonar frame. `beam_width_deg` is its opening
  *  in azimuth; the default is the spacing of the beams. `beam_height_deg` is its opening in elevation. The columns are
  *  rendered one after the other as upright fans, all at the time of the ping. `quality.rows` are over the width of one
- *  beam and `columns_per_beam` over its height; the defaults are 4 and 4.
+ *  beam, with a pattern between its half-power points, and `columns_per_beam` over its height; the defaults are 4
+ * and 4.
  *
  *  It writes `range_image`: range and intensity of the strongest bin of each beam; `range_truth`: what that bin shows;
  *  `soundings`: the same returns as points in the world; `ping`: for each azimuth the sum over all elevations, with its

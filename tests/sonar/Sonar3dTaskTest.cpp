@@ -31,6 +31,35 @@ protected:
     types::DepthMapPtr mapOf(types::Snapshot snapshot) {
         return answerTo(std::make_shared<types::Snapshot>(std::move(snapshot)));
     }
+    /** A pattern reaches far beyond its beam: few rows in its main lobe would show a plate in neighbouring beams alone.
+     */
+    void expectPlateInItsOwnBeams(acoustics::Weighting weighting) {
+        constexpr double azimuth = types::radians(12), elevation = types::radians(3), half = 0.15;
+        const glm::dvec3 ahead(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                               std::sin(elevation));
+        const glm::dvec3 across(-std::sin(azimuth), std::cos(azimuth), 0), up = glm::cross(ahead, across);
+        Sonar3dConfig config = grid();
+        config.horizontal = {80, 40};
+        config.vertical = {8, 16};
+        config.sonar.frequency_khz = 1200;
+        config.sonar.quality.rows = config.sonar.quality.columns_per_beam = 4;
+        config.sonar.beam_pattern.emplace();
+        acoustics::BeamLaw& receive = config.sonar.beam_pattern->receive.azimuth.emplace();
+        receive.weighting = weighting;
+        receive.width_deg = 0.6;
+        startWith(config);
+        const auto plate = test::quad(8.0 * ahead - half * (across + up), 2 * half * across, 2 * half * up);
+        const auto map = mapOf(test::snapshotOf(sceneOf({plate})));
+        ASSERT_TRUE(map) << task_.lastError();
+        const auto strongest = std::ranges::max_element(map->remissions) - map->remissions.begin();
+        const auto offDeg = [&](size_t cell) { return types::degrees(map->horizontal_interval[cell % 80]) - 12; };
+        EXPECT_NEAR(offDeg(static_cast<size_t>(strongest)), 0, 1.4);
+        for (size_t cell = 0; cell < map->remissions.size(); ++cell)
+            if (std::abs(offDeg(cell)) > 4) {
+                EXPECT_LT(map->remissions[cell], 0.006 * map->remissions[static_cast<size_t>(strongest)])
+                    << "sidelobes are 25 dB weaker, " << offDeg(cell) << " deg off";
+            }
+    }
 };
 
 /** D / (cos e cos a). This is symmetric in azimuth and elevation, so the wall is also rotated. */
@@ -101,6 +130,14 @@ TEST_F(Sonar3dTaskTest, ASphereIsAtTheRangeOfEachDirectionAndNothingNextToIt) {
     EXPECT_GT(met, 1000);
     EXPECT_GT(weak, 8000);
     EXPECT_LT(worst, 0.6 * cloud_bin);
+}
+
+TEST_F(Sonar3dTaskTest, AGaussianPatternShowsAPlateInItsOwnBeams) {
+    expectPlateInItsOwnBeams(acoustics::Weighting::Gaussian);
+}
+
+TEST_F(Sonar3dTaskTest, ATaylorPatternShowsAPlateInItsOwnBeams) {
+    expectPlateInItsOwnBeams(acoustics::Weighting::Taylor);
 }
 
 TEST_F(Sonar3dTaskTest, RowsRunDownAndColumnsFromPortToStarboard) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "components/sonar/fan/BeamFan.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "types/Angle.hpp"
 
@@ -188,6 +189,19 @@ double Directivity::elevation(double angle) const { return sentElevation(angle) 
 double Directivity::elevationReach() const {
     const auto either = [&](double angle) { return std::max(elevation(angle), elevation(-angle)); };
     return farthest(pi / 2, 0, floor_, either);
+}
+
+int Directivity::rowsFor(int in_main_lobe, bool even) const {
+    constexpr int steps = 8192;
+    const double reach = elevationReach(), half_power = 0.5 * elevation(0);
+    double all = 0, main_lobe = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double angle = reach * ((2 * i + 1.0) / steps - 1), density = even ? 1 : rowDensity(angle);
+        all += density;
+        if (elevation(angle) >= half_power) main_lobe += density;
+    }
+    const double rows = main_lobe > 0 ? std::ceil(in_main_lobe * all / main_lobe) : max_image_size;
+    return static_cast<int>(std::min(rows, double{max_image_size}));
 }
 
 Directivity::Span Directivity::azimuthSpan(const Fan& beams) const {

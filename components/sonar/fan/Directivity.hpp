@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <string>
@@ -49,6 +50,12 @@ public:
 
     /** Returns the elevation to either side beyond which the pattern stays below the floor [rad], at most pi/2. */
     double elevationReach() const;
+    /** Returns the density of rows that are traced at an elevation: the cube root of the pattern. It is optimal for
+     * rows whose error falls as the square of their height: most are in the main lobe, and some in sidelobes [1]. */
+    double rowDensity(double angle) const { return std::cbrt(std::max(elevation(angle), floor_)); }
+    /** Returns the number of rows over the reach in elevation of which `in_main_lobe` are between the half-power
+     * points: rows of rowDensity(), or even rows. At most the rows of an image. */
+    int rowsFor(int in_main_lobe, bool even) const;
     /** Azimuths of a fan between which any beam is above the floor, at most a whole turn from the fan's seam [rad]. */
     struct Span {
         double low, high;

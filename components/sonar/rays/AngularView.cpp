@@ -20,15 +20,12 @@ std::vector<double> evenEdges(double half, int rows) {
     return edges;
 }
 
-/** Returns the edges of rows with a density proportional to the cube root of the pattern. This is optimal for rows
- *  whose error falls as the square of their height: most are in the main lobe, and some in sidelobes [rad]. */
+/** Returns the edges of rows with the density Directivity::rowDensity() [rad]. */
 std::vector<double> patternEdges(double half, int rows, const Directivity& directivity) {
     constexpr int steps = 8192;
     std::vector<double> sum{0};
-    for (int i = 0; i < steps; ++i) {
-        const double power = directivity.elevation(half * ((2 * i + 1.0) / steps - 1));
-        sum.push_back(sum.back() + std::cbrt(std::max(power, directivity.floor())));
-    }
+    for (int i = 0; i < steps; ++i)
+        sum.push_back(sum.back() + directivity.rowDensity(half * ((2 * i + 1.0) / steps - 1)));
     std::vector<double> edges;
     size_t i = 0;
     for (int row = 0; row <= rows; ++row) {
