@@ -64,9 +64,10 @@ private:
         if (trimmed(line).empty()) return;
         if (has_header_) return readRow(line);
         has_header_ = true;
-        if (trimmed(line) != headerOf(columns_))
-            report(1, "",
-                   "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must be " + headerOf(columns_));
+        if (trimmed(line) == headerOf(columns_)) return;
+        report(1, "",
+               "is '" + std::string(trimmed(line).substr(0, 80)) + "'; the header must be " + headerOf(columns_));
+        throw ConfigError(std::move(diagnostics_));  // the lines have other columns: their errors would be consequences
     }
 
     void readRow(std::string_view line) {

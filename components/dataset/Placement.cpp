@@ -88,14 +88,17 @@ void Placement::add(size_t number, const std::vector<std::string>& names) {
             continue;
         }
         std::optional<PlacedObject> placed;
+        groundless_ = 0;
         for (uint64_t attempt = 0; attempt < tries && !placed; ++attempt)
             placed = tryOnce(group, names[i], first_word + (i * tries + attempt) * words_per_try);
         if (!placed)
             throw types::ConfigError(
                 {{fmt::format("objects[{}]", number),
-                  fmt::format("has room for {} of its {} objects at pose {}, of {} tries each; give "
-                              "it a larger area, fewer objects or a smaller gap",
-                              placed_count, wanted, pose_, tries),
+                  fmt::format("has room for {} of its {} objects at pose {}, of {} tries each; {}", placed_count,
+                              wanted, pose_, tries,
+                              groundless_ == tries
+                                  ? "no ground, " + *group.ground + ", is below its area: give it another area"
+                                  : "give it a larger area, fewer objects or a smaller gap"),
                   sweep_.file, group.line, group.column}});
         objects_.push_back(std::move(*placed));
         ++placed_count;
@@ -127,6 +130,7 @@ std::optional<PlacedObject> Placement::tryOnce(const ObjectGroup& group, const s
     const Circle circle{at.x, at.y, object.radius};
     if (!isFree(group, circle)) return std::nullopt;
     const std::optional<double> z = heightOf(group, object, circle, word + 2);
+    groundless_ += !z;
     if (!z) return std::nullopt;
     PlacedObject placed{name, object.filed, true, scale};
     placed.at.position = {at.x, at.y, *z};

@@ -35,6 +35,7 @@ private:
     const types::Pose& vehicle_;
     std::vector<Circle> taken_;
     std::vector<PlacedObject> objects_;
+    uint64_t groundless_ = 0;  ///< Tries for the present object at places without ground below.
 };
 
 /** Returns the height of the highest triangle above or below a place of the world; none if there is none. */

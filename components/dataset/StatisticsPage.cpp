@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace insonify::dataset {
 namespace {
 
 constexpr size_t max_examples = 12;
-constexpr size_t max_values = 24;  ///< Max values of a setting that is shown; a drawn setting may have one per sample.
+constexpr size_t max_values = 24;  ///< Max values of a setting with a bar each.
+constexpr size_t max_single = 4;   ///< Max numbers with a bar each if no two samples share a number, as when drawn.
 constexpr int range_step = 5;      ///< [m]
 
 std::string escaped(const std::string& text) {
@@ -23,15 +25,47 @@ std::string escaped(const std::string& text) {
 /** Returns a distinct hue per class. */
 std::string colourOf(uint32_t category) { return fmt::format("hsl({},90%,60%)", category * 137 % 360); }
 
+/** Returns the median of numbers by their counts, which are not all 0. */
+double medianOf(const std::map<double, uint64_t>& counts) {
+    uint64_t total = 0, before = 0;
+    for (const auto& [number, count] : counts) total += count;
+    std::optional<double> lower;
+    for (const auto& [number, count] : counts) {
+        before += count;
+        if (!lower && 2 * before >= total) lower = number;
+        if (2 * before > total) return (*lower + number) / 2;
+    }
+    return 0;
+}
+
 }  // namespace
+
+void StatisticsPage::OfSetting::add(const Json& value) {
+    if (value.is_number())
+        ++numbers[value];
+    else if (others.size() <= max_values)
+        ++others[value.is_string() ? value.get<std::string>() : textOf(value)];
+}
+
+void StatisticsPage::OfSetting::addBars(const std::string& property, Bars& bars) const {
+    uint64_t total = 0;
+    for (const auto& [number, count] : numbers) total += count;
+    if (numbers.size() > (total == numbers.size() ? max_single : max_values)) {
+        bars.emplace_back(fmt::format("{}: {:.6g} to {:.6g}, median {:.6g}", property, numbers.begin()->first,
+                                      numbers.rbegin()->first, medianOf(numbers)),
+                          total);
+    } else {
+        for (const auto& [number, count] : numbers) bars.emplace_back(fmt::format("{} = {}", property, number), count);
+    }
+    if (others.size() > max_values) return;
+    for (const auto& [value, count] : others) bars.emplace_back(property + " = " + value, count);
+}
 
 void StatisticsPage::add(const Json& record, const std::string& picture) {
     ++samples_;
     ++parts_[record["part"]];
     ++scenes_[record["scene"]];
-    for (const auto& [property, value] : record["settings"].items())
-        if (auto& counts = settings_[property]; counts.size() <= max_values)
-            ++counts[property + " = " + (value.is_string() ? value.get<std::string>() : textOf(value))];
+    for (const auto& [property, value] : record["settings"].items()) settings_[property].add(value);
     std::set<uint32_t> seen;
     for (const Json& each : record["annotations"]) {
         const auto category = each["category"].get<uint32_t>();
@@ -114,8 +148,7 @@ std::string StatisticsPage::text() const {
                        escaped(title_) + fmt::format("</h1>\n<p>{} samples</p>\n", samples_);
     page += drawn("Samples by part", named(parts_)) + drawn("Samples by scene", named(scenes_));
     Bars settings;
-    for (const auto& [property, counts] : settings_)
-        if (counts.size() <= max_values) settings.insert(settings.end(), counts.begin(), counts.end());
+    for (const auto& [property, values] : settings_) values.addBars(property, settings);
     if (!settings.empty()) page += drawn("Samples by setting", settings);
     page += tableOfClasses();
     page += drawn("Objects in a sample", objects) + drawn("Objects by size", areas) + drawn("Objects by range", ranges);

@@ -27,6 +27,15 @@ private:
         double nearest = 0, farthest = 0;  ///< [m]
     };
 
+    /** Numbers of samples by the values of a setting. */
+    struct OfSetting {
+        std::map<double, uint64_t> numbers;
+        std::map<std::string, uint64_t> others;
+        void add(const Json& value);
+        /** Adds a bar per value, or one bar for all numbers if there are too many. */
+        void addBars(const std::string& property, Bars& bars) const;
+    };
+
     static std::string drawn(const std::string& caption, const Bars& bars);
     std::string tableOfClasses() const;
     static std::string exampleOf(const Json& record, const std::string& picture);
@@ -35,7 +44,7 @@ private:
     const Classes& classes_;
     uint64_t samples_ = 0;
     std::map<std::string, uint64_t> parts_, scenes_;
-    std::map<std::string, std::map<std::string, uint64_t>> settings_;  ///< By property.
+    std::map<std::string, OfSetting> settings_;  ///< By property.
     std::map<uint32_t, OfClass> of_class_;
     std::map<int, uint64_t> areas_, ranges_;  ///< By power of two of pixels; by steps of range.
     std::map<size_t, uint64_t> objects_in_picture_;

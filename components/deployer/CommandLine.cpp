@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "components/deployer/RosArguments.hpp"
+#include "components/framework/ConfigReader.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
@@ -46,10 +47,30 @@ std::string meantWord(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/** Returns "there is no command rnu; did you mean run? known: ..." for the first word that should be a command but is
+ *  not; empty: each is a command. */
+std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
+    const CLI::App* command = &app;
+    for (int i = 1; i < argc && command->get_require_subcommand_min() > 0; ++i) {
+        const std::string word(argv[i]);
+        if (word.starts_with("-")) return "";
+        const std::vector<std::string> names = namesAfter(*command, false);
+        if (std::ranges::count(names, word) == 0)
+            return "there is no command " + word + "; " + framework::suggestion(word, names);
+        command = command->get_subcommand(word);
+    }
+    return "";
+}
+
 int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {  // --help and --version also end here, with code 0
+        if (const std::string unknown = error.get_exit_code() == 0 ? "" : unknownCommand(app, argc, argv);
+            !unknown.empty()) {
+            fmt::print(stderr, "{}\n", unknown);
+            return bad_input;
+        }
         if (app.exit(error, std::cout, std::cerr) == 0) return done;
         if (const std::string near = meantWord(app, argc, argv); !near.empty()) fmt::print(stderr, "{}\n", near);
         return bad_input;

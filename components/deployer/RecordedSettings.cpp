@@ -274,6 +274,10 @@ RecordedSettings recordedSettings(const log::Reader& log, const framework::Deplo
     }
     settings.addQualities(deployment, log, tasks);
     settings.addProperties(deployment, log, pings, tasks, from);
+    std::erase_if(settings.assignments, [&](const std::string& assignment) {
+        const std::string property = assignment.substr(0, assignment.find('=') + 1);
+        return std::ranges::any_of(set, [&](const std::string& given) { return given.starts_with(property); });
+    });
     std::erase_if(settings.changed, [&](const RecordedProperty& p) { return names(set, p.task + "." + p.name); });
     return settings;
 }

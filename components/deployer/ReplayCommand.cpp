@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/RecordedSettings.hpp"
@@ -33,10 +34,14 @@ void notice(const Asked& options, const std::string& text) {
     if (!options.quiet && !text.empty()) fmt::print(stderr, "notice: {}\n", text);
 }
 
-/** Applies the log's own settings, below the user's; returns the changes during the recording. */
+/** Applies the log's own settings of tasks that run, below the user's; returns the changes during the recording. */
 std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& options) {
     RecordedSettings recorded =
         recordedSettings(log, loadSpec(options), options.set, options.seed, options.replay.from);
+    const framework::DeploymentSpec kept = replaying(loadSpec(options), log, options.replay);
+    std::erase_if(recorded.assignments,
+                  [&](const std::string& setting) { return !kept.task(setting.substr(0, setting.find('.'))); });
+    std::erase_if(recorded.changed, [&](const RecordedProperty& property) { return !kept.task(property.task); });
     notice(options, recorded.notice);
     for (const std::string& setting : recorded.assignments)
         notice(options, "as in the log: " + withShortLists(setting));
@@ -44,7 +49,7 @@ std::vector<RecordedProperty> takeSettings(const log::Reader& log, Asked& option
         for (const RecordedProperty::Change& change : property.changes)
             notice(options, fmt::format("as in the log, from {} on: {}.{}={}", log::readable(change.from),
                                         property.task, property.name, withShortLists(change.value)));
-    options.set.insert(options.set.begin(), recorded.assignments.begin(), recorded.assignments.end());
+    options.recorded = std::move(recorded.assignments);
     if (!options.seed) options.seed = recordedSeed(log);
     return std::move(recorded.changed);
 }
@@ -54,6 +59,15 @@ void reportOmitted(const framework::DeploymentSpec& spec, const Asked& options) 
     if (options.replay.outside) return;
     for (const std::string& task : outsideTasks(spec))
         notice(options, task + " is omitted, because it communicates outside the deployment; --outside runs it");
+}
+
+/** Reports the tasks whose settings by `--set` change nothing, because the log replaces their pings. */
+void reportReplaced(const framework::DeploymentSpec& spec, const log::Reader& log, const Asked& options) {
+    std::set<std::string> writers;
+    for (const std::string& stream : pingStreams(log, spec)) writers.insert(writerOf(spec, stream));
+    for (const std::string& task : writers)
+        if (std::ranges::any_of(options.set, [&](const std::string& set) { return set.starts_with(task + "."); }))
+            notice(options, task + ": the log replaces what it sends; --rerender makes its pings again");
 }
 
 /** Scores the log against the new rendering and prints the score. Returns the exit code. */
@@ -116,6 +130,30 @@ void followLog(Asked& options, std::vector<RecordedProperty> changed) {
     };
 }
 
+/** Runs the deployment with the log in the place of tasks; `changed` are properties that follow the log. */
+int replayWith(std::vector<RecordedProperty> changed, log::Reader& log, Asked& options) {
+    framework::DeploymentSpec spec = loadSpec(options);
+    reportOmitted(spec, options);
+    if (!options.replay.rerender) reportReplaced(spec, log, options);
+    const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
+    if (options.score && streams.empty())
+        throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
+    spec = replaying(std::move(spec), log, options.replay);
+    if (options.score) addLogger(spec, streams, rerendered_file);
+    followLog(options, std::move(changed));
+    std::filesystem::path folder;
+    const int code = runDeployment(std::move(spec), options, &folder);
+    return code == 0 && options.score ? printScore(log, streams, options.worst, folder) : code;
+}
+
+/** Returns the errors with the log as the origin of its own values. */
+types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& log) {
+    for (types::Diagnostic& each : diagnostics)
+        if (each.file == recorded_origin)
+            each.file = log, each.message += "; the value is the log's, and --set overrides it";
+    return types::ConfigError(std::move(diagnostics));
+}
+
 int replay(Asked options) {
     const auto opened = log::openLog(options.replay.log);
     log::Reader& log = *opened;
@@ -128,17 +166,11 @@ int replay(Asked options) {
     }
     std::vector<RecordedProperty> changed;
     if (options.replay.rerender) changed = takeSettings(log, options);
-    framework::DeploymentSpec spec = loadSpec(options);
-    reportOmitted(spec, options);
-    const std::vector<std::string> streams = options.score ? pingStreams(log, spec) : std::vector<std::string>{};
-    if (options.score && streams.empty())
-        throw types::ConfigError(log.path(), "", "holds no pings of a task of " + spec.file + "; nothing to score");
-    spec = replaying(std::move(spec), log, options.replay);
-    if (options.score) addLogger(spec, streams, rerendered_file);
-    followLog(options, std::move(changed));
-    std::filesystem::path folder;
-    const int code = runDeployment(std::move(spec), options, &folder);
-    return code == 0 && options.score ? printScore(log, streams, options.worst, folder) : code;
+    try {
+        return replayWith(std::move(changed), log, options);
+    } catch (const types::ConfigError& error) {
+        throw namingLog(error.diagnostics(), options.replay.log);
+    }
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "components/deployer/Summary.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Offers.hpp"
+#include "components/framework/YamlText.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "types/ConfigError.hpp"
 
@@ -77,6 +78,13 @@ void RunOptions::addTo(CLI::App& command) {
 
 framework::DeploymentSpec loadSpec(const RunOptions& options) {
     framework::DeploymentSpec spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
+    for (const std::string& assignment : options.recorded) {
+        const size_t equals = assignment.find('=');
+        const std::string property = assignment.substr(0, equals);
+        const auto [task, name] = framework::splitPort(property);
+        spec.set(property, framework::parseValue(assignment.substr(equals + 1)),
+                 {recorded_origin, fmt::format("tasks.{}.properties.{}", task, name)});
+    }
     for (const std::string& assignment : options.set) spec.set(assignment);
     applyRosArguments(options.ros, spec);
     return spec;

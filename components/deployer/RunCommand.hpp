@@ -14,12 +14,13 @@ namespace insonify::deployer {
 
 /** The options of `run` and `replay`. */
 struct RunOptions {
-    std::string deployment;          ///< File.
-    std::string out;                 ///< Folder for the run's files; empty: a new one.
-    std::string summary;             ///< File for the summary in JSON; empty: none.
-    std::vector<std::string> set;    ///< "task.property.path=value"
-    std::vector<std::string> ros;    ///< The words after `--ros-args`.
-    std::vector<std::string> calls;  ///< "task.operation=argument,...", called in this order after configuring.
+    std::string deployment;             ///< File.
+    std::string out;                    ///< Folder for the run's files; empty: a new one.
+    std::string summary;                ///< File for the summary in JSON; empty: none.
+    std::vector<std::string> set;       ///< "task.property.path=value"
+    std::vector<std::string> recorded;  ///< As `set`, below it: settings of the log that is rendered again.
+    std::vector<std::string> ros;       ///< The words after `--ros-args`.
+    std::vector<std::string> calls;     ///< "task.operation=argument,...", called in this order after configuring.
     framework::RunLimits limits;
     std::optional<uint64_t> seed;  ///< None or 0: tasks keep the seeds of the file.
     bool quiet = false;
@@ -33,7 +34,10 @@ struct RunOptions {
     void addDeploymentTo(CLI::App& command);
 };
 
-/** Returns the deployment with `--set` and then `--ros-args` applied to it. */
+/** Origin of values in RunOptions::recorded. */
+inline constexpr const char* recorded_origin = "--rerender";
+
+/** Returns the deployment with `recorded`, then `--set` and then `--ros-args` applied to it. */
 framework::DeploymentSpec loadSpec(const RunOptions& options);
 
 /** Makes and runs a deployment, prints the result and returns the exit code. Throws types::ConfigError, with every

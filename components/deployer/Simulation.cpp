@@ -12,6 +12,7 @@
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Activity.hpp"
+#include "components/framework/Offers.hpp"
 #include "components/framework/Properties.hpp"
 #include "components/framework/Wiring.hpp"
 #include "components/sonar/PingTask.hpp"
@@ -112,6 +113,20 @@ Simulation::Simulation(const std::string& file, SimulationOptions options) : reg
         if (auto* const sonar = dynamic_cast<sonar::PingTask*>(task.get())) sonar->useThreads(options.threads);
     deployment_->configure();
     start();
+}
+
+std::vector<std::string> Simulation::notices() const {
+    std::vector<std::string> all;
+    const auto add = [&](const framework::TaskContext& task, const std::vector<std::string>& notices) {
+        for (const std::string& notice : notices)
+            if (const std::string text = task.name() + ": " + notice; std::ranges::count(all, text) == 0)
+                all.push_back(text);
+    };
+    for (const auto& task : deployment_->tasks()) {
+        add(*task, task->notices());
+        if (const types::Plan* plan = framework::planOf(*task)) add(*task, plan->notices);
+    }
+    return all;
 }
 
 void Simulation::replacePoses(DeploymentSpec& spec) {

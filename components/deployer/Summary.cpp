@@ -59,6 +59,26 @@ std::string timesLine(const std::string& name, const std::string& state, const S
                        times.median_ms, times.p99_ms, times.max_ms);
 }
 
+/** Returns a line for each count that is not 0. */
+std::string countsText(const std::map<std::string, uint64_t>& counts) {
+    std::string text;
+    for (const auto& [connection, count] : counts)
+        if (count > 0) text += fmt::format("  {:6}  {}\n", count, connection);
+    return text;
+}
+
+/** Returns a line for each omission, and one line for all that is not configured. */
+std::string omittedText(const std::vector<types::Omission>& omitted) {
+    std::string text, absent;
+    for (const types::Omission& omission : omitted)
+        if (omission.reason == "not configured")
+            absent += (absent.empty() ? "" : ", ") + omission.name;
+        else
+            text += fmt::format("  {}: {}\n", omission.name, omission.reason);
+    if (!absent.empty()) text += "  not configured: " + absent + "\n";
+    return text.empty() ? text : "omitted\n" + text;
+}
+
 }  // namespace
 
 Summary::Summary(const framework::Deployment& deployment, const framework::RunResult& result)
@@ -103,19 +123,10 @@ std::string Summary::text() const {
     }
     if (realtime) text += realtimeText();
     for (const auto& [task, plan] : plans) text += fmt::format("{}: {}\n", task, qualityText(plan));
-    text += "lost samples\n";
-    for (const auto& [connection, count] : losses) text += fmt::format("  {:6}  {}\n", count, connection);
-    text += passedOverText();
-    if (!omitted.empty()) text += "omitted\n";
-    for (const types::Omission& omission : omitted) text += fmt::format("  {}: {}\n", omission.name, omission.reason);
-    return text;
-}
-
-std::string Summary::passedOverText() const {
-    std::string text;
-    for (const auto& [connection, count] : passed_over)
-        if (count > 0) text += fmt::format("  {:6}  {}\n", count, connection);
-    return text.empty() ? text : "skipped for newer samples\n" + text;
+    const std::string lost = countsText(losses), skipped = countsText(passed_over);
+    text += lost.empty() ? "lost samples: none\n" : "lost samples\n" + lost;
+    if (!skipped.empty()) text += "skipped for newer samples\n" + skipped;
+    return text + omittedText(omitted);
 }
 
 std::string Summary::realtimeText() const {

@@ -38,7 +38,6 @@ struct Summary {
 
 private:
     std::string realtimeText() const;
-    std::string passedOverText() const;
 };
 
 }  // namespace insonify::deployer

@@ -176,9 +176,9 @@ bool ConfigReader::isMap(const YAML::Node& node, const std::string& path) {
     return good;
 }
 
-bool ConfigReader::isSequence(const YAML::Node& node, const std::string& path) {
+bool ConfigReader::isSequence(const YAML::Node& node, const std::string& path, const std::string& form) {
     if (node.IsSequence()) return true;
-    report(node, path, "is " + shown(node) + "; must be a list");
+    report(node, path, "is " + shown(node) + "; must be a list" + (form.empty() ? "" : " of two, " + form));
     return false;
 }
 

@@ -63,7 +63,8 @@ public:
     void report(const YAML::Node& block, const std::string& path, const types::Diagnostics& diagnostics);
 
     bool isMap(const YAML::Node& node, const std::string& path);  ///< A map or empty, keys unique; else a diagnostic.
-    bool isSequence(const YAML::Node& node, const std::string& path);  ///< Else a diagnostic.
+    /** Else a diagnostic. @param form of the list, such as [min, max]; empty: any */
+    bool isSequence(const YAML::Node& node, const std::string& path, const std::string& form = "");
     /** Reports each key that is not among `known`, with the nearest known key. */
     void refuseUnknown(const YAML::Node& map, const std::string& path, const std::vector<std::string>& known);
 

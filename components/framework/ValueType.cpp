@@ -138,6 +138,13 @@ void giveDefault(const BlockType& block, const types::Field& field, const ValueT
     });
 }
 
+/** Returns the form of a list of two that a field's meaning states, such as "[min, max]"; empty: it states none. */
+std::string pairIn(std::string_view doc) {
+    for (const std::string_view form : {"[min, max]", "[mean, deviation]"})
+        if (doc.find(form) != doc.npos) return std::string(form);
+    return "";
+}
+
 }  // namespace
 
 // clang-format off
@@ -166,7 +173,7 @@ bool OptionalType::read(ConfigReader& reader, const YAML::Node& node, const std:
 bool ListType::read(ConfigReader& reader, const YAML::Node& node, const std::string& path, const types::Field& field,
                     void* value) const {
     const bool is_one = node.IsMap() && dynamic_cast<const BlockType*>(&inner());  // a list of one
-    if (!is_one && !reader.isSequence(node, path)) return false;
+    if (!is_one && !reader.isSequence(node, path, pairIn(field.doc))) return false;
     renew(value, is_one ? 1 : node.size());
     if (is_one) return inner().read(reader, node, path, field, unconst(at(value, 0)));
     bool good = true;

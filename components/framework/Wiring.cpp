@@ -294,14 +294,18 @@ void Wiring::checkTasks() {
     for (const auto& task : graph_.tasks()) {
         const TaskSpec& spec = *spec_.task(task->name());
         checkInputs(*task, spec);
-        checkActivity(*task, spec);
-        if (isUnreliable(*task)) continue;
-        ConfigReader reader(spec_.file, spec_.origins);
-        reader.setFallback(spec.place.Mark());
-        types::Diagnostics diagnostics;
-        task->check(diagnostics);
-        reader.report(spec.properties, spec.path() + ".properties", diagnostics);
-        diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
+        const size_t before = diagnostics_.size();
+        if (!isUnreliable(*task)) {
+            ConfigReader reader(spec_.file, spec_.origins);
+            reader.setFallback(spec.place.Mark());
+            types::Diagnostics diagnostics;
+            task->check(diagnostics);
+            reader.report(spec.properties, spec.path() + ".properties", diagnostics);
+            diagnostics_.insert(diagnostics_.end(), reader.diagnostics().begin(), reader.diagnostics().end());
+        }
+        // A clock source with an error has no next time, which is a consequence.
+        const bool has_no_time = diagnostics_.size() > before && dynamic_cast<const ClockSource*>(task.get());
+        checkActivity(*task, spec, has_no_time);
     }
 }
 
@@ -317,7 +321,7 @@ void Wiring::checkInputs(const TaskContext& task, const TaskSpec& spec) {
                         fmt::format("input port {} ({}) is not connected; it must be", port->name(), port->typeName()));
 }
 
-void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
+void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec, bool has_no_time) {
     const YAML::Node place = child(spec.place, "activity");
     for (const std::string& name : spec.activity.trigger)
         if (!task.input(name))
@@ -326,7 +330,7 @@ void Wiring::checkActivity(TaskContext& task, const TaskSpec& spec) {
     const bool is_misread = std::ranges::any_of(spec_.diagnostics, [&](const types::Diagnostic& diagnostic) {
         return diagnostic.path.starts_with(spec.path() + ".activity");
     });
-    if (!is_misread && !child(place, "period").IsDefined() && !hasCycles(task, spec))
+    if (!is_misread && !has_no_time && !child(place, "period").IsDefined() && !hasCycles(task, spec))
         consequence(spec.place, spec.path(), "has nothing that would run it; give it activity: {period: seconds}");
     task.activity().configure(spec.activity);
 }

@@ -41,7 +41,7 @@ private:
     bool isUnreliable(const TaskContext& task) const;
     void checkTasks();
     void checkInputs(const TaskContext& task, const TaskSpec& spec);
-    void checkActivity(TaskContext& task, const TaskSpec& spec);
+    void checkActivity(TaskContext& task, const TaskSpec& spec, bool has_no_time);
     /** Whether something runs the task, or would if its connections were correct. */
     bool hasCycles(const TaskContext& task, const TaskSpec& spec) const;
     void checkLoops();

@@ -24,7 +24,8 @@ public:
         return {{"poses", simulation.poses()},
                 {"pings", simulation.pings()},
                 {"period", simulation.period()},
-                {"time", simulation.time()}};
+                {"time", simulation.time()},
+                {"notices", simulation.notices()}};
     }
     deployer::Simulation simulation;
 };
@@ -137,7 +138,11 @@ public:
     }
     Json facts() const override {
         const deployer::Simulation& first = batch.front();
-        return {{"poses", first.poses()}, {"pings", first.pings()}, {"period", first.period()}, {"seeds", seeds_}};
+        return {{"poses", first.poses()},
+                {"pings", first.pings()},
+                {"period", first.period()},
+                {"seeds", seeds_},
+                {"notices", first.notices()}};
     }
     std::unique_ptr<Handle> step(const double* poses) {
         std::vector<std::map<std::string, types::Pose>> at(batch.size());

@@ -202,6 +202,21 @@ TEST(PlacementTest, EachObjectIsChosenEquallyOftenAndByThePoseAlone) {
     EXPECT_EQ(pairs.size(), 15u);
 }
 
+TEST(PlacementTest, ReportsAnAreaWithoutGround) {
+    Sweep sweep = sweepOf({2, 4}, {2, 4});
+    sweep.objects[0].ground = "sea_floor";
+    SceneParts scene = stones(1);
+    for (const double x : {0.0, 20.0}) {  // elsewhere, and below the area
+        scene.grounds["sea_floor"] = {{glm::dvec3(20 - x, 0, -9), {30 - x, 0, -9}, {20 - x, 10, -9}}};
+        const auto work = [&] { placed(sweep, scene, 1, 8); };
+        if (x == 0)
+            EXPECT_THAT(test::errorOf<types::ConfigError>(work),
+                        HasSubstr("no ground, sea_floor, is below its area: give it another area"));
+        else
+            EXPECT_NO_THROW(work());
+    }
+}
+
 TEST(PlacementTest, ReportsTheNumberOfObjectsThatFit) {
     const Sweep sweep = sweepOf({2, 4}, {2, 4});
     EXPECT_THAT(

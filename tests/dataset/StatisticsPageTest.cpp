@@ -37,13 +37,32 @@ TEST(StatisticsPageTest, ShowsCountsSizesRangesAndExamples) {
     EXPECT_THAT(text, HasSubstr("<rect x=\"1\" y=\"2\" width=\"3\" height=\"4\""));
 }
 
-TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsNotShown) {
+TEST(StatisticsPageTest, ASettingWithAValueInEachSampleIsOneRow) {
     Sweep sweep;
     const Classes classes(sweep, {"pile_0"});
     StatisticsPage page("sweep.yml", classes);
-    for (uint64_t index = 0; index < 30; ++index) page.add(recordOf(index, "train", 100), "");
+    for (uint64_t index = 0; index < 5; ++index) page.add(recordOf(index, "train", 100), "");
+    EXPECT_THAT(page.text(), HasSubstr("<td>sonar.gain: 0 to 2, median 1</td>"));
+    for (uint64_t index = 5; index < 30; ++index) page.add(recordOf(index, "train", 100), "");
     EXPECT_THAT(page.text(), HasSubstr("sonar.range = 30"));
-    EXPECT_THAT(page.text(), Not(HasSubstr("sonar.gain")));
+    EXPECT_THAT(page.text(), HasSubstr("<td>sonar.gain: 0 to 14.5, median 7.25</td>"));
+    EXPECT_THAT(page.text(), Not(HasSubstr("sonar.gain = ")));
+}
+
+TEST(StatisticsPageTest, ValuesOfAListAreInNumericOrder) {
+    Sweep sweep;
+    const Classes classes(sweep, {"pile_0"});
+    StatisticsPage page("sweep.yml", classes);
+    for (const int value : {100, 20, 9, 20}) {
+        Json record = recordOf(0, "train", 100);
+        record["settings"] = {{"sonar.range", value}};
+        page.add(record, "");
+    }
+    const std::string text = page.text();
+    const size_t first = text.find("sonar.range = 9<"), middle = text.find("sonar.range = 20<"),
+                 last = text.find("sonar.range = 100<");
+    ASSERT_NE(last, text.npos);
+    EXPECT_TRUE(first < middle && middle < last);
 }
 
 TEST(StatisticsPageTest, WithoutPicturesThereAreNoExamples) {

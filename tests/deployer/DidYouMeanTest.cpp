@@ -88,6 +88,18 @@ TEST(DidYouMeanTest, AMissingSceneIsReportedWithSearchedFoldersAndReadableFormat
     EXPECT_THAT(diagnostics, HasSubstr(".gltf, .glb, .world, .sdf or .urdf"));
 }
 
+TEST(DidYouMeanTest, AWordThatIsNoCommandIsReportedWithTheCommands) {
+    const WallFolder folder;
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"exprot"}, {"log", "foo", "wall.0.log"}}) {
+        const Outcome outcome = callInsonify(folder, words);
+        const std::string wrong = words.size() == 1 ? words[0] : words[1];
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_TRUE(outcome.err.starts_with("there is no command " + wrong + "; ")) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr(words.size() == 1 ? ", replay, " : ", export"));
+        EXPECT_THAT(outcome.err, testing::Not(HasSubstr("subcommand")));
+    }
+}
+
 TEST(DidYouMeanTest, CommandsOptionsAndTypesOnTheCommandLine) {
     const WallFolder folder;
     const std::pair<std::vector<std::string>, const char*> cases[] = {

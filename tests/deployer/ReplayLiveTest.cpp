@@ -139,6 +139,7 @@ TEST_F(ReplayLiveTest, TheUsersSettingOverridesARecordedChange) {
     recordAChange();
     const Outcome outcome = score("changed/wall.0.log", {"--set", "sonar.range=20"});
     EXPECT_THAT(outcome.out, HasSubstr("sonar.ping: 2 pings compared, 2 of other beams, bins or range"));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("sonar.range")));
 }
 
 TEST_F(ReplayLiveTest, ANoticeReportsALogWithoutItsProperties) {

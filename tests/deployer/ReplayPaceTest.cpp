@@ -65,6 +65,15 @@ TEST_F(ReplayPaceTest, RefusesAStartAfterTheLogsEnd) {
     const Outcome outcome = callInsonify(folder_, words({"--from", "3"}));
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("from: is 3 s; the log ends 0.2 s after its start"));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("nothing that would run it")));
+}
+
+TEST_F(ReplayPaceTest, ASettingOfASonarWhosePingsTheLogReplacesIsANotice) {
+    const std::string text = "notice: sonar: the log replaces what it sends; --rerender makes its pings again\n";
+    EXPECT_THAT(callInsonify(folder_, words({"--set", "sonar.range=15"})).err, HasSubstr(text));
+    EXPECT_THAT(callInsonify(folder_, words({"--set", "sonar.range=15", "--rerender"})).err,
+                testing::Not(HasSubstr(text)));
+    EXPECT_THAT(callInsonify(folder_, words({})).err, testing::Not(HasSubstr(text)));
 }
 
 TEST_F(ReplayPaceTest, InALoopTheLogRepeatsWhileTimeContinues) {

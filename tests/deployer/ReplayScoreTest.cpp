@@ -195,6 +195,23 @@ TEST_F(ReplayScoreTest, TakesSettingsOfTheRunFromTheLogsProperties) {
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("as in the log: sonar.range=15\n"));
     for (const auto& [name, stream] : streams()) expectSame(stream);
+
+    const Outcome other = score("out/wall.0.log", {"--set", "sonar.range=12"});
+    EXPECT_THAT(other.err, testing::Not(HasSubstr("as in the log: sonar.range")));
+    EXPECT_THAT(other.err, HasSubstr("as in the log: sonar.speed_of_sound=1480\n"));
+}
+
+TEST_F(ReplayScoreTest, AnErrorOfAValueFromTheLogNamesTheLog) {
+    writeFile(folder_ / "other.gltf", readFile(folder_ / "wall.gltf"));
+    record({"--pings", "3", "--set", "scene.file=other.gltf"});
+    fs::remove(folder_ / "other.gltf");
+    const Outcome outcome = score("out/wall.0.log");
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("out/wall.0.log: tasks.scene.properties.file: "));
+    EXPECT_THAT(outcome.err, HasSubstr("; the value is the log's, and --set overrides it\n"));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("--set: ")));
+    const Outcome overridden = score("out/wall.0.log", {"--set", "scene.file=wall.gltf"});
+    EXPECT_EQ(overridden.code, 0) << overridden.err;
 }
 
 TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {

@@ -68,6 +68,9 @@ TEST(TwoVehiclesRunTest, ReportsPosesReplacedByNewerPosesAndLosses) {
     ASSERT_EQ(run.code, 0) << run.err;
     // Two poses of blue arrive between two of red, each of which uses the newer one.
     EXPECT_THAT(run.out, testing::HasSubstr("skipped for newer samples\n       2  blue.pose>red_scene.blue.pose\n"));
+    EXPECT_THAT(run.out, testing::HasSubstr("lost samples: none\n"));
+    EXPECT_THAT(run.out, testing::ContainsRegex("\n  not configured: [a-z_]+, [a-z_]+"));
+    EXPECT_THAT(run.out, testing::Not(testing::HasSubstr(": not configured")));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_EQ(summary["passed_over"]["blue.pose>red_scene.blue.pose"], 2);
     EXPECT_EQ(summary["losses"]["blue.pose>red_scene.blue.pose"], 0);

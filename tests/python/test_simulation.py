@@ -3,6 +3,7 @@
 import subprocess
 import threading
 import time
+import warnings
 
 import insonify
 import numpy as np
@@ -137,6 +138,14 @@ def test_overrides_reach_the_tasks(deploy):
     )
     ping = simulation.step(HERE)
     assert ping.ranges[-1] == pytest.approx(30, rel=0.02)
+
+
+def test_warnings_of_the_tasks_are_python_warnings(deploy):
+    with pytest.warns(UserWarning, match="^sonar: range reached is .* more than 31 m"):
+        insonify.Simulation(deploy / "minimal.yml", overrides={"sonar.range": 31, "sonar.bin_count": 1000}).step(HERE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        insonify.Simulation(deploy / "minimal.yml").step(HERE)
 
 
 def test_errors_have_file_line_and_column(tmp_path, deploy):

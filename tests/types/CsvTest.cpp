@@ -46,6 +46,7 @@ TEST(CsvTest, ReportsErrorsWithTheirPlace) {
                     "5:5: level_db: is '5'; it must be a number from -10 to 0"));
     EXPECT_THAT(diagnosticsOf(""), ElementsAre("0:1: : is empty; it must start with the header time,level_db"));
     EXPECT_THAT(diagnosticsOf("t,level\n0,0\n"), ElementsAre("1:1: : is 't,level'; the header must be time,level_db"));
+    EXPECT_THAT(diagnosticsOf("time\n0\n1\n"), ElementsAre("1:1: : is 'time'; the header must be time,level_db"));
     EXPECT_THAT(diagnosticsOf("time,level_db\n0,0\n", 2),
                 ElementsAre("2:1: : has 1 lines after its header; it needs at least 2"));
     EXPECT_THROW(readCsv("nowhere.csv", columns, 1), ConfigError);

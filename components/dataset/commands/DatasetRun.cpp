@@ -197,8 +197,14 @@ void DatasetRun::checkDrawn() const {
             const double value = drawn.law.draw(wordOf(sweep_, index, i));
             minimum = std::min(minimum, value), maximum = std::max(maximum, value);
         }
-        for (const double value : {first, minimum, maximum})
-            checkAssignment(path, drawn.property, {fmt::format("{}", value), drawn.line, drawn.column});
+        for (const double value : {first, minimum, maximum}) try {
+                checkAssignment(path, drawn.property, {fmt::format("{}", value), drawn.line, drawn.column});
+            } catch (const types::ConfigError& error) {
+                types::Diagnostics diagnostics = error.diagnostics();
+                for (types::Diagnostic& each : diagnostics)
+                    if (each.message.ends_with("must be a whole number")) each.message += "; use choice";
+                throw types::ConfigError(diagnostics);
+            }
     }
 }
 

@@ -13,6 +13,7 @@ radians, times seconds; bearings are positive to port.
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -239,6 +240,9 @@ class Simulation:
     :param overrides: values of "task.property", as for `--set`: anything that JSON can represent.
     :param truth: whether pings have their truth, which takes time.
     :param period: time between two steps [s]; None: the period of the poses in the deployment.
+
+    Warnings of the tasks, such as a range that bins of whole microseconds cannot have, are Python warnings.
+
     :raises ConfigError: with `file`, `line`, `column` of the first diagnostic, and all of them in `diagnostics`.
     """
 
@@ -254,6 +258,7 @@ class Simulation:
         self._simulation = native.simulation(str(deployment), seed, _assignments(overrides), truth, period)
         facts = self._simulation.facts()
         self._poses, self._pings, self._period = facts["poses"], facts["pings"], facts["period"]
+        self._warned, self._is_new = _warn(facts["notices"], []), True
 
     @property
     def poses(self) -> list[str]:
@@ -283,6 +288,9 @@ class Simulation:
         """
         given = pose if isinstance(pose, Mapping) else {self._only(self.poses, "poses"): pose}
         handles = native.step(self._simulation, {port: _numbers(each) for port, each in given.items()}, time, len(self.pings))
+        if self._is_new:  # plans exist from the first ping on
+            self._is_new = False
+            _warn(self._simulation.facts()["notices"], self._warned)
         made = [handle and Ping(handle) for handle in handles]
         return made[0] if len(made) == 1 else dict(zip(self.pings, made))
 
@@ -356,7 +364,9 @@ class SimulationBatch:
         period: float | None = None,
     ) -> None:
         self._batch = native.batch(str(deployment), count, seed, _assignments(overrides), truth, period)
-        self._count, self._period = count, self._batch.facts()["period"]
+        facts = self._batch.facts()
+        self._count, self._period = count, facts["period"]
+        self._warned, self._is_new = _warn(facts["notices"], []), True
 
     def __len__(self) -> int:
         return self._count
@@ -375,7 +385,11 @@ class SimulationBatch:
         """Returns the ping of each simulation at its pose. Poses are an array [simulations, 7] of x, y, z [m] and a
         quaternion w, x, y, z, an array [simulations, 4, 4] of transforms from the body to the world, or a list of
         Pose. RuntimeError names the first simulation that failed."""
-        return Pings(native.batch_step(self._batch, self._numbers(poses)))
+        pings = native.batch_step(self._batch, self._numbers(poses))
+        if self._is_new:
+            self._is_new = False
+            _warn(self._batch.facts()["notices"], self._warned)
+        return Pings(pings)
 
     def reset(self, which: Sequence[int] | None = None, seeds: Sequence[int] | None = None) -> None:
         """Resets simulations, as if just made, with these seeds, none 0; None: all of them, the same seeds."""
@@ -387,6 +401,15 @@ class SimulationBatch:
         if len(poses) != len(self):
             raise ValueError(f"poses: are {len(poses)}; the batch has {len(self)} simulations")
         return np.stack([_numbers(each) for each in poses])
+
+
+def _warn(notices: list[str], warned: list[str]) -> list[str]:
+    """Warns of the notices "task: Warning: text" that are not in `warned`; returns all of them."""
+    for notice in notices:
+        task, _, text = notice.partition(": ")
+        if text.startswith("Warning: ") and notice not in warned:
+            warnings.warn(f"{task}: {text.removeprefix('Warning: ')}", stacklevel=3)
+    return notices
 
 
 def _assignments(overrides: Mapping[str, object] | None) -> list[str]:
