@@ -13,8 +13,8 @@ struct SonarPreset {
     const char* source;   ///< Sources of the values, and the values without a source.
     const char* summary;  ///< "130 x 20 degrees, 512 beams at 750 kHz"
     double frequency_khz;
-    double range, range_min, range_max;      ///< As deployed; the maker's limits at this frequency [m].
-    int bin_count, bin_us;                   ///< Whole microseconds, one way; the bins end at `range` or before.
+    double range_min, range_max;             ///< Limits by the maker, at this frequency [m].
+    int bin_count, bin_us;                   ///< Whole microseconds, one way.
     double beam_width_deg, beam_height_deg;  ///< Half power, one way.
     double range_resolution;                 ///< Range resolution of its pulse, by the maker [m].
     double period_s;                         ///< Between pings.
@@ -22,10 +22,12 @@ struct SonarPreset {
     int beam_count = 1;                 ///< More than one: a fan.
     double field_of_view_deg = 0;       ///< Field of view of a fan.
     double pitch_deg = 0;               ///< Pitch of the mount, down; of a fan.
+    double reference_db = 0;            ///< Level of white in the pictures of a fan.
     double step_deg = 0;                ///< Step of a scanning head.
     int row_count = 1;                  ///< More than one: a grid of beams with this many rows.
     double rows_field_of_view_deg = 0;  ///< Field of view of a grid, in elevation.
     bool sends_tones = false;           ///< Else chirps.
+    double range() const;               ///< Range of the bins in the starter's water [m].
     bool isGrid() const { return row_count > 1; }
     bool isFan() const { return beam_count > 1 && !isGrid(); }
 };

@@ -50,7 +50,7 @@ void Title::draw(cv::Mat& canvas, const types::Sonar& ping, const LevelScale& sc
     if (scale.config().scale == BinScale::Code)
         fmt::format_to(out(), "codes of {} bits", scale.config().code_bits);
     else
-        fmt::format_to(out(), "0 dB = {:.1f} dB", scale.referenceDb());
+        fmt::format_to(out(), "white = {:.1f} dB", scale.referenceDb());
     add(canvas);
 }
 

@@ -34,11 +34,36 @@ size_t echoesReceived(const TestFolder& folder, const std::string& sonar) {
     return std::stoul(counted.out);
 }
 
+/** Returns the records of a data set's samples. */
+std::vector<json> recordsOf(const fs::path& set) {
+    std::vector<json> records;
+    for (const auto& entry : fs::directory_iterator(set))
+        if (entry.path().extension() == ".json" && entry.path().filename().string().starts_with("0"))
+            records.push_back(json::parse(readFile(entry.path())));
+    return records;
+}
+
+/** Returns the number of tyres that the starter's sweep annotates in `dive`, after its last line is replaced if one is
+ *  given. */
+size_t annotatedTyres(const TestFolder& folder, const std::string& annotations) {
+    std::string sweep = readFile(folder / "dive/sweep.yml");
+    if (!annotations.empty()) sweep = sweep.substr(0, sweep.find("annotations:")) + annotations;
+    writeFile(folder / "dive/other.yml", sweep);
+    const std::string out = "set" + std::to_string(annotations.size());
+    const Outcome made = callInsonify(folder, {"dataset", "dive", "--sweep", "dive/other.yml", "--out", out, "--format",
+                                               "mask", "--set", "sonar.quality.rows=128"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    size_t tyres = 0;
+    for (const json& record : recordsOf(folder / out))
+        for (const json& annotation : record["annotations"]) tyres += annotation["class"] == "tyre";
+    return tyres;
+}
+
 /** Settings that hide almost everything in a ping: only its last hundredth, or only returns above the source's
  *  level. */
 std::string almostNothing(const SonarPreset& preset) {
     if (preset.isGrid()) return "sonar.detection.threshold_db=0";
-    return "sonar.range_min=" + std::to_string(0.99 * preset.range);
+    return "sonar.range_min=" + std::to_string(0.99 * preset.range());
 }
 
 /** Returns the pixels of echoes in the first picture of a run with a property set. */
@@ -101,12 +126,36 @@ TEST_P(InitPresetTest, BinsOfWholeMicrosecondsReachTheConfiguredRange) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
     const Outcome ran = callInsonify(folder, {"run", ".", "--pings", "1", "--out", "out"});
-    EXPECT_THAT(ran.err, testing::Not(HasSubstr("Warning: range"))) << ran.err;
-    for (const SonarPreset& preset : sonarPresets()) {
-        if (preset.name != GetParam()) continue;
-        EXPECT_THAT(ran.err, HasSubstr("bins last " + std::to_string(preset.bin_us) + " us"));
-        EXPECT_LE(preset.range, preset.range_max);
-        EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr(preset.source));
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_THAT(ran.err, testing::Not(HasSubstr("range reached"))) << ran.err;
+    const SonarPreset& preset = sonarPreset(GetParam());
+    EXPECT_LE(preset.range(), preset.range_max);
+    EXPECT_THAT(readFile(folder / (GetParam() + ".yml")), HasSubstr(preset.source));
+}
+
+TEST_P(InitPresetTest, EachPictureOfAFanShowsAnObjectOnTheFloor) {
+    if (!sonarPreset(GetParam()).isFan()) GTEST_SKIP() << "data sets have whole pictures of fans only";
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", ".", "--sonar", GetParam()}).code, 0);
+    writeFile(folder / "pass.yml",
+              "poses: {trajectory: {file: pass.csv, period: 1}}\n"
+              "classes: {object: [tyre_*, stone_*, container, pile_*]}\n"
+              "picture: {shape: fan, height: 400, dynamic_range_db: 45}\n"
+              "annotations: {min_level: 40, min_pixels: 100}\n");
+    const Outcome made = callInsonify(folder, {"dataset", ".", "--sweep", "pass.yml", "--out", "set", "--format",
+                                               "mask", "--set", "sonar.quality.rows=128"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    const std::vector<json> records = recordsOf(folder / "set");
+    EXPECT_GE(records.size(), 12u);
+    for (const json& record : records) EXPECT_FALSE(record["annotations"].empty()) << record["index"];
+}
+
+TEST(InitCommandTest, AFanRunsInShards) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+    for (const char* shard : {"0/2", "1/2"}) {
+        const Outcome ran = callInsonify(folder, {"run", "dive", "--pings", "4", "--out", "out", "--shard", shard});
+        EXPECT_EQ(ran.code, 0) << ran.err;
     }
 }
 
@@ -162,6 +211,14 @@ TEST(InitCommandTest, TheSweepMakesADataSetWhoseObjectsFindTheirPlaces) {
     }
     ASSERT_EQ(callInsonify(folder, {"init", "head", "--sonar", "micron"}).code, 0);
     EXPECT_FALSE(fs::exists(folder / "head/sweep.yml")) << "its picture is a beam";
+}
+
+TEST(InitCommandTest, TheSweepAnnotatesTheTyresInView) {
+    const TestFolder folder;
+    ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+    const size_t in_view = annotatedTyres(folder, "annotations: {min_level: 1, min_pixels: 3}\n");
+    EXPECT_GT(in_view, 20u);
+    EXPECT_GE(annotatedTyres(folder, ""), in_view * 9 / 10);
 }
 
 TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {

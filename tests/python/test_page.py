@@ -16,7 +16,7 @@ BLOCKS = {
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "deploy").symlink_to(ROOT / "deploy")
-    command = [INSONIFY, "run", "deploy/harbour_fls.yml", "--pings", "2", "--quiet", "--out", "."]
+    command = [INSONIFY, "run", "deploy/harbour_fls.yml", "--pings", "2", "--quiet"]
     subprocess.run(command, cwd=tmp_path, check=True, timeout=600)
     return tmp_path
 

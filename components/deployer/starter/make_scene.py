@@ -239,7 +239,7 @@ def add_wares(glb, steel, concrete, rubber):
     glb.object("mooring_block", moved(box((1.2, 1.2, 0.9)), (x, y, z + 0.3), 20), concrete)
     glb.object("mooring_line", tube([(x + 0.5 * t * t, y - 0.1 * t, z + 0.7 + 4.5 * t) for t in (k / 12 for k in range(13))], 0.04, 8), steel)
     glb.object("buoy", moved(stone(0.9), (x + 0.5, y - 0.1, z + 5.6)), rubber)
-    for number, (x, y, tilt) in enumerate(((7.5, -3.2, 0.0), (8.6, -2.2, 0.5), (13.0, -14.0, 0.3))):
+    for number, (x, y, tilt) in enumerate(((3.8, 0.4, 0.0), (10.4, -0.3, 0.5), (13.0, -14.0, 0.3))):
         ring = [(0.38 * math.cos(a), 0.38 * math.sin(a), 0.38 * tilt * math.sin(a)) for a in (k * math.pi / 16 for k in range(32))]
         glb.object(f"tyre_{number}", moved(tube(ring, 0.12, 10, closed=True), (x, y, floor_height(x, y) + 0.12 + 0.3 * tilt)), rubber)
 
@@ -248,6 +248,7 @@ def add_stones(glb, granite):
     places = [(rng.uniform(-25, 38), WALL - rng.uniform(0.5, 2.5), rng.uniform(0.3, 0.9)) for _ in range(24)]
     places += [(rng.gauss(21, 3.5), rng.gauss(-20, 2.5), rng.uniform(0.5, 1.9)) for _ in range(22)]
     places += [(rng.uniform(6, 36), rng.uniform(-28, 8), rng.uniform(0.2, 0.8)) for _ in range(26)]
+    places += [(7.0, -0.3, 0.5)]   # below pass.csv, for sonars of short range
     for number, (x, y, size) in enumerate(places):
         glb.object(f"stone_{number:02d}", moved(stone(size), (x, y, floor_height(x, y) + 0.15 * size), rng.uniform(0, 360)), granite)
 
