@@ -1,6 +1,5 @@
 """Tests scripts/sim_to_real: halves never share a film, windows show the visible pixels, wrong input is one error and exit 2.
 A stand-in for insonify makes the sets, and writes the files of a data set."""
-import importlib.util
 import random
 import subprocess
 import sys
@@ -103,19 +102,6 @@ class Windows(unittest.TestCase):
         crops = [sets.Crop(np.random.default_rng(2).random(size), "a", "", "") for size in [(40, 10), (20, 20), (10, 40)]]
         x, _ = learn.arrays(crops, ["a"])
         np.testing.assert_allclose(x[:, 1, 0, 0], [2, 0, -2])
-
-
-@unittest.skipIf(importlib.util.find_spec("torch") is None, "torch is not installed")
-class Training(unittest.TestCase):
-    def test_a_background_adds_noise_over_a_range_of_rows_to_some_crops(self):
-        import torch
-        torch.manual_seed(0)
-        crops = learn.with_background(torch.zeros(2000, 1, 40, 40))
-        self.assertTrue(torch.isfinite(crops).all())
-        noisy = crops[crops.amax((1, 2, 3)) > 0.05]
-        self.assertAlmostEqual(len(noisy) / len(crops), 0.55, delta=0.1)  # 0.6, less those with little noise or none in the crop
-        rows = (noisy**4).mean((1, 3))
-        self.assertGreater(float((rows[:, 30:].mean(1) > rows[:, :10].mean(1)).float().mean()), 0.9)
 
 
 class Wrong(unittest.TestCase):
