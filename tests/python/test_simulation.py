@@ -121,6 +121,7 @@ def test_the_truth_names_objects_and_has_the_shape_of_the_bins(deploy):
     assert "sea_floor" in truth.objects
     shown = truth.object[truth.object >= 0]
     assert shown.size > 1000 and shown.max() < len(truth.objects)
+    assert repr(truth).startswith("Truth(") and "grazing" in repr(truth)
 
 
 def test_a_fan_is_a_picture(deploy):
@@ -294,6 +295,7 @@ def test_threads_read_one_log(deploy, tmp_path):
     subprocess.run(command, check=True, timeout=600)
     log = insonify.read_log(next(tmp_path.glob("harbour*.log")))
     pings, poses = log["receiver.ping"], log["vehicle.pose"]
+    assert "receiver.ping (4)" in repr(log)
     wanted = [ping.bins for ping in pings]
     differ = []
 

@@ -147,6 +147,9 @@ class Truth(Mapping):
         except KeyError:
             raise AttributeError(name) from None
 
+    def __repr__(self) -> str:
+        return f"Truth({', '.join(self)})"
+
 
 class Ping:
     """One ping: echoes of each beam by slant range."""
@@ -443,6 +446,9 @@ class Log(Mapping):
 
     def __len__(self) -> int:
         return len(self._streams)
+
+    def __repr__(self) -> str:
+        return f"Log({self.path}: {', '.join(f'{name} ({len(samples)})' for name, samples in self.items())})"
 
 
 class _Samples:
