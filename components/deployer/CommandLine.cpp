@@ -62,6 +62,14 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/** Whether the words end where a command must follow, as in `insonify` and `insonify log`. */
+bool asksForCommand(const CLI::App& app, int argc) {
+    const CLI::App* command = &app;
+    int words = 1;
+    for (; !command->get_subcommands().empty(); ++words) command = command->get_subcommands().front();
+    return words == argc && command->get_require_subcommand_min() > 0;
+}
+
 int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
     try {
         app.parse(argc, argv);
@@ -69,6 +77,10 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
         if (const std::string unknown = error.get_exit_code() == 0 ? "" : unknownCommand(app, argc, argv);
             !unknown.empty()) {
             fmt::print(stderr, "{}\n", unknown);
+            return bad_input;
+        }
+        if (asksForCommand(app, argc)) {
+            fmt::print(stderr, "{}", app.help());
             return bad_input;
         }
         if (app.exit(error, std::cout, std::cerr) == 0) return done;

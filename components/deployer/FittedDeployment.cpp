@@ -118,12 +118,12 @@ void put(YAML::Node block, const std::string& path, const YAML::Node& value) {
 
 }  // namespace
 
-ChainAt chainAt(const std::string& file, uint64_t ping) {
+ChainAt chainAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings) {
     const std::string located = deploymentIn(file);
     ChainAt chain;
     {
         framework::Registry registry = coreTasks();
-        const framework::Deployment deployment(framework::DeploymentSpec::load(located), registry);
+        const framework::Deployment deployment(specWith(file, settings), registry);
         const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, located);
         chain.receiver_task = receiver.name();
         chain.receiver = *receiver.config;
@@ -144,7 +144,7 @@ ChainAt chainAt(const std::string& file, uint64_t ping) {
         chain.vehicle_task = vehicle.name();
         chain.period = deployment.spec().task(chain.vehicle_task)->activity.period;
     }
-    SonarAt at = sonarAt(located, ping);
+    SonarAt at = sonarAt(located, ping, settings);
     chain.sonar = std::move(at.config);
     chain.snapshot = std::move(at.snapshot);
     return chain;

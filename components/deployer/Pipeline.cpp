@@ -108,9 +108,15 @@ std::set<std::string> pingTasks(const DeploymentSpec& spec, framework::Registry&
     return names;
 }
 
-SonarAt sonarAt(const std::string& file, uint64_t ping) {
+DeploymentSpec specWith(const std::string& file, const std::vector<std::string>& settings) {
+    DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
+    for (const std::string& setting : settings) spec.set(setting);
+    return spec;
+}
+
+SonarAt sonarAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings) {
     framework::Registry registry = coreTasks();
-    Deployment deployment(pipelineOf(DeploymentSpec::load(deploymentIn(file)), registry), registry);
+    Deployment deployment(pipelineOf(specWith(file, settings), registry), registry);
     deployment.configure();
     const framework::RunResult result = deployment.run({.samples = ping}, stopOnSignals());
     if (result.failed()) throw std::runtime_error(result.failures.front());
@@ -129,8 +135,7 @@ SonarAt sonarAt(const std::string& file, uint64_t ping) {
 
 PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count, const std::vector<std::string>& settings) {
     framework::Registry registry = coreTasks();
-    DeploymentSpec spec = DeploymentSpec::load(deploymentIn(file));
-    for (const std::string& setting : settings) spec.set(setting);
+    const DeploymentSpec spec = specWith(file, settings);
     const Deployment whole(spec, registry);
     const std::set<std::string> kept = upstreamOf({codingReceiverOf(whole, file).name()}, whole);
     Deployment deployment(restrictedTo(spec, kept), registry);

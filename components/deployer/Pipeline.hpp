@@ -22,6 +22,9 @@ framework::DeploymentSpec restrictedTo(framework::DeploymentSpec spec, const std
 /** Returns the tasks of the deployment that write or read pings. */
 std::set<std::string> pingTasks(const framework::DeploymentSpec& spec, framework::Registry& registry);
 
+/** Loads a deployment with properties that differ from the file's, as `--set` takes them. */
+framework::DeploymentSpec specWith(const std::string& file, const std::vector<std::string>& settings);
+
 /** Returns these tasks and all tasks that their inputs come from, directly or not. */
 std::set<std::string> upstreamOf(std::set<std::string> names, const framework::Deployment& deployment);
 
@@ -39,8 +42,9 @@ struct SonarAt {
     types::Snapshot snapshot;
 };
 /** Returns the first sonar of a deployment at its ping number `ping`, from 1. Throws types::ConfigError where there is
- *  none. */
-SonarAt sonarAt(const std::string& file, uint64_t ping);
+ *  none.
+ *  @param settings properties that differ from the file's, as `--set` takes them */
+SonarAt sonarAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings = {});
 
 /** Pings that a receiver output as codes, and the law of the codes. */
 struct PingsAt {
@@ -49,7 +53,7 @@ struct PingsAt {
 };
 /** Returns at most `count` pings from number `ping` on, from the first receiver that outputs codes. Throws
  *  types::ConfigError where there is no such receiver.
- *  @param settings properties that differ from the file's, as `--set` takes them */
+ *  @param settings see sonarAt() */
 PingsAt codedPingsAt(const std::string& file, uint64_t ping, size_t count,
                      const std::vector<std::string>& settings = {});
 

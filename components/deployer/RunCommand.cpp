@@ -134,7 +134,12 @@ std::vector<std::string> without(std::vector<std::string> notices, const std::ve
 }
 
 void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
-    for (const std::string& notice : notices) fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
+    const std::string warning = "Warning: ";
+    for (const std::string& notice : notices)
+        if (notice.starts_with(warning))
+            fmt::print(stderr, "warning: {}: {}\n", task.name(), notice.substr(warning.size()));
+        else
+            fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
 }
 
 /** Checks without making a file. */

@@ -14,6 +14,7 @@
 #include "components/deployer/RunCommand.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/MaterialNames.hpp"
+#include "components/scene/Placement.hpp"
 #include "components/scene/Scene.hpp"
 #include "types/Extent.hpp"
 
@@ -48,11 +49,10 @@ void eachFace(const types::Geometry& geometry, const types::Object& object, cons
             visit(Face{cluster.material, glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k)) / 2.0});
 }
 
-/** The surface area of each material, and how much of the surface faces along each axis. */
+/** The surface area of each material. */
 struct Surfaces {
     std::vector<size_t> triangles;
     std::vector<double> areas;  ///< [m2]
-    glm::dvec3 facing{0};       ///< Sum over faces of the size of each component [m2].
 
     explicit Surfaces(const types::Geometry& geometry)
         : triangles(geometry.materials.size()), areas(geometry.materials.size()) {
@@ -61,7 +61,6 @@ struct Surfaces {
                 const auto material = static_cast<size_t>(face.material);
                 ++triangles[material];
                 areas[material] += glm::length(face.area);
-                facing += glm::abs(face.area);
             });
     }
 };
@@ -104,28 +103,11 @@ Json objectsOf(const types::Geometry& geometry) {
     return objects;
 }
 
-bool isGltf(const std::string& file) {
-    const std::string extension = scene::extensionOf(file);
-    return extension == ".gltf" || extension == ".glb";
-}
-
-/** Whether a scene written with z up was turned as if y were up: its sea floor is then a wall across y. */
-bool isOnItsSide(const types::Extent& extent, const glm::dvec3& facing) {
-    const double all = facing.x + facing.y + facing.z;
-    const glm::dvec3 size = extent.size();
-    return all > 0 && facing.y > 0.6 * all && size.z > 2 * size.y;
-}
-
-Json warningsOf(const std::string& file, const types::Extent& extent, const Surfaces& surfaces, const Json& materials) {
+Json warningsOf(const std::string& file, const types::Geometry& geometry, const types::Extent& extent,
+                const Json& materials) {
     Json warnings = Json::array();
-    const glm::dvec3 facing = surfaces.facing;
-    if (isGltf(file) && isOnItsSide(extent, facing))
-        warnings.push_back(fmt::format(
-            "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} "
-            "m "
-            "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or turn its "
-            "root node by -90 degrees about x",
-            100 * facing.y / (facing.x + facing.y + facing.z), extent.size().z, extent.size().y));
+    if (const std::string side = scene::isGltf(file) ? scene::sideWarning(geometry) : ""; !side.empty())
+        warnings.push_back(side);
     if (const glm::dvec3 size = extent.size(); std::max({size.x, size.y, size.z}) > 1e5)
         warnings.push_back("the scene is more than 100 km wide; glTF and SDF are in metres");
     const auto plain = std::ranges::count_if(materials, [](const Json& m) { return m["source"] == "default"; });
@@ -139,8 +121,9 @@ Json warningsOf(const std::string& file, const types::Extent& extent, const Surf
 }
 
 std::string axesOf(const std::string& file) {
-    return isGltf(file) ? "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world"
-                        : "SDF, z up: x, y, z of the file are those of the world";
+    return scene::isGltf(file)
+               ? "glTF, y up in the file; turned to z up: (x, y, z) of the file is (x, -z, y) of the world"
+               : "SDF, z up: x, y, z of the file are those of the world";
 }
 
 /** Returns the animations of a scene: [{name, duration_s, channels}]. */
@@ -180,7 +163,7 @@ Json sceneReport(const std::string& file) {
             {"animations", animationsOf(scene)},
             {"deforming", scene.animations ? scene.animations->objects.size() : 0},
             {"not_understood", geometry.notices},
-            {"warnings", warningsOf(file, extent, surfaces, materials)}};
+            {"warnings", warningsOf(file, geometry, extent, materials)}};
 }
 
 std::string text(const Json& vector) {
@@ -256,7 +239,7 @@ void printScene(const Json& scene) {
 
 bool isSceneName(const std::string& name) {
     const std::string extension = scene::extensionOf(name);
-    return isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
+    return scene::isGltf(name) || extension == ".world" || extension == ".sdf" || extension == ".urdf";
 }
 
 int showScene(const std::string& file, bool json) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "components/scene/Gltf.hpp"
 #include "types/Angle.hpp"
 #include "types/DidYouMean.hpp"
+#include "types/Extent.hpp"
 
 namespace insonify::scene {
 namespace {
@@ -75,7 +77,7 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
                                                         "insonify scene lists them"});
     std::shared_ptr<Animations> animations;
     if (scene.animations) animations = std::make_shared<Animations>(*scene.animations);
-    std::vector<glm::dmat4> world_from_node;  // with the nodes above at their scaled size
+    std::vector<glm::dmat4> world_from_node;                             // with the nodes above at their scaled size
     std::vector<glm::dmat4> resized(scene.nodes.size(), glm::dmat4(1));  // below each node, in the world
     for (size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = result.nodes[i];
@@ -121,6 +123,30 @@ std::string layOf(const Scene& scene, const Placement& placement, types::WorldFr
                               types::EnumNames<types::WorldFrame>::names[static_cast<size_t>(poses)],
                               name(types::Axes{poses}.rockFromWorld({1, 0, 0})),
                               name(types::Axes{poses}.rockFromWorld({0, 1, 0})));
+}
+
+std::string sideWarning(const types::Geometry& geometry) {
+    constexpr double suspicious = 0.6;  // share of the surface
+    constexpr size_t enough = 20'000;  // triangles of an object that are added
+    glm::dvec3 facing(0);              // [m2]
+    for (const types::Object& object : geometry.objects) {
+        const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
+        const auto corner = [&](size_t k) {
+            return glm::dvec3(object.world_from_object * glm::dvec4(mesh.positions[mesh.indices[k]], 1));
+        };
+        const size_t step = 1 + mesh.indices.size() / 3 / enough;
+        for (size_t k = 0; k + 2 < mesh.indices.size(); k += 3 * step)
+            facing += glm::abs(glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k))) *
+                      (0.5 * static_cast<double>(step));
+    }
+    const double all = facing.x + facing.y + facing.z;
+    const glm::dvec3 size = types::extentOf(geometry).size();
+    if (facing.y <= suspicious * all || size.z <= 2 * size.y) return "";
+    return fmt::format(
+        "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} m "
+        "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or set placement of "
+        "its task to {{up: z}}",
+        100 * facing.y / all, size.z, size.y);
 }
 
 }  // namespace insonify::scene

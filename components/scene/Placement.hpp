@@ -50,6 +50,10 @@ Scene scaled(const Scene& scene, const std::map<std::string, double>& factors, t
  *  they are sent; the direction of their x is added if these axes are not the world's. */
 std::string layOf(const Scene& scene, const Placement& placement, types::WorldFrame poses);
 
+/** Returns a warning if most of the surface of a scene of glTF faces along y and it is higher than it is wide in y: a
+ *  file written with z up, of which y was taken as up, has its sea floor as a wall. Empty: it does not. */
+std::string sideWarning(const types::Geometry& geometry);
+
 }  // namespace insonify::scene
 
 template <>

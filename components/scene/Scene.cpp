@@ -99,6 +99,11 @@ void addFormat(const std::string& extension, SceneReader reader) {
     formats().readers[extension] = reader;
 }
 
+bool isGltf(const std::filesystem::path& file) {
+    const std::string extension = extensionOf(file);
+    return extension == ".gltf" || extension == ".glb";
+}
+
 std::string extensionOf(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });

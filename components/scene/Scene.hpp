@@ -48,6 +48,9 @@ std::shared_ptr<const Scene> sharedScene(const std::filesystem::path& file);
 /** Returns the extension in lower case: ".glb" for "Harbour.GLB". */
 std::string extensionOf(const std::filesystem::path& file);
 
+/** Whether the name of a file is one of glTF. */
+bool isGltf(const std::filesystem::path& file);
+
 /** Returns the geometry of readScene(). */
 types::GeometryPtr loadScene(const std::filesystem::path& file);
 

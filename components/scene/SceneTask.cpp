@@ -175,6 +175,7 @@ std::string SceneTask::indivisible() const {
 std::vector<std::string> SceneTask::notices() const {
     std::vector<std::string> all = geometry_ ? geometry_->notices : std::vector<std::string>{};
     if (!lay_.empty()) all.push_back(lay_);
+    if (!side_.empty()) all.push_back("Warning: " + side_);
     if (animator_) all.insert(all.end(), animator_->notices().begin(), animator_->notices().end());
     return all;
 }
@@ -216,6 +217,7 @@ bool SceneTask::configureHook() {
     if (!diagnostics.empty())
         throw types::ConfigError("", name() + "." + diagnostics.front().path, diagnostics.front().message);
     lay_ = layText(*scene);
+    side_ = isGltf(config->file) ? sideWarning(*scene->geometry) : "";
     std::ranges::sort(movables_, {}, &Movable::node);
     mover_.assign(geometry_->objects.size(), nullptr);
     return true;

@@ -119,6 +119,7 @@ private:
     mutable std::optional<Placement> scene_placement_;
     mutable std::map<std::string, double> scene_scale_;
     std::string lay_;                                ///< How the scene is oriented; empty if it need not be reported.
+    std::string side_;                               ///< Warning of a scene on its side; empty: it is not.
     mutable bool scene_has_survey_ = false;          ///< Whether scene_ has the floor's material.
     mutable std::optional<MosaicConfig> scene_map_;  ///< The mosaic whose classes are among the materials of scene_.
     types::GeometryPtr geometry_;                    ///< From file or gazebo, with all materials.

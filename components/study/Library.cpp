@@ -32,8 +32,8 @@ std::optional<LoggedPings> readLog(const std::filesystem::path& file) {
                        .altitudes = std::move(log->altitudes)};
 }
 
-ChainAt chainAt(const std::string& deployment, uint64_t ping) {
-    deployer::ChainAt at = deployer::chainAt(deployment, ping);
+ChainAt chainAt(const std::string& deployment, uint64_t ping, const std::vector<std::string>& settings) {
+    deployer::ChainAt at = deployer::chainAt(deployment, ping, settings);
     return {.chain = {.sonar = std::move(at.sonar),
                       .snapshot = std::move(at.snapshot),
                       .noise = std::move(at.noise),

@@ -88,7 +88,7 @@ TEST_F(MosaicRunTest, ReportsAHeldPoseAtTheEndOfTheRun) {
     const Outcome outcome = callInsonify(folder, {"run", deployment, "--out", "out", "--pings", "2"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(
-        outcome.err.find("notice: mosaic: Warning: each ping at its pose, north up: 2 pings, 1 at a pose held for "
+        outcome.err.find("warning: mosaic: each ping at its pose, north up: 2 pings, 1 at a pose held for "
                          "up to 0.05 s"),
         std::string::npos)
         << outcome.err;

@@ -58,6 +58,22 @@ TEST(SceneCommandTest, WarnsOfASceneOnItsSideForAFileWithZUpOnly) {
     EXPECT_THAT(sceneOf(folder, "y_up.gltf")["bounds"]["max"], ElementsAre(20, 15, -1));
 }
 
+TEST(SceneCommandTest, ARunWarnsOfASceneOnItsSideUnlessItIsPlacedUpright) {
+    const TestFolder folder;
+    writeFile(folder / "z_up.gltf", floorGltf(true));
+    const std::string deployment = readFile(fs::path(insonify::test::source_dir) / "deploy/minimal.yml");
+    const std::string wall = "scenes/wall.glb";
+    ASSERT_THAT(deployment, HasSubstr(wall));
+    writeFile(folder / "run.yml", std::string(deployment).replace(deployment.find(wall), wall.size(), "z_up.gltf"));
+    const auto warnings = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"run", "run.yml", "--pings", "1", "--out", "out"};
+        words.insert(words.end(), more.begin(), more.end());
+        return callInsonify(folder, words).err;
+    };
+    EXPECT_THAT(warnings({}), HasSubstr("warning: scene: the scene may lie on its side: "));
+    EXPECT_THAT(warnings({"--set", "scene.placement={up: z}"}), Not(HasSubstr("on its side")));
+}
+
 TEST(SceneCommandTest, TheDeliveredScenesAreUpright) {
     INSONIFY_NEEDS("sdf");
     const TestFolder folder;

@@ -41,7 +41,7 @@ void printFindings(const RecordingFit& fit) {
 
 int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeployment& write, const ReadLog& readLog) {
     refuseUnwritable(options.out);
-    ChainAt at = chainAt(options.deployment, options.ping);
+    ChainAt at = chainAt(options.deployment, options.ping, {});
     const receiver::CodeConfig law = at.chain.code();
     const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog);
     command::StudyProgress progress(!options.quiet);

@@ -61,6 +61,7 @@ bool printClaims(const LikenessResult& result) {
 
 struct LikenessOptions : RecordingOptions {
     std::string lines = "deployment", side;
+    std::vector<std::string> set;
 };
 
 /** Returns the settings that place the deployment's lines at those of a recording. */
@@ -71,7 +72,7 @@ std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOp
     if (recorded.places.empty())
         throw types::ConfigError(recorded.file, "--lines",
                                  "is recorded; the recording states neither places nor altitudes");
-    ChainAt at = chainAt(options.deployment, options.ping);
+    ChainAt at = chainAt(options.deployment, options.ping, options.set);
     layLines(recorded, at.chain);
     std::vector<std::string> settings;
     for (const FitSetting& setting : wayOf(at.chain, at.tasks)) settings.push_back(setting.path + "=" + setting.value);
@@ -82,8 +83,11 @@ std::vector<std::string> recordedWay(const CodedPing& recorded, const LikenessOp
 CodedPing simulatedLike(const CodedPing& recorded, const LikenessOptions& options, const FindPings& pingsAt,
                         const FindChain& chainAt) {
     const size_t count = recorded.is_waterfall ? recorded.beam_count : 1;
-    std::vector<std::string> settings;
-    if (options.lines == "recorded") settings = recordedWay(recorded, options, chainAt);
+    std::vector<std::string> settings = options.set;
+    if (options.lines == "recorded") {
+        const std::vector<std::string> way = recordedWay(recorded, options, chainAt);
+        settings.insert(settings.end(), way.begin(), way.end());
+    }
     const PingsAt found = pingsAt(options.deployment, options.ping, count, settings);
     if (!recorded.is_waterfall) return codedPing(found.pings.front(), found.code, "simulated");
     for (CodedPing& side : codedLines(found.pings, found.code, "simulated"))
@@ -109,7 +113,7 @@ std::vector<CodedPing> ofOneKind(std::vector<CodedPing> recorded, const std::str
 int runStudy(const LikenessOptions& options, const FindPings& pingsAt, const FindChain& chainAt,
              const ReadLog& readLog) {
     std::optional<receiver::CodeConfig> law;
-    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1, {}).code;
+    if (!options.deployment.empty()) law = pingsAt(options.deployment, 1, 1, options.set).code;
     const std::vector<CodedPing> recorded =
         ofOneKind(recordedPings(options.real, law ? &*law : nullptr, readLog), options.side);
     std::optional<CodedPing> simulated;
@@ -143,6 +147,8 @@ void addLikenessStudy(CLI::App& study, command::Action& action, const FindPings&
             "lines of a side-scan. deployment: along its vehicle's track; recorded: a straight track, as high above "
             "the floor and pitched as the recording states")
         ->check(CLI::IsMember({"deployment", "recorded"}));
+    command->add_option("--set", options->set,
+                        "task.property.path=value: a property other than in the file; may be repeated");
     command->callback([options, pingsAt, chainAt, readLog, &action] {
         action = [options, pingsAt, chainAt, readLog] { return runStudy(*options, pingsAt, chainAt, readLog); };
     });

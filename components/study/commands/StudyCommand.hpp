@@ -45,8 +45,9 @@ struct ChainAt {
     FitTasks tasks;
 };
 /** Returns the chain of a deployment at its ping number `ping`, from 1. Throws types::ConfigError if it is
- *  incomplete. */
-using FindChain = std::function<ChainAt(const std::string& deployment, uint64_t ping)>;
+ *  incomplete. @param settings see FindPings */
+using FindChain =
+    std::function<ChainAt(const std::string& deployment, uint64_t ping, const std::vector<std::string>& settings)>;
 /** Returns the text of a deployment with these settings, for a file in `folder`, with lines at its head. */
 using WriteDeployment =
     std::function<std::string(const std::string& deployment, const std::vector<FitSetting>& settings,
