@@ -144,8 +144,8 @@ std::string sideWarning(const types::Geometry& geometry) {
     if (facing.y <= suspicious * all || size.z <= 2 * size.y) return "";
     return fmt::format(
         "the scene may lie on its side: {:.0f} % of its surface faces along y, and it is {:.3g} m high and {:.3g} m "
-        "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or set placement of "
-        "its task to {{up: z}}",
+        "wide in y. glTF is y-up; a file written with z up looks like this: export it with +Y up, or set "
+        "placement.up: z of its task",
         100 * facing.y / all, size.z, size.y);
 }
 
