@@ -60,7 +60,7 @@ TEST(RunFailureTest, InRealtimeAFullDiskStopsNeitherTheSonarNorTheRun) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("No space left on device; samples are lost until a file can be written"));
     EXPECT_THAT(outcome.err, HasSubstr("log: records again, in "));
-    EXPECT_THAT(outcome.err, HasSubstr("fan: Warning: 2 pictures are in no file; the last reason: cannot write "));
+    EXPECT_THAT(outcome.err, HasSubstr("warning: fan: 2 pictures are in no file; the last reason: cannot write "));
     EXPECT_TRUE(fs::exists(folder / "out/fan_000002.png"));
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 30);
