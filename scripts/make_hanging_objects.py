@@ -176,10 +176,11 @@ SET = """\
 # The sets of scripts/sim_to_real, and the effects that --ablate omits: by name, values that replace the deployment's.
 deployment: deployment.yml
 sweeps: ["near_*.yml", "far_*.yml"]
-ablated: ["near_[0-2].yml", "far_[0-2].yml"] # of these, to compare with and without an effect; absent: all
+ablated: ["near_[0-4].yml", "far_[0-4].yml"] # of these, to compare with and without an effect; absent: all
 decibels: 100               # of white over black: crops are converted to amplitudes; absent: grey levels as they are
 range_down: true            # far ranges are at the bottom of real pictures and at the top of simulated pictures
 margin: [0.0, 0.25]         # of a box, random, on each side
+sizes: true                 # pictures have the scale of real pictures: the size of a crop in pixels is an input
 turn_deg: [-35, 35]         # pictures are turned about the object, which is then as far off the sonar's axis
 white_share: [0, 4]         # displays are set so that this random share of a window is white [%]
 visible_db: 8               # a window is the box of the object's pixels that exceed the median level by this
@@ -227,7 +228,7 @@ def sweep(rng, options, i, band):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("--scenes", type=int, default=20, help="each with some objects of each class (20)")
+    parser.add_argument("--scenes", type=int, default=60, help="each with some objects of each class (60)")
     parser.add_argument("--objects", type=int, default=5, help="of each class in a scene (5)")
     parser.add_argument("--samples", type=int, default=40, help="of each sweep, of which there are two for each scene (40)")
     parser.add_argument("--seed", type=int, default=1)

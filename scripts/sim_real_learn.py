@@ -13,12 +13,16 @@ def normalised(pixels, side=SIDE):
                                                         else Image.Resampling.BILINEAR))
 
 
-def arrays(crops, labels):
-    """(x, y): x is [n, 2, SIDE, SIDE], the crop and, everywhere the same, the logarithm of its height over its width."""
-    x = np.empty((len(crops), 2, SIDE, SIDE), np.float32)
+def arrays(crops, labels, sizes):
+    """(x, y): x is [n, 3, SIDE, SIDE], the crop and, everywhere the same, logarithms of its height over its width, and of its size
+    over 64 pixels where sizes are used."""
+    x = np.zeros((len(crops), 3, SIDE, SIDE), np.float32)
     for each, crop in zip(x, crops):
+        height, width = crop.pixels.shape
         each[0] = normalised(crop.pixels)
-        each[1] = np.log2(crop.pixels.shape[0] / crop.pixels.shape[1]).clip(-3, 3)
+        each[1] = np.log2(height / width).clip(-3, 3)
+        if sizes:
+            each[2] = (np.log2(height * width) / 2 - 6).clip(-3, 3)
     return x, np.array([labels.index(crop.label) for crop in crops])
 
 
@@ -57,7 +61,7 @@ class Hog:
         from skimage.feature import hog
         small = x[:, 0].reshape(len(x), 8, SIDE // 8, 8, SIDE // 8).mean((2, 4)).reshape(len(x), -1)
         return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x[:, 0]]), 0.3 * small,
-                          0.3 * x[:, 1, 0, :1]])
+                          0.3 * x[:, 1:, 0, 0]])
 
     def learn(self, parts, seed):
         """Trains on parts (x, y), which have equal weight."""
@@ -84,6 +88,7 @@ def varied(x, rng):
         moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
         moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
         result[i, 1] = x[i, 1] + np.log2(scale[0] / abs(scale[1])) + rng.normal(0, 0.3)
+        result[i, 2] = x[i, 2] + rng.normal(0, 0.4)
         result[i, 0] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
     return result
 
@@ -99,7 +104,7 @@ class Cnn:
         torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
-        layers, before = [], 2
+        layers, before = [], 3
         for channels in (16, 32, 64):
             layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
                        torch.nn.MaxPool2d(2)]
@@ -130,10 +135,11 @@ class Cnn:
 
 
 def augmented(x):
-    """Mirrored, turned, sheared and scaled at random; of other contrast, with more noise or less sharp; at times without proportions."""
+    """Mirrored, turned, sheared and scaled at random; with other contrast, noise and blur; at times without proportions or size."""
     import torch
-    x, proportion = x[:, :1], x[:, 1:]
     n = len(x)
+    x, proportion, size = x.split(1, 1)
+    size = (size + 0.4 * torch.randn(n, 1, 1, 1)) * (torch.rand(n, 1, 1, 1) < 0.8)
     turn, tilt = (torch.rand(n) - 0.5) * 0.7, (torch.rand(n) - 0.5) * 0.4
     width, height = 0.8 + 0.45 * torch.rand(2, n)
     proportion = proportion + (torch.log2(width / height) + 0.4 * torch.randn(n))[:, None, None, None]
@@ -150,7 +156,7 @@ def augmented(x):
     x = with_background(x).clamp(0, 1) ** torch.exp((torch.rand(n, 1, 1, 1) - 0.5) * 1.4)
     noise = torch.rand(n, 1, 1, 1) * 0.25 * torch.randn_like(x).abs()
     x = (x + noise * torch.randint(0, 2, (n, 1, 1, 1))).clamp(0, 1)
-    return torch.cat([x, proportion.expand_as(x)], 1).contiguous(memory_format=torch.channels_last)
+    return torch.cat([x, proportion.expand_as(x), size], 1).contiguous(memory_format=torch.channels_last)
 
 
 def with_background(x):

@@ -15,7 +15,7 @@ import yaml
 from PIL import Image, UnidentifiedImageError
 
 PICTURES = {".jpg", ".jpeg", ".png", ".bmp", ".tif", ".tiff"}
-KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "turn_deg", "visible_db", "white_share", "effects"}
+KEYS = {"deployment", "sweeps", "ablated", "decibels", "range_down", "margin", "sizes", "turn_deg", "visible_db", "white_share", "effects"}
 FEWEST = 30  # visible pixels of a window
 
 
@@ -154,6 +154,8 @@ def read_set(path):
         raise Wrong(f"{file}: is no YAML ({error})".replace("\n", " ")) from None
     if not isinstance(content, dict) or not {"deployment", "sweeps"} <= set(content) or not set(content) <= KEYS:
         raise Wrong(f"{file}: must have deployment and sweeps, and may have {', '.join(sorted(KEYS - {'deployment', 'sweeps'}))}")
+    if not isinstance(content.get("sizes", False), bool):
+        raise Wrong(f"{file}: sizes is {content['sizes']}; it is true or false")
     sweeps, ablated = ([sweep for pattern in content.get(key, content["sweeps"]) for sweep in sorted(file.parent.glob(pattern))]
                        for key in ("sweeps", "ablated"))
     if not sweeps or not ablated:

@@ -19,8 +19,8 @@ TEST(SimToRealTest, HalvesNeverShareAFilmAndWrongInputIsOneError) {
     expectPasses("check_sim_to_real.py");
 }
 
-TEST(SimToRealTest, TrainingAddsBackgrounds) {
-    if (!insonify::pythonHas("torch"))
-        GTEST_SKIP() << "python lacks torch; scripts/sim_to_real_requirements.txt has it";
+TEST(SimToRealTest, TrainingVariesCropsAndUsesSizes) {
+    if (!insonify::pythonHas("torch, skimage, sklearn"))
+        GTEST_SKIP() << "python lacks torch, scikit-image or scikit-learn; scripts/sim_to_real_requirements.txt has it";
     expectPasses("check_sim_to_real_training.py");
 }

@@ -98,10 +98,12 @@ class Windows(unittest.TestCase):
         pixels = np.random.default_rng(1).rayleigh(1, (100, 100))
         self.assertAlmostEqual((sets.displayed(pixels, 3) == 1).mean(), 0.03, delta=0.005)
 
-    def test_classifiers_get_proportions(self):
-        crops = [sets.Crop(np.random.default_rng(2).random(size), "a", "", "") for size in [(40, 10), (20, 20), (10, 40)]]
-        x, _ = learn.arrays(crops, ["a"])
-        np.testing.assert_allclose(x[:, 1, 0, 0], [2, 0, -2])
+    def test_classifiers_get_proportions_and_the_size_of_sets_that_use_it(self):
+        crops = [sets.Crop(np.random.default_rng(2).random(size), "a", "", "") for size in [(64, 16), (64, 64), (32, 128)]]
+        for used in (True, False):
+            x, _ = learn.arrays(crops, ["a"], used)
+            np.testing.assert_allclose(x[:, 1, 0, 0], [2, 0, -2])
+            np.testing.assert_allclose(x[:, 2, 5, 7], [-used, 0, 0], atol=1e-6)
 
 
 class Wrong(unittest.TestCase):
@@ -182,6 +184,10 @@ class Wrong(unittest.TestCase):
     def test_set_without_sweeps(self):
         (self.folder / "set" / "set.yml").write_text("deployment: deployment.yml\n")
         self.refuses("must have deployment and sweeps")
+
+    def test_sizes_neither_true_nor_false(self):
+        (self.folder / "set" / "set.yml").write_text("deployment: deployment.yml\nsweeps: [sweep.yml]\nsizes: 3\n")
+        self.refuses("set.yml: sizes is 3; it is true or false")
 
     def test_set_names_no_file(self):
         (self.folder / "set" / "sweep.yml").unlink()
