@@ -79,6 +79,18 @@ Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> traject
     names_.resize(scenes_.size());
     for (size_t scene = 0; scene < scenes_.size(); ++scene)
         for (size_t group = 0; group < sweep.objects.size(); ++group) names_[scene].push_back(namesOf(scene, group));
+    for (size_t group = 0; group < sweep.objects.size(); ++group) refuseTooMany(group);
+}
+
+void Samples::refuseTooMany(size_t number) const {
+    const ObjectGroup& group = sweep_.objects[number];
+    size_t largest = 0;
+    for (const auto& names : names_) largest = std::max(largest, names[number].size());
+    if (!group.count.empty() && group.count[1] > largest)
+        throw types::ConfigError(
+            {{fmt::format("objects[{}].count", number),
+              fmt::format("is [{}, {}], but only {} objects match names", group.count[0], group.count[1], largest),
+              sweep_.file, group.line, group.column}});
 }
 
 void Samples::refuseUnmatched(size_t number) const {

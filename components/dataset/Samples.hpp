@@ -82,6 +82,8 @@ private:
     std::vector<PlacedObject> place(size_t scene, uint64_t pose, const types::Pose& vehicle) const;
     /** Throws if a pattern of a group matches in none of the scenes. */
     void refuseUnmatched(size_t group) const;
+    /** Throws if the count of a group is larger than the number of its objects in each scene. */
+    void refuseTooMany(size_t group) const;
     std::vector<std::string> namesOf(size_t scene, size_t group) const;
 
     const Sweep& sweep_;

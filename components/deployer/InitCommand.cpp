@@ -1,9 +1,11 @@
 // insonify init DIR [--sonar NAME]
 #include <fmt/core.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 #include "components/deployer/CommandLine.hpp"
 #include "components/deployer/Starter.hpp"
@@ -31,7 +33,17 @@ void refuseOverwriting(const std::vector<NewFile>& files) {
 void write(const NewFile& file) {
     std::ofstream stream(file.path, std::ios::binary);
     stream << file.bytes;
-    if (!stream.flush()) throw types::ConfigError(file.path.string(), "", "cannot be written");
+    if (!stream.flush())
+        throw types::ConfigError(file.path.string(), "", "cannot be written: " + std::system_category().message(errno));
+}
+
+/** Writes all files, or none. */
+void write(const std::vector<NewFile>& files) try {
+    for (const NewFile& file : files) write(file);
+} catch (...) {
+    std::error_code ignored;
+    for (const NewFile& file : files) fs::remove(file.path, ignored);
+    throw;
 }
 
 int init(const fs::path& folder, const std::string& sonar) {
@@ -44,7 +56,7 @@ int init(const fs::path& folder, const std::string& sonar) {
     fs::create_directories(folder, error);
     if (!fs::is_directory(folder))
         throw types::ConfigError(folder.string(), "", "is no folder and cannot be made: " + error.message());
-    for (const NewFile& file : files) write(file);
+    write(files);
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, error);
     for (const NewFile& file : files) fmt::print("{}\n", file.path.string());

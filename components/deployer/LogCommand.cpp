@@ -83,13 +83,16 @@ int logInfo(const std::string& file, bool json, bool metadata) {
     return 0;
 }
 
+void makeFolder(const fs::path& folder) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (!fs::is_directory(folder))
+        throw types::ConfigError(folder, "--to", "is no folder and cannot be made: " + failed.message());
+}
+
 /** Makes the folder of an output file. */
 void makeFolderOf(const fs::path& to) {
-    if (!to.has_parent_path()) return;
-    std::error_code failed;
-    fs::create_directories(to.parent_path(), failed);
-    if (!fs::is_directory(to.parent_path()))
-        throw types::ConfigError(to.parent_path(), "--to", "is no folder and cannot be made: " + failed.message());
+    if (to.has_parent_path()) makeFolder(to.parent_path());
 }
 
 /** Pings as text are about ten times as large as in the log, and slow to read. */
@@ -113,7 +116,7 @@ std::vector<fs::path> exportTo(log::Reader& log, const std::string& name, const 
     const log::Stream& exported = log.streams()[log.indexOf(name)];
     const std::string &stream = exported.name, meta = text(meaningOf(log, exported));
     if (!to.has_extension() || fs::is_directory(to)) {
-        fs::create_directories(to);
+        makeFolder(to);
         return log::exportNpz(log, stream, to / (stream + ".npz"), meta);
     }
     if (along_ground && to.extension() != ".png")

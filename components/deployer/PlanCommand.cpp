@@ -27,7 +27,7 @@ void printPlan(const std::string& task, const types::Plan& plan) {
     for (const std::string& pass : plan.passes) fmt::print("  run: {}\n", pass);
     for (const types::Omission& omission : plan.omitted)
         fmt::print("  omitted: {}: {}\n", omission.name, omission.reason);
-    for (const std::string& notice : plan.notices) fmt::print("  notice: {}\n", notice);
+    for (const std::string& notice : plan.notices) fmt::print("  {}\n", labelled(notice));
 }
 
 /** A substitute for the readers of a sonar's truth: they are not part of the run, but what the sonar computes depends

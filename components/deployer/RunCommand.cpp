@@ -134,12 +134,7 @@ std::vector<std::string> without(std::vector<std::string> notices, const std::ve
 }
 
 void printNotices(const framework::TaskContext& task, const std::vector<std::string>& notices) {
-    const std::string warning = "Warning: ";
-    for (const std::string& notice : notices)
-        if (notice.starts_with(warning))
-            fmt::print(stderr, "warning: {}: {}\n", task.name(), notice.substr(warning.size()));
-        else
-            fmt::print(stderr, "notice: {}: {}\n", task.name(), notice);
+    for (const std::string& notice : notices) fmt::print(stderr, "{}\n", labelled(notice, task.name() + ": "));
 }
 
 /** Checks without making a file. */
@@ -214,6 +209,12 @@ framework::RunResult runAll(framework::Deployment& deployment, const RunOptions&
 }
 
 }  // namespace
+
+std::string labelled(const std::string& notice, const std::string& name) {
+    const std::string warning = "Warning: ";
+    return notice.starts_with(warning) ? "warning: " + name + notice.substr(warning.size())
+                                       : "notice: " + name + notice;
+}
 
 int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std::filesystem::path* written_to) {
     framework::Registry registry = coreTasks();

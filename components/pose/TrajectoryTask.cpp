@@ -1,5 +1,7 @@
 #include "components/pose/TrajectoryTask.hpp"
 
+#include <fmt/format.h>
+
 #include "components/framework/Activity.hpp"
 
 namespace insonify::pose {
@@ -26,8 +28,15 @@ bool TrajectoryTask::configureHook() {
     return true;
 }
 
+std::vector<std::string> TrajectoryTask::notices() const {
+    if (held_ == 0) return {};
+    return {fmt::format("the trajectory ended at {:g} s; {} poses after it are its last one (loop: true repeats it)",
+                        duration(), held_.load())};
+}
+
 bool TrajectoryTask::startHook() {
     finished_ = false;
+    held_ = 0;
     return true;
 }
 
@@ -39,6 +48,7 @@ void TrajectoryTask::updateHook() {
     if (motion_) motion_->move(seconds, sample);
     sample.time = time;
     pose.write(sample);
+    if (!config->loop && trajectory_->stamps().size() > 1 && seconds > duration()) ++held_;
     finished_ = !config->loop && (finished_ || isLast(elapsed));
 }
 

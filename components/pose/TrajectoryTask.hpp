@@ -1,6 +1,9 @@
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "components/framework/Offers.hpp"
 #include "components/framework/Port.hpp"
@@ -27,6 +30,8 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
+    /** Returns how many poses after the last stamp were that of the last stamp. */
+    std::vector<std::string> notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
      *  Trajectory::fromCsv. */
     Trajectory trajectory() const;
@@ -44,6 +49,7 @@ private:
     std::optional<Trajectory> trajectory_;
     std::optional<SeaMotion> motion_;
     std::atomic<bool> finished_{false};
+    std::atomic<uint64_t> held_{0};  ///< Poses after the last stamp.
 };
 
 /** Registers the tasks of this folder. */

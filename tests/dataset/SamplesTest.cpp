@@ -168,6 +168,21 @@ TEST(SamplesTest, RefusesMissingAndRepeatedObjectsWithTheirPlace) {
     EXPECT_THAT(messageOf(), HasSubstr("objects[1].names[0]: is stne_0, which is no name in the scene; did you mean"));
 }
 
+TEST(SamplesTest, ACountIsAtMostTheNumberOfObjectsInTheSceneWithMost) {
+    Sweep sweep = drawn(1);
+    sweep.scenes.resize(2);
+    ObjectGroup& group = sweep.objects.emplace_back();
+    group.names = {"stone_*"}, group.x = group.y = {-10, 10}, group.line = 9;
+    const auto messageOf = [&](uint32_t low, uint32_t high) {
+        sweep.objects.front().count = {low, high};
+        return test::errorOf<types::ConfigError>([&] {
+            const Samples samples(sweep, {}, {stoneParts(1), stoneParts(4)});
+        });
+    };
+    EXPECT_EQ(messageOf(1, 4), "");
+    EXPECT_EQ(messageOf(1, 5), "sweep.yml:9: objects[0].count: is [1, 5], but only 4 objects match names");
+}
+
 TEST(SamplesTest, APatternMustMatchInOneOfTheScenes) {
     Sweep sweep = drawn(1);
     sweep.scenes.resize(2);

@@ -177,6 +177,16 @@ TEST(InitCommandTest, NothingIsOverwritten) {
     EXPECT_FALSE(fs::exists(folder / "dive/micron.yml"));
 }
 
+TEST(InitCommandTest, AFileThatCannotBeWrittenLeavesNoneOfThem) {
+    const TestFolder folder;
+    const std::string init = insonify::test::program("insonify") + " init dive";
+    const Outcome outcome = Process({"bash", "-c", "trap '' XFSZ; ulimit -f 100; exec " + init}, folder.path()).wait();
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("scene.glb: cannot be written: File too large"));
+    EXPECT_TRUE(fs::is_empty(folder / "dive"));
+    EXPECT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);
+}
+
 TEST(InitCommandTest, TheScriptMakesTheSceneAndTrajectoriesOfItsFolder) {
     const TestFolder folder;
     ASSERT_EQ(callInsonify(folder, {"init", "dive"}).code, 0);

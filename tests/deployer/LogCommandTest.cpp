@@ -104,9 +104,12 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
 TEST_F(LogCommandTest, MakesTheFolderOfAnOutputFile) {
     EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", "deep/er/cut.0.log"}).code, 0);
     EXPECT_EQ(exportTo("sonar.ping", "deep/too/ping.npz").code, 0);
-    const Outcome outcome = exportTo("sonar.ping", "deep/er/cut.0.log/ping.npz");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("--to: is no folder and cannot be made"));
+    writeFile(folder / "plain", "a file");
+    for (const char* to : {"deep/er/cut.0.log/ping.npz", "plain"}) {
+        const Outcome outcome = exportTo("sonar.ping", to);
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_THAT(outcome.err, HasSubstr("--to: is no folder and cannot be made"));
+    }
 }
 
 TEST_F(LogCommandTest, ADamagedLogIsNamedByItsFirstWrongByteAndRepaired) {

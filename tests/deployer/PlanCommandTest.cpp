@@ -27,7 +27,9 @@ TEST(PlanCommandTest, TheTextNamesEachOmissionWithItsReason) {
     const Outcome outcome = callInsonify(folder, {"plan", "wall.yml"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("sonar\n  quality: 32 rows, 2 columns per beam"));
-    EXPECT_THAT(outcome.out, HasSubstr("  omitted: "));
+    EXPECT_THAT(outcome.out, HasSubstr("  omitted: motion within a ping: motion_in_ping is false; from "));
+    const Outcome slow = callInsonify(folder, {"plan", "wall.yml", "--set", "sonar.speed_of_sound=1000"});
+    EXPECT_THAT(slow.out, HasSubstr("  warning: speed of sound is 1000 m/s; water has 1350 to 1650"));
 }
 
 TEST(PlanCommandTest, TruthIsOmittedUnlessTheDeploymentConnectsIt) {

@@ -61,6 +61,18 @@ TEST_F(TrajectoryTaskTest, IsFinishedWithTheLastPoseOnTheTrajectory) {
     EXPECT_FALSE(task_.finished());
 }
 
+TEST_F(TrajectoryTaskTest, CountsThePosesThatItHoldsAfterTheLastStamp) {
+    task_.config.set(
+        {.file = {}, .waypoints = {{.time = 0, .position = {0, 0, 0}}, {.time = 2, .position = {2, 0, 0}}}});
+    ASSERT_TRUE(task_.configure());
+    ASSERT_TRUE(task_.start());
+    for (const double time : {1.0, 2.0, 3.0}) poseAt(time);
+    EXPECT_THAT(task_.notices(), testing::IsEmpty());
+    for (const double time : {3.5, 4.0}) EXPECT_EQ(poseAt(time).position.x, 2);
+    EXPECT_THAT(task_.notices(), testing::ElementsAre("the trajectory ended at 2 s; 2 poses after it are its last one "
+                                                      "(loop: true repeats it)"));
+}
+
 TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
     task_.activity().configure({.period = 1.0 / 3, .trigger = {}, .cpus = {}});

@@ -11,7 +11,8 @@ namespace insonify::sonar {
 namespace {
 
 std::string speedWords(const Omitted& what, const BinGrid& /*grid*/) {
-    return fmt::format("below {:.2g} m/s it is less than half a bin", what.value);
+    return fmt::format("motion_in_ping is false; from {:.2g} m/s on it moves echoes by more than half a bin",
+                       what.value);
 }
 
 /** Sonar and objects that move while sound travels (ACOUSTICS.md 5.20). RayPaths computes the sound paths. */
