@@ -84,12 +84,12 @@ Samples::Samples(const Sweep& sweep, std::vector<std::vector<TimedPose>> traject
 
 void Samples::refuseTooMany(size_t number) const {
     const ObjectGroup& group = sweep_.objects[number];
-    size_t largest = 0;
-    for (const auto& names : names_) largest = std::max(largest, names[number].size());
-    if (!group.count.empty() && group.count[1] > largest)
+    size_t available = 0;
+    for (const auto& names : names_) available = std::max(available, names[number].size());
+    if (!group.count.empty() && group.count[1] > available)
         throw types::ConfigError(
             {{fmt::format("objects[{}].count", number),
-              fmt::format("is [{}, {}], but only {} objects match names", group.count[0], group.count[1], largest),
+              fmt::format("is [{}, {}], but only {} objects match names", group.count[0], group.count[1], available),
               sweep_.file, group.line, group.column}});
 }
 
