@@ -40,7 +40,7 @@ void PulseConfig::check(types::Diagnostics& diagnostics) const {
     if (chirp_us && !bandwidth_khz)
         diagnostics.push_back({"chirp_us", "is given without bandwidth_khz; a tone is no chirp"});
     if (!bandwidth_khz && !duration_us)
-        diagnostics.push_back({"", "has no value; give bandwidth_khz of a chirp, or duration_us of a tone"});
+        diagnostics.push_back({"", "has no length; give bandwidth_khz of a chirp, or duration_us of a tone"});
     if (window && !bandwidth_khz) diagnostics.push_back({"window", "is given without bandwidth_khz; a tone has none"});
 }
 

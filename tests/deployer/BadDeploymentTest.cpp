@@ -88,7 +88,7 @@ const BadDeployment cases[] = {
            {"wall.yml:17:", "tasks.sonar.properties.pulse.ring_down.level_db: is missing"}),
     edited("RingDownWithoutAPulse", "range: 20",
            "range: 20\n      pulse: {ring_down: {level_db: 0, decay_db_per_m: 20}}",
-           {"wall.yml:17:", "tasks.sonar.properties.pulse: has no value; give bandwidth_khz"}),
+           {"wall.yml:17:", "tasks.sonar.properties.pulse: has no length; give bandwidth_khz"}),
     {"ReceiverBeforeTheNoise",
      receiverBeforeNoise(),
      {"wall.yml:34:5: connections[3]: receiver.ping gives what a receiver has amplified, noise.clean takes intensities "

@@ -44,6 +44,8 @@ def test_the_command_makes_the_same_pings_of_the_same_poses(deploy, tmp_path):
     command = [INSONIFY, "run", deploy / "harbour_fls.yml", "--pings", "3", "--seed", "5", "--quiet"]
     subprocess.run([*command, "--out", tmp_path], check=True, timeout=600)
     log = insonify.read_log(next(tmp_path.glob("harbour*.log")))
+    with pytest.raises(KeyError, match="sonar.pnig: is no stream of the log; there are receiver.ping, vehicle.pose"):
+        log["sonar.pnig"]
     simulation = insonify.Simulation(deploy / "harbour_fls.yml", seed=5)
     pings = [stream for name, stream in log.items() if name == simulation.pings[0]][0]
     assert len(pings) == 3

@@ -439,6 +439,8 @@ class Log(Mapping):
         self._streams = {stream["name"]: _Samples(log, i, stream, times) for i, (stream, (_, times)) in enumerate(streams)}
 
     def __getitem__(self, name: str) -> _Samples:
+        if name not in self._streams:
+            raise KeyError(f"{name}: is no stream of the log; there are {', '.join(self._streams)}")
         return self._streams[name]
 
     def __iter__(self) -> Iterator[str]:

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* crosstalk_name = "crosstalk";
 
 std::string silentPings(const Omitted& /*what*/, const BinGrid& /*grid*/) {
-    return "no ping of another sonar arrives at the first ping";
+    return "no ping of another sonar arrives on the port others at the first ping";
 }
 
 /** The pulses of other sonars in a snapshot, which a plan does not know. */
