@@ -123,7 +123,7 @@ ChainAt chainAt(const std::string& file, uint64_t ping, const std::vector<std::s
     ChainAt chain;
     {
         framework::Registry registry = coreTasks();
-        const framework::Deployment deployment(specWith(file, settings), registry);
+        const framework::Deployment deployment(specWith(located, settings), registry);
         const receiver::ReceiverTask& receiver = codingReceiverOf(deployment, located);
         chain.receiver_task = receiver.name();
         chain.receiver = *receiver.config;

@@ -27,7 +27,7 @@ struct ChainAt {
  *  types::ConfigError unless the deployment has, one after the other, a pose::TrajectoryTask, a scene::SceneTask, a
  *  sonar::SonarTask or SideScanTask, a noise::NoiseTask and a receiver that outputs codes.
  *  @param settings properties that differ from the file's, as `--set` takes them */
-ChainAt chainAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings = {});
+ChainAt chainAt(const std::string& file, uint64_t ping, const std::vector<std::string>& settings);
 
 /** A property: `task.property.path`, its value in YAML ("null" removes it), and its comment. */
 struct CommentedSetting {

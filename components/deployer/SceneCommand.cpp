@@ -31,24 +31,6 @@ Json jsonOf(const types::Extent& extent) {
             {"centre", jsonOf((extent.low + extent.high) / 2.0)}};
 }
 
-/** Area with its direction, half of the normal of its edges [m2]. */
-struct Face {
-    int material;
-    glm::dvec3 area;
-};
-
-/** Calls `visit` for each triangle of an object in the world. */
-template <class Visit>
-void eachFace(const types::Geometry& geometry, const types::Object& object, const Visit& visit) {
-    const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
-    const auto corner = [&](size_t k) {
-        return glm::dvec3(object.world_from_object * glm::dvec4(mesh.positions[mesh.indices[k]], 1));
-    };
-    for (const types::Cluster& cluster : mesh.clusters)
-        for (size_t k = cluster.first_index; k < size_t{cluster.first_index} + cluster.index_count; k += 3)
-            visit(Face{cluster.material, glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k)) / 2.0});
-}
-
 /** The surface area of each material. */
 struct Surfaces {
     std::vector<size_t> triangles;
@@ -57,11 +39,20 @@ struct Surfaces {
     explicit Surfaces(const types::Geometry& geometry)
         : triangles(geometry.materials.size()), areas(geometry.materials.size()) {
         for (const types::Object& object : geometry.objects)
-            eachFace(geometry, object, [&](const Face& face) {
-                const auto material = static_cast<size_t>(face.material);
-                ++triangles[material];
-                areas[material] += glm::length(face.area);
-            });
+            add(geometry.meshes[static_cast<size_t>(object.mesh)], object);
+    }
+
+private:
+    void add(const types::Mesh& mesh, const types::Object& object) {
+        const auto corner = [&](size_t k) {
+            return glm::dvec3(object.world_from_object * glm::dvec4(mesh.positions[mesh.indices[k]], 1));
+        };
+        for (const types::Cluster& cluster : mesh.clusters) {
+            const auto material = static_cast<size_t>(cluster.material);
+            triangles[material] += cluster.index_count / 3;
+            for (size_t k = cluster.first_index; k < size_t{cluster.first_index} + cluster.index_count; k += 3)
+                areas[material] += glm::length(glm::cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k))) / 2;
+        }
     }
 };
 

@@ -127,8 +127,8 @@ std::string layOf(const Scene& scene, const Placement& placement, types::WorldFr
 
 std::string sideWarning(const types::Geometry& geometry) {
     constexpr double suspicious = 0.6;  // share of the surface
-    constexpr size_t enough = 20'000;  // triangles of an object that are added
-    glm::dvec3 facing(0);              // [m2]
+    constexpr size_t enough = 20'000;   // triangles of an object that are added
+    glm::dvec3 facing(0);               // [m2]
     for (const types::Object& object : geometry.objects) {
         const types::Mesh& mesh = geometry.meshes[static_cast<size_t>(object.mesh)];
         const auto corner = [&](size_t k) {

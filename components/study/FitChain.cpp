@@ -53,6 +53,21 @@ glm::dquat abeam(double yaw, double pitch) {
            glm::angleAxis(types::radians(90), glm::dvec3(0, 1, 0));
 }
 
+/** Returns at most `count` of the lines, evenly distributed. */
+std::vector<types::Pose> evenly(const std::vector<types::Pose>& lines, size_t count) {
+    if (lines.size() <= count) return lines;
+    std::vector<types::Pose> few;
+    for (size_t i = 0; i < count; ++i) few.push_back(lines[(2 * i + 1) * lines.size() / (2 * count)]);
+    return few;
+}
+
+/** Returns the lines that are simulated. Lines share no speckle, so statistics of coherent speckle, which takes
+ * longest, do not need all of them. */
+std::vector<types::Pose> simulatedLines(const FitChain& chain) {
+    constexpr size_t enough = 128;
+    return chain.sonar.speckle ? evenly(chain.lines, enough) : chain.lines;
+}
+
 }  // namespace
 
 void layLines(const CodedPing& recorded, FitChain& chain) {
@@ -124,9 +139,8 @@ types::Sonar meanEchoes(const FitChain& chain) {
     constexpr size_t few = 24;  // three for each block of levels
     std::vector<types::Sonar> lines;
     types::Snapshot snapshot = chain.snapshot;
-    const size_t count = std::min(few, chain.lines.size());
-    for (size_t i = 0; i < count; ++i) {
-        snapshot.sonar = chain.lines[(2 * i + 1) * chain.lines.size() / (2 * count)];
+    for (const types::Pose& line : evenly(chain.lines, few)) {
+        snapshot.sonar = line;
         renderer.render(snapshot, ping);
         lines.push_back(ping);
     }
@@ -151,21 +165,6 @@ std::optional<double> floorBelow(const FitChain& chain) {
     if (echo == ping.bins.end()) return std::nullopt;
     return sonar.range * static_cast<double>(echo - ping.bins.begin()) / sonar.bin_count;
 }
-
-namespace {
-
-/** Returns the lines that are simulated: with coherent speckle, which takes longest, at most 128 that are evenly
- *  distributed. Lines share no speckle, so its statistics need not all of them. */
-std::vector<types::Pose> simulatedLines(const FitChain& chain) {
-    constexpr size_t enough = 128;
-    const size_t all = chain.lines.size();
-    if (!chain.sonar.speckle || all <= enough) return chain.lines;
-    std::vector<types::Pose> lines;
-    for (size_t i = 0; i < enough; ++i) lines.push_back(chain.lines[(2 * i + 1) * all / (2 * enough)]);
-    return lines;
-}
-
-}  // namespace
 
 std::vector<CodedPing> simulatedPings(const FitChain& chain, size_t count) {
     sonar::SonarRenderer renderer(chain.sonar, chain.snapshot.geometry);

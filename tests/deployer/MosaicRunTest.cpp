@@ -87,9 +87,8 @@ TEST_F(MosaicRunTest, ReportsAHeldPoseAtTheEndOfTheRun) {
     const fs::path deployment = fs::path(test::source_dir) / "deploy/tank_mosaic.yml";
     const Outcome outcome = callInsonify(folder, {"run", deployment, "--out", "out", "--pings", "2"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(
-        outcome.err.find("warning: mosaic: each ping at its pose, north up: 2 pings, 1 at a pose held for "
-                         "up to 0.05 s"),
-        std::string::npos)
+    EXPECT_NE(outcome.err.find("warning: mosaic: each ping at its pose, north up: 2 pings, 1 at a pose held for "
+                               "up to 0.05 s"),
+              std::string::npos)
         << outcome.err;
 }

@@ -18,12 +18,12 @@ constexpr size_t line_count = 96, line_bins = 512;
 constexpr double line_range = 30, sound = 1500, floor_depth = 20;
 
 /** Returns lines of a vehicle that descends from 8 to 7 m above the floor, one every 0.3 m. */
-CodedPing linesOf() {
-    CodedPing lines{.name = "lines", .beam_count = line_count, .bin_count = line_bins};
-    for (size_t i = 0; i < line_count; ++i) {
+CodedPing linesOf(size_t count = line_count) {
+    CodedPing lines{.name = "lines", .beam_count = count, .bin_count = line_bins};
+    for (size_t i = 0; i < count; ++i) {
         lines.bearings.push_back(-1.0 - static_cast<double>(i));
-        lines.places.push_back(
-            {.altitude = 8 - static_cast<double>(i) / line_count, .along = 0.3 * static_cast<double>(i)});
+        lines.places.push_back({.altitude = 8 - static_cast<double>(i) / static_cast<double>(count),
+                                .along = 0.3 * static_cast<double>(i)});
     }
     lines.resolution = line_range / line_bins;
     lines.is_waterfall = true;
@@ -194,6 +194,18 @@ TEST(LinePlaceTest, RefusesLinesBeyondTheFloorWithAReason) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, FitSideScanTest, testing::ValuesIn(fitSeeds({2, 4})));
+
+TEST(FitSideScanTest, CoherentSpeckleIsSimulatedForAtMost128Lines) {
+    FitChain chain = guessedSideScan();
+    chain.sonar.quality.rows = 1;
+    chain.sonar.quality.columns_per_beam = 32;
+    layLines(linesOf(200), chain);
+    EXPECT_EQ(simulatedPings(chain, 1).front().beam_count, 200u);
+    chain.sonar.speckle.emplace();
+    EXPECT_EQ(simulatedPings(chain, 1).front().beam_count, 128u);
+    chain.lines.resize(100);
+    EXPECT_EQ(simulatedPings(chain, 1).front().beam_count, 100u);
+}
 
 }  // namespace
 }  // namespace insonify::study
