@@ -198,7 +198,7 @@ TEST(SonarConfigTest, BeamsAndPulsesNeedTheirParameters) {
     diagnostic("beam_pattern: {receive: {azimuth: {aperture_m: 0.1}}}",
                "beam_pattern.receive.azimuth.aperture_m: is given without frequency_khz");
     diagnostic("{model: cerqueira2017, beam_pattern: {receive: {azimuth: {width_deg: 1}}}}", "it belongs to physical");
-    diagnostic("pulse: {}", "pulse: has no value");
+    diagnostic("pulse: {}", "pulse: has no length");
     diagnostic("pulse: {bandwidth_khz: 20, duration_us: 20}", "give one of the two");
     diagnostic("{model: cerqueira2017, pulse: {bandwidth_khz: 20}}", "it belongs to physical");
     EXPECT_THAT(
