@@ -74,7 +74,8 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
     template <class Self, class V>
     static void describe(Self& self, V& visit) {
         RecordingConfig::describe(self, visit);
-        visit(types::Field{"every", "1", "number of pings for each picture", 1, 1e6}, self.every);
+        visit(types::Field{"every", "1", "pings from one picture to the next; the first ping has one", 1, 1e6},
+              self.every);
         DisplayConfig::describe(self, visit);
     }
     void check(types::Diagnostics& diagnostics) const {

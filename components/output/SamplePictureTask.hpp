@@ -20,7 +20,7 @@ struct SamplePictureConfig : RecordingConfig {
     static void describe(Self& self, V& visit) {
         using types::Field;
         RecordingConfig::describe(self, visit);
-        visit(Field{"every", "1", "number of samples for each picture", 1, 1e6}, self.every);
+        visit(Field{"every", "1", "samples from one picture to the next, and in the first", 1, 1e6}, self.every);
         visit(
             Field{"width", "1",
                   "width of the picture in pixels; an odd width is rounded up to even; the height follows", 256, 8192},

@@ -70,4 +70,7 @@ TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
     const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
     EXPECT_EQ(outcome.code, 2);
     EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n"));
+    const Outcome set = callInsonify(folder, {"check", "wall.yml", "--set", "sonar.effects.bubles.size=1"});
+    EXPECT_EQ(set.code, 2);
+    EXPECT_THAT(set.err, HasSubstr("--set: tasks.sonar.properties.effects.bubles: is no effect;"));
 }
