@@ -1,12 +1,14 @@
 #include "types/Csv.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 
 #include "types/ConfigError.hpp"
 #include "types/DidYouMean.hpp"
@@ -140,7 +142,10 @@ std::vector<std::vector<double>> readCsv(const std::filesystem::path& file, cons
                           "does not exist; " + didYouMean(file.filename().string(), csvFilesNextTo(file)) +
                               "must be a CSV file with header " + headerOf(columns));
     if (!stream || std::filesystem::is_directory(file))
-        throw ConfigError(file.string(), "", "cannot be read; it must be a CSV file with header " + headerOf(columns));
+        throw ConfigError(file.string(), "",
+                          std::string("cannot be read") +
+                              (errno == EACCES ? ": " + std::generic_category().message(errno) : "") +
+                              "; it must be a CSV file with header " + headerOf(columns));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     return Reader(file.string(), columns, validate).read(text, minimum);
 }

@@ -62,6 +62,29 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/** Returns what is wrong with an option's value, in place of the parser's "Could not convert" and "At Most 1 required";
+ *  empty: the parser's text is clear. */
+std::string wrongValue(const std::string& text) {
+    static const std::string conversion = "Could not convert: ", between = " = ", twice = ": At Most 1 required";
+    if (const size_t at = text.find(twice); at != text.npos)
+        return text.substr(0, at) + ": is given more than once; once is allowed";
+    const size_t equals = text.find(between);
+    if (!text.starts_with(conversion) || equals == text.npos) return "";
+    const std::string name = text.substr(conversion.size(), equals - conversion.size());
+    const std::string given = text.substr(equals + between.size());
+    const bool is_number = !given.empty() && given.find_first_not_of("+-.0123456789eE") == given.npos;
+    return name + ": is " + given + "; must be a " + (is_number ? "whole number" : "number");
+}
+
+/** Returns a hint at settings after a `--set` that are not its own: `--set a.b=1 c.d=2`; empty: there are none. */
+std::string settingWithoutSet(int argc, char** argv) {
+    for (int i = 3; i < argc; ++i)
+        if (std::string(argv[i - 2]) == "--set" && argv[i][0] != '-' &&
+            std::string(argv[i]).find('=') != std::string::npos)
+            return fmt::format("each setting has a --set of its own: --set {} --set {}", argv[i - 1], argv[i]);
+    return "";
+}
+
 /** Whether the words end where a command must follow, as in `insonify` and `insonify log`. */
 bool asksForCommand(const CLI::App& app, int argc) {
     const CLI::App* command = &app;
@@ -83,7 +106,12 @@ int parseAndAct(CLI::App& app, Action& action, int argc, char** argv) {
             fmt::print(stderr, "{}", app.help());
             return bad_input;
         }
+        if (const std::string wrong = wrongValue(error.what()); !wrong.empty()) {
+            fmt::print(stderr, "{}\n", wrong);
+            return bad_input;
+        }
         if (app.exit(error, std::cout, std::cerr) == 0) return done;
+        if (const std::string hint = settingWithoutSet(argc, argv); !hint.empty()) fmt::print(stderr, "{}\n", hint);
         if (const std::string near = meantWord(app, argc, argv); !near.empty()) fmt::print(stderr, "{}\n", near);
         return bad_input;
     }

@@ -1,6 +1,7 @@
 #include "components/deployer/Export.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -131,6 +132,16 @@ private:
     std::vector<fs::path> files_;
 };
 
+std::string whyWithoutAltitudes(const log::Reader& log) {
+    std::vector<std::string> ranges;
+    for (const log::Stream& stream : log.streams())
+        if (stream.holds<types::Range>()) ranges.push_back(stream.name);
+    if (ranges.empty()) return "takes the altitudes of a stream of ranges, as an altimeter's; the log has none";
+    if (ranges.size() == 1) return "takes altitudes; " + ranges.front() + " has no sample";
+    return fmt::format("takes the altitudes of one stream; the log has {}; `insonify log cut --stream` keeps some",
+                       fmt::join(ranges, ", "));
+}
+
 }  // namespace
 
 std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream, const fs::path& path,
@@ -142,8 +153,7 @@ std::vector<fs::path> exportPictures(log::Reader& log, const std::string& stream
     if (isSideScan(first)) {
         const LoggedAltitudes altitudes(log);
         if (along_ground && !altitudes.areKnown())
-            throw types::ConfigError(log.path(), "--ground",
-                                     "takes altitudes; the log has no stream of ranges, or several");
+            throw types::ConfigError(log.path(), "--ground", whyWithoutAltitudes(log));
         Waterfalls waterfalls(displayFor(log, exported, first), along_ground ? &altitudes : nullptr, path);
         types::Sonar ping;
         log.forEachRef(stream, [&](const log::SampleRef& at) {

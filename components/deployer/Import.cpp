@@ -129,6 +129,13 @@ Imported importOculus(const fs::path& recording, std::optional<DeploymentSpec> s
 }  // namespace
 
 Imported importRecording(const fs::path& recording, std::optional<DeploymentSpec> spec, const fs::path& to) {
+    if (!fs::exists(recording))
+        throw types::ConfigError(recording.string(), "",
+                                 "does not exist; may be a .xtf, .jsf, .aris, .glf or .oculus file");
+    if (fs::is_directory(recording))
+        throw types::ConfigError(recording.string(), "", "is a folder; give a recording in it");
+    if (std::error_code none; fs::equivalent(recording, to, none))
+        throw types::ConfigError(to.string(), "--to", "is the recording itself; the log must be another file");
     const auto import = output::openSideScan(recording) ? importSideScan
                         : output::openFan(recording)    ? importFan
                                                         : importOculus;

@@ -1,7 +1,10 @@
 // insonify init DIR [--sonar NAME]
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -46,6 +49,15 @@ void write(const std::vector<NewFile>& files) try {
     throw;
 }
 
+/** Returns a text as a word of the shell: in quotes if it has letters with a meaning there. */
+std::string shellWord(const std::string& text) {
+    const auto isPlain = [](unsigned char c) { return std::isalnum(c) || c >= 0x80 || std::strchr("/._-+,:@%", c); };
+    if (!text.empty() && std::ranges::all_of(text, isPlain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+    return word + "'";
+}
+
 int init(const fs::path& folder, const std::string& sonar) {
     const SonarPreset& preset = sonarPreset(sonar);
     const std::string deployment = starterDeployment(preset);
@@ -60,8 +72,11 @@ int init(const fs::path& folder, const std::string& sonar) {
     fs::permissions(folder / "make_scene.py", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
                     fs::perm_options::add, error);
     for (const NewFile& file : files) fmt::print("{}\n", file.path.string());
-    fmt::print("next: insonify run {0}\n", folder.string());
-    if (preset.isFan()) fmt::print("or:   insonify dataset {0} --sweep {0}/sweep.yml --out set\n", folder.string());
+    const std::string word = shellWord(folder.string());
+    fmt::print("next: insonify run {}\n", word);
+    if (preset.isFan())
+        fmt::print("or:   insonify dataset {} --sweep {} --out set\n", word,
+                   shellWord((folder / "sweep.yml").string()));
     return 0;
 }
 

@@ -19,6 +19,7 @@
 #include "components/log/Check.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/Export.hpp"
+#include "types/DidYouMean.hpp"
 
 namespace insonify::deployer {
 namespace fs = std::filesystem;
@@ -137,6 +138,7 @@ struct Options {
     std::string file, deployment, stream, poses, to, samples;
     std::vector<std::string> files, streams;
     std::string from, until;
+    std::string for_mcap;  ///< A given option that only an MCAP file takes; empty: none.
     log::McapConfig mcap;
     bool json = false, metadata = false, ground = false;
 };
@@ -157,6 +159,8 @@ int exportMessages(const Options& options) {
 
 int logExport(const Options& options) {
     if (log::isMcap(options.to)) return exportMessages(options);
+    if (!options.for_mcap.empty())
+        throw types::ConfigError("", options.for_mcap, "is for FILE.mcap; --to is " + options.to);
     const auto log = opened(options.file);
     if (options.stream.empty())
         throw types::ConfigError("", "--stream", "is missing; only an MCAP file takes all streams");
@@ -178,6 +182,8 @@ void readRange(const std::string& text, log::Selection& selection) {
     };
     number(std::string_view(text).substr(0, colon), selection.first);
     number(std::string_view(text).substr(colon + 1), selection.last);
+    if (selection.first >= selection.last)
+        throw types::ConfigError("", "--samples", "is " + text + "; FIRST must be less than LAST");
 }
 
 /** Returns the first and last stamp of the files of a log; none: the files have no sample. */
@@ -199,26 +205,22 @@ log::Selection selectionOf(const Options& options) {
         const types::Time start = spanOf(options.files).value_or(std::pair<types::Time, types::Time>{}).first;
         if (!options.from.empty()) selection.from = log::readTime(options.from, "--from", start);
         if (!options.until.empty()) selection.until = log::readTime(options.until, "--until", start);
+        if (selection.from >= selection.until)
+            throw types::ConfigError("", "--until", "is " + options.until + "; must be after --from");
     }
     if (!options.samples.empty()) readRange(options.samples, selection);
     return selection;
 }
 
-/** Copies into `--to`, and reports what was copied and lost. */
-int copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
-    makeFolderOf(to);
-    const log::Copied copied = log::copyLog(files, to, options);
-    reportLost(copied);
-    if (const std::string notice = log::copyProperties(files.front(), to); !notice.empty())
-        fmt::print(stderr, "notice: {}\n", notice);
-    fmt::print("{}: {} samples, {}\n", to, copied.samples,
-               copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
-    return 0;
+void refuseOtherNames(const std::string& to) {
+    if (!log::isMcap(to) && fs::path(to).extension() != ".log")
+        throw types::ConfigError(to, "--to", "must end in .log or .mcap");
+    if (fs::path(to).filename() == "properties.0.log")
+        throw types::ConfigError(to, "--to", "is the name of a log of properties; give another");
 }
 
 /** Throws for a copy without a sample, which leaves no file. */
-void refuseNothing(const Options& options) {
-    if (!log::openLog(options.to)->samples().empty()) return;
+[[noreturn]] void refuseNothing(const Options& options) {
     fs::remove(options.to);
     fs::remove(fs::path(options.to).replace_extension(".idx"));
     const auto span = spanOf(options.files);
@@ -228,18 +230,58 @@ void refuseNothing(const Options& options) {
                                   : "holds no sample");
 }
 
+/** Copies into `--to`, and reports what was lost. */
+log::Copied copyTo(const std::string& to, const std::vector<fs::path>& files, const log::CopyOptions& options) {
+    refuseOtherNames(to);
+    makeFolderOf(to);
+    log::Copied copied = log::copyLog(files, to, options);
+    reportLost(copied);
+    return copied;
+}
+
+/** Copies also the log of properties, and reports what was copied. */
+int finish(const std::string& to, const fs::path& first, const log::Copied& copied) {
+    if (const std::string notice = log::copyProperties(first, to); !notice.empty())
+        fmt::print(stderr, "notice: {}\n", notice);
+    fmt::print("{}: {} samples, {}\n", to, copied.samples,
+               copied.lost.empty() ? "nothing was lost" : fmt::format("lost in {} places", copied.lost.size()));
+    return 0;
+}
+
+/** Reports files of a log that begin before the previous file with one of their streams ends. */
+void reportOverlaps(const std::vector<std::string>& files) {
+    std::map<std::string, std::pair<types::Time, std::string>> ends;  // of each stream, and its file
+    for (const std::string& file : files) {
+        const auto log = log::openLog(file);
+        std::set<std::string> seen;
+        for (const log::SampleRef& at : log->samples()) {
+            const std::string& stream = log->streams()[at.stream].name;
+            const auto before = ends.find(stream);
+            if (seen.insert(stream).second && before != ends.end() && at.time <= before->second.first) {
+                fmt::print(stderr, "notice: {} of {} begins before it ends in {}; the copy has both\n", stream, file,
+                           before->second.second);
+                break;
+            }
+        }
+        for (const log::SampleRef& at : log->samples()) ends[log->streams()[at.stream].name] = {at.time, file};
+    }
+}
+
 int logCut(const Options& options) {
-    const int code =
+    if (options.files.size() > 1) reportOverlaps(options.files);
+    const log::Copied copied =
         copyTo(options.to, {options.files.begin(), options.files.end()}, {.selection = selectionOf(options)});
-    refuseNothing(options);
-    return code;
+    if (copied.samples == 0) refuseNothing(options);
+    return finish(options.to, options.files.front(), copied);
 }
 
 int logRepair(const Options& options) {
-    return copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip});
+    return finish(options.to, options.file,
+                  copyTo(options.to, {fs::path(options.file)}, {.at_damage = log::AtDamage::Skip}));
 }
 
 int logImport(const Options& options) {
+    refuseOtherNames(options.to);
     makeFolderOf(options.to);
     std::optional<framework::DeploymentSpec> spec;
     if (!options.deployment.empty()) spec = framework::DeploymentSpec::load(deploymentIn(options.deployment));
@@ -275,19 +317,27 @@ int logCheck(const Options& options) {
     return 0;
 }
 
-/** Adds the options for the messages of an MCAP file, named as the logger's properties. */
+/** Adds an option for the messages of an MCAP file, named as the logger's properties. */
 template <class E>
-void addEnum(CLI::App& command, const char* name, const char* help, E& value) {
-    std::map<std::string, E> names;
-    for (size_t i = 0; i < std::size(types::EnumNames<E>::names); ++i)
-        names[std::string(types::EnumNames<E>::names[i])] = static_cast<E>(i);
-    const auto known = fmt::format("{{{}}}", fmt::join(types::EnumNames<E>::names, ","));
-    command.add_option(name, value, help)->transform(CLI::CheckedTransformer(names).description(known));
+void addMcapOption(CLI::App& command, const std::string& name, const char* help, Options& options, E& value) {
+    const auto& names = types::EnumNames<E>::names;
+    const auto take = [&options, &value, &names, name](const std::string& given) {
+        const auto* found = std::ranges::find(names, given);
+        if (found == std::end(names))
+            throw types::ConfigError(
+                "", name,
+                fmt::format("is {}; {}may be {}", given, types::didYouMean(given, {std::begin(names), std::end(names)}),
+                            fmt::join(names, ", ")));
+        value = static_cast<E>(found - std::begin(names));
+        options.for_mcap = name;
+    };
+    command.add_option_function<std::string>(name, take, help)->type_name(fmt::format("{{{}}}", fmt::join(names, ",")));
 }
 
-void addMcapOptions(CLI::App& command, log::McapConfig& config) {
-    addEnum(command, "--dtype", "of echoes in an MCAP file (default: float32)", config.dtype);
-    addEnum(command, "--world-frame", "of poses in an MCAP file (default: enu)", config.world_frame);
+void addMcapOptions(CLI::App& command, Options& options) {
+    addMcapOption(command, "--dtype", "of echoes in an MCAP file (default: float32)", options, options.mcap.dtype);
+    addMcapOption(command, "--world-frame", "of poses in an MCAP file (default: enu)", options,
+                  options.mcap.world_frame);
 }
 
 /** Adds a subcommand of `log` that does `work`. */
@@ -321,7 +371,7 @@ void addLogCommand(CLI::App& app, Action& action) {
         ->required();
     out->add_flag("--ground", options->ground,
                   "a side-scan's pictures along a flat bottom, each line by the log's altitude at its time");
-    addMcapOptions(*out, options->mcap);
+    addMcapOptions(*out, *options);
 
     CLI::App* cut = add(*log, action, options, "cut", "Copies a part of a log, or its files into one", logCut);
     cut->add_option("FILE", options->files, "a pocolog or MCAP file, or those of a log in order")->required();

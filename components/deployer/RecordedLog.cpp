@@ -24,7 +24,14 @@ void RecordedLog::record(const std::vector<std::string>& properties, types::Time
     for (const std::string& property : properties) spec_.set(property);
     framework::Deployment deployment(spec_, registry_);
     run_["insonify_seed"] = std::to_string(deployment.environment().seed);
-    if (!properties_) properties_.emplace(to_.parent_path() / "properties.0.log");
+    const std::filesystem::path file = to_.parent_path() / "properties.0.log";
+    if (!properties_) {
+        std::error_code none;
+        const bool is_own = std::filesystem::exists(to_, none) && log::propertyLogOf(*log::openLog(to_)) == file;
+        if (std::filesystem::exists(file, none) && !is_own)
+            throw types::ConfigError(file.string(), "--to", "is of another run; give the log a folder of its own");
+        properties_.emplace(file);
+    }
     properties_->record(deployment.environment().records(), from, run_);
 }
 

@@ -16,6 +16,7 @@
 #include "components/deployer/Json.hpp"
 #include "components/deployer/Pipeline.hpp"
 #include "components/deployer/ReplaySpec.hpp"
+#include "components/deployer/StreamMeaning.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
 #include "components/framework/Properties.hpp"
@@ -251,6 +252,17 @@ std::map<std::string, Pings> pingsByTask(const log::Reader& log, const framework
     return pings;
 }
 
+/** Throws for a task that is of another type than in the log: its recorded properties would be wrong. */
+void refuseOtherTypes(const log::Reader& log, const framework::DeploymentSpec& spec,
+                      const std::set<std::string>& tasks) {
+    const framework::DeploymentSpec recorded = deploymentOf(log);
+    for (const std::string& task : tasks)
+        if (const auto* before = recorded.task(task); before && before->type != spec.task(task)->type)
+            throw types::ConfigError(log.path(), task,
+                                     fmt::format("is a {} in the log and a {} in {}; give the deployment of the log",
+                                                 before->type, spec.task(task)->type, spec.file));
+}
+
 }  // namespace
 
 std::optional<uint64_t> recordedSeed(const log::Reader& log) {
@@ -266,6 +278,7 @@ RecordedSettings recordedSettings(const log::Reader& log, const framework::Deplo
     const std::map<std::string, Pings> pings = pingsByTask(log, spec, deployment);
     std::set<std::string> tasks;
     for (const auto& entry : pings) tasks.insert(entry.first);
+    refuseOtherTypes(log, spec, tasks);
 
     Settings settings;
     for (const std::string& task : tasks) {

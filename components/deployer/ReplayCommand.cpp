@@ -154,8 +154,17 @@ types::ConfigError namingLog(types::Diagnostics diagnostics, const std::string& 
     return types::ConfigError(std::move(diagnostics));
 }
 
+/** Refuses a folder of results that would replace the log, its properties and its pictures. */
+void refuseFolderOf(const std::string& log, const std::string& out) {
+    std::error_code none;
+    const std::filesystem::path folder = std::filesystem::absolute(log).parent_path();
+    if (!out.empty() && std::filesystem::equivalent(folder, out, none))
+        throw types::ConfigError(out, "--out", "is the folder of the log, whose files would be replaced; give another");
+}
+
 int replay(Asked options) {
     const auto opened = log::openLog(options.replay.log);
+    refuseFolderOf(options.replay.log, options.out);
     log::Reader& log = *opened;
     if (!options.from.empty() && !log.samples().empty()) {
         const types::Time start = log.samples().front().time;
@@ -190,7 +199,9 @@ void addReplayCommand(CLI::App& app, Action& action) {
         command->add_flag("--loop", options->replay.loop, "repeats the log until --pings, --duration or SIGINT");
     command
         ->add_flag("--step", options->step,
-                   "one instant of the log for each line on stdin; a line `seek S` jumps to S seconds of the log")
+                   "one instant of the log for each line on stdin, without waiting from its end on; a line `seek S` "
+                   "jumps to S "
+                   "seconds of the log")
         ->excludes(pace);
     auto* rerender =
         command->add_flag("--rerender", options->replay.rerender, "renders the pings again, at the log's poses");

@@ -138,8 +138,10 @@ void printNotices(const framework::TaskContext& task, const std::vector<std::str
 }
 
 /** Checks without making a file. */
-void refuseUnwritable(const std::filesystem::path& summary_file) {
+void refuseUnwritable(const std::filesystem::path& summary_file, const std::string& deployment) {
     namespace fs = std::filesystem;
+    if (std::error_code none; fs::equivalent(summary_file, deployment, none))
+        throw types::ConfigError(summary_file, "--summary", "is the deployment itself; give another file");
     const fs::path folder = summary_file.has_parent_path() ? summary_file.parent_path() : ".";
     const fs::path evaluated = fs::exists(summary_file) ? summary_file : folder;
     if (!summary_file.empty() && (fs::is_directory(summary_file) || access(evaluated.c_str(), W_OK) != 0))
@@ -223,7 +225,7 @@ int runDeployment(framework::DeploymentSpec spec, const RunOptions& options, std
     OutputFolder folder(options.out, options.deployment);
     deployment.environment().output_folder = folder.path();
     if (written_to) *written_to = folder.path();
-    refuseUnwritable(options.summary);
+    refuseUnwritable(options.summary, deployment.spec().file);
 
     const std::atomic<bool>& stop = stopOnSignals();
     deployment.configure();

@@ -176,6 +176,8 @@ std::string lawText(const Json& material) {
         text = fmt::format("; {} at the sonar's frequency", material["matter"].get<std::string>());
     if (!material["sediment"].is_null())
         text = fmt::format("; {} at the sonar's frequency", material["sediment"].get<std::string>());
+    if (const auto angles = material["measured_angles"].get<size_t>(); angles > 0)
+        text = fmt::format("; measured: a table of {} angles", angles);
     return text + (material["source"] == "name" ? ", by its name" : "");
 }
 

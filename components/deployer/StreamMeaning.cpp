@@ -126,15 +126,13 @@ Json cloudMeaning() {
             {"intensity", "value of the strongest bin of each return, in the units of the sonar's bins"}};
 }
 
-/** Returns the deployment that wrote the log, from the metadata of its first stream; empty where it is unknown or
- *  unreadable. */
+}  // namespace
+
 DeploymentSpec deploymentOf(const log::Reader& log) try {
     return DeploymentSpec::parse(log.metadatum("insonify_deployment"), log.path().string());
 } catch (const types::ConfigError&) {
     return {};
 }
-
-}  // namespace
 
 Json meaningOf(const log::Reader& log, const log::Stream& stream) {
     Json meaning = {{"stream", stream.name}};

@@ -1,8 +1,13 @@
 #pragma once
 #include "components/deployer/Json.hpp"
+#include "components/framework/DeploymentSpec.hpp"
 #include "components/log/Reader.hpp"
 
 namespace insonify::deployer {
+
+/** Returns the deployment that wrote the log, from the metadata of its first stream; empty where it is unknown or
+ *  unreadable. */
+framework::DeploymentSpec deploymentOf(const log::Reader& log);
 
 /** Returns what the numbers of a stream mean, by the deployment in its metadata as written there. Settings from outside
  *  are in the run's properties log.

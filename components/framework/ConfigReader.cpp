@@ -272,7 +272,10 @@ bool ConfigReader::boolean(const YAML::Node& node, const std::string& path, bool
 bool ConfigReader::vector3(const YAML::Node& node, const std::string& path, const types::Field& field,
                            glm::dvec3& value) {
     if (!node.IsSequence() || node.size() != 3)
-        return report(node, path, "is " + shown(node) + "; must be a list of three numbers [x, y, z]"), false;
+        return report(node, path,
+                      "is " + shown(node) + (node.IsSequence() ? fmt::format(" of {}", node.size()) : "") +
+                          "; must be a list of three numbers [x, y, z]"),
+               false;
     bool good = true;
     for (int i = 0; i < 3; ++i) good &= number(node[i], path + "[" + std::to_string(i) + "]", field, value[i]);
     return good;

@@ -354,6 +354,8 @@ void DeploymentSpec::set(const std::string& property, const YAML::Node& value, c
     if (rest.empty()) return refuse("must be task.property=value, namespace=value or frame_prefix=value");
     TaskSpec* changed = task(name);
     if (!changed) return refuse("there is no task " + name + "; " + suggestion(name, taskNames()));
+    if (rest == "activity" || rest.starts_with("activity."))
+        return refuse("is no property: an activity can only be changed in the deployment");
     try {
         PropertySources(*this).set(*changed, rest, value, origin);
     } catch (const types::ConfigError& error) {

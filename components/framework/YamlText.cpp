@@ -1,11 +1,14 @@
 #include "components/framework/YamlText.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "types/ConfigError.hpp"
 
@@ -16,7 +19,11 @@ std::string readFile(const std::filesystem::path& file, const std::string& what)
     if (std::filesystem::is_directory(file, error))
         throw types::ConfigError(file.string(), "", "is a directory; must be " + what);
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw types::ConfigError(file.string(), "", "cannot be opened; must be " + what);
+    if (!stream)
+        throw types::ConfigError(
+            file.string(), "",
+            fmt::format("cannot be opened{}; must be {}",
+                        errno == EACCES ? ": " + std::generic_category().message(errno) : "", what));
     std::stringstream text;
     text << stream.rdbuf();
     return text.str();

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -18,6 +20,33 @@ namespace {
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 
+/** The files that this process reads, by device and number: a run that reads a log must not empty it. */
+class Inputs {
+public:
+    using File = std::pair<uint64_t, uint64_t>;
+    void add(const File& file) {
+        const std::lock_guard lock(mutex_);
+        files_.insert(file);
+    }
+    void remove(const File& file) {
+        const std::lock_guard lock(mutex_);
+        files_.erase(files_.find(file));
+    }
+    bool has(const struct stat& status) {
+        const std::lock_guard lock(mutex_);
+        return files_.contains({status.st_dev, status.st_ino});
+    }
+
+private:
+    std::mutex mutex_;
+    std::multiset<File> files_;
+};
+
+Inputs& inputs() {
+    static Inputs all;
+    return all;
+}
+
 /** Whether another open file has locked the log; locks it if not. */
 bool isTaken(int file) { return flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
@@ -29,12 +58,19 @@ InputFile::InputFile(const std::filesystem::path& path) {
     struct stat status {};
     if (fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
         ::close(file_);
-        throw types::ConfigError(path, "", "is not a file");
+        throw types::ConfigError(
+            path, "",
+            S_ISDIR(status.st_mode) ? "is a folder; give a log in it: a .log or .mcap file" : "is not a file");
     }
     size_ = static_cast<uint64_t>(status.st_size);
+    identity_ = {status.st_dev, status.st_ino};
+    inputs().add(identity_);
 }
 
-InputFile::~InputFile() { ::close(file_); }
+InputFile::~InputFile() {
+    inputs().remove(identity_);
+    ::close(file_);
+}
 
 bool InputFile::read(uint64_t position, void* to, size_t size) const {
     char* next = static_cast<char*>(to);
@@ -55,8 +91,9 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
     struct stat status {};
     const bool is_file = fstat(file_, &status) == 0 && S_ISREG(status.st_mode);
     const bool taken = is_file && isTaken(file_);  // a device such as /dev/null may be shared
-    if (taken || (is_file && ftruncate(file_, 0) != 0)) {
-        const std::string why = taken ? "another logger writes it" : reason(errno);
+    const bool is_read = is_file && inputs().has(status);
+    if (taken || is_read || (is_file && ftruncate(file_, 0) != 0)) {
+        const std::string why = taken ? "another logger writes it" : is_read ? "it is being read" : reason(errno);
         ::close(std::exchange(file_, -1));
         throw types::ConfigError(path_, "", "the log cannot be written: " + why);
     }

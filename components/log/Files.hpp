@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 
 namespace insonify::log {
 
@@ -20,13 +21,14 @@ public:
 private:
     int file_ = -1;
     uint64_t size_ = 0;
+    std::pair<uint64_t, uint64_t> identity_;  ///< Device and number of the file.
 };
 
 /** A log that is being written, by one writer at a time and without incomplete writes. */
 class OutputFile {
 public:
-    /** Creates or empties the file. Throws ConfigError when this fails or another OutputFile, of any process, has it
-     *  open. */
+    /** Creates or empties the file. Throws ConfigError when this fails, when another OutputFile, of any process, has it
+     *  open, or an InputFile of this process. */
     explicit OutputFile(std::filesystem::path path);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;

@@ -96,7 +96,9 @@ public:
         known_.emplace_back(field.name);
         block_.clear();
     }
-    void refuseUnknown() {
+    /** @param others keys that are read elsewhere */
+    void refuseUnknown(const std::vector<std::string>& others) {
+        known_.insert(known_.end(), others.begin(), others.end());
         for (const auto& [key, value] : values_)
             if (std::ranges::count(known_, key) == 0)
                 diagnostics_.push_back({key, fmt::format("is not known; {}may be {}", types::didYouMean(key, known_),
@@ -314,13 +316,15 @@ void Acoustics::check(types::Diagnostics& diagnostics) const {
 }
 
 Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
-                        types::Diagnostics& diagnostics) {
+                        types::Diagnostics& diagnostics, const std::vector<std::string>& others) {
     Acoustics acoustics;
     ValueReader reader(values, diagnostics);
     Acoustics::describe(acoustics, reader);
-    reader.refuseUnknown();
+    reader.refuseUnknown(others);
     acoustics.check(diagnostics);
-    if (acoustics.shell) {
+    const bool is_read = std::ranges::none_of(
+        diagnostics, [](const types::Diagnostic& each) { return each.path.starts_with("shell."); });
+    if (acoustics.shell && is_read) {
         types::Diagnostics of_shell;
         acoustics.shell->check(of_shell);
         for (const types::Diagnostic& diagnostic : of_shell)

@@ -127,9 +127,10 @@ struct Acoustics {
 using AcousticValue = std::variant<std::monostate, double, std::string, bool>;
 using AcousticValues = std::map<std::string, AcousticValue>;
 
-/** Returns the acoustics given by the keys and values of a file in `folder`. Adds errors to `diagnostics`. */
+/** Returns the acoustics given by the keys and values of a file in `folder`. Adds errors to `diagnostics`.
+ *  @param others keys that the caller reads, for the list of what is known */
 Acoustics readAcoustics(const AcousticValues& values, const std::filesystem::path& folder,
-                        types::Diagnostics& diagnostics);
+                        types::Diagnostics& diagnostics, const std::vector<std::string>& others = {});
 
 /** Returns the geometry of `scene` with acoustic values replaced by name. A name is that of a material, or of a node
  *  and all nodes below it; a node takes precedence over a material. Copies nothing when there is nothing to replace. An

@@ -47,7 +47,7 @@ void readExtras(const tinygltf::Value& extras, const std::filesystem::path& fold
     AcousticValues values;
     addValues(json, "", values);
     std::erase_if(values, [](const auto& value) { return value.first == "map" || value.first.starts_with("map."); });
-    readAcoustics(values, folder, diagnostics).applyTo(material);
+    readAcoustics(values, folder, diagnostics, {"map"}).applyTo(material);
 }
 
 /** Returns the bytes of an encoded image; empty if its file was not found. */

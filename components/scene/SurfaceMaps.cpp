@@ -37,7 +37,9 @@ double linear(double decibels) { return std::pow(10, decibels / 10); }
 
 void MapValues::check(types::Diagnostics& diagnostics) const {
     if (decibels.empty() == classes.empty())
-        return diagnostics.push_back({"", "must have one of decibels and classes"});
+        return diagnostics.push_back(
+            {"", fmt::format("has {} decibels {} classes; must have one of the two",
+                             classes.empty() ? "neither" : "both", classes.empty() ? "nor" : "and")});
     if (!decibels.empty() && decibels.size() != 2)
         diagnostics.push_back({"decibels", fmt::format("has {} numbers; must have two", decibels.size())});
     if (values.size() != 2 || !(values[0] != values[1]))
@@ -97,7 +99,8 @@ std::vector<int> materialsOf(const MapValues& meaning, const std::string& path, 
                                            std::end(types::EnumNames<Sediment>::names));
             names.insert(names.end(), std::begin(types::EnumNames<Matter>::names),
                          std::end(types::EnumNames<Matter>::names));
-            for (const types::Material& material : geometry.materials) names.push_back(material.name);
+            for (const types::Material& material : geometry.materials)
+                if (std::ranges::count(names, material.name) == 0) names.push_back(material.name);
             diagnostics.push_back(
                 {path + "." + value,
                  fmt::format("is {}; {}may be {}", name, types::didYouMean(name, names), fmt::join(names, ", "))});

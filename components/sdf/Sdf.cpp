@@ -197,7 +197,8 @@ private:
         const ::sdf::ElementPtr tag = visual.Element()->FindElement("insonify:acoustics");
         if (!tag) return look;
         for (const ::sdf::ParamPtr& attribute : tag->GetAttributes())
-            look.acoustics[attribute->GetKey()] = valueOf(attribute->GetAsString());
+            if (!attribute->GetKey().starts_with("xmlns"))  // names a prefix, no property
+                look.acoustics[attribute->GetKey()] = valueOf(attribute->GetAsString());
         for (::sdf::ElementPtr key = tag->GetFirstElement(); key; key = key->GetNextElement()) {
             if (!key->GetFirstElement()) look.acoustics[key->GetName()] = valueOf(key->Get<std::string>());
             for (::sdf::ElementPtr of = key->GetFirstElement(); of; of = of->GetNextElement())

@@ -218,8 +218,17 @@ types::Diagnostic readLine(const std::string& line) {
 }
 
 /** Adds a diagnostic unless it repeats a known diagnostic or is that of an enclosing element. */
+/** Returns a message without the file's text, which libsdformat repeats whole, and which may be binary. */
+std::string shortened(const std::string& message) {
+    constexpr size_t longest = 400;
+    const auto isText = [](unsigned char c) { return c >= ' ' || c == '\n' || c == '\t'; };
+    const auto end = std::ranges::find_if_not(message, isText);
+    const auto kept = std::min<size_t>(static_cast<size_t>(end - message.begin()), longest);
+    return kept == message.size() ? message : message.substr(0, kept) + "...";
+}
+
 void add(types::Diagnostic diagnostic, types::Diagnostics& diagnostics) {
-    diagnostic.message = plain(diagnostic.message);
+    diagnostic.message = shortened(plain(diagnostic.message));
     const auto says = [&diagnostic](const char* text) { return diagnostic.message.starts_with(text); };
     const auto includes = [&](const types::Diagnostic& known) {
         const bool is_same_place =

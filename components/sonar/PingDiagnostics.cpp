@@ -98,9 +98,11 @@ std::string surfaceText(const Coverage& coverage, const types::Snapshot& scene) 
     const types::NearestPoint nearest = types::nearestPoint(scene, scene.sonar.position);
     std::string hindrance = hindranceText(coverage, inSonar(scene, nearest.point));
     if (hindrance.empty()) hindrance = materialText(coverage.plan.config, *scene.geometry, nearest.object);
-    return fmt::format("; the scene extends from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}",
+    const bool is_above = scene.sonar.position.z > std::max(0.0, extent.high.z);
+    return fmt::format("; the scene extends from {} to {}, its nearest point {:.4g} m away at {} of {}{}{}{}",
                        text(extent.low), text(extent.high), nearest.distance, text(nearest.point),
-                       scene.geometry->objects[nearest.object].name, hindrance.empty() ? "" : ": ", hindrance);
+                       scene.geometry->objects[nearest.object].name, hindrance.empty() ? "" : ": ", hindrance,
+                       is_above ? "; the sonar is above all of it (z is up: depths are negative)" : "");
 }
 
 /** Returns the same for the nearest point target; empty where there is none. */

@@ -113,7 +113,10 @@ TEST(DidYouMeanTest, CommandsOptionsAndTypesOnTheCommandLine) {
         {{"describe", "SonarTask"}, "did you mean sonar::SonarTask?"},
         {{"init", "x", "--sonar", "gemini"}, "did you mean gemini_720is?"},
         {{"run", "wall.yml", "--set", "sonra.range=3"}, "did you mean sonar?"},
-        {{"run", "wall.yml", "--set", "sonar.rnage=3"}, "did you mean range?"}};
+        {{"run", "wall.yml", "--set", "sonar.rnage=3"}, "did you mean range?"},
+        {{"run", "wall.yml", "--set", "sonar.range=3", "noise.seed=1"}, "--set sonar.range=3 --set noise.seed=1"},
+        {{"run", "wall.yml", "--set", "vehicle.activity.period=1"}, "is no property: an activity can only"},
+        {{"run", "wall.yml", "--pings", "1.5"}, "--pings: is 1.5; must be a whole number"}};
     for (const auto& [words, answer] : cases) {
         const Outcome outcome = callInsonify(folder, words);
         EXPECT_EQ(outcome.code, 2) << answer;

@@ -171,6 +171,24 @@ TEST_F(ImportCommandTest, AJsfFileBecomesALogThatIsCheckedAndExported) {
     EXPECT_EQ(to("side.xtf").code, 0);
 }
 
+TEST_F(ImportCommandTest, RecordingsAndPropertiesOfOtherRunsStay) {
+    record(2);
+    const std::string recording = readFile(folder_ / "dive.oculus"), own = readFile(folder_ / "out/properties.0.log");
+    fs::create_symlink("dive.oculus", folder_ / "same.log");
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "same.log"}).err,
+                HasSubstr("same.log: --to: is the recording itself"));
+    const auto into = [&](const std::string& log) {
+        return callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", log});
+    };
+    EXPECT_THAT(into("out/dive.0.log").err, HasSubstr("out/properties.0.log: --to: is of another run; give the log"));
+    EXPECT_EQ(readFile(folder_ / "dive.oculus"), recording);
+    EXPECT_EQ(readFile(folder_ / "out/properties.0.log"), own);
+    EXPECT_EQ(into("imported/dive.0.log").code, 0);
+    EXPECT_EQ(into("imported/dive.0.log").code, 0) << "the same import again";
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "no.xtf", "--to", "x.0.log"}).err,
+                HasSubstr("no.xtf: does not exist; may be a .xtf, .jsf, "));
+}
+
 TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
     std::string bytes(1024 + 256, '\0');
     bytes[0] = '\x7B';
@@ -200,7 +218,7 @@ TEST_F(ImportCommandTest, RealPingsAreLoggedReplayedAndScored) {
 TEST_F(ImportCommandTest, ReportsWhyAFileCannotBeImported) {
     writeFile(folder_ / "empty.raw", "SO");
     EXPECT_THAT(import("empty.raw").err, HasSubstr("empty.raw: holds no ping of an Oculus"));
-    EXPECT_THAT(import("missing.raw").err, HasSubstr("missing.raw: cannot be read"));
+    EXPECT_THAT(import("missing.raw").err, HasSubstr("missing.raw: does not exist"));
     record(1);
     writeFile(folder_ / "plain.yml", wall_deployment);
     EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that outputs codes"));

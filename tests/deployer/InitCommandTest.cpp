@@ -239,6 +239,13 @@ TEST(InitCommandTest, AnUnknownSonarIsReportedWithTheNearestName) {
     EXPECT_FALSE(fs::exists(folder / "dive"));
 }
 
+TEST(InitCommandTest, TheNextCommandsCanBePasted) {
+    const Folder folder;
+    const Outcome outcome = callInsonify(folder, {"init", "mein tauchgang"});
+    EXPECT_THAT(outcome.out, HasSubstr("next: insonify run 'mein tauchgang'\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("insonify dataset 'mein tauchgang' --sweep 'mein tauchgang/sweep.yml' "));
+}
+
 TEST(InitCommandTest, AFolderSelectsItsOnlyDeployment) {
     const TestFolder folder;
     const Outcome none = callInsonify(folder, {"run", "."});

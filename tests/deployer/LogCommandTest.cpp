@@ -89,15 +89,25 @@ TEST_F(LogCommandTest, CutsASpanOfTimeOrNumbersOutOfALog) {
     EXPECT_EQ(cut({"out/properties.0.log", "--stream", "sonar.ping", "--stream", "noise.seed"}).out,
               "cut.0.log: 4 samples, nothing was lost\n")
         << "several files, several streams";
+    EXPECT_THAT(
+        cut({log, "--stream", "sonar.ping"}).err,
+        HasSubstr("notice: sonar.ping of out/wall.0.log begins before it ends in out/wall.0.log; the copy has "));
     const Outcome nothing = cut({"--from", "7"});
     EXPECT_EQ(nothing.code, 2);
     EXPECT_THAT(nothing.err, HasSubstr("out/wall.0.log: none of its samples is in the requested part; they are from "
                                        "1.000000 s to 1.200000 s"));
+    EXPECT_EQ(nothing.out, "");
     EXPECT_FALSE(fs::exists(folder / "cut.0.log"));
+    EXPECT_THAT(cut({"--samples", "2:1"}).err, HasSubstr("--samples: is 2:1; FIRST must be less than LAST"));
+    EXPECT_THAT(cut({"--from", "0.1", "--until", "0.05"}).err, HasSubstr("--until: is 0.05; must be after --from"));
+    EXPECT_THAT(callInsonify(folder, {"log", "cut", log, "--to", "cut.txt"}).err,
+                HasSubstr("cut.txt: --to: must end in .log or .mcap"));
     EXPECT_EQ(cut({"--samples", "1"}).code, 2);
     EXPECT_THAT(cut({"--samples", "a:b"}).err, HasSubstr("may be FIRST:LAST"));
     EXPECT_EQ(cut({"--stream", "no.such"}).code, 2);
     EXPECT_EQ(callInsonify(folder, {"log", "cut", log, "--to", log}).code, 2);
+    EXPECT_THAT(callInsonify(folder, {"log", "cut", log, "--to", "out/properties.0.log"}).err,
+                HasSubstr("is the name of a log of properties"));
     EXPECT_EQ(callInsonify(folder, {"log", "check", log}).code, 0) << "the log is unchanged";
 }
 
@@ -155,6 +165,18 @@ TEST_F(LogCommandTest, RefusesWhatItCannotExport) {
     EXPECT_EQ(exportTo("sonar.ping", "x.doc").code, 2);
     EXPECT_EQ(exportTo("sonar.ping", "wall.yml/x.npz").code, 2);
     EXPECT_EQ(exportTo("vehicle.pose", "x.png").code, 2);
+    const auto withOption = [&](const char* option, const char* value, const char* to) {
+        return callInsonify(folder, {"log", "export", log, "--stream", "sonar.ping", "--to", to, option, value});
+    };
+    EXPECT_EQ(withOption("--dtype", "uint8", "x.mcap").code, 0);
+    EXPECT_THAT(withOption("--dtype", "uint8", "x.npz").err, HasSubstr("--dtype: is for FILE.mcap; --to is x.npz"));
+    const Outcome wrong = withOption("--world-frame", "north", "y.mcap");
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_THAT(wrong.err, testing::MatchesRegex("--world-frame: is north; may be .*ned.*\n"));
+    EXPECT_THAT(withOption("--to", "y.npz", "x.npz").err, HasSubstr("--to: is given more than once"));
+    EXPECT_THAT(callInsonify(folder, {"log", "info", "out"}).err, HasSubstr("out: is a folder; give a log in it"));
+    EXPECT_THAT(callInsonify(folder, {"log", "import", "out", "--to", "z.0.log"}).err,
+                HasSubstr("out: is a folder; give a recording in it"));
 }
 
 TEST(LogFrameTest, LoggedFramesAreExportedAsPictures) {

@@ -83,3 +83,37 @@ TEST(ReplayCommandTest, ATruncatedLogIsReplayedUpToItsLastCompleteBlock) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_TRUE(infoOf(folder, "again/wall.0.log")["complete"]);
 }
+
+TEST(ReplayCommandTest, ALogIsNotReplacedByItsReplay) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
+    const std::string before = readFile(folder / "out/wall.0.log");
+    const Outcome same = callInsonify(folder, {"replay", "out/wall.0.log", "wall.yml", "--out", "out"});
+    EXPECT_EQ(same.code, 2);
+    EXPECT_THAT(same.err, HasSubstr("out: --out: is the folder of the log"));
+    writeFile(folder / "inside.yml", R"(schedule: lockstep
+tasks:
+  replay: {type: replay::ReplayTask, properties: {file: out/wall.0.log}}
+  log: {type: logger::LoggerTask, properties: {file: wall.0.log}}
+connections: [{from: replay.noise.noisy, to: log.noisy}]
+)");
+    const Outcome inside = callInsonify(folder, {"run", "inside.yml", "--out", "out"});
+    EXPECT_NE(inside.code, 0);
+    EXPECT_THAT(inside.err, HasSubstr("the log cannot be written: it is being read"));
+    EXPECT_EQ(readFile(folder / "out/wall.0.log"), before);
+    EXPECT_THAT(folder.run({"--summary", "wall.yml"}).err, HasSubstr("--summary: is the deployment itself"));
+}
+
+TEST(ReplayCommandTest, ATaskOfAnotherTypeThanInTheLogIsRefused) {
+    const WallFolder folder;
+    ASSERT_EQ(folder.run({"--pings", "2"}).code, 0);
+    std::string other = replaced(wall_deployment, "sonar::SonarTask", "sonar::ScanningSonarTask");
+    for (const char* line : {"      beam_count: 16\n", "      field_of_view_deg: 60\n"})
+        other = replaced(other, line, "");
+    writeFile(folder / "other.yml", other);
+    const Outcome outcome =
+        callInsonify(folder, {"replay", "out/wall.0.log", "other.yml", "--rerender", "--out", "again"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, testing::StartsWith("out/wall.0.log: sonar: is a sonar::SonarTask in the log and a "
+                                                 "sonar::ScanningSonarTask in "));
+}

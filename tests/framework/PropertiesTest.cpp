@@ -194,7 +194,7 @@ TEST(PropertiesTest, ReportsEveryDiagnosticAtItsPlaceAtOnce) {
             "9223372036854775807",
             "a.yml:6:7: p.loud: is yes; write true; may be true or false",
             "a.yml:7:7: p.file: is a list; must be a text",
-            "a.yml:8:11: p.position: is a list; must be a list of three numbers [x, y, z]",
+            "a.yml:8:11: p.position: is a list of 2; must be a list of three numbers [x, y, z]",
             "a.yml:9:16: p.speckle.law: is poisson; may be rayleigh, gaussian",
             "a.yml:9:31: p.speckle.mean: is .nan; must be a finite number",
             "a.yml:10:7: p.gain: is the text \"3\"; must be a finite number",

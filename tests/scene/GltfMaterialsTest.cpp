@@ -82,6 +82,13 @@ TEST_F(GltfMaterialsTest, AFillIsOfATableOrOfNumbers) {
     EXPECT_EQ(fillOf(R"("fill_density":900,"fill_sound_speed":1300)"), (std::array{900., 1300., 0.}));
 }
 
+TEST_F(GltfMaterialsTest, AWrongValueOfAShellIsOneErrorAndNotAlsoMissing) {
+    for (const char* json :
+         {R"({"shell":{"thickness_mm":"2","material":"pvc"}})", R"({"shell":{"thickness_mm":2,"material":"acrylik"}})"})
+        EXPECT_EQ(diagnosticOfAcoustics(json).find("missing"), std::string::npos) << diagnosticOfAcoustics(json);
+    EXPECT_NE(diagnosticOfAcoustics(R"({"mapp":{"decibels":[-30,0]}})").find("map"), std::string::npos);
+}
+
 TEST_F(GltfMaterialsTest, ReportsAWrongShellWithItsPlace) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"shell":{"material":"pvc"}})", "acoustics.shell.thickness_mm: is missing"},
@@ -187,8 +194,9 @@ TEST_F(SurfaceMapsTest, ValuesWithoutAClassAndMeshesWithoutCoordinatesAreReporte
 TEST_F(SurfaceMapsTest, AWrongMapIsReportedAtItsPlace) {
     const std::pair<const char*, const char*> cases[] = {
         {"2", "materials[0].extras.acoustics.map: must be an object such as"},
-        {R"({"texcoord":0})", "acoustics.map: must have one of decibels and classes"},
-        {R"({"decibels":[-30,0],"classes":{"1":"rock"}})", "acoustics.map: must have one of decibels and classes"},
+        {R"({"texcoord":0})", "acoustics.map: has neither decibels nor classes; must have one of the two"},
+        {R"({"decibels":[-30,0],"classes":{"1":"rock"}})",
+         "acoustics.map: has both decibels and classes; must have one of the two"},
         {R"({"decibels":[-30]})", "map.decibels: must be two numbers, as in [-30, 0]"},
         {R"({"decibels":[-30,"0"]})", "map.decibels: must be two numbers"},
         {R"({"decibels":[-30,60]})", "map.decibels: has 60; may be -200 to 40 dB"},

@@ -129,7 +129,7 @@ TEST(ReaderTest, CompressedSamplesAreRead) {
 TEST(ReaderTest, AFileThatIsNotALogIsAConfigurationError) {
     Folder folder;
     EXPECT_THAT(messageFor(folder / "absent.log"), HasSubstr("No such file"));
-    EXPECT_THAT(messageFor(folder.path()), HasSubstr("is not a file"));
+    EXPECT_THAT(messageFor(folder.path()), HasSubstr("is a folder; give a log in it"));
     writeBytes(folder / "empty.log", {});
     EXPECT_THAT(messageFor(folder / "empty.log"), HasSubstr("is not a pocolog file"));
     writeBytes(folder / "garbage.log", std::vector<char>(5000, 'g'));
