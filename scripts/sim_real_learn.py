@@ -14,9 +14,9 @@ def normalised(pixels, side=SIDE):
 
 
 def arrays(crops, labels, sizes):
-    """(x, y): x is [n, 3, SIDE, SIDE], the crop and, everywhere the same, logarithms of its height over its width, and of its size
-    over 64 pixels where sizes are used."""
-    x = np.zeros((len(crops), 3, SIDE, SIDE), np.float32)
+    """(x, y): x has the crop and, everywhere the same, the logarithm of its height over its width. If sizes are used, there is a third
+    channel: the logarithm of its size over 64 pixels."""
+    x = np.zeros((len(crops), 3 if sizes else 2, SIDE, SIDE), np.float32)
     for each, crop in zip(x, crops):
         height, width = crop.pixels.shape
         each[0] = normalised(crop.pixels)
@@ -88,7 +88,7 @@ def varied(x, rng):
         moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
         moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
         result[i, 1] = x[i, 1] + np.log2(scale[0] / abs(scale[1])) + rng.normal(0, 0.3)
-        result[i, 2] = x[i, 2] + rng.normal(0, 0.4)
+        result[i, 2:] = x[i, 2:] + rng.normal(0, 0.4)
         result[i, 0] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
     return result
 
@@ -104,7 +104,7 @@ class Cnn:
         torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
-        layers, before = [], 3
+        layers, before = [], parts[0][0].shape[1]
         for channels in (16, 32, 64):
             layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
                        torch.nn.MaxPool2d(2)]
@@ -138,7 +138,7 @@ def augmented(x):
     """Mirrored, turned, sheared and scaled at random; with other contrast, noise and blur; at times without proportions or size."""
     import torch
     n = len(x)
-    x, proportion, size = x.split(1, 1)
+    x, proportion, size = x[:, :1], x[:, 1:2], x[:, 2:]  # no size where sizes are not used
     size = (size + 0.4 * torch.randn(n, 1, 1, 1)) * (torch.rand(n, 1, 1, 1) < 0.8)
     turn, tilt = (torch.rand(n) - 0.5) * 0.7, (torch.rand(n) - 0.5) * 0.4
     width, height = 0.8 + 0.45 * torch.rand(2, n)

@@ -31,6 +31,16 @@ class Training(unittest.TestCase):
         self.assertAlmostEqual(len(known) / 2000, 0.8, delta=0.04)
         self.assertAlmostEqual(float(known.mean()), 2, delta=0.05)
 
+    def test_without_sizes_training_and_test_have_the_same_two_channels(self):
+        rng = np.random.default_rng(5)
+        crops = [sets.Crop(rng.random((20, 20)), label, "", "") for label in "ab" * 12]
+        x, y = learn.arrays(crops, ["a", "b"], False)
+        self.assertEqual(learn.augmented(torch.from_numpy(x)).shape, (24, 2, 40, 40))
+        self.assertEqual(learn.varied(x, rng).shape, (24, 2, 40, 40))
+        cnn = learn.Cnn(2, steps=2, batch=8)
+        cnn.learn([(x, y)], 0)
+        self.assertEqual(len(cnn.find(x)), 24)
+
     def test_hog_learns_a_class_by_its_size_alone(self):
         rng = np.random.default_rng(4)
         crops = [sets.Crop(rng.random((side, side)), label, "", "") for label, side in [("a", 16), ("b", 128)] * 60]
