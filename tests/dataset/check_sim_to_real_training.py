@@ -2,6 +2,7 @@
 import sys
 import unittest
 from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -64,7 +65,9 @@ class Training(unittest.TestCase):
                 x[:, 1 + bit] = (6 * side - 3)[:, None, None]
             return x
         sources = {"low": lambda seed, x=crops(0): (x, y), "high": lambda seed, x=crops(1): (x, y)}
-        script = SourceFileLoader("sim_to_real", str(SCRIPTS / "sim_to_real")).load_module()
+        loader = SourceFileLoader("sim_to_real", str(SCRIPTS / "sim_to_real"))  # has no suffix .py
+        script = module_from_spec(spec_from_loader("sim_to_real", loader))
+        loader.exec_module(script)
         rows = script.trained(learn.Hog, sources, [("low", ["low"]), ("high", ["high"]), ("both", ["low", "high"])], (crops(0, 1), y),
                               SimpleNamespace(seeds=1), 4)
         low, high, both = (row["runs"][0]["accuracy"] for row in rows)
