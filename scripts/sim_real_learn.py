@@ -14,9 +14,9 @@ def normalised(pixels, side=SIDE):
 
 
 def arrays(crops, labels, sizes):
-    """(x, y): x is [n, 3, SIDE, SIDE], the crop and, everywhere the same, logarithms of its height over its width, and of its size
-    over 64 pixels where sizes are used."""
-    x = np.zeros((len(crops), 3, SIDE, SIDE), np.float32)
+    """(x, y): x has the crop and, everywhere the same, the logarithm of its height over its width. If sizes are used, there is a third
+    channel: the logarithm of its size over 64 pixels."""
+    x = np.zeros((len(crops), 3 if sizes else 2, SIDE, SIDE), np.float32)
     for each, crop in zip(x, crops):
         height, width = crop.pixels.shape
         each[0] = normalised(crop.pixels)
@@ -26,20 +26,17 @@ def arrays(crops, labels, sizes):
     return x, np.array([labels.index(crop.label) for crop in crops])
 
 
-def answers(kind, count, parts, x, seed):
-    """The features of x for a classifier that learns from parts."""
+def evidence(kind, count, part, x, seed):
+    """Returns [n, count]: evidence for each class of x by a classifier that learns from a part (crops, classes)."""
     model = kind(count)
-    model.learn(parts, seed)
-    return model.find(x)
+    model.learn(*part, seed)
+    return model.evidence(x)
 
 
-def weights(parts, count):
-    """Returns probabilities that give each part equal weight, and each class within a part."""
-    total = []
-    for y in parts:
-        counts = np.bincount(y, minlength=count)
-        total.append(1 / counts[y] / (counts > 0).sum())
-    return np.concatenate(total) / len(parts)
+def weights(y, count):
+    """Returns probabilities that give each class equal weight."""
+    counts = np.bincount(y, minlength=count)
+    return 1 / counts[y] / (counts > 0).sum()
 
 
 def scores(truth, found, count):
@@ -63,18 +60,18 @@ class Hog:
         return np.hstack([np.stack([hog(each, 9, (8, 8), (2, 2), feature_vector=True) for each in x[:, 0]]), 0.3 * small,
                           0.3 * x[:, 1:, 0, 0]])
 
-    def learn(self, parts, seed):
-        """Trains on parts (x, y), which have equal weight."""
+    def learn(self, x, y, seed):
         from sklearn.svm import LinearSVC
         rng = np.random.default_rng(seed)
-        copies = [(np.concatenate([x] + [varied(x, rng) for _ in range(self.copies)]), np.tile(y, 1 + self.copies)) for x, y in parts]
-        share = weights([y for _, y in copies], self.count)
+        x, y = np.concatenate([x] + [varied(x, rng) for _ in range(self.copies)]), np.tile(y, 1 + self.copies)
+        share = weights(y, self.count)
         self.svm = LinearSVC(C=0.03, random_state=seed, max_iter=3000)
-        self.svm.fit(np.concatenate([self.features(x) for x, _ in copies]), np.concatenate([y for _, y in copies]),
-                     sample_weight=share / share.mean())
+        self.svm.fit(self.features(x), y, sample_weight=share / share.mean())
 
-    def find(self, x):
-        return self.svm.predict(self.features(x))
+    def evidence(self, x):
+        """Distances to the planes between classes."""
+        distance = self.svm.decision_function(self.features(x))
+        return distance if distance.ndim == 2 else np.stack([-distance, distance], 1)
 
 
 def varied(x, rng):
@@ -88,7 +85,7 @@ def varied(x, rng):
         moved = ndimage.affine_transform(each, matrix, centre - matrix @ centre + rng.uniform(-2, 2, 2), order=1, mode="reflect")
         moved = ndimage.gaussian_filter(moved, rng.uniform(0, 0.8)) ** np.exp(rng.uniform(-0.7, 0.7))
         result[i, 1] = x[i, 1] + np.log2(scale[0] / abs(scale[1])) + rng.normal(0, 0.3)
-        result[i, 2] = x[i, 2] + rng.normal(0, 0.4)
+        result[i, 2:] = x[i, 2:] + rng.normal(0, 0.4)
         result[i, 0] = np.clip(moved + rng.uniform(0, 0.2) * np.abs(rng.normal(size=each.shape)), 0, 1)
     return result
 
@@ -99,20 +96,19 @@ class Cnn:
     def __init__(self, count, steps=450, batch=64):
         self.count, self.steps, self.batch = count, steps, batch
 
-    def learn(self, parts, seed):
+    def learn(self, x, y, seed):
         import torch
         torch.set_num_threads(1)  # the network is too small to use several threads; several networks are trained at a time
         torch.manual_seed(seed)
         rng = np.random.default_rng(seed)
-        layers, before = [], 3
+        layers, before = [], x.shape[1]
         for channels in (16, 32, 64):
             layers += [torch.nn.Conv2d(before, channels, 3, padding=1), torch.nn.BatchNorm2d(channels), torch.nn.ReLU(),
                        torch.nn.MaxPool2d(2)]
             before = channels
         self.net = torch.nn.Sequential(*layers, torch.nn.AdaptiveAvgPool2d(2), torch.nn.Flatten(), torch.nn.Dropout(0.3),
                                        torch.nn.Linear(4 * before, self.count)).to(memory_format=torch.channels_last)
-        x, y = np.concatenate([x for x, _ in parts]), np.concatenate([y for _, y in parts])
-        share = weights([y for _, y in parts], self.count)
+        share = weights(y, self.count)
         optimiser = torch.optim.AdamW(self.net.parameters(), 3e-3, weight_decay=1e-2)
         plan = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=self.steps)
         self.net.train()
@@ -126,19 +122,19 @@ class Cnn:
             plan.step()
         self.net.eval()
 
-    def find(self, x):
-        """Mean of the answers for a crop and its mirror image."""
+    def evidence(self, x):
+        """Logarithms of the mean probabilities for a crop and its mirror image. Probabilities below 1e-4 are not reliable."""
         import torch
         with torch.no_grad():
             x = torch.from_numpy(x)
-            return (self.net(x).softmax(1) + self.net(x.flip(3)).softmax(1)).argmax(1).numpy()
+            return ((self.net(x).softmax(1) + self.net(x.flip(3)).softmax(1)) / 2 + 1e-4).log().numpy()
 
 
 def augmented(x):
     """Mirrored, turned, sheared and scaled at random; with other contrast, noise and blur; at times without proportions or size."""
     import torch
     n = len(x)
-    x, proportion, size = x.split(1, 1)
+    x, proportion, size = x[:, :1], x[:, 1:2], x[:, 2:]  # no size where sizes are not used
     size = (size + 0.4 * torch.randn(n, 1, 1, 1)) * (torch.rand(n, 1, 1, 1) < 0.8)
     turn, tilt = (torch.rand(n) - 0.5) * 0.7, (torch.rand(n) - 0.5) * 0.4
     width, height = 0.8 + 0.45 * torch.rand(2, n)
