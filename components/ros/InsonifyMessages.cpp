@@ -39,8 +39,7 @@ void copyFieldsByName(const From& from, To& to) {
     To::describe(to, take);
 }
 
-template <class Sample, class Message>
-void fill(const Sample& sample, const std::string& frame_id, Message& message) {
+void fill(const auto& sample, const std::string& frame_id, auto& message) {
     types::requireSound(sample, "it");
     message.header = {toRos(sample.time), frame_id};
     copyFieldsByName(sample, message);

@@ -99,8 +99,7 @@ public:
     SceneUpdates& scene() { return scene_; }
 
 private:
-    template <class T>
-    void append(const T& sample, Form form, std::vector<char>& bytes);
+    void append(const auto& sample, Form form, std::vector<char>& bytes);
 
     ros::MessageOptions options_;
     FanPicture picture_;

@@ -76,8 +76,7 @@ public:
     static bool available() { return pythonHas("cyclonedds"); }
     bool ready() const { return ready_; }
     /** Sends greetings until a listener has received one; it then receives all that is sent. */
-    template <class Greet>
-    bool meets(Greet&& greet) const {
+    bool meets(auto&& greet) const {
         return becomesTrue([&] { return greet(), hasSaid("met"); });
     }
     /** Starts a sender, whose first greeting has arrived. */

@@ -39,10 +39,9 @@ protected:
 struct Described {
     double frequency_khz = 0;
     types::Mount mount;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"frequency_khz", "kHz"}, self.frequency_khz);
-        visit(types::Field{"mount"}, self.mount);
+    static void describe(auto& self, auto& visit) {
+        visit({"frequency_khz", "kHz"}, self.frequency_khz);
+        visit({"mount"}, self.mount);
     }
 };
 struct Sonar : framework::TaskContext {

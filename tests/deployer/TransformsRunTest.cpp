@@ -50,9 +50,8 @@ protected:
         return {{"pings", json::array()}};
     }
     /** Whether each ping's frame is at the sonar's place by pose and mount. @param toWorld from Rock's axes */
-    template <class ToWorld>
     static void expectPlaces(const json& pings, const WallFolder& folder, const types::Mount& mount,
-                             const ToWorld& toWorld, bool z_forward) {
+                             const auto& toWorld, bool z_forward) {
         std::map<int64_t, types::Pose> poses;
         log::openLog(folder / "out/wall.0.log")
             ->forEach<types::Pose>("vehicle.pose", [&](const types::Pose& pose, const log::SampleRef&) {

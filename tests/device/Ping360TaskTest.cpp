@@ -35,10 +35,7 @@ class Driver {
 public:
     explicit Driver(DriverLine line) : line_(std::move(line)) {}
     void give(const Bytes& bytes) const { line_.send(bytes); }
-    template <class Message>
-    void say(const Message& message) const {
-        give(pingBytes(message));
-    }
+    void say(const auto& message) const { give(pingBytes(message)); }
     std::vector<PingFrame> received() {
         reader_.add(line_.receive(std::chrono::milliseconds(1)));
         std::vector<PingFrame> frames;

@@ -21,8 +21,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 
 /** Calls errorOf() on a separate thread. */
-template <class Job>
-std::string errorElsewhere(const Job& job) {
+std::string errorElsewhere(const auto& job) {
     std::string text;
     std::thread([&] { text = test::errorOf<GlError>(job); }).join();
     return text;

@@ -112,8 +112,7 @@ public:
     void declare(const char* name) {
         thread_.declare([this, name](log::Writer& file) { return file.add(text_.index(), name, {}); });
     }
-    template <class Done>
-    bool until(size_t stream, Done&& done) {
+    bool until(size_t stream, auto&& done) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
         while (!done() && std::chrono::steady_clock::now() < end) {
             thread_.push(stream, types::Time{static_cast<int64_t>(++pushed)}, text_);

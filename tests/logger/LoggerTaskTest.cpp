@@ -55,10 +55,9 @@ types::SonarPtr ping(int64_t time) {
 struct Described {
     double range = 50;
     std::string range_rounding = "exact";
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"range", "m"}, self.range);
-        visit(types::Field{"range_rounding"}, self.range_rounding);
+    static void describe(auto& self, auto& visit) {
+        visit({"range", "m"}, self.range);
+        visit({"range_rounding"}, self.range_rounding);
     }
 };
 struct DescribedSonar : framework::TaskContext {

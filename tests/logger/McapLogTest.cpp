@@ -143,10 +143,7 @@ TEST_F(McapLogTest, PingsMayBecomeEightBits) {
 /** The parts of a sonar and its scene that a logger reads. */
 struct Mounted {
     types::Mount mount;
-    template <class Self, class V>
-    static void describe(Self& self, V& visit) {
-        visit(types::Field{"mount"}, self.mount);
-    }
+    static void describe(auto& self, auto& visit) { visit({"mount"}, self.mount); }
 };
 struct MountedSonar : framework::TaskContext {
     MountedSonar(const std::string& name, const types::Mount& mount) : TaskContext(name) {

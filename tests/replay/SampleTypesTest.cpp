@@ -189,8 +189,7 @@ std::string made(std::type_identity<std::string>) { return "a \"word\"\n"; }
 template <class T>
 requires std::is_arithmetic_v<T> T made(std::type_identity<T>) { return static_cast<T>(-3); }
 
-template <class T>
-std::vector<char> marshalled(const T& sample) {
+std::vector<char> marshalled(const auto& sample) {
     std::vector<char> bytes;
     log::pocolog::marshal(sample, bytes);
     return bytes;

@@ -38,8 +38,7 @@ SonarConfig floorSonar(double fov_deg, double height_deg, double bin, int bins, 
     return config;
 }
 
-template <class Change>
-types::Snapshot changed(types::GeometryPtr scene, const Change& change) {
+types::Snapshot changed(types::GeometryPtr scene, const auto& change) {
     auto geometry = std::make_shared<types::Geometry>(*scene);
     change(geometry->materials.front());
     return test::snapshotOf(geometry);

@@ -180,8 +180,7 @@ bool canHave(const test::Table& table, const SonarConfig& config) {
 
 class FanPingTest : public testing::TestWithParam<FanEffect> {
 protected:
-    template <class Use>
-    void forTables(int rounds, const Use& use) const {
+    void forTables(int rounds, const auto& use) const {
         std::mt19937 random(7);
         for (int round = 0; round < rounds; ++round)
             for (const test::Table& table : test::tablesOf(random)) {

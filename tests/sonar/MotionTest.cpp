@@ -77,8 +77,7 @@ struct ReceivedAt {
     double range;
     glm::dvec3 direction;
 };
-template <class F>
-double rootOf(const F& f, double low, double high) {
+double rootOf(const auto& f, double low, double high) {
     for (int i = 0; i < 200; ++i) {
         const double middle = 0.5 * (low + high);
         (f(middle) < 0 ? low : high) = middle;

@@ -40,8 +40,7 @@ Bins binsOf(const SonarConfig& config, const types::GeometryPtr& geometry = test
 }
 
 /** Returns the scene after `change`. */
-template <class Change>
-types::GeometryPtr changed(Change change) {
+types::GeometryPtr changed(auto change) {
     auto geometry = test::surfaces();
     change(*geometry);
     return geometry;

@@ -62,8 +62,7 @@ std::vector<types::GeometryPtr> scenes() {
 }
 
 /** Calls use(plan, geometry) for each set of features of a rasterising sonar. */
-template <class Use>
-void forEachFeatureSet(const Use& use) {
+void forEachFeatureSet(const auto& use) {
     std::set<std::vector<std::string>> seen;
     const std::vector<types::GeometryPtr> geometries = scenes();
     for (const SonarConfig& config : rasterSonars())

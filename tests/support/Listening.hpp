@@ -23,8 +23,7 @@ protected:
     ~Listening() { task.activity().hold(); }
 
     /** Makes a reader for each entry of a list of the configuration. */
-    template <class Config, class Entries>
-    void start(const Config& config, const Entries& entries) {
+    void start(const auto& config, const auto& entries) {
         task.config.set(config);
         for (size_t i = 0; i < entries.size(); ++i)
             task.makeOutput(entries[i].port)->connectTo(readers[i].port, framework::ConnPolicy::buffer(10'000));

@@ -66,9 +66,8 @@ protected:
     }
     types::GeometryPtr about(Bathymetry& floor, glm::dvec3 place) { return floor.about(place, rest_); }
     /** A mosaic of values `spacing` apart, whose south-west value is at an easting and northing; NaN: none. */
-    template <class Value>
     std::string mosaic(const std::string& name, int columns, int rows, double east, double north, double spacing,
-                       Value&& value) {
+                       auto&& value) {
         std::vector<float> values;
         for (int row = rows - 1; row >= 0; --row)
             for (int column = 0; column < columns; ++column) {
@@ -81,8 +80,7 @@ protected:
         return write(name + ".flt", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
     }
     /** Value of a tile's map at a vertex, bilinear: by `valueOf(texel)`. */
-    template <class Value>
-    static double mapAt(const types::Mesh& mesh, size_t vertex, Value&& valueOf) {
+    static double mapAt(const types::Mesh& mesh, size_t vertex, auto&& valueOf) {
         const types::SurfaceMap& map = *mesh.maps.at(0).map;
         const glm::vec2 at = mesh.map_uvs[vertex] * glm::vec2(map.width, map.height) - 0.5f, low = glm::floor(at),
                         share = at - low;

@@ -67,8 +67,7 @@ public:
         });
     }
     /** Appends what `fill` appends, preceded by its size in four bytes. */
-    template <class Fill>
-    void sized(Fill&& fill) {
+    void sized(auto&& fill) {
         number(uint32_t{0});
         const size_t from = bytes_.size();
         fill();
