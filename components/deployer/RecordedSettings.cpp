@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
@@ -18,7 +17,6 @@
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
-#include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <regex>
 
 #include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"

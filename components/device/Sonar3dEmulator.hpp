@@ -3,7 +3,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "components/device/AskedPings.hpp"
 #include "components/device/Http.hpp"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "components/log/Stream.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::log {
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "components/framework/Activity.hpp"
-
 namespace insonify::pose {
 
 void TrajectoryTask::check(types::Diagnostics& diagnostics) const {

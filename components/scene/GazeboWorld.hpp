@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "components/scene/Scene.hpp"
 #include "types/ConfigError.hpp"

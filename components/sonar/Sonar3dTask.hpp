@@ -1,5 +1,4 @@
 #pragma once
-#include <vector>
 
 #include "components/framework/Properties.hpp"
 #include "components/sonar/PingTask.hpp"

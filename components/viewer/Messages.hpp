@@ -2,7 +2,6 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "components/ros/Samples.hpp"

@@ -5,11 +5,9 @@
 #include <numbers>
 
 #include "components/acoustics/Backscatter.hpp"
-#include "components/acoustics/SeabedBackscatter.hpp"
 #include "tests/acoustics/Degree.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Refused.hpp"
-#include "types/ConfigError.hpp"
 
 namespace insonify::acoustics {
 namespace {

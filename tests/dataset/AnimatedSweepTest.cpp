@@ -25,8 +25,7 @@ picture: {height: 300}
 annotations: {min_pixels: 1}
 )";
 
-class AnimatedSweepTest : public scene::SceneFiles {
-protected:
+struct AnimatedSweepTest : scene::SceneFiles {
     AnimatedSweepTest() {
         write("eel.gltf", gltf(scene::eelText(scene::Tube(30, 24, 0.06f))));
         std::string text = deployment;

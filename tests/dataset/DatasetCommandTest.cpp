@@ -59,8 +59,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
     return text.replace(text.find(old), old.size(), by);
 }
 
-class DatasetCommandTest : public testing::Test {
-protected:
+struct DatasetCommandTest : testing::Test {
     DatasetCommandTest() {
         writeFile(folder_ / "d.yml", deployment);
         writeFile(folder_ / "sweep.yml", sweep);

@@ -10,8 +10,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class RangeImageTest : public testing::Test {
-protected:
+struct RangeImageTest : testing::Test {
     RangeImageTest() { writeFile(folder_ / "sweep.yml", sweep("range")); }
     static std::string sweep(const std::string& shape) {
         return "poses: {grid: {x: [31, 32], y: -6, z: -5.5, yaw_deg: -50}}\n"

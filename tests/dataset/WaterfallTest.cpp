@@ -45,8 +45,7 @@ picture: {shape: waterfall, height: 400}
 annotations: {min_pixels: 4, shadows: true}
 )";
 
-class WaterfallTest : public testing::Test {
-protected:
+struct WaterfallTest : testing::Test {
     WaterfallTest() {
         writeFile(folder_ / "d.yml", side_scan);
         writeFile(folder_ / "sweep.yml", sweep_of_lines);

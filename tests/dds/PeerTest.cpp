@@ -3,7 +3,6 @@
 
 #include "components/dds/Endpoints.hpp"
 #include "components/ros/Cdr.hpp"
-#include "components/ros/Messages.hpp"
 #include "components/ros/Stamps.hpp"
 #include "tests/dds/Ends.hpp"
 

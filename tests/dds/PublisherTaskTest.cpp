@@ -17,8 +17,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class PublisherTaskTest : public Loopback {
-protected:
+struct PublisherTaskTest : Loopback {
     Node node{domainId({}), "listener", 16};
 
     /** Returns the message that `send` causes on a topic, or fails. */

@@ -18,8 +18,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class Ros2RunTest : public Loopback {
-protected:
+struct Ros2RunTest : Loopback {
     TestFolder folder;
     const std::string fls = test::sourceFile("deploy/ros2_fls.yml");
     const std::string tf = test::sourceFile("deploy/ros2_tf.yml");

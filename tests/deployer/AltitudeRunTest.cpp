@@ -77,8 +77,7 @@ std::pair<int, int> brightestColumns(const fs::path& picture, const output::Side
     return found;
 }
 
-class AltitudeRunTest : public testing::Test {
-protected:
+struct AltitudeRunTest : testing::Test {
     void SetUp() override {
         writeBytes(folder_ / "wire.xtf", wireXtf());
         writeFile(folder_ / "side.yml", above_ground);

@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "tests/deployer/Wall.hpp"
 
 using namespace insonify::deployer;
@@ -20,8 +18,7 @@ connections: [{from: vehicle.pose, to: scene.pose}, {from: scene.snapshot, to: s
 )";
 }
 
-class BeamCommandTest : public testing::Test {
-protected:
+struct BeamCommandTest : testing::Test {
     Outcome call(const std::string& properties, std::vector<std::string> options) {
         writeFile(folder_ / "wall.gltf", wallGltf());
         writeFile(folder_ / "sonar.yml", sonarWith(properties));

@@ -29,8 +29,7 @@ connections:
   - {from: two_sonar.ping, to: log.two, policy: {type: buffer, size: 8}}
 )";
 
-class CrosstalkRunTest : public testing::Test {
-protected:
+struct CrosstalkRunTest : testing::Test {
     CrosstalkRunTest() {
         fs::copy_file(fs::path(insonify::test::source_dir) / "deploy/scenes/wall.glb", folder_ / "case.glb");
     }

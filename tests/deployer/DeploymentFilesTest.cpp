@@ -29,8 +29,7 @@ std::vector<std::string> runOf(const std::string& deployment, std::vector<std::s
     return words;
 }
 
-class DeploymentFilesTest : public testing::TestWithParam<std::string> {
-protected:
+struct DeploymentFilesTest : testing::TestWithParam<std::string> {
     void SetUp() override {
         const std::string lacks = callInsonify(folder, {"libraries", deploy / (GetParam() + ".yml")}).out;
         if (!lacks.empty())

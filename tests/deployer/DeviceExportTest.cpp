@@ -42,8 +42,7 @@ connections:
   - {from: vehicle.pose,   to: log.vehicle,  policy: {type: buffer, size: 64}}
 )";
 
-class DeviceExportTest : public testing::Test {
-protected:
+struct DeviceExportTest : testing::Test {
     void SetUp() override {
         writeFile(folder_ / "wall.yml", sidescan_deployment);
         const Outcome outcome = folder_.run({"--pings", "6"});

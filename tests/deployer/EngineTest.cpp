@@ -17,8 +17,7 @@ namespace {
 
 constexpr int shard_count = 6;
 
-class EngineTest : public testing::Test {
-protected:
+struct EngineTest : testing::Test {
     /** The run, without its shard; `out` is relative to the test's folder. */
     std::vector<std::string> runTo(const std::string& out) const {
         return {"run", folder_ / "wall.yml", "--out", folder_ / out, "--pings", "60"};
@@ -56,8 +55,7 @@ struct Engine {
     const char *name, *module;
 };
 
-class WorkersTest : public EngineTest, public testing::WithParamInterface<Engine> {
-protected:
+struct WorkersTest : EngineTest, testing::WithParamInterface<Engine> {
     void SetUp() override {
         if (!insonify::pythonHas(GetParam().module))
             GTEST_SKIP() << "SKIPPED: the Python package " << GetParam().module

@@ -51,8 +51,7 @@ std::vector<double> geminiBearingsDeg() {
     return bearings;
 }
 
-class FanImportTest : public testing::Test {
-protected:
+struct FanImportTest : testing::Test {
     /** The pings of a run of the wall. */
     std::vector<types::Sonar> pingsOf(const std::string& deployment, int count) const {
         writeFile(folder_ / "wall.yml", deployment);

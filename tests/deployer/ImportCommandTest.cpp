@@ -24,8 +24,7 @@ std::string wallOfCodes() {
                     "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 64}}");
 }
 
-class ImportCommandTest : public testing::Test {
-protected:
+struct ImportCommandTest : testing::Test {
     /** Writes the codes of the wall's receiver to dive.oculus, as the maker's viewer would record them. */
     void record(int pings) const {
         ASSERT_EQ(folder_.run({"--pings", std::to_string(pings)}).code, 0);

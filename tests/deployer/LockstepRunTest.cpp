@@ -9,8 +9,7 @@ using namespace insonify::deployer;
 namespace {
 
 /** A deployment of deploy/ in its own folder, with a text replaced. */
-class DeployFolder : public TestFolder {
-public:
+struct DeployFolder : TestFolder {
     DeployFolder(const std::string& name, const std::string& what, const std::string& with) {
         const fs::path deploy = fs::path(insonify::test::source_dir) / "deploy";
         fs::create_symlink(deploy / "scenes", *this / "scenes");

@@ -8,8 +8,7 @@ using testing::HasSubstr;
 namespace {
 
 /** A folder with a run of the wall for three pings. */
-class LogCommandTest : public testing::Test {
-protected:
+struct LogCommandTest : testing::Test {
     LogCommandTest() { EXPECT_EQ(folder.run({"--pings", "3"}).code, 0); }
     Outcome exportTo(const std::string& stream, const std::string& to) {
         return callInsonify(folder, {"log", "export", log, "--stream", stream, "--to", to});

@@ -11,8 +11,7 @@ using testing::Not;
 namespace {
 
 /** A log of the wall in out/wall.0.log: noiseless pings, pings with speckle, pings of a receiver with a TVG. */
-class LogMeaningTest : public testing::Test {
-protected:
+struct LogMeaningTest : testing::Test {
     LogMeaningTest()
         : folder_(replaced(replaced(replaced(wall_deployment, "  log:\n",
                                              "  receiver: {type: receiver::ReceiverTask, properties: {tvg: "

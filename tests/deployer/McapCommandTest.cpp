@@ -9,8 +9,7 @@ using testing::HasSubstr;
 namespace {
 
 /** A folder with a run of the wall for three pings, logged as pocolog in out/. */
-class McapCommandTest : public testing::Test {
-protected:
+struct McapCommandTest : testing::Test {
     McapCommandTest() { EXPECT_EQ(folder.run({"--pings", "3"}).code, 0); }
     Outcome call(std::vector<std::string> words) const { return callInsonify(folder, std::move(words)); }
     /** Whether two logs have the same pings, except for the rounding of bearings. */

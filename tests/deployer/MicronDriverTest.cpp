@@ -50,8 +50,7 @@ MicronDriver driverOn(const Wire& wire) {
     return {[&wire](const Bytes& bytes) { wire.say(bytes); }, [&wire] { return wire.receive(); }};
 }
 
-class MicronDriverTest : public ::testing::Test {
-protected:
+struct MicronDriverTest : ::testing::Test {
     void expectAWallAt6Metres(MicronDriver driver, bool low_resolution) {
         driver.reboot();
         EXPECT_EQ(driver.serialNumber(), 1);

@@ -15,8 +15,7 @@ namespace {
 
 const std::string navigation = test::sourceFile("deploy/navigation.yml");
 
-class NavigationRunTest : public testing::Test {
-protected:
+struct NavigationRunTest : testing::Test {
     /** Runs it with a small, fast sonar. */
     void run(const std::string& out, std::vector<std::string> more = {}) {
         std::vector<std::string> words = {"run",   navigation,

@@ -28,8 +28,7 @@ std::vector<double> numbersIn(const std::string& text, const std::string& patter
 }
 
 /** The running deployment, and the output of the client. */
-class PingDriverTest : public testing::Test {
-protected:
+struct PingDriverTest : testing::Test {
     void SetUp() override {
         if (!insonify::pythonHas("brping"))
             GTEST_SKIP() << "PyPI's bluerobotics-ping is not in " << insonify::python()

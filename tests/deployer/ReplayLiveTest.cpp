@@ -12,8 +12,7 @@ using testing::HasSubstr;
 
 namespace {
 
-class ReplayLiveTest : public testing::Test {
-protected:
+struct ReplayLiveTest : testing::Test {
     Outcome call(std::vector<std::string> words) const { return callInsonify(folder_, std::move(words)); }
     Outcome score(const std::string& log, std::vector<std::string> more = {}) const {
         std::vector<std::string> words = {"replay", log, "wall.yml", "--rerender", "--score", "--out", "scored"};

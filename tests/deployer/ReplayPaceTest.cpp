@@ -20,8 +20,7 @@ using testing::Not;
 namespace {
 
 /** A log of pings at 1.0, 1.1 and 1.2 s. */
-class ReplayPaceTest : public testing::Test {
-protected:
+struct ReplayPaceTest : testing::Test {
     void SetUp() override { ASSERT_EQ(folder_.run({"--pings", "3"}).code, 0); }
     std::vector<std::string> words(const std::vector<std::string>& more) const {
         std::vector<std::string> all = {"replay", "out/wall.0.log", "wall.yml", "--out", "again"};

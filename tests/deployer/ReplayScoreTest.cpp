@@ -1,8 +1,6 @@
 // A log rendered again and compared with its pings.
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "components/log/pocolog/Reader.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "tests/deployer/Wall.hpp"
@@ -15,8 +13,7 @@ using testing::HasSubstr;
 namespace {
 
 /** out/wall.0.log of the wall's deployment, and scores compared with it. */
-class ReplayScoreTest : public testing::Test {
-protected:
+struct ReplayScoreTest : testing::Test {
     void record(std::vector<std::string> more = {"--pings", "3"}) {
         const Outcome outcome = folder_.run(std::move(more));
         ASSERT_EQ(outcome.code, 0) << outcome.err;

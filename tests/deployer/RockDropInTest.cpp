@@ -17,8 +17,7 @@ namespace {
 const std::string multibeam_file = "deploy/rock/imaging_sonar_simulation::MultibeamSonarTask.yml";
 
 /** A copy of deploy/, with a few beams so that a run is short. */
-class RockDropInTest : public testing::Test {
-protected:
+struct RockDropInTest : testing::Test {
     RockDropInTest() {
         fs::copy(fs::path(test::source_dir) / "deploy", folder_ / "deploy", fs::copy_options::recursive);
     }

@@ -15,8 +15,7 @@ namespace ros = insonify::ros;
 namespace {
 
 /** Runs a deployment for two pings, logged as MCAP. */
-class RosArgumentsTest : public testing::Test {
-protected:
+struct RosArgumentsTest : testing::Test {
     Outcome run(std::vector<std::string> ros_args, const std::string& deployment = "wall.yml") {
         std::vector<std::string> words = {"run", deployment, "--out",           "out",       "--pings",
                                           "2",   "--set",    "log.file=x.mcap", "--ros-args"};

@@ -72,8 +72,7 @@ std::map<std::string, std::string> filesIn(const fs::path& folder) {
     return files;
 }
 
-class Shards : public WallFolder {
-public:
+struct Shards : WallFolder {
     using WallFolder::WallFolder;
 
     Outcome make(const std::string& shard, const std::string& out = "shards",

@@ -16,8 +16,7 @@ namespace {
 
 constexpr int ping_count = 6;
 
-class TransformsRunTest : public testing::Test {
-protected:
+struct TransformsRunTest : testing::Test {
     void SetUp() override {
         if (!pythonHas("mcap, mcap_ros2, rosbags, numpy"))
             GTEST_SKIP() << "SKIPPED: Python packages mcap, mcap_ros2, rosbags and numpy; scripts/setup installs them";

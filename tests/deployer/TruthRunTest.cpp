@@ -10,8 +10,7 @@ using namespace insonify::deployer;
 namespace {
 
 /** Two pings of a smaller sonar, in out/. */
-class TruthRunTest : public testing::Test {
-protected:
+struct TruthRunTest : testing::Test {
     void SetUp() override {
         const Outcome ran = callInsonify(
             folder_, {"run", fs::path(insonify::test::source_dir) / "deploy/truth.yml", "--pings", "2", "--out", "out",

@@ -102,8 +102,7 @@ inline std::string realtimeWall() {
 }
 
 /** A folder with wall.yml and wall.gltf. */
-class WallFolder : public TestFolder {
-public:
+struct WallFolder : TestFolder {
     explicit WallFolder(const std::string& deployment = wall_deployment, const std::string& gltf = wallGltf()) {
         writeFile(*this / "wall.yml", deployment);
         writeFile(*this / "wall.gltf", gltf);

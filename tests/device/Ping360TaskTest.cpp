@@ -48,8 +48,7 @@ private:
     PingFrameReader reader_{4096};
 };
 
-class Ping360TaskTest : public ::testing::Test {
-protected:
+struct Ping360TaskTest : ::testing::Test {
     void SetUp() override {
         task_.environment().output_folder = folder_.path();
         task_.config.set(quickConfig());

@@ -89,8 +89,7 @@ private:
 };
 
 /** Reads texts, to have another type. */
-class Words : public framework::TaskContext {
-public:
+struct Words : framework::TaskContext {
     using TaskContext::TaskContext;
     framework::InputPort<std::string> in{this, "in", "words"};
 };

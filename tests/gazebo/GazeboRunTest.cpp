@@ -17,8 +17,7 @@ namespace {
 
 const std::string deployment = test::sourceFile("deploy/gazebo_world.yml");
 
-class GazeboRunTest : public gazebo::OwnPartition {
-protected:
+struct GazeboRunTest : gazebo::OwnPartition {
     /** A world that offers its scene as Gazebo does, and publishes no poses by itself. */
     std::unique_ptr<gazebo::FortressWorld> makeWorld() const {
         auto world = std::make_unique<gazebo::FortressWorld>("/world/two_vehicles/pose/info");

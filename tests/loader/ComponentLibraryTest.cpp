@@ -21,8 +21,7 @@ std::string deploymentOf(const std::string& type) {
 }
 
 /** An installed Insonify in its own folder, so that libraries may be absent or broken. */
-class ComponentLibraryTest : public testing::Test {
-protected:
+struct ComponentLibraryTest : testing::Test {
     ComponentLibraryTest() {
         fs::create_directories(folder_ / "lib/insonify");
         fs::create_directories(folder_ / "parts");

@@ -78,8 +78,7 @@ connections:
 )";
 }
 
-class LoggedRunTest : public testing::Test {
-protected:
+struct LoggedRunTest : testing::Test {
     LoggedRunTest() {
         registerTasks(registry_);
         registry_.add<PlannerTask>("test::PlannerTask", "a sonar");

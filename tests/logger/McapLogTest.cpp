@@ -28,8 +28,7 @@ types::SonarPtr pingAt(int64_t time) {
     return std::make_shared<const types::Sonar>(ping);
 }
 
-class McapLogTest : public testing::Test {
-protected:
+struct McapLogTest : testing::Test {
     McapLogTest() {
         config.file = "x.0.mcap";
         task.environment().output_folder = folder.path();

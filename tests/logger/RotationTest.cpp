@@ -12,8 +12,7 @@
 namespace insonify::logger {
 namespace {
 
-class RotationTest : public testing::Test {
-protected:
+struct RotationTest : testing::Test {
     /** Logs texts of 100 kB at intervals of 0.1 s to x.0.log and the following files. */
     void log(LoggerConfig config, int count) {
         config.file = "x.0.log";

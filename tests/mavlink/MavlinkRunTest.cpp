@@ -18,8 +18,7 @@ namespace {
 
 const std::string deployment = test::sourceFile("deploy/mavlink_poses.yml");
 
-class MavlinkRunTest : public testing::Test {
-protected:
+struct MavlinkRunTest : testing::Test {
     std::vector<std::string> words(std::vector<std::string> more) const {
         std::vector<std::string> all = {"run",   deployment,        "--out", "out",
                                         "--set", "vehicles.port=0", "--set", "scene.pose_timeout=60"};

@@ -7,8 +7,7 @@ namespace insonify::output {
 namespace {
 
 /** A disc in gray on a fixed scale, to which a head adds one beam after the other. */
-class DiscImageTest : public ::testing::Test {
-protected:
+struct DiscImageTest : ::testing::Test {
     DiscImageTest() : disc_(display()) {}
     static DisplayConfig display() {
         DisplayConfig config;

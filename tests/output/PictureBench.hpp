@@ -9,8 +9,7 @@
 namespace insonify::test {
 
 template <class Task, class Second>
-class PictureBench : public ::testing::Test {
-protected:
+struct PictureBench : ::testing::Test {
     explicit PictureBench(framework::InputPort<Second> Task::*second) {
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(100));
         second_.port.connectTo(task_.*second, framework::ConnPolicy::buffer(100));

@@ -7,8 +7,7 @@
 namespace insonify::output {
 namespace {
 
-class PictureTaskTest : public ::testing::Test {
-protected:
+struct PictureTaskTest : ::testing::Test {
     PictureTaskTest() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
         environment->output_folder = folder_.path();

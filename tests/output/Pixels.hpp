@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
-#include <string>
 
 #include "tests/support/Folder.hpp"
 #include "tests/support/Pings.hpp"

@@ -7,8 +7,7 @@ namespace insonify::output {
 namespace {
 
 /** A mosaic in gray on a fixed scale; 3 pixels a bin. */
-class ScanMosaicTest : public ::testing::Test {
-protected:
+struct ScanMosaicTest : ::testing::Test {
     ScanMosaicTest() : mosaic_(display()) {}
     static DisplayConfig display() {
         DisplayConfig config;

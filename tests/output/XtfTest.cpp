@@ -43,8 +43,7 @@ types::Pose towed(int64_t time, double yaw_deg = 0) {
     return pose;
 }
 
-class XtfTest : public ::testing::Test {
-protected:
+struct XtfTest : ::testing::Test {
     XtfTest() {
         auto environment = std::make_shared<framework::Environment>(task_.environment());
         environment->output_folder = folder_.path();

@@ -1,10 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
 #include <memory>
 
-#include "components/framework/Activity.hpp"
 #include "components/pose/TrajectoryTask.hpp"
 #include "tests/support/Folder.hpp"
 #include "tests/support/Ports.hpp"
@@ -14,8 +12,7 @@ namespace insonify::pose {
 namespace {
 
 /** A task on a clock that the test sets; the run starts at 1 s. */
-class TrajectoryTaskTest : public ::testing::Test {
-protected:
+struct TrajectoryTaskTest : ::testing::Test {
     TrajectoryTaskTest() {
         auto environment = std::make_shared<framework::Environment>();
         environment->now = [this] { return time_; };

@@ -2,7 +2,6 @@
 // A log and a task that replays it.
 #include <gtest/gtest.h>
 
-#include "components/framework/Activity.hpp"
 #include "components/log/pocolog/Writer.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "tests/support/Folder.hpp"

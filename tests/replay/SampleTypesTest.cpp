@@ -236,8 +236,7 @@ T replayed(const Folder& folder, const std::string& file) {
 }
 
 template <class T>
-class SampleTypesTest : public testing::Test {
-protected:
+struct SampleTypesTest : testing::Test {
     /** Returns the sample as MCAP files and replays return it: Rock's older sonar samples become pings. */
     using Read = typename ros::MessagesOf<T>::read_as;
     static Read asRead(const T& sample) {

@@ -9,8 +9,7 @@
 namespace insonify::scene {
 namespace {
 
-class AnimationTaskTest : public SceneFiles {
-protected:
+struct AnimationTaskTest : SceneFiles {
     AnimationTaskTest() {
         environment_->now = [this] { return now_; };
         environment_->start_time = [] { return types::Time::fromSeconds(1); };

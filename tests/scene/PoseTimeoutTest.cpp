@@ -3,7 +3,6 @@
 
 #include <numbers>
 
-#include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
@@ -16,8 +15,7 @@ using framework::TaskState;
 using testing::HasSubstr;
 using testing::Not;
 
-class PoseTimeoutTest : public SceneFiles {
-protected:
+struct PoseTimeoutTest : SceneFiles {
     PoseTimeoutTest() {
         config_.file = write("empty.gltf", gltf(R"("scenes":[{"nodes":[]}],"nodes":[],)" + buffers("    "))).string();
         vehicle_.port.connectTo(task_.pose, framework::ConnPolicy::data());

@@ -51,8 +51,7 @@ inline std::string triangle(const std::string& corners = bytesOf<float>({0, 0, 0
 }
 
 /** Has a separate folder for each test. */
-class SceneFiles : public ::testing::Test {
-protected:
+struct SceneFiles : ::testing::Test {
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include "components/framework/Activity.hpp"
 #include "components/scene/SceneTask.hpp"
 #include "tests/scene/SceneFiles.hpp"
 #include "tests/support/Ports.hpp"
@@ -9,8 +8,7 @@
 namespace insonify::scene {
 namespace {
 
-class SceneTaskTest : public SceneFiles {
-protected:
+struct SceneTaskTest : SceneFiles {
     SceneTaskTest() {
         config_.file = write("harbour.gltf", gltf(R"("scenes":[{"nodes":[0,2]}],
             "nodes":[{"mesh":0,"name":"boat","translation":[1,2,3],"scale":[2,2,2],"children":[1]},

@@ -13,8 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /** A boat, turned by 90 degrees and twice as large, with a mast that leans; a quay. */
-class TargetsTest : public SceneFiles {
-protected:
+struct TargetsTest : SceneFiles {
     TargetsTest() {
         config_.file = write("harbour.gltf", gltf(R"("scenes":[{"nodes":[0,2,3]}],
             "nodes":[{"mesh":0,"name":"boat","translation":[1,2,3],"rotation":[0,0.70710678118,0,0.70710678118],

@@ -27,8 +27,7 @@ private:
     std::optional<std::string> before_;
 };
 
-class SdfFiles : public SceneFiles {
-protected:
+struct SdfFiles : SceneFiles {
     std::filesystem::path writeWorld(const std::string& body, const std::string& version = "1.9") const {
         return write("case.world", "<sdf version='" + version + "'><world name='w'>\n" + body + "</world></sdf>");
     }

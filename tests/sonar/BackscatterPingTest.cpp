@@ -7,7 +7,6 @@
 
 #include "components/acoustics/Seabed.hpp"
 #include "components/acoustics/SeabedBackscatter.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/PlanReport.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"

@@ -11,7 +11,6 @@
 
 #include "components/acoustics/BeamPattern.hpp"
 #include "components/acoustics/Pulse.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/fan/BinGrid.hpp"
 #include "components/sonar/ways/Waveform.hpp"
 #include "tests/support/Scenes.hpp"

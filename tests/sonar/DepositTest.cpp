@@ -33,8 +33,7 @@ struct Kind {
     double field_of_view_deg;
 };
 
-class DepositTest : public testing::TestWithParam<Kind> {
-protected:
+struct DepositTest : testing::TestWithParam<Kind> {
     SonarConfig with(Deposit deposit) const {
         return depositFan(GetParam().model, GetParam().beams, deposit, GetParam().field_of_view_deg);
     }

@@ -12,7 +12,6 @@
 #include <random>
 
 #include "components/acoustics/Plate.hpp"
-#include "components/sonar/SonarRenderer.hpp"
 #include "components/sonar/plan/RenderPlan.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 

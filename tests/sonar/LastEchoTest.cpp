@@ -3,7 +3,6 @@
 
 #include <thread>
 
-#include "components/framework/Activity.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"
@@ -13,8 +12,7 @@ namespace insonify::sonar {
 namespace {
 
 /** A sonar on its own thread, and the wall clock. */
-class LastEchoTest : public ::testing::Test {
-protected:
+struct LastEchoTest : ::testing::Test {
     void start(double range) {
         SonarConfig config = smallSonar();
         config.range = range;

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <random>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/ShellScenes.hpp"
 
 namespace insonify::sonar {

@@ -415,8 +415,7 @@ TEST(MotionTest, VelocitiesAreFromThePoseOrElseFromTwoSnapshots) {
     EXPECT_NEAR(glm::distance(motion.turn(), snapshot.sonar.orientation * glm::dvec3(0, 0.5, 0)), 0, 1e-12);
 }
 
-class SweepTest : public test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
-protected:
+struct SweepTest : test::TaskBench<ScanningSonarTask, types::SnapshotPtr, types::SonarPtr> {
     SweepTest() : TaskBench(&ScanningSonarTask::snapshot, &ScanningSonarTask::ping) {}
     void start(bool sweeps) {
         ScanningSonarConfig config;

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "components/sonar/SonarRenderer.hpp"
 #include "tests/sonar/BeamCut.hpp"
 #include "tests/support/ClosedForms.hpp"
 #include "tests/support/EveryWay.hpp"

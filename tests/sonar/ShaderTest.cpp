@@ -108,8 +108,7 @@ std::set<std::string> featuresIn(std::string_view text, const std::string& patte
     return all;
 }
 
-class ShaderTest : public testing::Test {
-protected:
+struct ShaderTest : testing::Test {
     void SetUp() override {
         if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
             GTEST_SKIP() << "SKIPPED: no glslangValidator (Debian: glslang-tools; scripts/setup installs it)";

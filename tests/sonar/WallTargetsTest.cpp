@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <numeric>
 
 #include "components/sonar/SonarRenderer.hpp"

@@ -2,7 +2,6 @@
 // Helpers for tests of fits to simulated recordings.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "components/framework/Activity.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
 #include "types/Pose.hpp"
@@ -17,8 +16,7 @@ namespace insonify::test {
 /** A bench for a task that listens. The task runs by its own activity or, with `by_hand`, a cycle in each attempt of a
  *  wait. */
 template <class Task>
-class Listening {
-protected:
+struct Listening {
     explicit Listening(const std::string& name, bool by_hand = false) : task(name), by_hand_(by_hand) {}
     ~Listening() { task.activity().hold(); }
 

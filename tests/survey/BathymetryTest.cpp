@@ -29,8 +29,7 @@ using testing::HasSubstr;
 /** Elevation at an easting and northing: no two posts have the same. */
 double elevation(double east, double north) { return -50 + 0.01 * (east - 1000) + 0.001 * (north - 5000); }
 
-class BathymetryTest : public testing::Test {
-protected:
+struct BathymetryTest : testing::Test {
     std::string write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return (folder_ / name).string();

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "components/framework/Activity.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"

@@ -4,7 +4,6 @@
 #include <map>
 #include <span>
 
-#include "components/framework/Deployment.hpp"
 #include "components/ros/Cdr.hpp"
 #include "components/viewer/ViewerTask.hpp"
 #include "tests/support/Folder.hpp"

@@ -3,7 +3,6 @@
 // footer, then the magic again. All integers are little endian.
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>

@@ -5,7 +5,6 @@
 // sample is dropped; padding after a vector's element is kept. Vectors and strings are a u64 count and their elements.
 #include <bit>
 #include <cstring>
-#include <stdexcept>
 
 #include "components/log/Stream.hpp"
 #include "components/log/pocolog/Typelib.hpp"

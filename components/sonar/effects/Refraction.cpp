@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "components/sonar/effects/Effect.hpp"
 #include "types/Angle.hpp"
 #include "types/ConfigError.hpp"
