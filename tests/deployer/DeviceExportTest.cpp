@@ -62,9 +62,7 @@ struct DeviceExportTest : testing::Test {
     }
     void expectRefused(const std::string& stream, const std::string& to, std::vector<std::string> more,
                        const std::string& why, const std::string& log = "out/lines.0.log") const {
-        const Outcome outcome = toFile(stream, to, std::move(more), log);
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, HasSubstr(why));
+        EXPECT_THAT(toFile(stream, to, std::move(more), log), isRefused(HasSubstr(why)));
         EXPECT_FALSE(fs::exists(folder_ / to));
     }
 
@@ -74,9 +72,7 @@ struct DeviceExportTest : testing::Test {
 }  // namespace
 
 TEST_F(DeviceExportTest, ALogExportsTheXtfFileOfItsRun) {
-    const Outcome outcome = toFile("receiver.ping", "lines.xtf");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "lines.xtf\n");
+    ASSERT_THAT(toFile("receiver.ping", "lines.xtf"), prints("lines.xtf\n"));
     const std::string exported = readFile(folder_ / "lines.xtf");
     EXPECT_EQ(exported.size() % 64, 0u);
     EXPECT_EQ(exported.size(), 1024 + 6 * ((256 + 2 * (64 + 200 * 2) + 63) / 64 * 64));
@@ -150,9 +146,8 @@ TEST_F(DeviceExportTest, BinsThatAreNotCodesAreUnchanged) {
 }
 
 TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "again.0.log: 6 pings as receiver.ping\n");
+    ASSERT_THAT(callInsonify(folder_, {"log", "import", "out/lines.xtf", "--to", "again.0.log"}),
+                prints("again.0.log: 6 pings as receiver.ping\n"));
     const auto pingsOf = [&](const char* log) {
         std::vector<types::Sonar> pings;
         log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {

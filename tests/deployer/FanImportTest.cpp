@@ -118,8 +118,7 @@ struct FanImportTest : testing::Test {
 TEST_F(FanImportTest, AnArisFileOfRenderedPingsIsRenderedAgain) {
     recordAris(3);
     const Outcome outcome = import("dive.aris");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "dive.0.log: 3 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("dive.0.log: 3 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("as recorded: receiver.blanking={range_min: 1.5}"));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "dive.0.log"}).code, 0);
     const json scored = score();
@@ -203,8 +202,7 @@ TEST_F(FanImportTest, ADamagedFileIsOneErrorAndLeavesNoLog) {
     EXPECT_EQ(import("empty.aris").err, "empty.aris: holds no ping of a sonar\n");
     bytes.resize(3000);
     writeBytes(folder_ / "zero.aris", bytes);
-    const Outcome outcome = import("zero.aris");
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err, "zero.aris: byte 1036: is 0x00000000; the header of a frame has 0x05464444 here\n");
+    EXPECT_THAT(import("zero.aris"),
+                isRefused("zero.aris: byte 1036: is 0x00000000; the header of a frame has 0x05464444 here\n"));
     EXPECT_FALSE(fs::exists(folder_ / "dive.0.log"));
 }

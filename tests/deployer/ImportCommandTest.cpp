@@ -73,9 +73,7 @@ struct ImportCommandTest : testing::Test {
 
 TEST_F(ImportCommandTest, ARecordingOfRenderedPingsIsRenderedAgain) {
     record(3);
-    const Outcome outcome = import("dive.oculus");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("dive.0.log: 3 pings as receiver.ping"));
+    ASSERT_THAT(import("dive.oculus"), prints(HasSubstr("dive.0.log: 3 pings as receiver.ping")));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "dive.0.log"}).code, 0);
     const json scored = score();
     EXPECT_EQ(scored["compared"], 3);
@@ -100,8 +98,7 @@ TEST_F(ImportCommandTest, TheLogHasThePingsTimesAndThePosesOfTheTrajectory) {
 TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
     recordAChange();
     const Outcome outcome = import("dive.oculus");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("dive.0.log: 4 pings as receiver.ping"));
+    ASSERT_THAT(outcome, prints(HasSubstr("dive.0.log: 4 pings as receiver.ping")));
     EXPECT_THAT(outcome.err, HasSubstr("notice: settings change 1 times; properties.0.log next to the log has them"));
     std::vector<double> ranges;
     log::openLog(folder_ / "dive.0.log")
@@ -134,8 +131,7 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
     const fs::path recording = test::sharedFile("sonar/xtf/scotsman-iver2.xtf");
     if (!fs::exists(recording)) GTEST_SKIP() << recording << " is missing: no real XTF file is tested";
     const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "side.0.log: 461 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("side.0.log: 461 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("x = y = 0 of the world is latitude 48.4454500, longitude -68.8279350"));
     const auto log = log::openLog(folder_ / "side.0.log");
     EXPECT_EQ(log->find("sonar.pose")->count, 460u);
@@ -159,8 +155,7 @@ TEST_F(ImportCommandTest, ARealSideScanBecomesAWaterfallArraysAndTheSameXtfFile)
 TEST_F(ImportCommandTest, AJsfFileBecomesALogThatIsCheckedAndExported) {
     const std::string recording = test::sourceFile("tests/fuzz/corpus/jsf/two_pings");
     const Outcome outcome = callInsonify(folder_, {"log", "import", recording, "--to", "side.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.out, "side.0.log: 2 pings as receiver.ping\n");
+    ASSERT_THAT(outcome, prints("side.0.log: 2 pings as receiver.ping\n"));
     EXPECT_THAT(outcome.err, HasSubstr("settings change 1 times; each ping has its own range and bins"));
     EXPECT_EQ(callInsonify(folder_, {"log", "check", "side.0.log"}).code, 0);
     const auto to = [&](const std::string& file) {
@@ -174,9 +169,8 @@ TEST_F(ImportCommandTest, ADamagedXtfFileIsOneErrorAndLeavesNoLog) {
     std::string bytes(1024 + 256, '\0');
     bytes[0] = '\x7B';
     writeFile(folder_ / "line.xtf", bytes);
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_EQ(outcome.err, "line.xtf: byte 1024: is 0x0000; a packet begins with 0xFACE\n");
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"}),
+                isRefused("line.xtf: byte 1024: is 0x0000; a packet begins with 0xFACE\n"));
     writeFile(folder_ / "line.xtf", bytes.substr(0, 1030));
     EXPECT_THAT(callInsonify(folder_, {"log", "import", "line.xtf", "--to", "line.0.log"}).err,
                 HasSubstr("line.xtf: holds no ping of a side-scan; the packet at byte 1024 is cut off"));
@@ -203,8 +197,6 @@ TEST_F(ImportCommandTest, ReportsWhyAFileCannotBeImported) {
     record(1);
     writeFile(folder_ / "plain.yml", wall_deployment);
     EXPECT_THAT(import("dive.oculus", "plain.yml").err, HasSubstr("has no receiver that outputs codes"));
-    const Outcome outcome =
-        callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("plain.yml: --to: is no folder and cannot be made"));
+    EXPECT_THAT(callInsonify(folder_, {"log", "import", "dive.oculus", "wall.yml", "--to", "plain.yml/dive.0.log"}),
+                isRefused(HasSubstr("plain.yml: --to: is no folder and cannot be made")));
 }

@@ -234,10 +234,8 @@ TEST(ShardRunTest, AFinishedShardIsLeftUnchanged) {
     const Shards folder(movingWall());
     folder.makeAll(2, {"--pings", "6"});
     const auto before = fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log");
-    const Outcome again = folder.make("1/2", "shards", {"--pings", "6"});
-    EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_THAT(again.out, HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "));
-    EXPECT_THAT(again.out, HasSubstr("files existed already"));
+    EXPECT_THAT(folder.make("1/2", "shards", {"--pings", "6"}),
+                prints(AllOf(HasSubstr("shard 1/2: 3 pings from 3 on, of 6; "), HasSubstr("files existed already"))));
     EXPECT_EQ(fs::last_write_time(folder.path() / "shards/shard_1_of_2/wall.0.log"), before);
 }
 
@@ -353,17 +351,13 @@ TEST(ShardRunTest, ReportsAnInvalidShardWithTheOption) {
                                                       {"-1/2", "it must be i/N, whole numbers"},
                                                       {"abc", "it must be i/N, whole numbers"}};
     for (const auto& [shard, why] : wrong) {
-        const Outcome outcome = folder.make(shard);
-        EXPECT_EQ(outcome.code, 2) << shard;
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr("--shard"), HasSubstr(why)));
+        EXPECT_THAT(folder.make(shard), isRefused(AllOf(HasSubstr("--shard"), HasSubstr(why)))) << shard;
         EXPECT_FALSE(fs::exists(folder / "shards"));
     }
-    const Outcome nowhere = callInsonify(folder, {"run", "wall.yml", "--shard", "0/2"});
-    EXPECT_EQ(nowhere.code, 2);
-    EXPECT_THAT(nowhere.err, HasSubstr("--out: is missing; all shards of a run share a folder"));
-    const Outcome many = folder.make("0/4", "shards", {"--pings", "3"});
-    EXPECT_EQ(many.code, 2);
-    EXPECT_THAT(many.err, HasSubstr("the run has 3 pings, and so 3 shards at most"));
+    EXPECT_THAT(callInsonify(folder, {"run", "wall.yml", "--shard", "0/2"}),
+                isRefused(HasSubstr("--out: is missing; all shards of a run share a folder")));
+    EXPECT_THAT(folder.make("0/4", "shards", {"--pings", "3"}),
+                isRefused(HasSubstr("the run has 3 pings, and so 3 shards at most")));
     EXPECT_TRUE(fs::is_empty(folder / "shards"));
     EXPECT_EQ(folder.make("0/2", "shards", {"--call", "log.stop"}).code, 2);
 }
@@ -372,9 +366,8 @@ TEST(ShardRunTest, AFolderAcceptsTheShardsOfOneRunOnly) {
     const Shards folder;
     ASSERT_EQ(folder.make("0/2", "shards", {"--pings", "4"}).code, 0);
     const auto expectRefused = [&](const std::string& shard, std::vector<std::string> more, const std::string& why) {
-        const Outcome outcome = folder.make(shard, "shards", more);
-        EXPECT_EQ(outcome.code, 2);
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr("shards: --out: holds shards of "), HasSubstr(why)));
+        EXPECT_THAT(folder.make(shard, "shards", more),
+                    isRefused(AllOf(HasSubstr("shards: --out: holds shards of "), HasSubstr(why))));
     };
     expectRefused("1/3", {"--pings", "4"}, "holds shards of 2, and this is one of 3");
     expectRefused("1/2", {"--pings", "5"}, "pings is 4 there, and 5 here");

@@ -58,16 +58,13 @@ TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
         {"{afterglw: {kept: 0.5}}", "did you mean afterglow?"}};
     for (const auto& [effects, why] : refused) {
         writeFile(folder / "wall.yml", deploymentWith(effects));
-        const Outcome outcome = call(folder, {insonify, "check", "wall.yml"});
-        EXPECT_EQ(outcome.code, 2) << effects;
-        EXPECT_THAT(outcome.err, HasSubstr(why)) << effects;
+        EXPECT_THAT(call(folder, {insonify, "check", "wall.yml"}), isRefused(HasSubstr(why))) << effects << effects;
     }
 }
 
 TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
     const WallFolder folder(
         replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
-    const Outcome outcome = callInsonify(folder, {"check", "wall.yml"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n"));
+    EXPECT_THAT(callInsonify(folder, {"check", "wall.yml"}),
+                isRefused(HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n")));
 }

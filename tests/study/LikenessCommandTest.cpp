@@ -70,8 +70,7 @@ TEST(LikenessCommandTest, ReadsALogOfCodesLikeARecording) {
         << "the wall is still: the same ping, the law from the log";
     ASSERT_EQ(callInsonify(folder, {"run", "wall.yml", "--pings", "1", "--out", "plain"}).code, 0);
     outcome = callInsonify(folder, {"study", "likeness", "--real", "plain/wall.0.log", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no stream of pings of codes"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("has no stream of pings of codes")));
 }
 
 TEST(LikenessCommandTest, ASideScanIsAPictureOfItsLines) {
@@ -100,15 +99,12 @@ TEST(LikenessCommandTest, RefusesWhatCannotBeCompared) {
     const WallFolder folder;
     record(folder / "pings.raw");
     Outcome outcome = callInsonify(folder, {"study", "likeness", "wall.yml", "--real", "pings.raw", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("has no receiver that outputs codes"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("has no receiver that outputs codes")));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "wall.yml", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("wall.yml: holds no ping of an Oculus"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("wall.yml: holds no ping of an Oculus")));
     fs::create_directory(folder / "empty");
     outcome = callInsonify(folder, {"study", "likeness", "--real", "empty", "--out", "report"});
-    EXPECT_EQ(outcome.code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("is a folder without a file"));
+    EXPECT_THAT(outcome, isRefused(HasSubstr("is a folder without a file")));
     const auto small = OculusMessage{}.bytes();
     writeFile(folder / "small.raw", std::string(small.begin(), small.end()));
     outcome = callInsonify(folder, {"study", "likeness", "--real", "small.raw", "--out", "report"});
