@@ -54,8 +54,7 @@ struct Ping360TaskTest : ::testing::Test {
         task_.config.set(quickConfig());
         task_.settings.connectTo(asked_.port, framework::ConnPolicy::buffer(4));
         pings_.port.connectTo(task_.ping, framework::ConnPolicy::buffer(4));
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     DriverLine udp() const { return DriverLine::udp("127.0.0.1", task_.portOf(PingDeviceTask::udp)); }
     DriverLine tcp() const {
@@ -203,8 +202,7 @@ TEST(Ping1dTaskTest, AnswersByDatagram) {
     Ping1dTaskConfig config;
     config.ends.port = 0;
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start()) << task.lastError();
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     Driver driver(DriverLine::udp("127.0.0.1", task.portOf(PingDeviceTask::udp)));
     driver.say(PingGeneralRequest{PingDeviceInformation::message});
     std::optional<PingDeviceInformation> about;

@@ -56,8 +56,7 @@ TEST(LogFailureTest, AFullDiskEndsInExceptionWithTheSystemsReason) {
     task.config.set(configFor("x.0.log"));
     test::Writer<std::string> source;
     source.port.connectTo(*task.makeInput("in", source.port), ConnPolicy::buffer(10));
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     logUntilFailure(task, source, thousandBytes);
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));
@@ -85,8 +84,7 @@ TEST(LogFailureTest, StopReportsADiskThatIsFullAtTheEnd) {
     LoggerConfig config = configFor("x.0.log");
     config.flush_period = 1;
     task.config.set(config);
-    ASSERT_TRUE(task.configure());
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     EXPECT_FALSE(task.stop());
     EXPECT_EQ(task.state(), TaskState::Exception);
     EXPECT_THAT(task.lastError(), testing::HasSubstr("No space left on device"));

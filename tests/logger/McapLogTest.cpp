@@ -38,8 +38,7 @@ struct McapLogTest : testing::Test {
     }
     void start() {
         task.config.set(config);
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     }
     void cycle(const types::SonarPtr& ping) {
         sonar.port.write(ping);

@@ -25,8 +25,7 @@ struct RotationTest : testing::Test {
         source.port.connectTo(*task.makeInput("text", source.port), framework::ConnPolicy::buffer(8));
         test::Writer<double> silent("silent");
         silent.port.connectTo(*task.makeInput("silent", silent.port), framework::ConnPolicy::buffer(8));
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
         for (int i = 0; i < count; ++i) {
             source.port.write(std::to_string(i) + std::string(100'000, ' '));
             task.update();

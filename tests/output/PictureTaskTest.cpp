@@ -17,8 +17,7 @@ struct PictureTaskTest : ::testing::Test {
     }
     void start() {
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure());
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     void give(int64_t time) {
         types::Sonar ping = test::emptyPing(120, 60);

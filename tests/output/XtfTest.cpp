@@ -58,8 +58,7 @@ struct XtfTest : ::testing::Test {
         config.samples = samples;
         config.frequency_khz = 450;
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     void give(const types::Sonar& ping) {
         pings_.port.write(test::shared(ping));

@@ -18,8 +18,7 @@ TEST(AllocationTest, ATrajectoryAllocatesNothingAfterItsFirstPose) {
     task.pose.connectTo(newest.port, {});
     task.pose.connectTo(all.port, framework::ConnPolicy::buffer(200));
     task.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 5, .position = {4, 0, 0}, .yaw_deg = 90}}});
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto cycle = [&] {
         time = time + types::Time::fromSeconds(0.1);
         task.update();

@@ -58,8 +58,7 @@ struct Bench {
     template <class T>
     void start(const std::string& stream, test::Reader<T>& reader) {
         connect(stream, reader);
-        ASSERT_TRUE(task.configure());
-        ASSERT_TRUE(task.start());
+        ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     }
     void updateAt(int64_t time) {
         clock = {time};

@@ -24,8 +24,7 @@ TEST_F(AllocationTest, AllocatesNothingAfterTheFirstPosesEvenWhenObjectsBeginToM
     vehicle.port.connectTo(task.pose, framework::ConnPolicy::buffer(8));
     boat.port.connectTo(*task.makeInput("boat.pose", boat.port), {});
     task.snapshot.connectTo(out.port, {});
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto cycle = [&](int i) {
         types::Pose pose;
         pose.time = types::Time::fromSeconds(1 + 0.1 * i);

@@ -20,8 +20,7 @@ struct AnimationTaskTest : SceneFiles {
     }
     void start() {
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     /** The snapshot at a time after the start of the run [s]. */
     types::SnapshotPtr at(double seconds) {

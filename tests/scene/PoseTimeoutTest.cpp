@@ -25,8 +25,7 @@ struct PoseTimeoutTest : SceneFiles {
     void start(std::optional<double> timeout) {
         config_.pose_timeout = timeout;
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     /** Runs a cycle at this time [s], with a pose of that stamp if given; returns whether there was a snapshot. */
     bool cycle(double now, std::optional<double> stamp = {}) {

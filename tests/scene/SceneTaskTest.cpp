@@ -21,8 +21,7 @@ struct SceneTaskTest : SceneFiles {
     }
     void start() {
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     static types::Pose at(double seconds, glm::dvec3 position, glm::dquat orientation = {1, 0, 0, 0}) {
         types::Pose pose;

@@ -31,8 +31,7 @@ struct TargetsTest : SceneFiles {
     }
     void start() {
         task_.config.set(config_);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start());
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     static types::Pose at(double seconds, glm::dvec3 position, double yaw_deg = 0) {
         types::Pose pose;

@@ -19,8 +19,7 @@ struct LastEchoTest : ::testing::Test {
         in_.port.connectTo(task_.snapshot, {});
         task_.ping.connectTo(out_.port, {});
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
         task_.activity().release();
     }
     /** Replaces the task's clock by a clock that the test sets. */

@@ -23,8 +23,7 @@ struct TaskBench : ::testing::Test {
 
     void startWith(const Config& config) {
         task_.config.set(config);
-        ASSERT_TRUE(task_.configure()) << task_.lastError();
-        ASSERT_TRUE(task_.start()) << task_.lastError();
+        ASSERT_TRUE(task_.configure() && task_.start()) << task_.lastError();
     }
     /** Returns the output of one cycle for a sample; none if the task rejects the sample. */
     Out answerTo(const In& sample) {

@@ -413,8 +413,7 @@ TEST_F(BathymetryTest, AFileThatEndsTooEarlyIsAnErrorOfTheTaskAndTheRunContinues
     vehicle.port.connectTo(task.pose, framework::ConnPolicy::data());
     task.snapshot.connectTo(out.port, framework::ConnPolicy::buffer(8));
     task.config.set(config);
-    ASSERT_TRUE(task.configure()) << task.lastError();
-    ASSERT_TRUE(task.start());
+    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
     const auto snapshotAt = [&](double north) {
         types::Pose pose;
         pose.position = {north, -200, -10};
