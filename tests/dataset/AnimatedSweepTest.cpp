@@ -44,8 +44,7 @@ struct AnimatedSweepTest : scene::SceneFiles {
     /** Returns the records of a data set, in order. */
     std::vector<json> recordsOf(const std::string& poses_and_settings) const {
         write("sweep.yml", sweep + poses_and_settings);
-        const Outcome outcome = callInsonify(owned_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(owned_, {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", "out"}), succeeds());
         std::map<std::string, json> records;
         for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
             if (const std::string name = entry.path().filename(); name.starts_with("0") && name.ends_with(".json"))

@@ -119,8 +119,7 @@ TEST_F(DatasetCommandTest, TheBytesDoNotDependOnTheProcess) {
 TEST_F(DatasetCommandTest, DrawnSettingsAreInTheRecordAndChangeThePicture) {
     writeFile(folder_ / "sweep.yml", "poses: {random: {count: 3, x: 5, y: -4, z: -5.5}}\n" +
                                          replaced(drawn_settings, ", {law: k, shape: 5}]", "]"));
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     std::set<double> strengths;
     for (const char* index : {"000000", "000001", "000002"}) {
         const json settings = recordOf("out", index)["settings"];
@@ -351,8 +350,7 @@ TEST_F(DatasetCommandTest, AnotherFileThatTheSweepNamesIsAnotherDataSet) {
         writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-20\n");
         writeFile(folder_ / "sweep.yml", place + std::string("poses: {grid: {x: 5, y: -4, z: -5.5}}\n"));
         const std::string out = place[1] == 'e' ? "settings" : "scenes";
-        const Outcome first = make(out);
-        ASSERT_EQ(first.code, 0) << first.err;
+        ASSERT_THAT(make(out), succeeds());
         writeFile(folder_ / "sand.csv", "grazing_deg,strength_db\n10,-30\n80,-21\n");
         EXPECT_THAT(make(out), isRefused(HasSubstr("a sample of another sweep, deployment, scene, format or version")))
             << place;
@@ -364,8 +362,7 @@ TEST_F(DatasetCommandTest, TheFloorOfASurveyIsAScene) {
                       survey = (root / "deploy/scenes/bay.flt").string();
     writeFile(folder_ / "d.yml", replaced(deployment, "file: " + file, "bathymetry: {file: " + survey + "}"));
     writeFile(folder_ / "sweep.yml", "poses: {grid: {z: [-11, -10]}}\n");
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     for (const char* index : {"000000", "000001"}) {
         const json record = recordOf("out", index);
         EXPECT_EQ(record["scene"], "bathymetry");
@@ -476,8 +473,7 @@ TEST_F(DatasetCommandTest, APatternOfObjectsMayMatchInOneOfTheScenesAlone) {
     writeFile(folder_ / "sweep.yml", scenes +
                                          "objects: [{names: [rock_000, pillar*], x: [6, 20], y: [-8, 8], avoid: "
                                          "[quay_wall]}]\n");
-    const Outcome outcome = make("out");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("out"), succeeds());
     const json harbour = recordOf("out", "000000")["objects"], tank = recordOf("out", "000001")["objects"];
     ASSERT_EQ(harbour.size(), 1u);
     EXPECT_EQ(harbour[0]["name"], "rock_000");

@@ -82,8 +82,7 @@ print(abs(levels - expected).max(), (levels == 0).sum() > 0, levels.max() > 128)
 /** The ping of a 3-D sonar is a fan like any other, with its truth. */
 TEST_F(RangeImageTest, ItsPingIsAPictureAsWell) {
     writeFile(folder_ / "sweep.yml", sweep("fan"));
-    const Outcome outcome = make("fans", "yolo");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(make("fans", "yolo"), succeeds());
     const Outcome read = python(folder_, R"(
 import glob, json
 told = json.load(open(sorted(glob.glob("fans/0*.json"))[0]))

@@ -53,8 +53,7 @@ struct WaterfallTest : testing::Test {
     std::map<std::string, std::string> made(const std::string& out, std::vector<std::string> more = {}) const {
         std::vector<std::string> all = {"dataset", "d.yml", "--sweep", "sweep.yml", "--out", out};
         all.insert(all.end(), more.begin(), more.end());
-        const Outcome outcome = callInsonify(folder_, all);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder_, all), succeeds());
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::directory_iterator(folder_ / out))
             files[entry.path().filename()] = readFile(entry.path());

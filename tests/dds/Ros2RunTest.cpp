@@ -118,8 +118,7 @@ TEST_F(Ros2RunTest, ReportsThatItWaitsForPoses) {
                std::string::npos;
     })) << readFile(folder / "stderr.txt");
     waiting.signal(SIGINT);
-    const Outcome outcome = waiting.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(waiting.wait(), succeeds());
 }
 
 TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
@@ -130,8 +129,7 @@ TEST_F(Ros2RunTest, TransformsOfAPeerBecomePings) {
         folder.path());
     const Peer peer("transforms 0.5");
     if (!becomesTrue([&] { return fs::exists(folder / "summary.json"); })) sonar.signal(SIGKILL);
-    const Outcome outcome = sonar.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(sonar.wait(), succeeds());
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 10);
 }
 
@@ -196,8 +194,7 @@ TEST_F(Ros2RunTest, VehiclesOfALaunchFileHaveSeparateTopicsAndFrames) {
     received<ros::Clock>("/auv2/clock");
     for (const Process& process : running) process.signal(SIGINT);
     for (const Process& process : running) {
-        const Outcome outcome = process.wait();
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(process.wait(), succeeds());
     }
 }
 
@@ -218,8 +215,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
                   "  - {from: scene.snapshot, to: receiver.snapshot}\n"
                   "  - {from: poses.pose, to: log.pose, policy: {type: buffer, size: 8}}\n"
                   "  - {from: receiver.ping, to: log.ping, policy: {type: buffer, size: 8}}\n");
-    const Outcome recorded = callInsonify(folder, {"run", "record.yml", "--out", "out", "--pings", "100"});
-    ASSERT_EQ(recorded.code, 0) << recorded.err;
+    ASSERT_THAT(callInsonify(folder, {"run", "record.yml", "--out", "out", "--pings", "100"}), succeeds());
     auto commands = launched("replay.launch.py log:=out/x.0.log deployment:=" + fls + " namespace:=auv3");
     ASSERT_EQ(commands.size(), 1u);
     commands[0].erase(commands[0].begin());
@@ -227,8 +223,7 @@ TEST_F(Ros2RunTest, ALaunchFileReplaysALogToTheTopics) {
     const auto image = received<ros::ProjectedSonarImage>("/auv3/sonar");
     EXPECT_EQ(image.image.beam_count, 16u);
     replay.signal(SIGINT);
-    const Outcome outcome = replay.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(replay.wait(), succeeds());
 }
 
 TEST_F(Ros2RunTest, NamesNodesByTheArguments) {
@@ -290,8 +285,7 @@ TEST_F(Ros2RunTest, ParametersAndRvizOfTheBringupFitTheExample) {
     ASSERT_EQ(commands.size(), 2u);
     std::vector<std::string> words(commands[0].begin() + 1, commands[0].end());
     words.insert(words.begin() + 1, {"--out", "out", "--duration", "0.1"});
-    const Outcome outcome = callInsonify(folder, words);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder, words), succeeds());
     const std::string rviz = readFile(test::sourceFile("ros2/insonify_bringup/config/insonify.rviz"));
     const std::string deployment = readFile(fls);
     EXPECT_THAT(deployment, HasSubstr("namespace: auv "));
@@ -335,8 +329,7 @@ TEST_F(Ros2RunTest, ANodeOfCycloneListsGetsSetsAndDescribesParameters) {
     Peer peer("parameters /auv/ros sonar.range 15");
     const json found = peer.result();
     run.signal(SIGINT);
-    const Outcome outcome = run.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(run.wait(), succeeds());
     ASSERT_FALSE(found.is_null());
     EXPECT_EQ(found["list"][1], json({"sonar"}));
     for (const std::string name : found["list"][0]) EXPECT_TRUE(name.starts_with("sonar.")) << name;

@@ -45,9 +45,10 @@ inline std::ostream& operator<<(std::ostream& stream, const Outcome& outcome) {
 inline auto isRefused(const testing::Matcher<const std::string&>& message) {
     return testing::AllOf(testing::Field("code", &Outcome::code, 2), testing::Field("err", &Outcome::err, message));
 }
+inline auto succeeds() { return testing::Field("code", &Outcome::code, 0); }
 /** Matches the outcome of a command that succeeds with this output. */
 inline auto prints(const testing::Matcher<const std::string&>& output) {
-    return testing::AllOf(testing::Field("code", &Outcome::code, 0), testing::Field("out", &Outcome::out, output));
+    return testing::AllOf(succeeds(), testing::Field("out", &Outcome::out, output));
 }
 
 /** A running program; its output is written to files in `folder`, which is also its current folder. */

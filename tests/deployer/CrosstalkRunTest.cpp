@@ -56,8 +56,7 @@ std::map<size_t, float> received(const Sonar& ping) {
 }  // namespace
 
 TEST_F(CrosstalkRunTest, PulsesOfTheOtherSonarArriveAtTheRightTimeAndLevel) {
-    const Outcome outcome = run(pair, {"--pings", "6"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run(pair, {"--pings", "6"}), succeeds());
     const std::vector<Sonar> one = logged("one"), two = logged("two");
     ASSERT_GE(one.size(), 6u);
     ASSERT_GE(two.size(), 6u);
@@ -98,8 +97,7 @@ TEST_F(CrosstalkRunTest, PingsWithoutAPulseEqualThoseWithoutCrosstalk) {
 }
 
 TEST_F(CrosstalkRunTest, CrosstalkWorksInRealtime) {
-    const Outcome outcome = run("schedule: realtime\n" + std::string(pair), {"--duration", "2"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run("schedule: realtime\n" + std::string(pair), {"--duration", "2"}), succeeds());
     const std::vector<Sonar> one = logged("one");
     EXPECT_GE(one.size(), 15u);
     size_t receives = 0;

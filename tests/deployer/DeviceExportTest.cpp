@@ -45,8 +45,7 @@ connections:
 struct DeviceExportTest : testing::Test {
     void SetUp() override {
         writeFile(folder_ / "wall.yml", sidescan_deployment);
-        const Outcome outcome = folder_.run({"--pings", "6"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(folder_.run({"--pings", "6"}), succeeds());
     }
     /** Runs `log export` on the run's log. */
     Outcome toFile(const std::string& stream, const std::string& to, std::vector<std::string> more = {},
@@ -107,8 +106,7 @@ TEST_F(DeviceExportTest, PyxtfReadsTheLinesOfALogWithTheirPositions) {
 TEST_F(DeviceExportTest, AnMcapFileGivesTheSameLines) {
     if (!pythonHas("pyxtf")) GTEST_SKIP() << "SKIPPED: the Python package pyxtf is missing; scripts/setup installs it";
     ASSERT_EQ(toFile("", "lines.mcap").code, 0);
-    const Outcome outcome = toFile("/receiver/ping", "bag.xtf", {"--pose", "/sonar/pose"}, "lines.mcap");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(toFile("/receiver/ping", "bag.xtf", {"--pose", "/sonar/pose"}, "lines.mcap"), succeeds());
     ASSERT_EQ(toFile("receiver.ping", "lines.xtf").code, 0);
     const json bag = readXtf("bag.xtf"), lines = readXtf("lines.xtf");
     ASSERT_EQ(bag["pings"].size(), 6u);
@@ -179,9 +177,9 @@ TEST_F(DeviceExportTest, AnXtfFileIsImportedAgainBinByBin) {
 
 TEST_F(DeviceExportTest, AnXtfFileIsRenderedAgainAndScored) {
     ASSERT_EQ(callInsonify(folder_, {"log", "import", "out/lines.xtf", "wall.yml", "--to", "again.0.log"}).code, 0);
-    const Outcome outcome =
-        callInsonify(folder_, {"replay", "again.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(
+        callInsonify(folder_, {"replay", "again.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"}),
+        succeeds());
     const json score = json::parse(readFile(folder_ / "scored/score.json"))["streams"][0];
     EXPECT_EQ(score["stream"], "receiver.ping");
     EXPECT_EQ(score["compared"], 6);
@@ -227,9 +225,9 @@ TEST(OculusExportTest, ARecordingIsImportedAgainCodeByCode) {
     for (const char* code : {"{bits: 16, law: sqrt, full_scale_db: -40}", "{law: sqrt, full_scale_db: -40}"}) {
         const WallFolder folder(codedWall(code));
         ASSERT_EQ(folder.run({"--pings", "3"}).code, 0);
-        const Outcome outcome = callInsonify(
-            folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to", "dive.oculus"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder, {"log", "export", "out/wall.0.log", "--stream", "receiver.ping", "--to",
+                                          "dive.oculus"}),
+                    succeeds());
         ASSERT_EQ(callInsonify(folder, {"log", "import", "dive.oculus", "wall.yml", "--to", "dive.0.log"}).code, 0);
         std::vector<types::Sonar> before, after;
         log::openLog(folder / "out/wall.0.log")

@@ -53,8 +53,7 @@ TEST(DeviceTest, WithoutOpenGlTheMessageNamesPackagesAndSettings) {
 TEST(DeviceTest, RayTracingWorksWithoutOpenGl) {
     for (const std::string& way : ways_without_gl) {
         const WallFolder folder;
-        const Outcome outcome = runWith(folder, {way});
-        EXPECT_EQ(outcome.code, 0) << way << outcome.err;
+        EXPECT_THAT(runWith(folder, {way}), succeeds()) << way;
     }
 }
 
@@ -73,8 +72,7 @@ TEST(DeviceTest, AnUnknownDeviceIsNamedWithTheAlternatives) {
 
 TEST(DeviceTest, ThePropertyOverridesTheVariable) {
     const WallFolder folder;
-    const Outcome outcome = runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(runWith(folder, {"INSONIFY_EGL_DEVICE=quantum"}, {"--set", "sonar.device=software"}), succeeds());
 }
 
 TEST(DeviceTest, RequestsNoDeviceForRayTracingOrWithoutAGraphicsCard) {

@@ -101,9 +101,9 @@ struct FanImportTest : testing::Test {
         return callInsonify(folder_, arguments);
     }
     json score() const {
-        const Outcome outcome =
-            callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(
+            callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--rerender", "--score", "--out", "scored"}),
+            succeeds());
         const json all = json::parse(readFile(folder_ / "scored/score.json"));
         for (const json& stream : all["streams"])
             if (stream["stream"] == "receiver.ping") return stream;
@@ -129,8 +129,7 @@ TEST_F(FanImportTest, AnArisFileOfRenderedPingsIsRenderedAgain) {
 
 TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
     recordGemini(3);
-    const Outcome outcome = import("dive.glf");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(import("dive.glf"), succeeds());
     std::vector<types::Sonar> rendered, imported;
     const auto read = [&](const char* log, std::vector<types::Sonar>& pings) {
         log::openLog(folder_ / log)->forEach<types::Sonar>("receiver.ping", [&](const auto& ping, const auto&) {
@@ -158,8 +157,7 @@ TEST_F(FanImportTest, AGlfFileHasTheRenderedPings) {
 
 TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     recordAris(2);
-    const Outcome outcome = import("dive.aris", "");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(import("dive.aris", ""), succeeds());
     const auto to = [&](const std::string& file) {
         return callInsonify(folder_, {"log", "export", "dive.0.log", "--stream", "receiver.ping", "--to", file});
     };
@@ -169,8 +167,7 @@ TEST_F(FanImportTest, WithoutADeploymentTheLogIsExportedAndReplayed) {
     const std::string info = callInsonify(folder_, {"log", "info", "dive.0.log", "--metadata"}).out;
     EXPECT_THAT(info, HasSubstr("samples of dive.aris, as its device output them"));
     EXPECT_THAT(info, HasSubstr("\"dynamic_range_db\": 80"));
-    const Outcome replay = callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"});
-    EXPECT_EQ(replay.code, 0) << replay.err;
+    EXPECT_THAT(callInsonify(folder_, {"replay", "dive.0.log", "wall.yml", "--out", "again"}), succeeds());
     EXPECT_TRUE(fs::exists(folder_ / "again/fan_000001.png"));
 }
 

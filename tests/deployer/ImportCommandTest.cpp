@@ -57,9 +57,9 @@ struct ImportCommandTest : testing::Test {
         return callInsonify(folder_, {"log", "import", recording, deployment, "--to", "dive.0.log"});
     }
     json score(const std::string& deployment = "wall.yml") const {
-        const Outcome outcome =
-            callInsonify(folder_, {"replay", "dive.0.log", deployment, "--rerender", "--score", "--out", "scored"});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(
+            callInsonify(folder_, {"replay", "dive.0.log", deployment, "--rerender", "--score", "--out", "scored"}),
+            succeeds());
         const json all = json::parse(readFile(folder_ / "scored/score.json"));
         for (const json& stream : all["streams"])
             if (stream["stream"] == "receiver.ping") return stream;
@@ -114,8 +114,7 @@ TEST_F(ImportCommandTest, EveryPingIsKeptWhenSettingsChange) {
 
 TEST_F(ImportCommandTest, WithoutADeploymentTheLogHasTheRecordingsData) {
     record(3);
-    const Outcome outcome = callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"});
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(callInsonify(folder_, {"log", "import", "dive.oculus", "--to", "alone.0.log"}), succeeds());
     ASSERT_EQ(import("dive.oculus").code, 0);
     const auto alone = log::openLog(folder_ / "alone.0.log"), with = log::openLog(folder_ / "dive.0.log");
     ASSERT_EQ(alone->streams().size(), 1u);

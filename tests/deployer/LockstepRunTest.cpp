@@ -20,8 +20,7 @@ struct DeployFolder : TestFolder {
                       const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words = {"run", "x.yml", "--out", out, "--pings", "6"};
         words.insert(words.end(), more.begin(), more.end());
-        const Outcome outcome = callInsonify(*this, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(*this, words), succeeds());
         const std::string log = readFile(path() / out / name);
         EXPECT_GT(log.size(), minimum);
         return log;

@@ -43,8 +43,7 @@ struct PingDriverTest : testing::Test {
     void TearDown() override {
         if (!run_) return;
         run_->signal(SIGINT);
-        const Outcome outcome = run_->wait();
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(run_->wait(), succeeds());
     }
     std::string udpPortOf(const std::string& task) const {
         const std::string text = readFile(folder_ / "stderr.txt");

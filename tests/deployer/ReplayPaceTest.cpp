@@ -28,8 +28,7 @@ struct ReplayPaceTest : testing::Test {
         return all;
     }
     void replay(const std::vector<std::string>& more) const {
-        const Outcome outcome = callInsonify(folder_, words(more));
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(callInsonify(folder_, words(more)), succeeds());
     }
     /** Times of the replayed pings [ms]. */
     std::vector<int64_t> stamps() const {
@@ -146,8 +145,7 @@ connections:
     EXPECT_TRUE(insonify::test::becomesTrue(
         [&] { return flushedSamples(folder_ / "again/again.0.log", "vehicle.pose") >= 4; }));
     process.signal(SIGINT);
-    const Outcome outcome = process.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(process.wait(), succeeds());
     log::pocolog::Reader log(folder_ / "again/again.0.log");
     for (const log::SampleRef& at : log.samples()) {
         EXPECT_GE(at.received, at.time);

@@ -15,8 +15,7 @@ namespace {
 /** out/wall.0.log of the wall's deployment, and scores compared with it. */
 struct ReplayScoreTest : testing::Test {
     void record(std::vector<std::string> more = {"--pings", "3"}) {
-        const Outcome outcome = folder_.run(std::move(more));
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(folder_.run(std::move(more)), succeeds());
     }
     Outcome score(const std::string& log, std::vector<std::string> more = {}) const {
         std::vector<std::string> words = {"replay", log, "wall.yml", "--rerender", "--score", "--out", "scored"};
@@ -83,12 +82,10 @@ TEST_F(ReplayScoreTest, ASimulatedLogScoresRelativeL2ZeroAndCorrelationOne) {
 TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
     const std::string target = "scene.targets=[{name: buoy, position: [6, 0.5, 0], strength_db: 10}]";
     record({"--pings", "3", "--set", target});
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("out/wall.0.log"), succeeds());
     for (const auto& [name, stream] : streams()) expectSame(stream);
     fs::remove_all(folder_ / "scored");
-    const Outcome without = score("out/wall.0.log", {"--set", "scene.targets=[]"});
-    ASSERT_EQ(without.code, 0) << without.err;
+    ASSERT_THAT(score("out/wall.0.log", {"--set", "scene.targets=[]"}), succeeds());
     for (const auto& [name, stream] : streams())
         for (const json& ping : stream["pings"]) EXPECT_GT(ping["rel_l2"], 0.1);
 }
@@ -96,8 +93,7 @@ TEST_F(ReplayScoreTest, PointTargetsAreInTheReplayAsInTheRun) {
 TEST_F(ReplayScoreTest, PosesShiftedByTenCentimetresScoreWorse) {
     record();
     shiftPoses(0);
-    const Outcome outcome = score("shifted.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("shifted.0.log"), succeeds());
     for (const auto& [name, stream] : streams())
         for (const json& ping : stream["pings"]) {
             RecordProperty(name + "_rel_l2", ping["rel_l2"].dump());
@@ -170,8 +166,7 @@ TEST_F(ReplayScoreTest, UsesTheLogsChosenQuality) {
     const json first = quality("first.json");
     ASSERT_FALSE(first["predicted_error"].is_null()) << "the sonar chose it";
     for (const char* from : {"0", "0.1"}) {
-        const Outcome outcome = score("out/wall.0.log", {"--from", from, "--summary", "again.json"});
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        ASSERT_THAT(score("out/wall.0.log", {"--from", from, "--summary", "again.json"}), succeeds());
         for (const auto& [name, stream] : streams()) {
             EXPECT_GE(stream["compared"], 2) << name;
             for (const json& ping : stream["pings"]) EXPECT_EQ(ping["rel_l2"], 0) << name;
@@ -205,8 +200,7 @@ TEST_F(ReplayScoreTest, AnErrorOfAValueFromTheLogNamesTheLog) {
                 isRefused(AllOf(HasSubstr("out/wall.0.log: tasks.scene.properties.file: "),
                                 HasSubstr("; the value is the log's, and --set overrides it\n"),
                                 testing::Not(HasSubstr("--set: ")))));
-    const Outcome overridden = score("out/wall.0.log", {"--set", "scene.file=wall.gltf"});
-    EXPECT_EQ(overridden.code, 0) << overridden.err;
+    EXPECT_THAT(score("out/wall.0.log", {"--set", "scene.file=wall.gltf"}), succeeds());
 }
 
 TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
@@ -216,8 +210,7 @@ TEST_F(ReplayScoreTest, AScanningSonarScoresAsWell) {
     scanning = replaced(scanning, "      field_of_view_deg: 60\n", "");
     writeFile(folder_ / "wall.yml", scanning);
     record();
-    const Outcome outcome = score("out/wall.0.log");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(score("out/wall.0.log"), succeeds());
     for (const auto& [name, stream] : streams()) expectSame(stream);
     EXPECT_THAT(score("out/wall.0.log", {"--from", "0.1"}),
                 isRefused(HasSubstr("tasks.sonar: is a scanning sonar, whose head starts at its left limit")));

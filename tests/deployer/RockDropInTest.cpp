@@ -137,8 +137,7 @@ TEST_F(RockDropInTest, ScansOfAnOlderLogBecomePictures) {
               "tasks:\n  replay: {type: replay::ReplayTask, properties: {file: old.0.log}}\n"
               "  fan: {type: output::FanImageTask, properties: {file: fan_%06d.png}}\n"
               "connections:\n  - {from: replay.multibeam.sonar_samples, to: fan.ping}\n");
-    const Outcome outcome = callInsonify(folder_, {"run", "old.yml", "--out", "drawn"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder_, {"run", "old.yml", "--out", "drawn"}), succeeds());
     EXPECT_TRUE(fs::exists(folder_ / "drawn/fan_000000.png"));
 }
 
@@ -194,17 +193,17 @@ TEST_F(RockDropInTest, TheLogHasRocksNamesOfPortsPropertiesAndTasks) {
     expectOf(properties.at("multibeam.gain"), "gain", "property", "/double");
     expectOf(properties.at("multibeam.beam_width"), "beam_width", "property", "/base/Angle");
     expectOf(properties.at("multibeam.enable_attenuation"), "enable_attenuation", "property", "/bool");
-    const Outcome widths = callInsonify(
-        folder_, {"log", "export", "out/properties.0.log", "--stream", "multibeam.beam_width", "--to", "w.csv"});
-    ASSERT_EQ(widths.code, 0) << widths.err;
+    ASSERT_THAT(callInsonify(folder_, {"log", "export", "out/properties.0.log", "--stream", "multibeam.beam_width",
+                                       "--to", "w.csv"}),
+                succeeds());
     EXPECT_THAT(readFile(folder_ / "w.csv"), HasSubstr(",2.094395"));  // 120 deg, in rad
 }
 
 TEST_F(RockDropInTest, ALogReplaysByItsAliasesAndScoresPerfectly) {
     ASSERT_EQ(run({"--pings", "2"}).code, 0);
-    const Outcome scored = callInsonify(folder_, {"replay", "out/rock.0.log", "deploy/rock_dropin.yml", "--out",
-                                                  "again", "--set", "multibeam.beam_count=16"});
-    ASSERT_EQ(scored.code, 0) << scored.err;
+    ASSERT_THAT(callInsonify(folder_, {"replay", "out/rock.0.log", "deploy/rock_dropin.yml", "--out", "again", "--set",
+                                       "multibeam.beam_count=16"}),
+                succeeds());
     const auto first = exportedPings(folder_, "out/rock.0.log", "multibeam.sonar_samples"),
                again = exportedPings(folder_, "again/rock.0.log", "multibeam.sonar_samples");
     ASSERT_EQ(first.size(), again.size());

@@ -51,8 +51,7 @@ const std::string fleet = "namespace: auv1\nframe_prefix: auv1\n" + wall_deploym
 
 TEST_F(RosArgumentsTest, ALogHasTheNamespaceAndFramePrefixOfRos) {
     writeFile(folder / "fleet.yml", fleet);
-    const Outcome outcome = run({}, "fleet.yml");
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run({}, "fleet.yml"), succeeds());
     EXPECT_THAT(topics(), ElementsAre("/auv1/sonar/ping", "/auv1/noise/noisy", "/auv1/vehicle/pose"));
     EXPECT_EQ(first<ros::ProjectedSonarImage>("sonar.ping").header.frame_id, "auv1/sonar");
     EXPECT_EQ(first<ros::Odometry>("vehicle.pose").child_frame_id, "auv1/body");

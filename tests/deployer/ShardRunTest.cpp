@@ -83,8 +83,7 @@ struct Shards : WallFolder {
     }
     void makeAll(int count, const std::vector<std::string>& more = {}, const std::string& out = "shards") const {
         for (int i = count - 1; i >= 0; --i) {
-            const Outcome outcome = make(std::to_string(i) + "/" + std::to_string(count), out, more);
-            ASSERT_EQ(outcome.code, 0) << outcome.err;
+            ASSERT_THAT(make(std::to_string(i) + "/" + std::to_string(count), out, more), succeeds());
         }
     }
     /** All pictures, and the joined log. */
@@ -100,16 +99,14 @@ struct Shards : WallFolder {
         }
         fs::create_directory(*this / "joined");
         words.insert(words.end(), {"--to", "joined/" + log});
-        const Outcome outcome = callInsonify(*this, words);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(*this, words), succeeds());
         all[log] = readFile(path() / "joined" / log);
         return all;
     }
     /** The same files of the whole run, with a copy of its log. */
     std::map<std::string, std::string> whole(const std::vector<std::string>& more = {},
                                              const std::string& log = "wall.0.log") const {
-        const Outcome outcome = run(more);
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(run(more), succeeds());
         fs::create_directory(*this / "whole");
         EXPECT_EQ(callInsonify(*this, {"log", "cut", "out/" + log, "--to", "whole/" + log}).code, 0);
         std::map<std::string, std::string> all = filesIn(path() / "out");
@@ -164,8 +161,7 @@ TEST(ShardRunTest, TracesRaysOnAnyDeviceUnlessVisibilityIsSet) {
         std::vector<std::string> words = {"env", "INSONIFY_EGL_DEVICE=software"};
         std::ranges::copy(insonifyWords({"run", "wall.yml", "--out", "shards", "--pings", "2", "--shard", "1/2"}),
                           std::back_inserter(words));
-        const Outcome made = Process(words, folder.path()).wait();
-        EXPECT_EQ(made.code, 0) << made.err;
+        EXPECT_THAT(Process(words, folder.path()).wait(), succeeds());
         const insonify::log::pocolog::Reader log(folder.path() / "shards/shard_1_of_2/wall.0.log");
         const std::string plan = log.metadatum("insonify_plan");
         const size_t device = plan.find("\"device\": ");

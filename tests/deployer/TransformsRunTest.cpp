@@ -101,9 +101,9 @@ TEST_F(TransformsRunTest, LeadFromEachPingByTheMountAndThePoseToTheWorld) {
         const types::Mount mount = randomMount();
         const WallFolder folder(deployment(mount, each.mcap));
         ASSERT_EQ(folder.run(six_pings).code, 0);
-        const Outcome logged =
-            callInsonify(folder, {"run", "wall.yml", "--out", "bag", "--pings", "6", "--set", "log.file=wall.0.mcap"});
-        ASSERT_EQ(logged.code, 0) << logged.err;
+        ASSERT_THAT(
+            callInsonify(folder, {"run", "wall.yml", "--out", "bag", "--pings", "6", "--set", "log.file=wall.0.mcap"}),
+            succeeds());
         const json found = followed(folder, "bag/wall.0.mcap");
         expectPlaces(found["pings"], folder, mount, each.to_world, each.z_forward);
         EXPECT_EQ(found["topics"]["/tf"], ping_count);
@@ -140,8 +140,7 @@ TEST_F(TransformsRunTest, AreInExportedAndCutBagsAndNotStreams) {
 TEST_F(TransformsRunTest, ABagReplaysAndScoresTheSameWithAndWithoutThem) {
     const WallFolder folder(deployment(types::Mount{{0.5, 0, 0}, 0, 5, 0}, "world_frame: ned"));
     const auto call = [&](std::vector<std::string> words) {
-        const Outcome outcome = callInsonify(folder, std::move(words));
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_THAT(callInsonify(folder, std::move(words)), succeeds());
     };
     for (const std::string transforms : {"true", "false"}) {
         call({"run", "wall.yml", "--out", transforms, "--pings", "6", "--set", "log.file=wall.0.mcap", "--set",

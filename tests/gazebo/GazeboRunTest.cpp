@@ -53,8 +53,7 @@ TEST_F(GazeboRunTest, PosesOfAWorldInAnotherProcessBecomePings) {
     const bool ended = pings && gazebo::becomesTrue([&] { return publish(), fs::exists(folder / "summary.json"); });
     if (!ended) sonar.signal(SIGKILL);
     EXPECT_TRUE(ended);
-    const Outcome outcome = sonar.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(sonar.wait(), succeeds());
     EXPECT_GE(json::parse(readFile(folder / "summary.json"))["pings"], 20);
 }
 
@@ -77,8 +76,7 @@ TEST_F(GazeboRunTest, PingsStopAndResumeWithTheWorld) {
     }));
     EXPECT_TRUE(gazebo::becomesTrue([&, before = pictures()] { return publish(true), pictures() > before + 2; }));
     sonar.signal(SIGINT);
-    const Outcome outcome = sonar.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(sonar.wait(), succeeds());
 }
 
 TEST_F(GazeboRunTest, ReportsAMissingWorldAndEnds) {

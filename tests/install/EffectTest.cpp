@@ -28,8 +28,7 @@ add_library(afterglow MODULE afterglow.cpp)
 set_target_properties(afterglow PROPERTIES PREFIX "")
 target_link_libraries(afterglow PRIVATE Insonify::core)
 )");
-    const Outcome built = buildOutside(folder, folder / "prefix");
-    ASSERT_EQ(built.code, 0) << built.out << built.err;
+    ASSERT_THAT(buildOutside(folder, folder / "prefix"), succeeds());
 }
 
 }  // namespace
@@ -38,8 +37,7 @@ TEST(EffectTest, ALibrarysEffectIsPlannedRenderedAndRefusedLikeOurs) {
     const WallFolder folder(deploymentWith("{afterglow: {kept: 0.5}}"));
     buildEffect(folder);
     const std::string insonify = folder / "prefix/bin/insonify";
-    const Outcome ran = call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"});
-    ASSERT_EQ(ran.code, 0) << ran.err;
+    ASSERT_THAT(call(folder, {insonify, "run", "wall.yml", "--pings", "3", "--out", "out"}), succeeds());
     ASSERT_EQ(
         call(folder, {insonify, "log", "export", "out/wall.0.log", "--stream", "sonar.ping", "--to", "p.npz"}).code, 0);
     const std::string ratios =

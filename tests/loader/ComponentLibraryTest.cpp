@@ -71,8 +71,7 @@ struct ComponentLibraryTest : testing::Test {
 
 TEST_F(ComponentLibraryTest, AUsersLibraryIsLoadedByTheNamespaceOfAType) {
     give("one_type");
-    const Outcome outcome = check("one_type::CounterTask", partsOfUser());
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(check("one_type::CounterTask", partsOfUser()), succeeds());
     EXPECT_THAT(call({"describe"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
     EXPECT_THAT(call({"schema"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));
     EXPECT_THAT(call({"completion", "bash"}, partsOfUser()).out, HasSubstr("one_type::CounterTask"));

@@ -53,8 +53,7 @@ TEST_F(MavlinkRunTest, RequestsPosesOfTwoVehiclesForPings) {
     const mavlink::Vehicle red(listening, "heartbeat 1"), blue(listening, "heartbeat 2 12");
     const bool pings = becomesTrue([&] { return fs::exists(folder / "out/fan_000000.png"); });
     if (!pings) run.signal(SIGKILL);
-    const Outcome outcome = run.wait();
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_THAT(run.wait(), succeeds());
     const json summary = json::parse(readFile(folder / "summary.json"));
     EXPECT_GE(summary["pings"], 20);
     EXPECT_FALSE(fs::is_empty(folder / "out"));
@@ -87,8 +86,7 @@ TEST_F(MavlinkRunTest, PingsStopAndResumeWithAVehicle) {
     };
     EXPECT_TRUE(becomesTrue([&, before = pictures()] { return pictures() > before + 1; }));
     run.signal(SIGINT);
-    const Outcome outcome = run.wait();
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(run.wait(), succeeds());
 }
 
 TEST_F(MavlinkRunTest, TheDeploymentIsValidAndErrorsAreReportedWithTheirPlace) {

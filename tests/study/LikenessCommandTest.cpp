@@ -51,8 +51,7 @@ TEST(LikenessCommandTest, WithoutADeploymentDescribesTheRecordings) {
     const WallFolder folder;
     fs::create_directory(folder / "recordings");
     record(folder / "recordings/pings.raw");
-    const Outcome outcome = callInsonify(folder, {"study", "likeness", "--real", "recordings", "--out", "report"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(callInsonify(folder, {"study", "likeness", "--real", "recordings", "--out", "report"}), succeeds());
     EXPECT_EQ(json::parse(readFile(folder / "report/likeness.json"))["pings"].size(), 4u);
 }
 
