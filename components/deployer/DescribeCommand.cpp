@@ -10,7 +10,9 @@
 #include "components/deployer/SceneCommand.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/ConfigReader.hpp"
+#include "components/framework/Operation.hpp"
 #include "components/framework/Port.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/loader/ComponentLibrary.hpp"
 #include "components/scene/Acoustics.hpp"
 

@@ -17,6 +17,7 @@
 #include "components/deployer/ReplaySpec.hpp"
 #include "components/deployer/Tasks.hpp"
 #include "components/framework/Deployment.hpp"
+#include "components/framework/Properties.hpp"
 #include "components/framework/YamlText.hpp"
 #include "components/replay/ReplayTask.hpp"
 #include "components/sonar/PingTask.hpp"

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "components/framework/Operation.hpp"
 #include "components/log/Copy.hpp"
 #include "components/log/TypeNames.hpp"
 #include "components/log/pocolog/Reader.hpp"
