@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "components/framework/Activity.hpp"
 #include "components/framework/Upstream.hpp"
 #include "components/scene/Acoustics.hpp"
 #include "components/scene/MaterialNames.hpp"

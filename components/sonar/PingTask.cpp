@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "components/framework/Activity.hpp"
 #include "components/sonar/effects/Refraction.hpp"
 #include "components/sonar/fan/SentPower.hpp"
 #include "components/sonar/plan/PlanReport.hpp"

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "components/framework/Activity.hpp"
 #include "components/framework/Properties.hpp"
 #include "types/Pose.hpp"
 #include "types/PosedMesh.hpp"

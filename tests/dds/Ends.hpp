@@ -3,6 +3,7 @@
 
 #include "components/dds/PublisherTask.hpp"
 #include "components/dds/SubscriberTask.hpp"
+#include "components/framework/Activity.hpp"
 #include "tests/dds/Loopback.hpp"
 #include "tests/support/Ports.hpp"
 #include "types/Sonar.hpp"

@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "components/framework/Activity.hpp"
 #include "components/sonar/SonarTask.hpp"
 #include "tests/sonar/WallScene.hpp"
 #include "tests/support/Ports.hpp"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "components/framework/Activity.hpp"
 #include "tests/support/Ports.hpp"
 #include "tests/support/Waiting.hpp"
 #include "types/Pose.hpp"
