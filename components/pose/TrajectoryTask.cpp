@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "components/framework/Activity.hpp"
+
 namespace insonify::pose {
 
 void TrajectoryTask::check(types::Diagnostics& diagnostics) const {
