@@ -1,11 +1,10 @@
 // deploy/rock_dropin.yml: the published simulator's ports, properties and property files, by their published names.
 #include <gmock/gmock.h>
 
-#include <numeric>
-
 #include "components/log/Writer.hpp"
 #include "tests/deployer/SceneRun.hpp"
 #include "tests/support/Paths.hpp"
+#include "tests/support/Pings.hpp"
 #include "types/Angle.hpp"
 
 using namespace insonify;
@@ -41,8 +40,6 @@ struct RockDropInTest : testing::Test {
 };
 
 double spanDeg(const types::Sonar& ping) { return ping.bearings.back().deg() - ping.bearings.front().deg(); }
-
-double sum(const types::Sonar& ping) { return std::accumulate(ping.bins.begin(), ping.bins.end(), 0.0); }
 
 }  // namespace
 
@@ -84,8 +81,8 @@ TEST_F(RockDropInTest, EchoesGrowWithTheGainAndAreNearOneAtOneHalf) {
         EXPECT_GT(strongest, 0.5f) << model;
         EXPECT_LE(strongest, 1.0f) << model;
         EXPECT_GT(std::ranges::count_if(half.bins, [](float bin) { return bin > 0.05f; }), 100) << model;
-        EXPECT_GT(sum(half), 1.5 * sum(tenth)) << model;
-        EXPECT_EQ(sum(none), 0) << model;
+        EXPECT_GT(test::sumOf(half), 1.5 * test::sumOf(tenth)) << model;
+        EXPECT_EQ(test::sumOf(none), 0) << model;
     }
 }
 
@@ -114,7 +111,7 @@ TEST_F(RockDropInTest, SwitchesInsertAndRemoveEffects) {
         const types::Sonar plain = with("false", "false");
         EXPECT_EQ(plain.bins, with("false", "false").bins) << name;
         EXPECT_NE(plain.bins, with("false", "true").bins) << name;
-        EXPECT_GT(sum(plain), 1.2 * sum(with("true", "false"))) << name;
+        EXPECT_GT(test::sumOf(plain), 1.2 * test::sumOf(with("true", "false"))) << name;
     }
 }
 
