@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "components/framework/YamlText.hpp"
 #include "types/ConfigError.hpp"
