@@ -19,14 +19,6 @@ types::Sonar lineWith(uint32_t starboard, uint32_t port) {
     return ping;
 }
 
-SideScanPictureConfig display() {
-    SideScanPictureConfig config;
-    config.width = 600;
-    config.reference_db = 0;
-    config.colour_map = ColourMap::Gray;
-    return config;
-}
-
 /** Returns the pixel of a range in the newest row; positive to starboard [m]. */
 cv::Point at(const SideScanImage& image, double range) {
     const cv::Rect water = image.water();
@@ -34,7 +26,7 @@ cv::Point at(const SideScanImage& image, double range) {
 }
 
 TEST(SideScanImageTest, PortIsLeftAndStarboardIsRightOfTheMiddle) {
-    SideScanImage image(display());
+    SideScanImage image(test::grayPicture<SideScanPictureConfig>(600));
     types::Image picture;
     const types::Sonar ping = lineWith(20, 60);
     const double bin = ping.binStart(1);
@@ -46,7 +38,7 @@ TEST(SideScanImageTest, PortIsLeftAndStarboardIsRightOfTheMiddle) {
 }
 
 TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     config.ground_range->altitude = 15;
     SideScanImage image(config);
@@ -60,7 +52,7 @@ TEST(SideScanImageTest, RowsAlongTheGroundHaveNoWaterColumn) {
 }
 
 TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     SideScanImage image(config);
     types::Image picture;
@@ -76,7 +68,7 @@ TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
 
 TEST(SideScanImageTest, ThePortAltitudeReplacesTheFirstReturn) {
     SideScanImageTask task("side_scan");
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     task.config.set(config);
     test::Writer<types::SonarPtr> pings;
@@ -100,7 +92,7 @@ TEST(SideScanImageTest, ThePortAltitudeReplacesTheFirstReturn) {
 
 TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
     SideScanImageTask task("side_scan");
-    SideScanPictureConfig config = display();
+    auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
     task.config.set(config);
     test::Writer<types::SonarPtr> pings;
@@ -133,7 +125,7 @@ TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
 }
 
 TEST(SideScanImageTest, APingWithoutASideLeavesItBlank) {
-    SideScanImage image(display());
+    SideScanImage image(test::grayPicture<SideScanPictureConfig>(600));
     types::Image picture;
     types::Sonar ping = lineWith(20, 20);
     ping.bearings[1] = {-0.5};
