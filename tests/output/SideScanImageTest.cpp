@@ -66,31 +66,7 @@ TEST(SideScanImageTest, TheHeightIsMeasuredOrThatOfTheFirstReturn) {
     EXPECT_GT(levelAt(picture, at(image, std::sqrt(std::pow(40.5 * bin, 2) - 100))), 200);
 }
 
-TEST(SideScanImageTest, ThePortAltitudeReplacesTheFirstReturn) {
-    SideScanImageTask task("side_scan");
-    auto config = test::grayPicture<SideScanPictureConfig>(600);
-    config.ground_range.emplace();
-    task.config.set(config);
-    test::Writer<types::SonarPtr> pings;
-    test::Writer<types::Range> altitudes;
-    test::Reader<types::ImagePtr> pictures;
-    pings.port.connectTo(task.ping, framework::ConnPolicy::buffer(4));
-    altitudes.port.connectTo(task.altitude, framework::ConnPolicy::buffer(4));
-    task.image.connectTo(pictures.port, framework::ConnPolicy::buffer(4));
-    ASSERT_TRUE(task.configure() && task.start()) << task.lastError();
-    types::Range measured;
-    measured.range = 12;
-    altitudes.port.write(measured);
-    const types::Sonar ping = lineWith(40, 60);
-    pings.port.write(test::shared(ping));
-    task.update();
-    types::ImagePtr picture;
-    ASSERT_TRUE(pictures.port.readNew(picture));
-    const SideScanImage layout(config);
-    EXPECT_GT(levelAt(*picture, at(layout, std::sqrt(std::pow(40.5 * ping.binStart(1), 2) - 144))), 200);
-}
-
-TEST(SideScanImageTest, EachPingUsesTheAltitudeAtItsTime) {
+TEST(SideScanImageTest, EachPingUsesThePortsAltitudeAtItsTime) {
     SideScanImageTask task("side_scan");
     auto config = test::grayPicture<SideScanPictureConfig>(600);
     config.ground_range.emplace();
