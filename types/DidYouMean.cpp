@@ -51,7 +51,10 @@ std::string didYouMean(std::string_view wrong, const std::vector<std::string>& k
         minimum = std::min(minimum, distance);
         if (meant.size() >= 3 && lower(name).find(meant) != std::string::npos) holding.push_back(name);
     }
-    if (!nearest.empty() && minimum <= std::max<size_t>(1, wrong.size() / 3))
+    constexpr size_t short_word = 3;  // one other letter makes another word of it
+    const bool other_word = meant.size() <= short_word && !nearest.empty() && !meant.empty() &&
+                            lower(nearest.front()).front() != meant.front();
+    if (!nearest.empty() && !other_word && minimum <= std::max<size_t>(1, wrong.size() / 3))
         return "did you mean " + nearest.front() + "? ";
     return holding.size() == 1 ? "did you mean " + holding.front() + "? " : "";
 }

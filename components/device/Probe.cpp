@@ -229,7 +229,8 @@ std::optional<std::string> oculusIn(std::span<const uint8_t> bytes) {
     }
     const auto header = oculusHeader(bytes);
     if (!header) return {};
-    return fmt::format("Blueprint Subsea Oculus, message 0x{:02x}", header->id);
+    if (header->is(OculusId::Dummy)) return fmt::format("Blueprint Subsea Oculus {}, alive", oculusName(header->part));
+    return fmt::format("Blueprint Subsea Oculus {}, message 0x{:02x}", oculusName(header->part), header->id);
 }
 
 std::optional<std::string> seaNetIn(std::span<const uint8_t> bytes) {

@@ -150,7 +150,11 @@ void ConfigReader::report(const YAML::Node& node, const std::string& path, const
         longest = covered.size();
         origin = {from.file, from.path + path.substr(covered.size()), from.mark};
     }
-    if (node.IsDefined() && !node.Mark().is_null()) origin.mark = node.Mark();
+    const bool has_place = node.IsDefined() && !node.Mark().is_null();
+    if (longest == 0 && !has_place)  // a block that exists only because a key below it was set
+        for (const auto& [covered, from] : origins_)
+            if (from.isOption() && covered.starts_with(path + ".")) origin.file = from.file;
+    if (has_place) origin.mark = node.Mark();
     if (origin.file.empty() || origin.isOption() || origin.mark.is_null())
         diagnostics_.push_back({origin.path, message, origin.file});
     else

@@ -67,7 +67,7 @@ struct PictureConfig : DisplayConfig, RecordingConfig {
 
     static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit({"every", "1", "number of pings for each picture", 1, 1e6}, self.every);
+        visit({"every", "1", "pings from one picture to the next; the first ping has one", 1, 1e6}, self.every);
         DisplayConfig::describe(self, visit);
     }
     void check(types::Diagnostics& diagnostics) const {

@@ -18,7 +18,7 @@ struct SamplePictureConfig : RecordingConfig {
 
     static void describe(auto& self, auto& visit) {
         RecordingConfig::describe(self, visit);
-        visit({"every", "1", "number of samples for each picture", 1, 1e6}, self.every);
+        visit({"every", "1", "samples from one picture to the next, and in the first", 1, 1e6}, self.every);
         visit({"width", "1", "width of the picture in pixels; an odd width is rounded up to even; the height follows",
                256, 8192},
               self.width);

@@ -8,6 +8,7 @@
 
 #include "types/Angle.hpp"
 #include "types/Csv.hpp"
+#include "types/Quaternion.hpp"
 
 namespace insonify::pose {
 namespace {
@@ -166,11 +167,15 @@ double Trajectory::inLoop(double time) const {
 Trajectory Trajectory::fromCsv(const std::filesystem::path& file, bool smooth) {
     static const std::vector<types::CsvColumn> columns{{"time"}, {"x"}, {"y"}, {"z"}, {"qw"}, {"qx"}, {"qy"}, {"qz"}};
     std::vector<Stamp> stamps;
+    size_t odd_lengths = 0;
     for (const std::vector<double>& row : types::readCsv(file, columns, 1, evaluate)) {
         const glm::dquat orientation = orientationOf(row);
+        odd_lengths += types::isOddlyLong(orientation);
         stamps.push_back({row[0], {row[1], row[2], row[3]}, orientation / glm::length(orientation)});
     }
-    return Trajectory(std::move(stamps), smooth);
+    Trajectory trajectory(std::move(stamps), smooth);
+    trajectory.odd_lengths_ = odd_lengths;
+    return trajectory;
 }
 
 }  // namespace insonify::pose

@@ -112,6 +112,8 @@ public:
     double inLoop(double time) const;
 
     const std::vector<Stamp>& stamps() const { return stamps_; }
+    /** Returns how many quaternions of the file had a length that differs from 1 by more than 1 %. */
+    size_t oddLengths() const { return odd_lengths_; }
 
 private:
     /** Sets pose and velocities on the spline, in the segment that ends with stamp number `stamp`. */
@@ -119,6 +121,7 @@ private:
 
     std::vector<Stamp> stamps_;
     std::optional<Spline> spline_;
+    size_t odd_lengths_ = 0;
 };
 
 }  // namespace insonify::pose

@@ -29,9 +29,17 @@ bool TrajectoryTask::configureHook() {
 }
 
 std::vector<std::string> TrajectoryTask::notices() const {
-    if (held_ == 0) return {};
-    return {fmt::format("the trajectory ended at {:g} s; {} poses after it are its last one (loop: true repeats it)",
-                        duration(), held_.load())};
+    std::vector<std::string> notices;
+    if (const size_t odd = trajectory_ ? trajectory_->oddLengths() : 0; odd > 0)
+        notices.push_back(fmt::format(
+            "Warning: {} of {} quaternions of {} have a length that is not 1, and are made 1: are their parts degrees, "
+            "or in another order?",
+            odd, trajectory_->stamps().size(), *config->file));
+    if (held_ > 0)
+        notices.push_back(
+            fmt::format("the trajectory ended at {:g} s; {} poses after it are its last one (loop: true repeats it)",
+                        duration(), held_.load()));
+    return notices;
 }
 
 bool TrajectoryTask::startHook() {

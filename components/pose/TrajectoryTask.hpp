@@ -30,7 +30,8 @@ public:
 
     void check(types::Diagnostics& diagnostics) const override;
     bool finished() const override { return finished_; }
-    /** Returns how many poses after the last stamp were that of the last stamp. */
+    /** Returns how many quaternions of the file have an odd length, and how many poses after the last stamp were that
+     *  of the last stamp. */
     std::vector<std::string> notices() const override;
     /** Returns the trajectory of the properties, configured or not. Throws types::ConfigError as
      *  Trajectory::fromCsv. */

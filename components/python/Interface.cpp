@@ -8,6 +8,7 @@
 
 #include "components/deployer/Json.hpp"
 #include "components/deployer/SimulationBatch.hpp"
+#include "components/framework/ConfigReader.hpp"
 #include "components/python/Samples.hpp"
 #include "types/ConfigError.hpp"
 
@@ -72,13 +73,21 @@ void keepError(const char* kind, const std::exception& error, const types::Diagn
     keep({{"kind", kind}, {"message", error.what()}, {"diagnostics", all}});
 }
 
+/** Returns the errors with the parameter of Python as the origin of what `--set` would have set. */
+types::ConfigError namingOverrides(types::Diagnostics diagnostics) {
+    for (types::Diagnostic& each : diagnostics)
+        if (each.file == framework::set_origin) each.file = "overrides";
+    return types::ConfigError(std::move(diagnostics));
+}
+
 /** Returns the result of `work`; `failed` if it throws. */
 template <class Work>
 auto guarded(std::invoke_result_t<Work> failed, Work&& work) {
     try {
         return work();
     } catch (const types::ConfigError& error) {
-        keepError("ConfigError", error, error.diagnostics());
+        const types::ConfigError named = namingOverrides(error.diagnostics());
+        keepError("ConfigError", named, named.diagnostics());
     } catch (const UnreadableType& error) {
         keepError("TypeError", error);
     } catch (const std::invalid_argument& error) {

@@ -322,6 +322,7 @@ void SceneTask::updateHook() try {
     sample->geometry = bathymetry_ ? bathymetry_->about(sample->sonar.position, geometry_) : geometry_;
     sample->ahead = bathymetry_ ? bathymetry_->ahead() : nullptr;
     sample->water_surface = config->water_surface;
+    warnAboveWater(sample->sonar.position.z);
     if (animator_) animate(body.time);
     addMoved(sample->moved);
     if (animator_) animator_->addMoved(sample->moved), animator_->addDeformed(*sample);
@@ -332,6 +333,13 @@ void SceneTask::updateHook() try {
     if (!movables_good) error(name() + unusable);
 } catch (const SurveyError& failure) {
     error(failure.what());
+}
+
+void SceneTask::warnAboveWater(double z) {
+    const double height = config->water_surface ? z - *config->water_surface : 0;
+    if (above_water_.isDue(height > 0))
+        warn(fmt::format("{}: the sonar is {:.3g} m above the water surface (z is up: depths are negative)",
+                         pose.path(), height));
 }
 
 /** Takes the newest pose of each movable. Returns false if one was unusable, which leaves that node at its place. */

@@ -101,6 +101,7 @@ private:
     std::unique_ptr<Bathymetry> openSurvey() const;  ///< Null without one.
     /** Returns the configured materials with their tables read. Adds errors to `diagnostics`. */
     std::map<std::string, Acoustics> materials(types::Diagnostics& diagnostics) const;
+    void warnAboveWater(double z);
     bool readMovables();
     void placeTargets(const Scene& scene, types::Diagnostics& diagnostics);
     void addMoved(std::vector<types::MovedObject>& moved);
@@ -136,6 +137,7 @@ private:
     types::Time newest_;                      ///< Stamp of the newest usable pose; the start before the first.
     types::Time arrived_;                     ///< When that pose came; the start before the first.
     types::RecurringDiagnostic odd_lengths_;  ///< Reports quaternions of the body that are not of unit length.
+    types::RecurringDiagnostic above_water_;  ///< Reports sonars above the water surface.
     bool newest_came_ = false;                ///< A pose of the body has come since the start.
     bool waiting_is_reported_ = false;        ///< Whether waiting for the first pose has been reported.
     std::atomic<bool> is_stale_ = false;      ///< In error because no pose came, not because a pose was invalid.

@@ -41,6 +41,8 @@ TEST(DidYouMeanTest, NamesOfTasksPortsPropertiesEnumsAndMaterials) {
         {"file: wall.gltf", "file: wall.gltf, materials: {wall: {sediment: medum_sand}}", "did you mean medium_sand?"},
         {"file: wall.gltf", "file: wall.gltf, materials: {wall: {lamber_db: -10}}", "did you mean lambert_db?"},
         {"schedule: lockstep", "schedule: lock_step", "did you mean lockstep?"},
+        {"beam_count: 16", "visibility: clu", "did you mean cpu?"},
+        {"beam_count: 16", "visibility: gpu", "is gpu; may be auto, gl, cpu"},
     });
 }
 

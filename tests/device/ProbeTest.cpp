@@ -55,7 +55,8 @@ TEST(ProbeTest, DevicesAreIdentified) {
     EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("not ready"));
     status.part = 9;
     EXPECT_THAT(*oculusIn(bytesOf(status)), HasSubstr("Oculus of part 9,"));
-    EXPECT_EQ(oculusIn(oculusDummy(1, 1032)), "Blueprint Subsea Oculus, message 0xff");
+    EXPECT_EQ(oculusIn(oculusDummy(1, 1032)), "Blueprint Subsea Oculus M750d, alive");
+    EXPECT_EQ(oculusIn(oculusLog(1, 1032, "")), "Blueprint Subsea Oculus M750d, message 0x80");
     EXPECT_EQ(seaNetIn(SeaNetAlive{}.message().packet()), "Tritech SeaNet device, node 2, alive");
     EXPECT_EQ(seaNetIn(Bytes{'@', '0'} + SeaNetVersion{.software = 3, .serial = 1234}.message().packet()),
               "Tritech SeaNet device, node 2, software 3, serial number 1234");

@@ -187,7 +187,7 @@ TEST(DeploymentSpecTest, NamesSettingsThatDoNotFit) {
                               {"s.last=many", "s.lost=1", "t.last=1", "s.last", "s=1", "s.seed=[", "s.last="}),
                 UnorderedElementsAre("--set: tasks.s.properties.last: is many; must be a whole number",
                                      HasSubstr("--set: tasks.s.properties.lost: is not a key here; did you mean last?"),
-                                     HasSubstr("--set: t.last=1: there is no task t; did you mean s?"),
+                                     HasSubstr("--set: t.last=1: there is no task t; known: s"),
                                      "--set: s.last: must be task.property=value",
                                      "--set: s=1: must be task.property=value, namespace=value or frame_prefix=value",
                                      HasSubstr("--set: s.seed=[: is not YAML"),

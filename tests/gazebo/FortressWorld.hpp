@@ -6,6 +6,8 @@
 #include <ignition/msgs/scene.pb.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <ignition/transport/Node.hh>
 #include <string>
@@ -34,7 +36,10 @@ class FortressWorld {
 public:
     explicit FortressWorld(const std::string& topic = "/world/sea/pose/info")
         : poses_(node_.Advertise<ignition::msgs::Pose_V>(topic)),
-          odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {}
+          odometry_(node_.Advertise<ignition::msgs::Odometry>("/model/rov/odometry")) {
+        static const int registered = on_exit(end, nullptr);
+        static_cast<void>(registered);
+    }
     /** Publishes red at x along the world's x axis, and blue 12 m beyond red. */
     void publish(double seconds, double x) {
         ignition::msgs::Pose_V message;
@@ -55,6 +60,13 @@ public:
     }
 
 private:
+    /** Ends the process before the destructors of Fortress's libraries: its threads of discovery run until the end,
+     *  and a message that arrives then would use what is destroyed. */
+    static void end(int status, void*) {
+        std::fflush(nullptr);
+        std::_Exit(status);
+    }
+
     ignition::transport::Node node_;
     ignition::transport::Node::Publisher poses_, odometry_;
 };

@@ -65,4 +65,6 @@ TEST(EffectTest, AnEffectThatNoLibraryHasAddedIsRefused) {
         replaced(wall_deployment, "      range: 20\n", "      range: 20\n      effects: {bubbles: {}}\n"));
     EXPECT_THAT(callInsonify(folder, {"check", "wall.yml"}),
                 isRefused(HasSubstr("effects.bubbles: is no effect; effects are: edge_diffraction\n")));
+    EXPECT_THAT(callInsonify(folder, {"check", "wall.yml", "--set", "sonar.effects.bubles.size=1"}),
+                isRefused(HasSubstr("--set: tasks.sonar.properties.effects.bubles: is no effect;")));
 }

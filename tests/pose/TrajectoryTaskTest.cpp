@@ -68,6 +68,15 @@ TEST_F(TrajectoryTaskTest, CountsThePosesThatItHoldsAfterTheLastStamp) {
                                                       "(loop: true repeats it)"));
 }
 
+TEST_F(TrajectoryTaskTest, WarnsOfQuaternionsOfOddLengths) {
+    std::ofstream(folder_ / "t.csv") << "time,x,y,z,qw,qx,qy,qz\n0,0,0,0,1.005,0,0,0\n1,0,0,0,2,0,0,0\n";
+    task_.config.set({.file = "t.csv", .waypoints = {}});
+    ASSERT_TRUE(task_.configure());
+    EXPECT_THAT(
+        task_.notices(),
+        testing::ElementsAre(testing::StartsWith("Warning: 1 of 2 quaternions of t.csv have a length that is not 1")));
+}
+
 TEST_F(TrajectoryTaskTest, APeriodThatDividesTheTrajectoryReachesItsLastStamp) {
     task_.config.set({.file = {}, .waypoints = {{.time = 0}, {.time = 1}}});
     task_.activity().configure({.period = 1.0 / 3, .trigger = {}, .cpus = {}});

@@ -164,6 +164,13 @@ def test_errors_have_file_line_and_column(tmp_path, deploy):
         insonify.Simulation(tmp_path / "nowhere.yml")
 
 
+def test_errors_of_overrides_name_them(deploy):
+    with pytest.raises(insonify.ConfigError, match="overrides: .*did you mean sonar"):
+        insonify.Simulation(deploy / "minimal.yml", overrides={"sonr.range": 3})
+    with pytest.raises(insonify.ConfigError, match="overrides: tasks.sonar.properties.range: "):
+        insonify.Simulation(deploy / "minimal.yml", overrides={"sonar.range": -3})
+
+
 def test_after_an_invalid_pose_the_next_pose_works(minimal):
     with pytest.raises(RuntimeError, match="finite"):
         minimal.step(insonify.Pose([np.nan, 0, 0]))

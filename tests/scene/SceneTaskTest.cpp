@@ -37,6 +37,16 @@ TEST_F(SceneTaskTest, EachPoseGivesASnapshotOfItsTimeAndTheSharedGeometry) {
     EXPECT_TRUE(first->moved.empty());
 }
 
+TEST_F(SceneTaskTest, ASonarAboveTheWaterSurfaceIsReportedOnce) {
+    std::vector<std::string> reported;
+    task_.environment().warn = [&](const std::string& text) { reported.push_back(text); };
+    config_.water_surface = 1.5;
+    start();
+    for (const double seconds : {1, 2}) ASSERT_TRUE(ping(at(seconds, {0, 0, 2})));
+    EXPECT_THAT(reported, testing::ElementsAre("scene: scene.pose: the sonar is 0.5 m above the water surface (z is "
+                                               "up: depths are negative)"));
+}
+
 TEST_F(SceneTaskTest, TheMountPlacesTheSonar) {
     config_.mount = {.position = {1, 0, -0.5}, .roll_deg = 0, .pitch_deg = 90, .yaw_deg = 0};
     start();

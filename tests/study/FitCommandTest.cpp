@@ -170,6 +170,8 @@ TEST(FitCommandTest, RefusesWrongUseWithAReasonAndWritesNothing) {
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "nowhere/fitted.yml"},
          "is in a folder that does not exist: nowhere"},
         {{"fit", "wall.yml", "--real", "speckle.raw", "--out", "fitted.txt"}, "must end in .yml or .yaml"},
+        {{"fit", "wall.yml", "--real", "nothing.raw", "speckle.raw", "--out", "fitted.txt"},
+         "nothing.raw: --real: does not exist; may be a file or a folder of them\nfitted.txt: --out: must end"},
         {{"fit", "nothing.yml", "--real", "speckle.raw", "--out", "fitted.yml"}, "nothing.yml"},
         {{"fit", "without_noise.yml", "--real", "speckle.raw", "--out", "fitted.yml"},
          "has no noise::NoiseTask before it"},

@@ -13,7 +13,7 @@ namespace insonify::sonar {
 namespace {
 
 std::string noSurface(const Omitted& /*what*/, const BinGrid& /*grid*/) {
-    return "multipath.surface is given, and the scene has no water_surface";
+    return "multipath.surface is given, and the scene task has no water_surface";
 }
 std::string aboveSurface(const Omitted& /*what*/, const BinGrid& /*grid*/) {
     return "the sonar was above the water surface at the first ping";

@@ -23,15 +23,20 @@ struct FitOptions {
     bool quiet = false;
 };
 
-/** Refuses a name that is not a file in an existing folder, before anything is computed. */
-void refuseUnwritable(const std::string& out) {
-    const fs::path path(out), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+/** Refuses recordings that do not exist and a result that cannot be written, before anything is computed. */
+void refuseFiles(const FitOptions& options) {
+    types::Diagnostics wrong;
+    for (const std::string& real : options.real)
+        if (!fs::exists(real)) wrong.push_back({"--real", "does not exist; may be a file or a folder of them", real});
+    const fs::path path(options.out), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    const std::string end = path.extension().string();
     if (fs::is_directory(path))
-        throw types::ConfigError(out, "--out", "is a folder; give the name of a file, FITTED.yml");
-    if (!fs::is_directory(folder))
-        throw types::ConfigError(out, "--out", "is in a folder that does not exist: " + folder.string());
-    if (const std::string end = path.extension().string(); end != ".yml" && end != ".yaml")
-        throw types::ConfigError(out, "--out", "must end in .yml or .yaml");
+        wrong.push_back({"--out", "is a folder; give the name of a file, FITTED.yml", options.out});
+    else if (!fs::is_directory(folder))
+        wrong.push_back({"--out", "is in a folder that does not exist: " + folder.string(), options.out});
+    else if (end != ".yml" && end != ".yaml")
+        wrong.push_back({"--out", "must end in .yml or .yaml", options.out});
+    if (!wrong.empty()) throw types::ConfigError(std::move(wrong));
 }
 
 void printFindings(const RecordingFit& fit) {
@@ -40,7 +45,7 @@ void printFindings(const RecordingFit& fit) {
 }
 
 int runFit(const FitOptions& options, const FindChain& chainAt, const WriteDeployment& write, const ReadLog& readLog) {
-    refuseUnwritable(options.out);
+    refuseFiles(options);
     ChainAt at = chainAt(options.deployment, options.ping, {});
     const receiver::CodeConfig law = at.chain.code();
     const std::vector<CodedPing> recorded = recordedPings(options.real, &law, readLog);
